@@ -1,0 +1,2 @@
+//! Bouncing balls.
+pub mod units;

@@ -1,0 +1,1 @@
+//! Holds the documentation tests of the pages in the project.
