@@ -1,1 +1,50 @@
-//! saltus
+//! `saltus` integrates **hybrid automata**: continuous flow, guards, resets. No crossing is missed, none is doubled, nothing is endless.
+//!
+//! Describe a system with closures ([`Hybrid`]) or as a type ([`Automaton`]), then run it ([`Simulation`]).
+//!
+//! ```
+//! use saltus::nalgebra::{Vector2, vector};
+//! use saltus::{Hybrid, Simulation};
+//!
+//! let ball = Hybrid::new()
+//!     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8])
+//!     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.5 * x[1]])
+//!     .mode("rest", |_t, _x| vector![0.0, 0.0])
+//!     .beyond("flight", "rest", |_t, _x| vector![0.0, 0.0]);
+//! let run = Simulation::of(&ball).run("flight", vector![1.0, 0.0], 0.0..4.0)?;
+//!
+//! assert_eq!(run.mode, "rest");
+//! let rest = run.trajectory.jumps().last().unwrap();
+//! assert!((rest.t() - 1.355_261_854_357_877).abs() < 1e-12);
+//! # Ok::<(), saltus::Error>(())
+//! ```
+//!
+//! A run is a hybrid arc on hybrid time (t, j): j counts jumps, so several jumps may share one t. At a jump the state has two limits,
+//! [`Trajectory::before`] and [`Trajectory::at`].
+
+mod advance;
+mod automaton;
+mod control;
+pub mod cross;
+mod error;
+mod hybrid;
+mod observe;
+mod poly;
+mod simulation;
+mod state;
+pub mod step;
+mod time;
+mod trajectory;
+mod zeno;
+
+pub use nalgebra;
+
+pub use automaton::{Automaton, Edges, Entry, Polynomial};
+pub use error::{Error, ErrorKind};
+pub use hybrid::{Hybrid, Link};
+pub use observe::Observer;
+pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
+pub use state::{Coords, State};
+pub use step::Tsit5;
+pub use time::Time;
+pub use trajectory::{Arc, Cause, Jump, Piece, Trajectory};

@@ -1,0 +1,174 @@
+//! An axis: its range, its ticks at 1, 2 or 5 times a power of ten, its numbers.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, KeyPointWeight, NoDefaultFormatting, Ranged, ValueFormatter};
+
+use crate::curve::Affine;
+
+/// An axis in the units it is labelled with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Axis {
+    low: f64,
+    high: f64,
+    /// Ticks lie in this part only.
+    ticked: (f64, f64),
+    step: f64,
+}
+
+impl Axis {
+    /// An axis from `low` to `high` with at most `most` ticks, all inside `ticked`.
+    pub(crate) fn new(low: f64, high: f64, ticked: (f64, f64), most: usize) -> Self {
+        let span = ticked.1 - ticked.0;
+        Self { low, high, ticked, step: nice(span / most.max(1) as f64) }
+    }
+
+    /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px between them on `length` px.
+    pub(crate) fn thinned(mut self, length: f64, gap: f64, width: impl Fn(&str) -> f64) -> Self {
+        for _ in 0..12 {
+            let apart = self.step / (self.high - self.low) * length;
+            let widest = self.ticks().iter().map(|&tick| width(&self.text(tick))).fold(0.0, f64::max);
+            if widest + gap <= apart || self.ticks().len() <= 2 {
+                break;
+            }
+            self.step = nice(self.step * 1.01);
+        }
+        self
+    }
+
+    pub(crate) fn ends(&self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
+    pub(crate) fn ticks(&self) -> Vec<f64> {
+        let slack = 1e-9;
+        let first = (self.ticked.0 / self.step - slack).ceil();
+        let last = (self.ticked.1 / self.step + slack).floor();
+        let mut ticks = Vec::new();
+        let mut index = first;
+        // The bound only matters when the step is too small to move a huge index.
+        while index <= last && ticks.len() < 64 {
+            ticks.push(index * self.step);
+            index += 1.0;
+        }
+        ticks
+    }
+
+    /// The number as it is written beside its tick: no more decimals than the step needs.
+    pub(crate) fn text(&self, value: f64) -> String {
+        let decimals = (-(self.step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+        let plain = format!("{value:.decimals$}");
+        typeset(&plain)
+    }
+
+    /// The map of this axis onto px from `from` to `to`.
+    pub(crate) fn onto(&self, from: f64, to: f64) -> Affine {
+        Affine { origin: from, scale: (to - from) / (self.high - self.low), zero: self.low }
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        // `as` saturates, so that a wild value ends up far outside rather than somewhere else.
+        self.onto(f64::from(limit.0), f64::from(limit.1)).at(*value).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        // plotters asks twice, for a fine grid and a coarse one; the coarse one is enough.
+        match hint.weight() {
+            KeyPointWeight::Bold => self.ticks(),
+            KeyPointWeight::Any => Vec::new(),
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format(value: &f64) -> String {
+        typeset(&format!("{value}"))
+    }
+
+    fn format_ext(&self, value: &f64) -> String {
+        self.text(*value)
+    }
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
+pub(crate) fn nice(least: f64) -> f64 {
+    if !(least.is_finite() && least > 0.0) {
+        return 1.0;
+    }
+    let power = 10f64.powi(least.log10().floor() as i32);
+    let times = [1.0, 2.0, 5.0].into_iter().find(|times| times * power >= least * (1.0 - 1e-9)).unwrap_or(10.0);
+    times * power
+}
+
+/// A number with a true minus sign, and thin spaces between thousands from five digits on.
+pub(crate) fn typeset(plain: &str) -> String {
+    let (negative, digits) = match plain.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, plain),
+    };
+    let whole = digits.split('.').next().unwrap_or(digits);
+    let zero = digits.chars().all(|c| c == '0' || c == '.');
+    let mut text = String::new();
+    if negative && !zero {
+        text.push('\u{2212}');
+    }
+    for (i, c) in whole.chars().enumerate() {
+        if i > 0 && whole.len() > 4 && (whole.len() - i) % 3 == 0 {
+            text.push('\u{2009}');
+        }
+        text.push(c);
+    }
+    text.push_str(&digits[whole.len()..]);
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_one_two_five() {
+        for (least, step) in [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (2.5, 5.0), (5.1, 10.0), (0.03, 0.05)] {
+            assert!((nice(least) / step - 1.0).abs() < 1e-12, "{least}");
+        }
+        assert_eq!(nice(0.0), 1.0);
+    }
+
+    #[test]
+    fn ticks_are_multiples_inside_the_range() {
+        let axis = Axis::new(-0.02, 1.13, (0.0, 1.13), 8);
+        let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
+        assert_eq!(texts, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+    }
+
+    #[test]
+    fn a_late_clock_keeps_its_ticks() {
+        let axis = Axis::new(1e6, 1e6 + 1.0, (1e6, 1e6 + 1.0), 5);
+        let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
+        assert_eq!(texts.len(), 6);
+        assert_eq!(texts[1], "1\u{2009}000\u{2009}000.2");
+    }
+
+    #[test]
+    fn minus_is_a_minus_and_zero_has_none() {
+        assert_eq!(typeset("-0.5"), "\u{2212}0.5");
+        assert_eq!(typeset("-0.0"), "0.0");
+        assert_eq!(typeset("12345"), "12\u{2009}345");
+        assert_eq!(typeset("1234"), "1234");
+    }
+
+    #[test]
+    fn labels_are_thinned_until_they_fit() {
+        let axis = Axis::new(0.0, 1.0, (0.0, 1.0), 20).thinned(200.0, 10.0, |_| 30.0);
+        assert!(axis.ticks().len() <= 6, "{:?}", axis.ticks());
+    }
+}

@@ -1,0 +1,89 @@
+//! What can go wrong between data and picture.
+
+use std::error::Error;
+use std::fmt;
+
+/// Why a picture could not be drawn: what is wrong, where, and what to do about it.
+///
+/// # Example
+///
+/// ```
+/// use saltus_plot::{Arc, HeightTime, PlotError};
+///
+/// let empty = HeightTime::new("Nothing yet").svg();
+/// assert!(matches!(empty, Err(PlotError::Empty)));
+///
+/// let broken = HeightTime::new("Broken").motion("model", [Arc::new(0.0, 1.0, vec![f64::NAN])]).svg();
+/// let message = broken.unwrap_err().to_string();
+/// assert!(message.contains("coefficient 0 of arc 1 of motion 1"), "{message}");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum PlotError {
+    /// There is nothing to draw: no arc, no measurement, no contact, no residual.
+    Empty,
+    /// A number is NaN, infinite, or so far out (beyond 10³⁰⁰) that it might as well be.
+    NotFinite {
+        /// Which number, in words: "the time of measurement 3".
+        what: String,
+        /// The number itself.
+        value: f64,
+    },
+    /// A number that must not be negative is: a span or an error.
+    Negative {
+        /// Which number, in words.
+        what: String,
+        /// The number itself.
+        value: f64,
+    },
+    /// The picture's size is not a number of pixels that can be drawn.
+    Size {
+        /// The width asked for.
+        width: f64,
+        /// The height asked for.
+        height: f64,
+    },
+    /// The drawing library could not place an element.
+    Drawing(String),
+}
+
+impl fmt::Display for PlotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(
+                f,
+                "there is nothing to draw: give the picture at least one motion, measurement, contact or residual"
+            ),
+            Self::NotFinite { what, value } => {
+                write!(f, "{what} is {value}, which has no place on an axis: leave it out or correct it")
+            }
+            Self::Negative { what, value } => {
+                write!(f, "{what} is {value}, but must not be negative: give its magnitude")
+            }
+            Self::Size { width, height } => write!(
+                f,
+                "a picture of {width} by {height} px cannot be drawn: each side must lie between {} and {} px",
+                crate::theme::SMALLEST,
+                crate::theme::LARGEST
+            ),
+            Self::Drawing(reason) => {
+                write!(f, "the drawing library could not place an element ({reason}): try a larger size")
+            }
+        }
+    }
+}
+
+impl Error for PlotError {}
+
+/// Beyond this, differences and squares are no longer safe from overflow.
+const FARTHEST: f64 = 1e300;
+
+/// `value` if it is finite, else an error naming `what`.
+pub(crate) fn finite(value: f64, what: impl FnOnce() -> String) -> Result<f64, PlotError> {
+    if value.abs() <= FARTHEST { Ok(value) } else { Err(PlotError::NotFinite { what: what(), value }) }
+}
+
+/// `value` if it is finite and not negative, else an error naming `what`.
+pub(crate) fn magnitude(value: f64, what: impl Fn() -> String) -> Result<f64, PlotError> {
+    if finite(value, &what)? < 0.0 { Err(PlotError::Negative { what: what(), value }) } else { Ok(value) }
+}

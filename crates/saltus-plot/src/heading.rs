@@ -1,0 +1,216 @@
+//! What stands above the panels: the title, the captions, the legend.
+
+use plotters::style::FontStyle;
+use plotters_backend::text_anchor::{HPos, VPos};
+
+use crate::data::Mark;
+use crate::error::PlotError;
+use crate::height_time::HeightTime;
+use crate::marks::{Spot, Tick, Trace};
+use crate::page::{Area, failed};
+use crate::svg::{grains, number};
+use crate::theme::{CAPITAL, Dash, Ink, Type, room, words, wrapped};
+
+/// What a legend entry shows before its words.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sign {
+    Line(Ink, Dash),
+    Spot(Mark),
+    Contact,
+    /// Words alone: what the marks after them have in common.
+    Nothing,
+}
+
+impl Sign {
+    fn width(self, ty: Type) -> f64 {
+        match self {
+            Self::Line(..) => 2.2 * ty.base,
+            Self::Spot(_) => 0.7 * ty.base,
+            Self::Contact => 0.5 * ty.base,
+            Self::Nothing => 0.0,
+        }
+    }
+
+    /// From the sign to its words.
+    fn lead(self, ty: Type) -> f64 {
+        match self {
+            Self::Nothing => 0.0,
+            Self::Line(..) => self.width(ty) + 0.55 * ty.base,
+            Self::Spot(_) | Self::Contact => self.width(ty) + 0.38 * ty.base,
+        }
+    }
+
+    /// From the words to the next sign.
+    fn gap(self, ty: Type) -> f64 {
+        match self {
+            Self::Nothing => 0.4 * ty.base,
+            Self::Line(..) => ty.base,
+            Self::Spot(_) | Self::Contact => 0.9 * ty.base,
+        }
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Entry {
+    sign: Sign,
+    lines: Vec<String>,
+    x: f64,
+    row: usize,
+}
+
+/// Everything above the panels, broken into lines for one type size and page width.
+#[derive(Debug, Clone)]
+pub(crate) struct Heading {
+    ty: Type,
+    title: Vec<String>,
+    captions: Vec<String>,
+    entries: Vec<Entry>,
+    rows: usize,
+}
+
+impl Heading {
+    pub(crate) fn new(picture: &HeightTime, ty: Type, page: f64) -> Self {
+        let inside = page - 2.0 * ty.margin();
+        let title = wrapped(&picture.title, ty.title(), true, inside);
+        let captions = picture.captions.iter().flat_map(|c| wrapped(c, ty.base, false, inside)).collect();
+        let mut heading = Self { ty, title, captions, entries: Vec::new(), rows: 0 };
+        heading.legend(picture, inside);
+        heading
+    }
+
+    fn legend(&mut self, picture: &HeightTime, page: f64) {
+        let mut wanted: Vec<(Sign, String)> = Vec::new();
+        for (i, motion) in picture.motions.iter().enumerate() {
+            if !motion.label.is_empty() {
+                wanted.push((Sign::Line(Ink::series(i), Dash::series(i)), motion.label.clone()));
+            }
+        }
+        if !picture.contacts.is_empty() {
+            wanted.push((Sign::Contact, "model contact".to_owned()));
+        }
+        let model = wanted.len();
+        wanted.extend(measured(picture));
+        let ty = self.ty;
+        let full: f64 =
+            wanted.iter().map(|(sign, text)| sign.lead(ty) + room(text, ty.base, false) + sign.gap(ty)).sum();
+        let mut x = 0.0;
+        let mut row = 0;
+        for (i, (sign, label)) in wanted.into_iter().enumerate() {
+            // In one row if all of it fits, else the model above the measurements.
+            if i == model && x > 0.0 && full > page + ty.base {
+                row += 1;
+                x = 0.0;
+            }
+            let lead = sign.lead(ty);
+            let lines = wrapped(&label, ty.base, false, page - lead);
+            let broad = lead + lines.iter().map(|line| room(line, ty.base, false)).fold(0.0, f64::max);
+            if x > 0.0 && (x + broad > page || lines.len() > 1) {
+                row += 1;
+                x = 0.0;
+            }
+            let deep = lines.len().max(1);
+            self.rows = self.rows.max(row + deep);
+            self.entries.push(Entry { sign, lines, x, row });
+            x += broad + sign.gap(ty);
+            if deep > 1 {
+                row += deep;
+                x = 0.0;
+            }
+        }
+    }
+
+    /// From the top of the page to the bottom of the last line, in px.
+    pub(crate) fn height(&self) -> f64 {
+        let b = self.ty.base;
+        let mut y = 0.9 * self.ty.margin();
+        if !self.title.is_empty() {
+            y += self.title.len() as f64 * 1.25 * self.ty.title();
+        }
+        if !self.captions.is_empty() {
+            y += 0.15 * b + self.captions.len() as f64 * 1.4 * b;
+        }
+        if self.rows > 0 {
+            y += 0.75 * b + self.rows as f64 * 1.45 * b;
+        }
+        y
+    }
+
+    pub(crate) fn draw(&self, area: &Area) -> Result<(), PlotError> {
+        let ty = self.ty;
+        let b = ty.base;
+        let left = ty.margin();
+        let mut y = 0.9 * ty.margin();
+        let text = |line: &str, ink: Ink, size: f64, weight: FontStyle, x: f64, baseline: f64| {
+            let style = words(ink, size, weight, HPos::Left, VPos::Bottom);
+            area.draw_text(line, &style, (grains(x), grains(baseline))).map_err(failed)
+        };
+        for line in &self.title {
+            text(line, Ink::Text, ty.title(), FontStyle::Bold, left, y + 0.8 * ty.title())?;
+            y += 1.25 * ty.title();
+        }
+        if !self.captions.is_empty() {
+            y += 0.15 * b;
+        }
+        for line in &self.captions {
+            text(line, Ink::Muted, b, FontStyle::Normal, left, y + b)?;
+            y += 1.4 * b;
+        }
+        if self.rows > 0 {
+            y += 0.75 * b;
+        }
+        // All signs first, then all words: neighbours with one pen share a group.
+        for entry in &self.entries {
+            let middle = y + entry.row as f64 * 1.45 * b + b - 0.5 * CAPITAL * b;
+            self.sign(area, entry.sign, left + entry.x, middle)?;
+        }
+        for entry in &self.entries {
+            for (i, line) in entry.lines.iter().enumerate() {
+                let baseline = y + (entry.row + i) as f64 * 1.45 * b + b;
+                let x = left + entry.x + entry.sign.lead(ty);
+                let ink = if entry.sign == Sign::Nothing { Ink::Muted } else { Ink::Text };
+                text(line, ink, b, FontStyle::Normal, x, baseline)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn sign(&self, area: &Area, sign: Sign, x: f64, y: f64) -> Result<(), PlotError> {
+        let ty = self.ty;
+        let broad = sign.width(ty);
+        match sign {
+            Sign::Nothing => Ok(()),
+            Sign::Line(ink, dash) => {
+                let data = format!("M{} {}H{}", number(x, 2), number(y, 2), number(x + broad, 2));
+                area.draw(&Trace { data, ink, width: ty.line(), dash, alpha: 1.0 }).map_err(failed)
+            }
+            Sign::Spot(mark) => {
+                let at = (grains(x + 0.5 * broad), grains(y));
+                area.draw(&Spot { at, mark, radius: ty.mark(), alpha: 1.0 }).map_err(failed)
+            }
+            Sign::Contact => {
+                let length = 0.7 * ty.sole();
+                let at = (grains(x + 0.5 * broad), grains(y - 0.5 * length));
+                let tick = Tick { at, length, width: 1.5 * ty.hairline(), ink: Ink::Series(0) };
+                area.draw(&tick).map_err(failed)
+            }
+        }
+    }
+}
+
+/// The legend of the marks: one kind is named in full, several share a first word.
+fn measured(picture: &HeightTime) -> Vec<(Sign, String)> {
+    let kinds: Vec<_> =
+        Mark::ALL.into_iter().filter(|&mark| picture.measured.iter().any(|point| point.mark == mark)).collect();
+    let barred = picture.measured.iter().any(|point| point.time_error > 0.0 || point.height_error > 0.0);
+    let bars = if barred { " ±1 σ" } else { "" };
+    match kinds[..] {
+        [] => Vec::new(),
+        [Mark::Sample] => vec![(Sign::Spot(Mark::Sample), format!("measured{bars}"))],
+        [mark] => vec![(Sign::Spot(mark), format!("measured {}{bars}", mark.word()))],
+        _ => {
+            let first = (Sign::Nothing, format!("measured{bars}:"));
+            let rest = kinds.iter().map(|&mark| (Sign::Spot(mark), mark.word().to_owned()));
+            std::iter::once(first).chain(rest).collect()
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! Height against time: what is measured, what the model says, and how far apart they are.
+
+use crate::data::{Arc, Mark, Measured, Residual};
+use crate::error::{PlotError, finite};
+use crate::page;
+use crate::theme::{LARGEST, SMALLEST};
+use crate::unit::{HeightUnit, Unit};
+
+/// What a picture lies on.
+///
+/// # Example
+///
+/// ```
+/// use saltus_plot::{Arc, Background, HeightTime};
+///
+/// let picture = HeightTime::new("A drop").motion("model", [Arc::new(0.0, 0.4, vec![1.0, 0.0, -4.9])]);
+/// assert!(picture.clone().svg()?.contains("prefers-color-scheme"));
+/// assert!(!picture.background(Background::White).svg()?.contains("prefers-color-scheme"));
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Background {
+    /// Nothing: the page shows through, and the colours follow the reader's light or dark scheme.
+    ///
+    /// A page that stays white for readers with a dark scheme needs [`White`](Self::White) or
+    /// [`Adaptive`](Self::Adaptive): pale ink would vanish on it.
+    #[default]
+    None,
+    /// White paper, in dark surroundings too.
+    White,
+    /// Paper of its own, white in light surroundings and nearly black in dark ones.
+    Adaptive,
+}
+
+/// One curve and what it is called.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Motion {
+    pub(crate) label: String,
+    pub(crate) arcs: Vec<Arc>,
+}
+
+/// A picture of height against time.
+///
+/// Time runs to the right, height upwards from the floor at zero. Each motion is a line (solid, dashed, dotted,
+/// dash-dotted, in that order) in which every flight is one smooth curve; measurements are marks with bars of one standard
+/// error; model contacts are ticks under the floor line; residuals stand in a panel of their own below. The same input
+/// gives the same bytes.
+///
+/// # Example
+///
+/// ```
+/// use saltus_plot::{Arc, HeightTime, Mark, Measured, Residual};
+///
+/// // A ball from 1 m that keeps half its speed.
+/// let landing = (2.0_f64 / 9.8).sqrt();
+/// let speed = 0.5 * 9.8 * landing;
+/// let flight = 2.0 * speed / 9.8;
+/// let svg = HeightTime::new("A ball from one metre")
+///     .caption("COR 0.50 ± 0.01")
+///     .motion(
+///         "e = 0.50",
+///         [Arc::new(0.0, landing, vec![1.0, 0.0, -4.9]), Arc::new(landing, flight, vec![0.0, speed, -4.9])],
+///     )
+///     .measured([
+///         Measured::new(0.0, 1.0).height_error(0.01).mark(Mark::Release),
+///         Measured::new(0.45, 0.0).time_error(0.01).mark(Mark::Contact),
+///     ])
+///     .contacts([landing, landing + flight])
+///     .residuals([Residual::new(0.45, -0.2).mark(Mark::Contact)])
+///     .svg()?;
+/// assert!(svg.contains("role=\"img\"") && svg.contains("<title"));
+/// assert_eq!(svg.matches('Q').count(), 2); // two flights, two curves
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightTime {
+    pub(crate) title: String,
+    description: Option<String>,
+    pub(crate) captions: Vec<String>,
+    pub(crate) motions: Vec<Motion>,
+    pub(crate) measured: Vec<Measured>,
+    pub(crate) contacts: Vec<f64>,
+    pub(crate) residuals: Vec<Residual>,
+    unit: Option<HeightUnit>,
+    size: Option<(f64, f64)>,
+    pub(crate) background: Background,
+}
+
+impl HeightTime {
+    /// A picture with a title and nothing else yet.
+    #[must_use]
+    pub fn new(title: &str) -> Self {
+        Self {
+            title: title.to_owned(),
+            description: None,
+            captions: Vec::new(),
+            motions: Vec::new(),
+            measured: Vec::new(),
+            contacts: Vec::new(),
+            residuals: Vec::new(),
+            unit: None,
+            size: None,
+            background: Background::None,
+        }
+    }
+
+    /// What the picture shows, for those who cannot see it. Without one, a sentence is made from the data.
+    #[must_use]
+    pub fn description(mut self, text: &str) -> Self {
+        self.description = Some(text.to_owned());
+        self
+    }
+
+    /// Adds a curve. The first is solid, the next dashed, then dotted, then dash-dotted.
+    #[must_use]
+    pub fn motion(mut self, label: &str, arcs: impl IntoIterator<Item = Arc>) -> Self {
+        self.motions.push(Motion { label: label.to_owned(), arcs: arcs.into_iter().collect() });
+        self
+    }
+
+    /// Adds measurements.
+    #[must_use]
+    pub fn measured(mut self, points: impl IntoIterator<Item = Measured>) -> Self {
+        self.measured.extend(points);
+        self
+    }
+
+    /// Adds the times (s) at which the model touches the floor.
+    #[must_use]
+    pub fn contacts(mut self, times: impl IntoIterator<Item = f64>) -> Self {
+        self.contacts.extend(times);
+        self
+    }
+
+    /// Adds a line under the title, such as the COR and its error. Long lines wrap.
+    #[must_use]
+    pub fn caption(mut self, text: &str) -> Self {
+        self.captions.push(text.to_owned());
+        self
+    }
+
+    /// Adds residuals: a panel below with the same time axis.
+    #[must_use]
+    pub fn residuals(mut self, residuals: impl IntoIterator<Item = Residual>) -> Self {
+        self.residuals.extend(residuals);
+        self
+    }
+
+    /// The unit of the height axis; without it, one is chosen from the data.
+    #[must_use]
+    pub fn height_unit(mut self, unit: HeightUnit) -> Self {
+        self.unit = Some(unit);
+        self
+    }
+
+    /// The size of the picture in px; 800 by 560 without it, or 800 by 680 with residuals.
+    ///
+    /// Type grows and shrinks with the picture, but never below what can be read: when there are more words than the
+    /// height has room for, the picture becomes taller.
+    #[must_use]
+    pub fn size(mut self, width: f64, height: f64) -> Self {
+        self.size = Some((width, height));
+        self
+    }
+
+    /// What the picture lies on; nothing without it.
+    #[must_use]
+    pub fn background(mut self, background: Background) -> Self {
+        self.background = background;
+        self
+    }
+
+    /// The picture as an SVG document.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and [`PlotError::Negative`] naming the
+    /// number at fault, [`PlotError::Size`] when a side is shorter than 160 px or longer than 20 000 px.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        let (width, height) = self.checked_size()?;
+        let bounds = self.bounds()?;
+        page::draw(self, &bounds, width, height)
+    }
+
+    fn checked_size(&self) -> Result<(f64, f64), PlotError> {
+        let default = if self.residuals.is_empty() { (800.0, 560.0) } else { (800.0, 680.0) };
+        let (width, height) = self.size.unwrap_or(default);
+        let fits = |side: f64| (SMALLEST..=LARGEST).contains(&side);
+        if fits(width) && fits(height) { Ok((width, height)) } else { Err(PlotError::Size { width, height }) }
+    }
+
+    /// Checks every number, and gathers how far the data reach.
+    fn bounds(&self) -> Result<Bounds, PlotError> {
+        let mut time = Reach::default();
+        let mut height = Reach::default();
+        height.include(0.0);
+        for (m, motion) in self.motions.iter().enumerate() {
+            for (a, arc) in motion.arcs.iter().enumerate() {
+                arc.check(|| format!("arc {} of motion {}", a + 1, m + 1))?;
+                let (low, high) = arc.extent();
+                time.include(arc.start());
+                time.include(arc.end());
+                height.include(low);
+                height.include(high);
+            }
+        }
+        for (i, point) in self.measured.iter().enumerate() {
+            point.check(i + 1)?;
+            time.include(point.time - point.time_error);
+            time.include(point.time + point.time_error);
+            height.include(point.height - point.height_error);
+            height.include(point.height + point.height_error);
+        }
+        for (i, &t) in self.contacts.iter().enumerate() {
+            time.include(finite(t, || format!("model contact {}", i + 1))?);
+        }
+        for (i, residual) in self.residuals.iter().enumerate() {
+            residual.check(i + 1)?;
+            time.include(residual.time);
+        }
+        if time.low > time.high {
+            return Err(PlotError::Empty);
+        }
+        finite(time.high - time.low, || "the length of the time axis".to_owned())?;
+        finite(height.high - height.low, || "the length of the height axis".to_owned())?;
+        let time = time.opened();
+        let height = if height.largest() < NEAREST { Reach { low: 0.0, high: 1.0 } } else { height };
+        Ok(Bounds {
+            time_unit: Unit::of_time(time.largest(), time.high - time.low),
+            height_unit: Unit::of_height(self.unit, height.largest(), height.high - height.low),
+            time: (time.low, time.high),
+            height: (height.low, height.high),
+        })
+    }
+
+    /// The description given, or one made from the data.
+    pub(crate) fn described(&self, bounds: &Bounds) -> String {
+        if let Some(text) = &self.description {
+            return text.clone();
+        }
+        let unit = &bounds.height_unit;
+        let second = &bounds.time_unit;
+        let mut text = format!(
+            "Height against time, from {} to {} {}, up to {} {}.",
+            short(bounds.time.0 / second.size),
+            short(bounds.time.1 / second.size),
+            second.label,
+            short(bounds.height.1 / unit.size),
+            unit.label,
+        );
+        let labels: Vec<_> = self.motions.iter().map(|m| m.label.as_str()).filter(|l| !l.is_empty()).collect();
+        if !labels.is_empty() {
+            text.push_str(&format!(" Lines: {}.", labels.join("; ")));
+        }
+        let counts: Vec<_> = Mark::ALL
+            .into_iter()
+            .map(|mark| (mark, self.measured.iter().filter(|p| p.mark == mark).count()))
+            .filter(|&(_, count)| count > 0)
+            .map(|(mark, count)| format!("{count} {}", plural(mark, count)))
+            .collect();
+        if !counts.is_empty() {
+            text.push_str(&format!(" Measured: {}.", counts.join(", ")));
+        }
+        if !self.contacts.is_empty() {
+            text.push_str(&format!(" Contacts of the model: {}.", self.contacts.len()));
+        }
+        if !self.residuals.is_empty() {
+            text.push_str(&format!(" Below: {}.", crate::residuals::summary(&self.residuals)));
+        }
+        for caption in &self.captions {
+            let stop = if caption.ends_with(['.', '!', '?']) { "" } else { "." };
+            text.push_str(&format!(" {caption}{stop}"));
+        }
+        text
+    }
+}
+
+fn plural(mark: Mark, count: usize) -> &'static str {
+    match (mark, count) {
+        (_, 1) => mark.word(),
+        (Mark::Release, _) => "releases",
+        (Mark::Apex, _) => "apexes",
+        (Mark::Contact, _) => "contacts",
+        (Mark::Sample, _) => "readings",
+    }
+}
+
+/// At most four significant digits.
+fn short(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    crate::axis::typeset(text)
+}
+
+/// How far the data reach, in seconds and metres, and the units to show them in.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bounds {
+    pub(crate) time: (f64, f64),
+    pub(crate) height: (f64, f64),
+    pub(crate) time_unit: Unit,
+    pub(crate) height_unit: Unit,
+}
+
+/// Lengths below this are as good as zero: dividing by them would overflow.
+const NEAREST: f64 = 1e-280;
+
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    low: f64,
+    high: f64,
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self { low: f64::INFINITY, high: f64::NEG_INFINITY }
+    }
+}
+
+impl Reach {
+    fn include(&mut self, value: f64) {
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
+    }
+
+    fn largest(self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    /// Reaches back to zero when that is near, and is never too narrow to have ticks.
+    fn opened(self) -> Self {
+        let Self { mut low, mut high } = self;
+        if self.largest() < NEAREST {
+            return Self { low: 0.0, high: 1.0 };
+        }
+        if low > 0.0 && low <= 0.3 * high {
+            low = 0.0;
+        }
+        let least = 1e-12 * low.abs().max(high.abs());
+        if high - low < least {
+            if low > 0.0 && self.low == self.high {
+                return Self { low: 0.0, high: 1.25 * high };
+            }
+            let middle = 0.5 * (low + high);
+            low = middle - 0.5 * least;
+            high = middle + 0.5 * least;
+        }
+        Self { low, high }
+    }
+}

@@ -1,0 +1,146 @@
+//! Units on the axes: metres and seconds go in, whatever reads best comes out.
+
+/// The unit of the height axis. Data are always given in metres.
+///
+/// # Example
+///
+/// ```
+/// use saltus_plot::{Arc, HeightTime, HeightUnit};
+///
+/// let drop = Arc::new(0.0, 0.45, vec![1.0, 0.0, -4.9]);
+/// let picture = HeightTime::new("A drop").motion("free fall", [drop]);
+/// assert!(picture.clone().svg()?.contains("Height (cm)"));
+/// assert!(picture.height_unit(HeightUnit::Metres).svg()?.contains("Height (m)"));
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum HeightUnit {
+    /// km
+    Kilometres,
+    /// m
+    Metres,
+    /// cm
+    Centimetres,
+    /// mm
+    Millimetres,
+    /// µm
+    Micrometres,
+    /// nm
+    Nanometres,
+}
+
+impl HeightUnit {
+    /// The symbol, for example `"cm"`.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Kilometres => "km",
+            Self::Metres => "m",
+            Self::Centimetres => "cm",
+            Self::Millimetres => "mm",
+            Self::Micrometres => "µm",
+            Self::Nanometres => "nm",
+        }
+    }
+
+    /// How many metres one of it is.
+    #[must_use]
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Kilometres => 1e3,
+            Self::Metres => 1.0,
+            Self::Centimetres => 1e-2,
+            Self::Millimetres => 1e-3,
+            Self::Micrometres => 1e-6,
+            Self::Nanometres => 1e-9,
+        }
+    }
+
+    /// The unit in which heights up to `largest` metres read best: centimetres up to 2.5 m, as in a school laboratory.
+    fn fitting(largest: f64) -> Self {
+        match largest {
+            l if l >= 5e3 => Self::Kilometres,
+            l if l > 2.5 => Self::Metres,
+            l if l >= 1e-2 || l == 0.0 => Self::Centimetres,
+            l if l >= 1e-3 => Self::Millimetres,
+            l if l >= 1e-6 => Self::Micrometres,
+            _ => Self::Nanometres,
+        }
+    }
+}
+
+/// A unit as an axis shows it: how large it is in metres or seconds, and what is written in the brackets.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Unit {
+    pub(crate) size: f64,
+    pub(crate) label: String,
+}
+
+impl Unit {
+    pub(crate) fn of_height(chosen: Option<HeightUnit>, largest: f64, span: f64) -> Self {
+        let unit = chosen.unwrap_or_else(|| HeightUnit::fitting(largest));
+        Self::scaled(unit.symbol(), unit.metres(), largest, span)
+    }
+
+    pub(crate) fn of_time(largest: f64, span: f64) -> Self {
+        match largest {
+            l if l >= 0.2 || l == 0.0 => Self::scaled("s", 1.0, largest, span),
+            l if l >= 2e-4 => Self::scaled("ms", 1e-3, largest, span),
+            l if l >= 2e-7 => Self::scaled("µs", 1e-6, largest, span),
+            _ => Self::scaled("ns", 1e-9, largest, span),
+        }
+    }
+
+    /// Values beyond 10⁵ or below 10⁻² of the unit are written as so many powers of ten of it, unless the axis shows only
+    /// a short stretch far from zero: there the whole number says more.
+    fn scaled(symbol: &str, size: f64, largest: f64, span: f64) -> Self {
+        let ratio = largest / size;
+        let most = if span < 0.1 * largest { 1e9 } else { 1e5 };
+        if ratio == 0.0 || !ratio.is_finite() || (1e-2..most).contains(&ratio) {
+            return Self { size, label: symbol.to_owned() };
+        }
+        let power = (ratio.log10() / 3.0).floor() as i32 * 3;
+        Self { size: size * 10f64.powi(power), label: format!("10{} {symbol}", superscript(power)) }
+    }
+}
+
+fn superscript(power: i32) -> String {
+    power
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '0' => '⁰',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            _ => '⁹',
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_study_reads_in_centimetres_and_seconds() {
+        assert_eq!(Unit::of_height(None, 1.0, 1.0).label, "cm");
+        assert_eq!(Unit::of_time(1.11, 1.11).label, "s");
+    }
+
+    #[test]
+    fn far_scales_are_written_as_powers_of_ten() {
+        assert_eq!(Unit::of_time(1.0e6 + 1.0, 1.0).label, "s");
+        assert_eq!(Unit::of_time(3.0e8, 3.0e8).label, "10⁶ s");
+        assert_eq!(Unit::of_height(None, 5.0e-9, 5.0e-9).label, "nm");
+        assert_eq!(Unit::of_height(None, 5.0e-13, 5.0e-13).label, "10⁻⁶ nm");
+        assert_eq!(Unit::of_height(Some(HeightUnit::Metres), 2.0e-9, 2.0e-9).label, "10⁻⁹ m");
+    }
+}

@@ -1,0 +1,84 @@
+//! How long the next step may be: a proportional-integral controller on the estimated error.
+
+use crate::state::State;
+
+/// Local error allowed per step: in coordinate i, absolute + relative · max(|xᵢ| before, |xᵢ| after).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tolerance {
+    pub(crate) relative: f64,
+    pub(crate) absolute: f64,
+}
+
+impl Tolerance {
+    /// The root mean square of the error in units of what is allowed; at most 1 is good.
+    #[inline]
+    pub(crate) fn norm<S: State>(&self, error: &S, before: &S, after: &S) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..error.len() {
+            let allowed = self.absolute + self.relative * before.get(i).abs().max(after.get(i).abs());
+            let ratio = error.get(i) / allowed;
+            sum += ratio * ratio;
+        }
+        #[allow(clippy::cast_precision_loss)]
+        (sum / error.len().max(1) as f64).sqrt()
+    }
+}
+
+/// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K. Gustafsson, ACM TOMS 17 (1991) 533).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Controller {
+    order: f64,
+    previous: f64,
+    rejected: bool,
+}
+
+impl Controller {
+    const SAFETY: f64 = 0.9;
+    const SMALLEST: f64 = 0.2;
+    const LARGEST: f64 = 10.0;
+
+    /// For an error estimate that shrinks as h^`order`.
+    pub(crate) const fn new(order: f64) -> Self {
+        Self { order, previous: 1e-4, rejected: false }
+    }
+
+    /// By which factor to change the step after an error of `norm`, and whether to accept it.
+    #[inline]
+    pub(crate) fn judge(&mut self, norm: f64) -> (bool, f64) {
+        if norm <= 1.0 {
+            let norm = norm.max(1e-10);
+            let factor = Self::SAFETY * norm.powf(-0.7 / self.order) * self.previous.powf(0.4 / self.order);
+            self.previous = norm.max(1e-4);
+            let most = if self.rejected { 1.0 } else { Self::LARGEST };
+            self.rejected = false;
+            (true, factor.clamp(Self::SMALLEST, most))
+        } else {
+            self.rejected = true;
+            let factor = if norm.is_finite() { Self::SAFETY * norm.powf(-1.0 / self.order) } else { Self::SMALLEST };
+            (false, factor.clamp(Self::SMALLEST, Self::SAFETY))
+        }
+    }
+}
+
+/// A first step size from the scale of the solution and of its first two derivatives
+/// (E. Hairer, S. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, II.4).
+pub(crate) fn first_step<S: State>(
+    mut flow: impl FnMut(f64, &S) -> S,
+    t: f64,
+    x: &S,
+    slope: &S,
+    tolerance: &Tolerance,
+    order: f64,
+    longest: f64,
+) -> f64 {
+    let size = tolerance.norm(x, x, x);
+    let speed = tolerance.norm(slope, x, x);
+    let guess = if size < 1e-5 || speed < 1e-5 { 1e-6 } else { 0.01 * size / speed }.min(longest);
+    let ahead = x.with(|i| x.get(i) + guess * slope.get(i));
+    let bent = flow(t + guess, &ahead);
+    let bend = tolerance.norm(&x.with(|i| bent.get(i) - slope.get(i)), x, x) / guess;
+    let most = speed.max(bend);
+    let h = if most <= 1e-15 { (guess * 1e-3).max(1e-6) } else { (0.01 / most).powf(1.0 / order) };
+    let h = h.min(100.0 * guess).min(longest);
+    if h.is_finite() && h > 0.0 { h } else { guess }
+}

@@ -1,0 +1,70 @@
+//! Who is told of pieces and jumps as they come: nobody, a recorder, or the user.
+
+use std::ops::ControlFlow;
+
+use crate::automaton::Automaton;
+use crate::trajectory::{Jump, Piece, Trajectory};
+
+/// Is told of each piece and each jump of a run, in order; may end the run.
+///
+/// Both methods do nothing unless written. `()` observes nothing, for free; a pair of observers are two.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use saltus::{Automaton, Jump, Observer};
+///
+/// /// Ends the run at the third jump.
+/// struct Third(u32);
+/// impl<A: Automaton> Observer<A> for Third {
+///     fn jump(&mut self, _: &Jump<A>) -> ControlFlow<()> {
+///         self.0 += 1;
+///         if self.0 == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+///     }
+/// }
+/// ```
+pub trait Observer<A: Automaton> {
+    /// A stretch of the arc in `mode` is done.
+    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        let _ = (mode, piece);
+        ControlFlow::Continue(())
+    }
+
+    /// A jump was made.
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        let _ = jump;
+        ControlFlow::Continue(())
+    }
+}
+
+impl<A: Automaton> Observer<A> for () {}
+
+impl<A: Automaton, O: Observer<A>> Observer<A> for &mut O {
+    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        (**self).piece(mode, piece)
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        (**self).jump(jump)
+    }
+}
+
+impl<A: Automaton, O: Observer<A>, P: Observer<A>> Observer<A> for (O, P) {
+    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        let (first, second) = (self.0.piece(mode, piece), self.1.piece(mode, piece));
+        if first.is_break() { first } else { second }
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        let (first, second) = (self.0.jump(jump), self.1.jump(jump));
+        if first.is_break() { first } else { second }
+    }
+}
+
+impl<A: Automaton> Observer<A> for Trajectory<A> {
+    fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.push_piece(piece);
+        ControlFlow::Continue(())
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        self.push_jump(*jump);
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,423 @@
+//! The loop: advance an arc to its first crossing, jump, look again.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::advance::{Advance, ArcEnd, Clock};
+use crate::automaton::Automaton;
+use crate::control::Tolerance;
+use crate::error::{Error, ErrorKind, Place};
+use crate::observe::Observer;
+use crate::state::State;
+use crate::step::{Stepper, Tsit5};
+use crate::time::Time;
+use crate::trajectory::{Cause, Jump, Trajectory};
+use crate::zeno::Contraction;
+
+/// How to run an automaton: its stepper, tolerances and limits.
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Hybrid, Simulation, Stop};
+///
+/// let ball = Hybrid::new()
+///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81])
+///     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.8 * x[1]]);
+/// let run = Simulation::of(&ball).tolerance(1e-10).run("flight", vector![1.0, 0.0], 0.0..6.0)?;
+///
+/// // The impacts accumulate at t = sqrt(2 h / g) (1 + e) / (1 - e); nobody had to say so.
+/// let limit = (2.0_f64 / 9.81).sqrt() * 1.8 / 0.2;
+/// assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-9));
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Simulation<'a, A, M = Tsit5> {
+    automaton: &'a A,
+    stepper: M,
+    options: Options,
+}
+
+/// What a run may cost and how exact it is to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Options {
+    pub(crate) tolerance: Tolerance,
+    pub(crate) first_step: Option<f64>,
+    pub(crate) longest_step: f64,
+    pub(crate) most_steps: u64,
+    most_jumps: usize,
+    longest_cascade: usize,
+}
+
+impl<'a, A: Automaton> Simulation<'a, A> {
+    /// A simulation of `automaton` with [`Tsit5`], relative tolerance 1e-9, absolute tolerance 1e-12,
+    /// and limits of 10⁷ jumps, 10⁸ steps and 10⁴ jumps at one time.
+    #[must_use]
+    pub const fn of(automaton: &'a A) -> Self {
+        let options = Options {
+            tolerance: Tolerance { relative: 1e-9, absolute: 1e-12 },
+            first_step: None,
+            longest_step: f64::INFINITY,
+            most_steps: 100_000_000,
+            most_jumps: 10_000_000,
+            longest_cascade: 10_000,
+        };
+        Self { automaton, stepper: Tsit5, options }
+    }
+}
+
+impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
+    /// Uses another stepper for the modes that have no exact solution.
+    #[must_use]
+    pub fn stepper<N: Stepper>(self, stepper: N) -> Simulation<'a, A, N> {
+        Simulation { automaton: self.automaton, stepper, options: self.options }
+    }
+
+    /// The local error allowed per step, relative to each coordinate; the absolute tolerance becomes a thousandth of it.
+    #[must_use]
+    pub const fn tolerance(mut self, relative: f64) -> Self {
+        self.options.tolerance = Tolerance { relative, absolute: relative * 1e-3 };
+        self
+    }
+
+    /// The local error allowed per step where a coordinate is near zero, in the unit of the state.
+    #[must_use]
+    pub const fn absolute_tolerance(mut self, absolute: f64) -> Self {
+        self.options.tolerance.absolute = absolute;
+        self
+    }
+
+    /// The first step size, in seconds; chosen automatically unless given.
+    #[must_use]
+    pub const fn first_step(mut self, h: f64) -> Self {
+        self.options.first_step = Some(h);
+        self
+    }
+
+    /// The longest step, in seconds. Never needed for finding crossings.
+    #[must_use]
+    pub const fn longest_step(mut self, h: f64) -> Self {
+        self.options.longest_step = h;
+        self
+    }
+
+    /// After how many jumps the run ends with [`Stop::Jumps`].
+    #[must_use]
+    pub const fn most_jumps(mut self, count: usize) -> Self {
+        self.options.most_jumps = count;
+        self
+    }
+
+    /// After how many steps the run ends with [`Stop::Steps`].
+    #[must_use]
+    pub const fn most_steps(mut self, count: u64) -> Self {
+        self.options.most_steps = count;
+        self
+    }
+
+    /// After how many jumps at one and the same time the run ends with [`Stop::Cascade`].
+    #[must_use]
+    pub const fn longest_cascade(mut self, count: usize) -> Self {
+        self.options.longest_cascade = count;
+        self
+    }
+
+    /// Runs from `state` in `mode` over the span of time and records the whole trajectory.
+    ///
+    /// The end of the span may be infinite if the automaton ends or comes to rest by itself.
+    ///
+    /// # Errors
+    /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`] where a function returns that.
+    pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Run<A>, Box<Failed<A>>> {
+        let mut trajectory = Trajectory::starting(mode, state, Time::new(span.start));
+        let mut stats = Stats::default();
+        match self.advance(mode, state, span, &mut trajectory, &mut stats) {
+            Ok(ending) => Ok(Run { trajectory, stop: ending.stop, stats, mode: ending.mode, state: ending.state }),
+            Err(error) => Err(Box::new(Failed { error, trajectory, stats })),
+        }
+    }
+
+    /// Runs and tells `observer` of each piece and jump, recording nothing.
+    ///
+    /// # Errors
+    /// See [`Error`]; the observer has been told of everything before it.
+    pub fn drive(
+        &self,
+        mode: A::Mode,
+        state: A::State,
+        span: Range<f64>,
+        observer: &mut impl Observer<A>,
+    ) -> Result<Ending<A>, Error> {
+        self.advance(mode, state, span, observer, &mut Stats::default())
+    }
+
+    fn advance(
+        &self,
+        mode: A::Mode,
+        state: A::State,
+        span: Range<f64>,
+        observer: &mut impl Observer<A>,
+        stats: &mut Stats,
+    ) -> Result<Ending<A>, Error> {
+        self.check(mode, &state, &span)?;
+        let mut clock = Clock { start: Time::new(span.start), now: Time::new(span.start), end: Time::new(span.end) };
+        let mut advance = Advance::new(self.automaton, self.stepper, &self.options, stats);
+        let (mut mode, mut x, mut j) = (mode, state, 0);
+        let mut contraction = Contraction::new();
+        let mut cascade = 0;
+        let stop = loop {
+            // x is x⁺ of the last jump, or the initial state.
+            let began = clock.now;
+            let (edge, before) = match advance.arc(mode, &x, &mut clock, observer)? {
+                ArcEnd::Crossing { edge, before } => (edge, before),
+                ArcEnd::Stop { stop, state } => {
+                    x = state;
+                    break stop;
+                }
+            };
+            // Here x⁻ = before, still inside the domain of the mode.
+            let (to, after) = self.automaton.reset(edge, clock.now.seconds(), &before);
+            let duration = clock.now.since(began);
+            // The same edge taken again at once changes nothing: the limit is here.
+            let stands = duration == 0.0 && advance.just_took(edge) && to == mode && same(&x, &after);
+            if !stands {
+                j += 1;
+                cascade = if duration == 0.0 { cascade + 1 } else { 0 };
+                let jump = Jump { time: clock.now, j, cause: Cause::Edge(edge), from: mode, before, to, after };
+                self.check_after(&jump, edge)?;
+                let told = observer.jump(&jump);
+                (mode, x) = (to, after);
+                if told.is_break() {
+                    break Stop::Observer;
+                }
+                if self.automaton.terminal(edge) {
+                    break Stop::Terminal { edge };
+                }
+            }
+            advance.jumped(edge, duration);
+            // x is x⁺.
+            contraction.push(duration);
+            let elapsed = clock.now.since(clock.start);
+            let remaining = if stands { Some(0.0) } else { contraction.remaining(elapsed.next_up() - elapsed) };
+            if let Some(remaining) = remaining.filter(|&s| clock.now.after(s).seconds() <= clock.end.seconds()) {
+                advance.still(mode, &x, remaining, &mut clock, observer);
+                let limit = clock.now.seconds();
+                let Some((to, after)) = self.automaton.beyond(mode, limit, &x) else {
+                    break Stop::Zeno { limit };
+                };
+                j += 1;
+                let jump = Jump { time: clock.now, j, cause: Cause::Zeno, from: mode, before: x, to, after };
+                let told = observer.jump(&jump);
+                (mode, x) = (to, after);
+                contraction = Contraction::new();
+                advance.beyond();
+                if told.is_break() {
+                    break Stop::Observer;
+                }
+            }
+            if j >= self.options.most_jumps {
+                break Stop::Jumps { most: j };
+            }
+            if cascade >= self.options.longest_cascade {
+                break Stop::Cascade { edge };
+            }
+        };
+        Ok(Ending { stop, stats: advance.cost(j), time: clock.now, jumps: j, mode, state: x })
+    }
+
+    fn check(&self, mode: A::Mode, state: &A::State, span: &Range<f64>) -> Result<(), Error> {
+        let Tolerance { relative, absolute } = self.options.tolerance;
+        let kind = if !(span.start.is_finite() && span.start <= span.end) {
+            ErrorKind::Span
+        } else if !(relative >= 1e-15 && absolute > 0.0 && relative.is_finite() && absolute.is_finite()) {
+            ErrorKind::Tolerance
+        } else if !state.is_finite() {
+            ErrorKind::InitialState
+        } else if !self.automaton.has_mode(mode) {
+            ErrorKind::UnknownMode
+        } else {
+            return Ok(());
+        };
+        Err(Error::new(kind, Place::new(span.start, mode, None::<A::Edge>, state)))
+    }
+
+    fn check_after(&self, jump: &Jump<A>, edge: A::Edge) -> Result<(), Error> {
+        let kind = if !jump.after.is_finite() {
+            ErrorKind::Reset
+        } else if !self.automaton.has_mode(jump.to) {
+            ErrorKind::UnknownMode
+        } else {
+            return Ok(());
+        };
+        Err(Error::new(kind, Place::new(jump.t(), jump.to, Some(edge), &jump.after)))
+    }
+}
+
+/// Whether two states are equal coordinate by coordinate.
+fn same<S: State>(x: &S, y: &S) -> bool {
+    x.len() == y.len() && (0..x.len()).all(|i| x.get(i) == y.get(i))
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Stop<E> {
+    /// The end of the span was reached.
+    Time,
+    /// Jumps accumulate at `limit`, and the model does not say what lies beyond.
+    Zeno {
+        /// The accumulation time, in seconds.
+        limit: f64,
+    },
+    /// A terminal edge was taken.
+    Terminal {
+        /// The edge.
+        edge: E,
+    },
+    /// The observer asked for the end.
+    Observer,
+    /// The limit on jumps was reached.
+    Jumps {
+        /// The limit.
+        most: usize,
+    },
+    /// The limit on steps was reached.
+    Steps {
+        /// The limit.
+        most: u64,
+    },
+    /// Too many jumps at one and the same time: the resets send the state round in a circle.
+    Cascade {
+        /// The edge taken last.
+        edge: E,
+    },
+}
+
+impl<E: fmt::Debug> fmt::Display for Stop<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time => write!(f, "the end of the span was reached"),
+            Self::Zeno { limit } => {
+                write!(f, "jumps accumulate at t = {limit}: implement Automaton::beyond to go on from there")
+            }
+            Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
+            Self::Observer => write!(f, "the observer ended the run"),
+            Self::Jumps { most } => {
+                write!(f, "the limit of {most} jumps was reached: raise Simulation::most_jumps to go on")
+            }
+            Self::Steps { most } => {
+                write!(f, "the limit of {most} steps was reached: raise Simulation::most_steps to go on")
+            }
+            Self::Cascade { edge } => {
+                write!(
+                    f,
+                    "too many jumps at one time, the last by edge {edge:?}: let a reset lead away from the guards it meets"
+                )
+            }
+        }
+    }
+}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Jumps made.
+    pub jumps: usize,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected: u64,
+    /// Arcs advanced by an exact solution.
+    pub exact: u64,
+    /// Evaluations of flows.
+    pub flows: u64,
+    /// Evaluations of guards.
+    pub guards: u64,
+}
+
+/// A recorded run.
+pub struct Run<A: Automaton> {
+    /// The hybrid arc.
+    pub trajectory: Trajectory<A>,
+    /// Why it ended.
+    pub stop: Stop<A::Edge>,
+    /// What it cost.
+    pub stats: Stats,
+    /// The mode at the end.
+    pub mode: A::Mode,
+    /// The state at the end.
+    pub state: A::State,
+}
+
+/// How a driven run ended.
+pub struct Ending<A: Automaton> {
+    /// Why it ended.
+    pub stop: Stop<A::Edge>,
+    /// What it cost.
+    pub stats: Stats,
+    /// When it ended.
+    pub time: Time,
+    /// How many jumps were made.
+    pub jumps: usize,
+    /// The mode at the end.
+    pub mode: A::Mode,
+    /// The state at the end.
+    pub state: A::State,
+}
+
+/// A run that failed, and what it had until then.
+pub struct Failed<A: Automaton> {
+    /// What went wrong.
+    pub error: Error,
+    /// The trajectory up to the failure.
+    pub trajectory: Trajectory<A>,
+    /// What it cost.
+    pub stats: Stats,
+}
+
+impl<A: Automaton> fmt::Debug for Run<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { trajectory, stop, stats, mode, state } = self;
+        f.debug_struct("Run")
+            .field("stop", stop)
+            .field("mode", mode)
+            .field("state", state)
+            .field("stats", stats)
+            .field("trajectory", trajectory)
+            .finish()
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Ending<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stop, stats, time, jumps, mode, state } = self;
+        f.debug_struct("Ending")
+            .field("stop", stop)
+            .field("time", time)
+            .field("jumps", jumps)
+            .field("mode", mode)
+            .field("state", state)
+            .field("stats", stats)
+            .finish()
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Failed<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { error, trajectory, stats } = self;
+        f.debug_struct("Failed").field("error", error).field("stats", stats).field("trajectory", trajectory).finish()
+    }
+}
+
+impl<A: Automaton> From<Box<Failed<A>>> for Error {
+    fn from(failed: Box<Failed<A>>) -> Self {
+        failed.error
+    }
+}
+
+impl<A: Automaton> fmt::Display for Failed<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl<A: Automaton> std::error::Error for Failed<A> {}

@@ -1,0 +1,130 @@
+//! What a mode's coordinates may be: anything with a length, a way to read one coordinate and a way to rebuild itself.
+
+use std::fmt::Debug;
+
+use nalgebra::SVector;
+
+/// The continuous state x of a hybrid automaton: a short list of real coordinates, passed by value.
+///
+/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may differ from mode to mode.
+///
+/// ```
+/// use saltus::State;
+/// let x = [1.0, 2.0];
+/// assert_eq!(x.with(|i| 10.0 * x.get(i)), [10.0, 20.0]);
+/// ```
+pub trait State: Copy + Debug {
+    /// How many coordinates there are.
+    fn len(&self) -> usize;
+
+    /// Coordinate `i`, for `i < len()`.
+    fn get(&self, i: usize) -> f64;
+
+    /// A state of the same shape whose coordinate `i` is `f(i)`.
+    #[must_use]
+    fn with(&self, f: impl FnMut(usize) -> f64) -> Self;
+
+    /// Whether there are no coordinates at all.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether every coordinate is a finite number.
+    fn is_finite(&self) -> bool {
+        (0..self.len()).all(|i| self.get(i).is_finite())
+    }
+}
+
+impl State for f64 {
+    #[inline]
+    fn len(&self) -> usize {
+        1
+    }
+    #[inline]
+    fn get(&self, _: usize) -> f64 {
+        *self
+    }
+    #[inline]
+    fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
+        f(0)
+    }
+}
+
+impl<const N: usize> State for [f64; N] {
+    #[inline]
+    fn len(&self) -> usize {
+        N
+    }
+    #[inline]
+    fn get(&self, i: usize) -> f64 {
+        self[i]
+    }
+    #[inline]
+    fn with(&self, f: impl FnMut(usize) -> f64) -> Self {
+        std::array::from_fn(f)
+    }
+}
+
+impl<const N: usize> State for SVector<f64, N> {
+    #[inline]
+    fn len(&self) -> usize {
+        N
+    }
+    #[inline]
+    fn get(&self, i: usize) -> f64 {
+        self[i]
+    }
+    #[inline]
+    fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
+        Self::from_fn(|i, _| f(i))
+    }
+}
+
+/// Up to `CAP` coordinates, for automata whose modes differ in dimension: a hopper has three in flight and two in stance.
+///
+/// ```
+/// use saltus::{Coords, State};
+/// let flight: Coords<4> = [0.0, 1.0, 0.0, -0.5].into();
+/// let stance: Coords<4> = [1.0, -0.5].into();
+/// assert_eq!((flight.len(), stance.len()), (4, 2));
+/// ```
+///
+/// A list longer than `CAP` does not compile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coords<const CAP: usize> {
+    values: [f64; CAP],
+    len: usize,
+}
+
+impl<const CAP: usize, const N: usize> From<[f64; N]> for Coords<CAP> {
+    fn from(list: [f64; N]) -> Self {
+        const { assert!(N <= CAP, "more coordinates than CAP") };
+        let mut values = [0.0; CAP];
+        values[..N].copy_from_slice(&list);
+        Self { values, len: N }
+    }
+}
+
+impl<const CAP: usize> std::ops::Index<usize> for Coords<CAP> {
+    type Output = f64;
+    /// Coordinate `i`; like a slice, panics when `i` is not below the length.
+    fn index(&self, i: usize) -> &f64 {
+        &self.values[..self.len][i]
+    }
+}
+
+impl<const CAP: usize> State for Coords<CAP> {
+    fn len(&self) -> usize {
+        self.len
+    }
+    fn get(&self, i: usize) -> f64 {
+        self.values[i]
+    }
+    fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
+        let mut values = [0.0; CAP];
+        for (i, value) in values.iter_mut().enumerate().take(self.len) {
+            *value = f(i);
+        }
+        Self { values, len: self.len }
+    }
+}

@@ -1,0 +1,84 @@
+//! Time kept as a sum of two doubles, so that a jump late in a run is as exact as an early one.
+
+/// A moment t = hi + lo in seconds, the unevaluated sum of two doubles with |lo| at most half a unit in the last place of hi.
+///
+/// A flight of a microsecond that starts at t = 10^6 s keeps its sixteen digits: [`Time::since`] returns the
+/// difference of two moments without the cancellation that subtracting two doubles would suffer.
+///
+/// ```
+/// use saltus::Time;
+/// let start = Time::new(1e6);
+/// let mut t = start;
+/// for _ in 0..1000 {
+///     t = t.after(1e-6);
+/// }
+/// assert_eq!(t.since(start), 1e-3);
+/// ```
+///
+/// The sum is Knuth's two-sum (D. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2, theorem B).
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Time {
+    hi: f64,
+    lo: f64,
+}
+
+impl Time {
+    /// The moment `t`, in seconds.
+    #[must_use]
+    pub const fn new(t: f64) -> Self {
+        Self { hi: t, lo: 0.0 }
+    }
+
+    /// The double nearest to this moment, in seconds.
+    #[must_use]
+    pub const fn seconds(self) -> f64 {
+        self.hi
+    }
+
+    /// The moment a duration `s` later.
+    #[inline]
+    #[must_use]
+    pub fn after(self, s: f64) -> Self {
+        let sum = self.hi + s;
+        if !sum.is_finite() {
+            return Self { hi: sum, lo: 0.0 };
+        }
+        let back = sum - self.hi;
+        let lost = (self.hi - (sum - back)) + (s - back) + self.lo;
+        let hi = sum + lost;
+        Self { hi, lo: lost - (hi - sum) }
+    }
+
+    /// The duration from `earlier` to this moment, rounded once.
+    #[inline]
+    #[must_use]
+    pub fn since(self, earlier: Self) -> f64 {
+        (self.hi - earlier.hi) + (self.lo - earlier.lo)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_million_seconds_in_milliseconds_lose_nothing() {
+        let p = 0.001_f64;
+        let mut t = Time::new(0.0);
+        for k in 1..=1_000_000_u32 {
+            t = t.after(p);
+            if k % 1000 == 0 {
+                assert!((t.seconds() - f64::from(k) * p).abs() <= f64::EPSILON * t.seconds());
+            }
+        }
+        assert_eq!(t.seconds(), 1000.0);
+    }
+
+    #[test]
+    fn flights_below_the_spacing_of_time() {
+        let start = Time::new(1e9);
+        let t = start.after(1e-8).after(9e-9).after(8.1e-9);
+        assert!((t.since(start) - 2.71e-8).abs() < 1e-23);
+        assert_eq!(t.seconds(), 1e9);
+    }
+}

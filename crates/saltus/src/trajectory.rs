@@ -1,0 +1,317 @@
+//! What a run leaves behind: arcs on hybrid time (t, j), the jumps between them, and both limits at each jump.
+
+use std::fmt;
+
+use crate::automaton::Automaton;
+use crate::state::State;
+use crate::time::Time;
+
+/// Σ cₖ sᵏ, coordinate by coordinate.
+#[inline]
+pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
+    match coefficients {
+        [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
+        _ => coefficients[0].with(|i| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c.get(i))),
+    }
+}
+
+/// A stretch of an arc on which the state is one polynomial in time.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<'a, S> {
+    start: Time,
+    span: f64,
+    scale: f64,
+    coefficients: &'a [S],
+}
+
+impl<'a, S: State> Piece<'a, S> {
+    pub(crate) fn new(start: Time, span: f64, scale: f64, coefficients: &'a [S]) -> Self {
+        Self { start, span, scale, coefficients }
+    }
+
+    /// When the piece starts.
+    #[must_use]
+    pub const fn start(&self) -> Time {
+        self.start
+    }
+
+    /// How long it lasts, in seconds.
+    #[must_use]
+    pub const fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// The state a time `s` after the start, for 0 ≤ s ≤ span.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, s: f64) -> S {
+        horner(self.coefficients, s / self.scale)
+    }
+
+    /// The coefficients cₖ of x = Σ cₖ ((t - start)/scale)ᵏ.
+    #[must_use]
+    pub const fn coefficients(&self) -> &'a [S] {
+        self.coefficients
+    }
+
+    /// The time unit of the coefficients, in seconds: the step's size, or 1 where the flow is solved exactly.
+    #[must_use]
+    pub const fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// Why a jump happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Cause<E> {
+    /// An edge was taken.
+    Edge(E),
+    /// Jumps accumulated here, and the model said what lies beyond.
+    Zeno,
+}
+
+/// A jump, with both its limits.
+pub struct Jump<A: Automaton> {
+    /// When.
+    pub time: Time,
+    /// How many jumps there have been, this one included: the j of hybrid time just after it.
+    pub j: usize,
+    /// Why.
+    pub cause: Cause<A::Edge>,
+    /// The mode before.
+    pub from: A::Mode,
+    /// The state just before, x⁻; inside the domain of the mode before.
+    pub before: A::State,
+    /// The mode after.
+    pub to: A::Mode,
+    /// The state just after, x⁺.
+    pub after: A::State,
+}
+
+// Written out because deriving would ask the automaton itself to be `Clone` and `Debug`.
+impl<A: Automaton> Clone for Jump<A> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<A: Automaton> Copy for Jump<A> {}
+
+impl<A: Automaton> fmt::Debug for Jump<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { time, j, cause, from, before, to, after } = self;
+        write!(f, "(t = {}, j = {j}) by {cause:?}: {from:?} {before:?} -> {to:?} {after:?}", time.seconds())
+    }
+}
+
+impl<A: Automaton> Jump<A> {
+    /// When, to the nearest double, in seconds.
+    #[must_use]
+    pub const fn t(&self) -> f64 {
+        self.time.seconds()
+    }
+
+    /// The edge taken, if one was.
+    #[must_use]
+    pub fn edge(&self) -> Option<A::Edge> {
+        match self.cause {
+            Cause::Edge(edge) => Some(edge),
+            Cause::Zeno => None,
+        }
+    }
+}
+
+/// An arc: the stay in one mode between two jumps.
+pub struct Arc<A: Automaton> {
+    mode: A::Mode,
+    start: Time,
+    state: A::State,
+    j: usize,
+    first_piece: usize,
+}
+
+impl<A: Automaton> Clone for Arc<A> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<A: Automaton> Copy for Arc<A> {}
+
+impl<A: Automaton> fmt::Debug for Arc<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, start, state, j, .. } = self;
+        write!(f, "{mode:?} from (t = {}, j = {j}) at {state:?}", start.seconds())
+    }
+}
+
+impl<A: Automaton> Arc<A> {
+    /// The mode.
+    #[must_use]
+    pub fn mode(&self) -> A::Mode {
+        self.mode
+    }
+
+    /// When the arc starts.
+    #[must_use]
+    pub const fn start(&self) -> Time {
+        self.start
+    }
+
+    /// The state it starts from.
+    #[must_use]
+    pub const fn state(&self) -> &A::State {
+        &self.state
+    }
+
+    /// How many jumps came before it.
+    #[must_use]
+    pub const fn j(&self) -> usize {
+        self.j
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Stored {
+    start: Time,
+    span: f64,
+    scale: f64,
+    first: usize,
+    len: usize,
+}
+
+/// A hybrid arc: the state as a function of hybrid time (t, j).
+///
+/// At a jump the state has two limits: [`before`](Self::before) and [`at`](Self::at). Several jumps may share one time.
+pub struct Trajectory<A: Automaton> {
+    arcs: Vec<Arc<A>>,
+    jumps: Vec<Jump<A>>,
+    pieces: Vec<Stored>,
+    coefficients: Vec<A::State>,
+    end: Time,
+}
+
+impl<A: Automaton> Clone for Trajectory<A> {
+    fn clone(&self) -> Self {
+        let Self { arcs, jumps, pieces, coefficients, end } = self;
+        Self {
+            arcs: arcs.clone(),
+            jumps: jumps.clone(),
+            pieces: pieces.clone(),
+            coefficients: coefficients.clone(),
+            end: *end,
+        }
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Trajectory<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Trajectory").field("arcs", &self.arcs).field("jumps", &self.jumps).finish_non_exhaustive()
+    }
+}
+
+impl<A: Automaton> Trajectory<A> {
+    /// Empty, from `state` in `mode` at `start`.
+    pub(crate) fn starting(mode: A::Mode, state: A::State, start: Time) -> Self {
+        let arc = Arc { mode, start, state, j: 0, first_piece: 0 };
+        Self { arcs: vec![arc], jumps: Vec::new(), pieces: Vec::new(), coefficients: Vec::new(), end: start }
+    }
+
+    pub(crate) fn push_piece(&mut self, piece: &Piece<'_, A::State>) {
+        let first = self.coefficients.len();
+        self.coefficients.extend_from_slice(piece.coefficients);
+        let len = piece.coefficients.len();
+        self.pieces.push(Stored { start: piece.start, span: piece.span, scale: piece.scale, first, len });
+        self.end = piece.start.after(piece.span);
+    }
+
+    pub(crate) fn push_jump(&mut self, jump: Jump<A>) {
+        self.end = jump.time;
+        let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
+        self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
+        self.jumps.push(jump);
+    }
+
+    /// The jumps in order.
+    #[must_use]
+    pub fn jumps(&self) -> &[Jump<A>] {
+        &self.jumps
+    }
+
+    /// The arcs in order, one more than the jumps.
+    #[must_use]
+    pub fn arcs(&self) -> &[Arc<A>] {
+        &self.arcs
+    }
+
+    /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no duration.
+    pub fn pieces(&self, index: usize) -> impl Iterator<Item = Piece<'_, A::State>> {
+        self.pieces[self.piece_range(index)].iter().map(|p| self.piece(p))
+    }
+
+    /// When the trajectory starts.
+    #[must_use]
+    pub fn start(&self) -> Time {
+        self.arcs.first().map_or(self.end, |arc| arc.start)
+    }
+
+    /// When it ends.
+    #[must_use]
+    pub const fn end(&self) -> Time {
+        self.end
+    }
+
+    /// The state x⁺(t), after any jumps at `t`; `None` outside the trajectory.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Option<A::State> {
+        let index = self.arc_at(t)?;
+        Some(self.state_in(index, t))
+    }
+
+    /// The state x⁻(t), before any jumps at `t`; the same as [`at`](Self::at) where there is none.
+    #[must_use]
+    pub fn before(&self, t: f64) -> Option<A::State> {
+        let first = self.jumps.partition_point(|jump| jump.t() < t);
+        match self.jumps.get(first) {
+            Some(jump) if jump.t() == t => Some(jump.before),
+            _ => self.at(t),
+        }
+    }
+
+    /// The mode at `t`, after any jumps.
+    #[must_use]
+    pub fn mode_at(&self, t: f64) -> Option<A::Mode> {
+        self.arc_at(t).map(|index| self.arcs[index].mode)
+    }
+
+    fn arc_at(&self, t: f64) -> Option<usize> {
+        if t < self.start().seconds() || t > self.end.seconds() || t.is_nan() {
+            return None;
+        }
+        self.arcs.partition_point(|arc| arc.start.seconds() <= t).checked_sub(1)
+    }
+
+    fn state_in(&self, index: usize, t: f64) -> A::State {
+        let pieces = &self.pieces[self.piece_range(index)];
+        let next = pieces.partition_point(|piece| piece.start.seconds() <= t);
+        match next.checked_sub(1).and_then(|i| pieces.get(i)) {
+            None => self.arcs[index].state,
+            Some(stored) => {
+                let s = Time::new(t).since(stored.start).clamp(0.0, stored.span);
+                self.piece(stored).at(s)
+            }
+        }
+    }
+
+    fn piece_range(&self, index: usize) -> std::ops::Range<usize> {
+        let end = self.arcs.get(index + 1).map_or(self.pieces.len(), |next| next.first_piece);
+        let start = self.arcs.get(index).map_or(end, |arc| arc.first_piece);
+        start..end
+    }
+
+    fn piece(&self, stored: &Stored) -> Piece<'_, A::State> {
+        let coefficients = &self.coefficients[stored.first..stored.first + stored.len];
+        Piece { start: stored.start, span: stored.span, scale: stored.scale, coefficients }
+    }
+}

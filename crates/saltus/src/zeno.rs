@@ -1,0 +1,98 @@
+//! Zeno: when the times between jumps shrink so that infinitely many fit before a limit.
+
+/// How many durations are remembered.
+const MEMORY: usize = 16;
+/// The longest repeating pattern of jumps looked for.
+const LONGEST_CYCLE: usize = 4;
+
+/// Watches the durations between jumps for geometric contraction.
+#[derive(Clone, Debug)]
+pub(crate) struct Contraction {
+    durations: [f64; MEMORY],
+    count: usize,
+}
+
+impl Contraction {
+    pub(crate) const fn new() -> Self {
+        Self { durations: [0.0; MEMORY], count: 0 }
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, duration: f64) {
+        self.durations[self.count % MEMORY] = duration;
+        self.count += 1;
+    }
+
+    /// The duration `back` jumps ago, 0 for the last one.
+    fn last(&self, back: usize) -> f64 {
+        self.durations[(self.count - 1 - back) % MEMORY]
+    }
+
+    /// The time from the last jump to the limit, if the durations contract and the next one is shorter than `resolution`.
+    ///
+    /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are all below one; with r the largest
+    /// of them and S the last cycle's duration, what remains is at most S r/(1-r).
+    pub(crate) fn remaining(&self, resolution: f64) -> Option<f64> {
+        if self.count == 0 || self.last(0) > resolution * 1e6 {
+            return None;
+        }
+        let known = self.count.min(MEMORY);
+        (1..=LONGEST_CYCLE).find_map(|cycle| {
+            if known < cycle + 4 {
+                return None;
+            }
+            let ratio = (0..4.max(cycle))
+                .filter(|i| i + cycle < known)
+                .map(|i| self.last(i) / self.last(i + cycle))
+                .fold(0.0, f64::max);
+            let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
+            (ratio < 1.0 && last_cycle * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_geometric_series_is_summed() {
+        let mut contraction = Contraction::new();
+        let mut d = 1.0;
+        let mut sum = 0.0;
+        while contraction.remaining(1e-12).is_none() {
+            contraction.push(d);
+            sum += d;
+            d *= 0.8;
+        }
+        assert!((sum + contraction.remaining(1e-12).unwrap() - 5.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_harmonic_series_is_not_zeno() {
+        let mut contraction = Contraction::new();
+        for n in 1..100_000 {
+            contraction.push(1e-3 / f64::from(n));
+            assert_eq!(contraction.remaining(1e-12), None);
+        }
+    }
+
+    #[test]
+    fn a_cycle_of_two_contracts_as_a_whole() {
+        let mut contraction = Contraction::new();
+        let mut d = 1.0;
+        let mut sum = 0.0;
+        for _ in 0..60 {
+            for part in [d, 3.0 * d] {
+                contraction.push(part);
+                sum += part;
+            }
+            d *= 0.5;
+            if let Some(rest) = contraction.remaining(1e-12) {
+                assert!((sum + rest - 8.0).abs() < 1e-12);
+                return;
+            }
+        }
+        panic!("not recognised");
+    }
+}
