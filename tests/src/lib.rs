@@ -1,1 +1,19 @@
-//! Holds the documentation tests of the pages in the project.
+//! Runs the code in the project's pages as documentation tests; the other tests are in the files of this package's `tests` folder.
+
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/model.md")]
+pub struct Model;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/fitting.md")]
+pub struct Fitting;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/simulating.md")]
+pub struct Simulating;
+
+pub mod reference;

@@ -1,1 +1,28 @@
-fn main() {}
+//! The command `saltus`: fit a coefficient of restitution to a table, simulate a bounce, draw it.
+
+mod args;
+mod error;
+mod fit;
+mod motion;
+mod output;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    match run(&args::Args::parse()) {
+        Ok(code) => code,
+        Err(error) => error.report(),
+    }
+}
+
+fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
+    match &args.command {
+        args::Command::Fit(fit) => fit::run(fit, args.quiet),
+        args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
+        args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
+        args::Command::Man => output::stdout(&args::man()?),
+    }
+}

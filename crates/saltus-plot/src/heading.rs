@@ -86,7 +86,8 @@ impl Heading {
             }
         }
         if !picture.contacts.is_empty() {
-            wanted.push((Sign::Contact, "model contact".to_owned()));
+            let word = if picture.measured.is_empty() { "contact" } else { "model contact" };
+            wanted.push((Sign::Contact, word.to_owned()));
         }
         let model = wanted.len();
         wanted.extend(measured(picture));

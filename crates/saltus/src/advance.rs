@@ -130,7 +130,9 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
             }
             let slope = self.guard_slope(mode, edge, t, x, g);
-            let on_wall = g.abs() <= slope.abs() * 4.0 * (t.abs().next_up() - t.abs());
+            let size = (0..x.len()).map(|i| x.get(i).abs()).fold(1.0, f64::max);
+            let rounding = (slope.abs() * 4.0 * (t.abs().next_up() - t.abs())).max(4.0 * f64::EPSILON * size);
+            let on_wall = g.abs() <= rounding;
             match (on_wall, spent.is_some()) {
                 (true, true) => {}
                 (_, _) if g > 0.0 => self.spent = None, // the reset led away from the wall: no root to spend
@@ -146,13 +148,13 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         Ok(None)
     }
 
-    /// dg/dt along the flow, by a difference over a time short against the last arc.
+    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
     fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let h = if self.last_duration > 0.0 { self.last_duration * 1e-6 } else { 1e-9 };
-        self.stats.flows += 1;
         self.stats.guards += 1;
-        let slope = self.automaton.flow(mode, t, x);
-        let ahead = x.with(|i| x.get(i) + h * slope.get(i));
+        let slope = self.flow(mode, t, x);
+        let middle = self.flow(mode, t + 0.5 * h, &x.with(|i| x.get(i) + 0.5 * h * slope.get(i)));
+        let ahead = x.with(|i| x.get(i) + h * middle.get(i));
         (self.automaton.guard(edge, t + h, &ahead) - g) / h
     }
 
@@ -290,7 +292,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
                 return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
-            let dense = self.stepper.dense(&x, h, &trial);
+            let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
             let last = h >= remaining;
             let limit = if last { past(h) } else { h };
@@ -349,7 +351,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
                 h
             };
             let trial = self.trial(mode, t, x, slope, size);
-            let norm = tolerance.norm(&trial.error, x, &trial.end);
+            let norm = self.stepper.error(size, &trial, |error| tolerance.norm(error, x, &trial.end));
             let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
             let (accepted, factor) = self.controller.judge(if finite { norm } else { f64::INFINITY });
             if accepted {
@@ -374,12 +376,29 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         slope: &A::State,
         h: f64,
     ) -> Trial<A::State, M::Stages<A::State>> {
+        self.stats.jacobians += M::JACOBIANS;
         let (automaton, count) = (self.automaton, &mut self.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
             automaton.flow(mode, t, x)
         };
         self.stepper.trial(&mut flow, t, x, slope, h)
+    }
+
+    fn dense(
+        &mut self,
+        mode: A::Mode,
+        t: f64,
+        x: &A::State,
+        h: f64,
+        trial: &Trial<A::State, M::Stages<A::State>>,
+    ) -> M::Dense<A::State> {
+        let (automaton, count) = (self.automaton, &mut self.stats.flows);
+        let mut flow = |t: f64, x: &A::State| {
+            *count += 1;
+            automaton.flow(mode, t, x)
+        };
+        self.stepper.dense(&mut flow, t, x, h, trial)
     }
 
     fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
@@ -415,7 +434,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
             if !(trial.end.is_finite() && trial.slope.is_finite()) {
                 return Ok(None);
             }
-            let dense = self.stepper.dense(x, h, &trial);
+            let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.stats.guards += 1;
             let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
             if shift.is_nan() || shift.abs() > 0.1 * h {

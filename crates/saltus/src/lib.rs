@@ -45,6 +45,6 @@ pub use hybrid::{Hybrid, Link};
 pub use observe::Observer;
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
 pub use state::{Coords, State};
-pub use step::Tsit5;
+pub use step::{Dop853, Rodas5P, Tsit5};
 pub use time::Time;
 pub use trajectory::{Arc, Cause, Jump, Piece, Trajectory};

@@ -332,6 +332,8 @@ pub struct Stats {
     pub flows: u64,
     /// Evaluations of guards.
     pub guards: u64,
+    /// Jacobians, each by differences of flows counted above.
+    pub jacobians: u64,
 }
 
 /// A recorded run.

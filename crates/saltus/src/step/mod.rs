@@ -1,22 +1,36 @@
 //! Steppers: each advances a smooth flow by one trial step and offers a polynomial in between. They know nothing of guards.
+//!
+//! | stepper | order | dense output | flows per step | made for |
+//! |---|---|---|---|---|
+//! | [`Tsit5`] | 5(4) | 4 | 6 | everyday work, relative tolerances of 1e-3 to 1e-7 |
+//! | [`Dop853`] | 8(5, 3) | 7 | 12, and 3 for the dense output | tight tolerances, 1e-7 to 1e-14 |
+//! | [`Rodas5P`] | 5(4) | 4 | 8, and 2 n + 1 for the Jacobian of n coordinates | stiff flows |
 
+mod dop853;
+mod rodas5p;
 mod tsit5;
 
+pub use dop853::Dop853;
+pub use rodas5p::Rodas5P;
 pub use tsit5::Tsit5;
 
 use crate::state::State;
 
 /// A one-step method with an error estimate and dense output.
 ///
-/// A stepper is asked for a [`trial`](Stepper::trial); only if the trial is accepted is its [`dense`](Stepper::dense) output asked for.
+/// A stepper is asked for a [`trial`](Stepper::trial) and then for the size of its [`error`](Stepper::error);
+/// only if the trial is accepted is its [`dense`](Stepper::dense) output asked for. It remembers nothing from one step to the next.
 pub trait Stepper: Copy {
-    /// What a trial hands on to its dense output.
+    /// What a trial hands on to its error estimate and its dense output.
     type Stages<S: State>;
     /// The coefficients of the dense output in powers of (t - t₀)/h, lowest first.
     type Dense<S: State>: AsRef<[S]>;
 
     /// The power of h with which the error estimate shrinks.
     const ERROR_ORDER: f64;
+
+    /// How many Jacobians a trial evaluates.
+    const JACOBIANS: u64 = 0;
 
     /// One step of size `h` from `x` at `t`, where the flow is `slope`.
     fn trial<S: State>(
@@ -28,8 +42,20 @@ pub trait Stepper: Copy {
         h: f64,
     ) -> Trial<S, Self::Stages<S>>;
 
-    /// The polynomial between the two ends of an accepted trial.
-    fn dense<S: State>(&self, x: &S, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Self::Dense<S>;
+    /// How large the estimated local error of a trial is, as `norm` measures the error of a state.
+    ///
+    /// A method with one estimate returns `norm` of it; one with several combines their norms.
+    fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64;
+
+    /// The polynomial between the two ends of an accepted trial; summed from the highest power down at θ = 1, it is the end to rounding.
+    fn dense<S: State>(
+        &self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        h: f64,
+        trial: &Trial<S, Self::Stages<S>>,
+    ) -> Self::Dense<S>;
 }
 
 /// One trial step.
@@ -39,8 +65,77 @@ pub struct Trial<S, K> {
     pub end: S,
     /// The flow at the end.
     pub slope: S,
-    /// The estimated local error of `end`.
-    pub error: S,
-    /// What the dense output needs.
+    /// What the error estimate and the dense output need.
     pub stages: K,
+}
+
+/// Coordinate `i` of Σ wₖ kₖ.
+#[inline]
+fn weighted<S: State, const N: usize>(weights: &[f64; N], slopes: [&S; N], i: usize) -> f64 {
+    weights.iter().zip(slopes).map(|(w, k)| w * k.get(i)).sum()
+}
+
+/// x + h Σ wₖ kₖ.
+#[inline]
+fn moved<S: State, const N: usize>(x: &S, h: f64, weights: &[f64; N], slopes: [&S; N]) -> S {
+    x.with(|i| x.get(i) + h * weighted(weights, slopes, i))
+}
+
+/// The coefficient of θ² with which the polynomial that starts at `x` and has these `first` (of θ) and `higher` (of θ³, θ⁴, …)
+/// coefficients ends at `end`, whatever their rounding.
+///
+/// The coefficient of θ must not serve for this: an arc that ends in a small part of a step sees nothing else, and the rounding of the
+/// others may exceed it.
+#[inline]
+fn closing<S: State>(x: &S, end: &S, first: &S, higher: &[S]) -> S {
+    x.with(|i| {
+        let rest = higher.iter().rev().fold(0.0, |sum, c| sum + c.get(i));
+        (end.get(i) - x.get(i)) - first.get(i) - rest
+    })
+}
+
+/// What the tests of the methods share.
+#[cfg(test)]
+mod testing {
+    use super::Stepper;
+    use crate::trajectory::horner;
+
+    /// x' = x cos t, x(0) = 1, so x = exp(sin t): the largest errors over `0..=1` with steps of `h`, at their ends and inside them.
+    pub(super) fn errors_with(stepper: impl Stepper, h: f64) -> (f64, f64) {
+        let mut flow = |t: f64, x: &f64| x * t.cos();
+        let (mut t, mut x) = (0.0, 1.0_f64);
+        let (mut at_ends, mut inside) = (0.0_f64, 0.0_f64);
+        while t < 1.0 - 1e-9 {
+            let slope = flow(t, &x);
+            let trial = stepper.trial(&mut flow, t, &x, &slope, h);
+            let dense = stepper.dense(&mut flow, t, &x, h, &trial);
+            let dense = dense.as_ref();
+            for theta in [0.1, 0.3, 0.5, 0.8] {
+                inside = inside.max((horner(dense, theta) - (t + theta * h).sin().exp()).abs());
+            }
+            assert_eq!(horner(dense, 0.0), x);
+            assert!((horner(dense, 1.0) - trial.end).abs() <= f64::EPSILON * trial.end.abs());
+            (t, x) = (t + h, trial.end);
+            at_ends = at_ends.max((x - t.sin().exp()).abs());
+        }
+        (at_ends, inside)
+    }
+
+    /// The orders at the ends of the steps and inside them, from steps of `h` and half of it.
+    pub(super) fn orders(stepper: impl Stepper, h: f64) -> (f64, f64) {
+        let (coarse, fine) = (errors_with(stepper, h), errors_with(stepper, 0.5 * h));
+        ((coarse.0 / fine.0).log2(), (coarse.1 / fine.1).log2())
+    }
+
+    /// The power of h with which the error estimate shrinks.
+    pub(super) fn error_order(stepper: impl Stepper, h: f64) -> f64 {
+        let mut flow = |t: f64, x: &f64| x * t.cos();
+        let (t, x) = (0.3_f64, 0.3_f64.sin().exp());
+        let slope = flow(t, &x);
+        let mut size = |h: f64| {
+            let trial = stepper.trial(&mut flow, t, &x, &slope, h);
+            stepper.error(h, &trial, |e| e.abs())
+        };
+        (size(h) / size(0.5 * h)).log2()
+    }
 }

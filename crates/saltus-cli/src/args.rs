@@ -1,0 +1,214 @@
+//! What can be asked on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, CommandFactory, Parser, Subcommand, ValueEnum};
+use saltus_bounce::Cor;
+use saltus_bounce::units::Quantity;
+
+use crate::error::Error;
+
+/// Bouncing balls: from a table to a coefficient of restitution, from a coefficient to a motion.
+///
+/// Data goes to standard output, talk to standard error. Exit status: 0 done; 1 with --strict, when a verdict is doubtful or refused;
+/// 2 bad input or failure.
+#[derive(Debug, Parser)]
+#[command(name = "saltus", version, propagate_version = true, arg_required_else_help = true)]
+pub(crate) struct Args {
+    /// Say nothing on standard error but errors.
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// Headers of tables that are understood.
+const LAYOUTS: &str = "Layouts of tables, for example:
+  event,time_s,height_cm     release, contact and apex rows
+  bounce,height_cm           one height per bounce, 0 for the drop
+  bounce,time (s)            one time per contact
+  trial,bounce,time_ms       several trials
+Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30'
+in the table, from the scatter, or are assumed; the report says which.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Fit(Fit),
+    Simulate(Simulate),
+    /// Write a shell's completions to standard output.
+    ///
+    /// For bash: saltus completions bash > ~/.local/share/bash-completion/completions/saltus
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual page to standard output, as roff.
+    Man,
+}
+
+/// Estimate the coefficient of restitution (COR) from a table of bounces.
+///
+/// The table is CSV with a header: rebound heights, contact times, or both. Units stand in the header; commas, semicolons or tabs
+/// separate the cells.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = LAYOUTS)]
+pub(crate) struct Fit {
+    /// The table; `-` for standard input.
+    pub(crate) table: PathBuf,
+    /// Draw height against time, with the fitted motion and the residuals, as SVG.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// How to write the report.
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ReportFormat,
+    /// Write the report to a file; `-` for standard output.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// The standard error of a height reading, such as `5mm`.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    pub(crate) sigma_height: Option<f64>,
+    /// The standard error of a time reading, such as `10ms`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) sigma_time: Option<f64>,
+    /// Gravity, such as `9.81m/s^2`; used only where heights meet times.
+    #[arg(long, value_name = "ACCELERATION", value_parser = positive(Quantity::Acceleration))]
+    pub(crate) gravity: Option<f64>,
+    /// The unit of heights where the header names none, such as `cm`.
+    #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Length))]
+    pub(crate) height_unit: Option<String>,
+    /// The unit of times where the header names none, such as `ms`.
+    #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Time))]
+    pub(crate) time_unit: Option<String>,
+    /// The column to fit, where several hold readings of the same thing.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) column: Option<String>,
+    /// Keep only the rows in which this column has this value; may be repeated.
+    #[arg(long = "filter", value_name = "COLUMN=VALUE", value_parser = filter)]
+    pub(crate) filters: Vec<(String, String)>,
+    /// Exit with status 1 unless the verdict is `trusted`.
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// Simulate a ball that bounces on a level floor.
+///
+/// Gravity and a constant coefficient of restitution, nothing else: every flight is an exact parabola. Without --until the run ends
+/// when the ball has come to rest.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Simulate {
+    /// The height it starts from, such as `1m` or `100cm`.
+    #[arg(long, value_name = "LENGTH", value_parser = quantity(Quantity::Length), allow_hyphen_values = true)]
+    pub(crate) drop: f64,
+    /// The coefficient of restitution, from 0 to 1.
+    #[arg(long, value_name = "NUMBER", value_parser = cor, allow_hyphen_values = true)]
+    pub(crate) cor: Cor,
+    /// The upward velocity it starts with, such as `-2m/s`.
+    #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
+    pub(crate) velocity: f64,
+    /// Gravity.
+    #[arg(long, value_name = "ACCELERATION", value_parser = quantity(Quantity::Acceleration), default_value = "9.81m/s^2", allow_hyphen_values = true)]
+    pub(crate) gravity: f64,
+    /// When to stop, such as `4s`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+    /// After how many jumps to stop.
+    #[arg(long, value_name = "COUNT", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) most_jumps: u32,
+    /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
+    pub(crate) every: Option<f64>,
+    /// Sample the motion at this many frames per second.
+    #[arg(long, value_name = "NUMBER", value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// How to write the motion; without it, after the extension of the output file, or else as text.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<MotionFormat>,
+    /// Write the motion to a file; `-` for standard output.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw height against time as SVG.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// How a report is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs; see docs/fitting.md.
+    Json,
+}
+
+/// How a motion is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MotionFormat {
+    /// The jumps, for people.
+    Text,
+    /// The motion, for a spreadsheet: both sides of each jump, and samples if asked for.
+    Csv,
+    /// The jumps with both sides, for programs.
+    Json,
+}
+
+fn quantity(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| quantity.parse(text).map_err(|error| error.to_string())
+}
+
+fn positive(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| match quantity.parse(text) {
+        Ok(value) if value > 0.0 => Ok(value),
+        Ok(_) => Err(format!("'{text}' is not above zero")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn unit(quantity: Quantity) -> impl Fn(&str) -> Result<String, String> + Clone + Send + Sync + 'static {
+    move |text| match quantity.scale(text) {
+        Some(_) => Ok(text.to_owned()),
+        None => {
+            let known: Vec<&str> = quantity.units().iter().map(|&(name, _)| name).collect();
+            Err(format!("'{text}' is not a unit of {quantity}: use one of {}", known.join(", ")))
+        }
+    }
+}
+
+fn cor(text: &str) -> Result<Cor, String> {
+    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    Cor::new(value).map_err(|error| error.to_string())
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a frame rate: give a number above zero, such as 30")),
+    }
+}
+
+fn filter(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((column, value)) if !column.trim().is_empty() => Ok((column.trim().to_owned(), value.trim().to_owned())),
+        _ => Err(format!("'{text}' is not of the form column=value")),
+    }
+}
+
+/// The completions of a shell.
+pub(crate) fn completions(shell: clap_complete::Shell) -> Vec<u8> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Args::command(), "saltus", &mut script);
+    script
+}
+
+/// The manual page, the commands' own pages after the first.
+pub(crate) fn man() -> Result<Vec<u8>, Error> {
+    let mut page = Vec::new();
+    let mut command = Args::command();
+    command.build();
+    let render = |command: clap::Command, page: &mut Vec<u8>| clap_mangen::Man::new(command).render(page);
+    render(command.clone(), &mut page).map_err(Error::stdout)?;
+    for sub in command.get_subcommands().filter(|sub| !sub.is_hide_set() && sub.get_name() != "help") {
+        render(sub.clone(), &mut page).map_err(Error::stdout)?;
+    }
+    Ok(page)
+}

@@ -1,0 +1,146 @@
+//! `saltus fit`: a table in, a report and a picture out.
+
+use std::io::Read;
+use std::path::Path;
+use std::process::ExitCode;
+
+use saltus_fit::{Fit, Measure, Motion, ReadOptions, Report, Table, Verdict};
+use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
+
+use crate::args::{self, ReportFormat};
+use crate::error::Error;
+use crate::output::{check_picture, say, write};
+
+pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
+    check_picture(args.plot.as_deref())?;
+    let table = read(args)?;
+    let report = fit(args).run(&table).map_err(Error::new)?;
+    let text = match args.format {
+        ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
+        ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
+    };
+    if let Some(path) = &args.plot {
+        match picture(&report) {
+            Some(picture) => write(Some(path), picture.svg().map_err(Error::new)?.as_bytes())?,
+            None => say(quiet, "no picture: the table has no motion to draw"),
+        }
+    }
+    write(args.output.as_deref(), text.as_bytes())?;
+    if let Some(path) = args.plot.as_ref().filter(|path| path.exists() && *path != Path::new("-")) {
+        say(quiet, &format!("picture: {}", path.display()));
+    }
+    let passed = !args.strict || report.verdict() == Verdict::Trusted;
+    Ok(if passed { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+fn read(args: &args::Fit) -> Result<Table, Error> {
+    let mut options = ReadOptions::default();
+    if let Some(unit) = &args.height_unit {
+        options = options.height_unit(unit);
+    }
+    if let Some(unit) = &args.time_unit {
+        options = options.time_unit(unit);
+    }
+    if let Some(column) = &args.column {
+        options = options.column(column);
+    }
+    for (column, value) in &args.filters {
+        options = options.filter(column, value);
+    }
+    if args.table == Path::new("-") {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
+        Table::parse("standard input", &bytes, &options).map_err(Error::new)
+    } else {
+        Table::read(&args.table, &options).map_err(Error::new)
+    }
+}
+
+fn fit(args: &args::Fit) -> Fit {
+    let mut fit = Fit::new();
+    if let Some(sigma) = args.sigma_height {
+        fit = fit.sigma_height(sigma);
+    }
+    if let Some(sigma) = args.sigma_time {
+        fit = fit.sigma_time(sigma);
+    }
+    if let Some(gravity) = args.gravity {
+        fit = fit.gravity(gravity);
+    }
+    fit
+}
+
+/// The measured points, the fitted motion, and what is left between them.
+fn picture(report: &Report) -> Option<HeightTime> {
+    let motion = report.motion()?;
+    let points = report.points().iter().map(|point| {
+        let mut measured = Measured::new(point.time, point.height).mark(mark(&point.label));
+        if let Some(sigma) = point.sigma_time {
+            measured = measured.time_error(sigma);
+        }
+        if let Some(sigma) = point.sigma_height {
+            measured = measured.height_error(sigma);
+        }
+        measured
+    });
+    let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(&r.label)));
+    let mut picture = HeightTime::new(&title(report.table()))
+        .motion(&label(report, motion), arcs(motion))
+        .measured(points)
+        .contacts(motion.contacts.iter().copied())
+        .residuals(residuals)
+        .background(Background::Adaptive)
+        .caption(&caption(report));
+    if let Some(agreement) = disagreement(report) {
+        picture = picture.caption(&agreement);
+    }
+    Some(picture)
+}
+
+fn label(report: &Report, motion: &Motion) -> String {
+    let trials = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
+    let whose = if trials > 1 { format!("first of {trials} trials: ") } else { String::new() };
+    format!("{whose}free flight with one COR of {:.3}", motion.cor)
+}
+
+fn arcs(motion: &Motion) -> impl Iterator<Item = Arc> {
+    motion.flights.iter().map(|flight| Arc::new(flight.start, flight.span, flight.height.to_vec()))
+}
+
+fn mark(label: &str) -> Mark {
+    match label.split(' ').next() {
+        Some("release") => Mark::Release,
+        Some("contact") => Mark::Contact,
+        Some("apex") => Mark::Apex,
+        _ => Mark::Sample,
+    }
+}
+
+/// `squash-on-cement.csv` is about "squash on cement".
+fn title(table: &str) -> String {
+    let name = Path::new(table).file_stem().map_or(table.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let words = name.replace(['-', '_'], " ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+fn caption(report: &Report) -> String {
+    match report.cor() {
+        None => format!("No COR: {}", report.reason()),
+        Some(cor) => match (report.verdict(), cor.standard_error) {
+            (Verdict::Trusted, Some(error)) => format!("COR {:.4} ± {error:.4}", cor.value),
+            (verdict, _) => format!("COR between {:.2} and {:.2}, {verdict}: {}", cor.low, cor.high, report.reason()),
+        },
+    }
+}
+
+/// How badly one motion holds both heights and times, if it does.
+fn disagreement(report: &Report) -> Option<String> {
+    let both = report.residuals().iter().any(|r| r.kind == Measure::Height)
+        && report.residuals().iter().any(|r| r.kind == Measure::Time);
+    let agreement = report.agreement().filter(|_| both && report.verdict() != Verdict::Trusted)?;
+    Some(format!(
+        "One COR for heights and times together: χ² = {:.0} on {} degrees of freedom",
+        agreement.chi_square, agreement.degrees_of_freedom
+    ))
+}

@@ -1,0 +1,88 @@
+//! Where results go: standard output, or a file that is written whole or not at all.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::error::Error;
+
+/// Writes to the file, or to standard output if it is `-` or none is given.
+pub(crate) fn write(to: Option<&Path>, bytes: &[u8]) -> Result<(), Error> {
+    match to {
+        Some(path) if path != Path::new("-") => file(path, bytes),
+        _ => stdout(bytes).map(drop),
+    }
+}
+
+/// Writes to standard output.
+pub(crate) fn stdout(bytes: &[u8]) -> Result<ExitCode, Error> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(Error::stdout)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes a file through a temporary one beside it, so that a failure never harms what was there.
+fn file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let fail = |error: io::Error| Error::writing(path, &error);
+    // A link stays a link; the file it leads to is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    match fs::metadata(&target) {
+        Ok(old) if old.is_dir() => {
+            return Err(Error::new(format!("'{}' is a folder: name a file in it", path.display())));
+        }
+        // A device or a pipe cannot be replaced, only written to.
+        Ok(old) if !old.is_file() => return fs::write(&target, bytes).map_err(fail),
+        _ => {}
+    }
+    let folder = match target.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    let mut temporary = builder().tempfile_in(&folder).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => {
+            Error::new(format!("cannot write '{}': there is no folder '{}'", path.display(), folder.display()))
+        }
+        _ => fail(error),
+    })?;
+    temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all()).map_err(fail)?;
+    if let Ok(old) = fs::metadata(&target) {
+        fs::set_permissions(temporary.path(), old.permissions()).map_err(fail)?;
+    }
+    temporary.persist(&target).map_err(|error| fail(error.error))?;
+    Ok(())
+}
+
+/// A new file gets the permissions that any program would give it.
+fn builder<'a>() -> tempfile::Builder<'a, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".saltus-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder
+}
+
+/// A line of talk, unless silence was asked for.
+pub(crate) fn say(quiet: bool, line: &str) {
+    if !quiet {
+        anstream::eprintln!("{line}");
+    }
+}
+
+/// Refuses a picture that is not to be SVG before any work is done.
+pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Error> {
+    match path {
+        Some(path) if path != Path::new("-") && path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("svg")) => {
+            let svg = path.with_extension("svg");
+            Err(Error::new(format!(
+                "pictures are SVG: name the file '{}' instead of '{}'",
+                svg.display(),
+                path.display()
+            )))
+        }
+        _ => Ok(()),
+    }
+}

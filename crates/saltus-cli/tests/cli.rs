@@ -1,0 +1,308 @@
+//! The command as its user meets it: what it prints, writes and answers, and how it ends.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn saltus() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command.env("NO_COLOR", "1");
+    command
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn squash() -> PathBuf {
+    root().join("examples/data/squash-on-cement.csv")
+}
+
+fn run(arguments: &[&str]) -> Output {
+    saltus().args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A command that must succeed and say nothing on standard error; its standard output.
+fn done(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// A command that must fail with status 2 and nothing on standard output; its message.
+fn refused(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
+    assert_eq!(text(&output.stdout), "");
+    text(&output.stderr)
+}
+
+/// A table in a folder of its own.
+fn table(content: impl AsRef<[u8]>) -> (TempDir, String) {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("table.csv");
+    fs::write(&path, content).unwrap();
+    let path = path.to_str().unwrap().to_owned();
+    (folder, path)
+}
+
+/// Compares with a file in the project; `SALTUS_BLESS=1` rewrites it instead.
+fn golden(path: &Path, got: &str) {
+    if std::env::var_os("SALTUS_BLESS").is_some() {
+        fs::write(path, got).unwrap();
+    }
+    let expected = fs::read_to_string(path).unwrap_or_default().replace("\r\n", "\n");
+    assert!(expected == got, "{} differs from:\n{got}\nLook at it; SALTUS_BLESS=1 accepts it.", path.display());
+}
+
+#[test]
+fn the_main_job() {
+    let folder = TempDir::new().unwrap();
+    let svg = folder.path().join("squash.svg");
+    let output = saltus().arg("fit").arg(squash()).arg("--plot").arg(&svg).output().unwrap();
+    assert!(output.status.success());
+    golden(&root().join("crates/saltus-cli/tests/golden/squash.txt"), &text(&output.stdout));
+    golden(&root().join("docs/squash-on-cement.svg"), &fs::read_to_string(&svg).unwrap());
+    assert!(text(&output.stderr).contains("squash.svg"), "where the picture went is said");
+    // The report quoted in the README is the report printed.
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let quoted = readme.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    assert!(text(&output.stdout).starts_with(quoted.trim_end()), "the README quotes another report");
+}
+
+#[test]
+fn a_report_for_programs() {
+    let json: Value = serde_json::from_str(&done(&["fit", squash().to_str().unwrap(), "--format", "json"])).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["verdict"], "doubtful");
+    for field in ["value", "standard_error", "low", "high"] {
+        assert!(json["cor"].get(field).is_some(), "cor.{field}");
+    }
+    for estimate in json["estimates"].as_array().unwrap() {
+        for field in ["method", "value", "standard_error", "chi_square", "degrees_of_freedom", "p"] {
+            assert!(estimate.get(field).is_some(), "estimates[].{field}");
+        }
+    }
+    assert!(json["warnings"].is_array() && json["repairs"].is_array());
+    let agreement = &json["agreement"];
+    assert!((agreement["chi_square"].as_f64().unwrap() - 73.2).abs() < 0.1);
+    assert_eq!(agreement["degrees_of_freedom"], 4);
+}
+
+#[test]
+fn strictness() {
+    let squash = squash();
+    let squash = squash.to_str().unwrap();
+    assert_eq!(run(&["fit", squash, "--strict"]).status.code(), Some(1));
+    let (_folder, good) = table("bounce,height_cm\n0,100\n1,64\n2,41\n3,26.2\n");
+    assert_eq!(run(&["fit", &good, "--strict"]).status.code(), Some(0));
+    let (_folder, none) = table("bounce,time_s\n1,0.45\n2,0.85\n");
+    assert_eq!(run(&["fit", &none]).status.code(), Some(0));
+    assert_eq!(run(&["fit", &none, "--strict"]).status.code(), Some(1));
+    let json: Value = serde_json::from_str(&done(&["fit", &none, "--format", "json"])).unwrap();
+    assert_eq!((&json["verdict"], &json["cor"]), (&Value::from("refused"), &Value::Null));
+}
+
+#[test]
+fn tables_as_people_write_them() {
+    let plain = "bounce,height_cm\n0,100\n1,64\n2,41\n3,26.2\n";
+    let cor = |content: &[u8], more: &[&str]| {
+        let (_folder, path) = table(content);
+        let json = done(&[&["fit", &path, "--format", "json"], more].concat());
+        serde_json::from_str::<Value>(&json).unwrap()["cor"]["value"].as_f64().unwrap()
+    };
+    let expected = cor(plain.as_bytes(), &[]);
+    assert!((expected - 0.8).abs() < 0.002);
+    for (content, more) in [
+        ("\u{feff}bounce,height_cm\n0,100\n1,64\n2,41\n3,26.2\n", &[][..]),
+        ("bounce,height_cm\r\n0,100\r\n1,64\r\n2,41\r\n3,26.2\r\n", &[]),
+        ("bounce;height (cm)\n0;100\n1;64\n2;41\n3;26,2\n", &[]),
+        ("bounce\theight [m]\n0\t1\n1\t0,64\n2\t0,41\n3\t0,262\n", &["--sigma-height", "1cm"]),
+        ("bounce,height\n0,1000\n1,640\n2,410\n3,262\n", &["--height-unit", "mm", "--sigma-height", "1cm"]),
+        ("# by hand\n\nheight_cm\n100\n64\n41\n26.2\n", &[]),
+    ] {
+        let got = cor(content.as_bytes(), more);
+        assert!((got - expected).abs() < 1e-9, "{content:?}: {got}");
+    }
+}
+
+/// Each refusal names the place and says what to do.
+#[test]
+fn tables_that_cannot_be_read() {
+    for (content, parts) in [
+        ("", &["empty"][..]),
+        ("bounce,height_cm\n", &["no row"]),
+        ("bounce,height_cm\n0,100\n1,NaN\n", &[":3:3:", "1,NaN", "^^^"]),
+        ("bounce,height_cm\n0,100\n1,-3\n", &[":3:3:", "1,-3", "below the floor"]),
+        ("bounce,height_furlong\n0,100\n1,30\n", &["furlong"]),
+        ("bounce,heihgt_cm\n0,100\n1,30\n", &["heihgt_cm", "height"]),
+        ("bounce,height\n0,100\n1,30\n", &["--height-unit"]),
+    ] {
+        let (_folder, path) = table(content);
+        let message = refused(&["fit", &path]);
+        assert!(message.starts_with("error: "), "{message}");
+        for part in parts {
+            assert!(message.to_lowercase().contains(&part.to_lowercase()), "{content:?}: no '{part}' in:\n{message}");
+        }
+    }
+    assert!(refused(&["fit", "no/such/table.csv"]).contains("no/such/table.csv"));
+    assert!(refused(&["fit", root().to_str().unwrap()]).contains("directory"));
+}
+
+/// Rising heights are never silently a COR of one.
+#[test]
+fn heights_that_rise() {
+    let (_folder, path) = table("bounce,height_cm\n0,50\n1,60\n2,75\n");
+    let json: Value = serde_json::from_str(&done(&["fit", &path, "--format", "json"])).unwrap();
+    assert_ne!(json["verdict"], "trusted");
+    assert!(!json["warnings"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_table_from_standard_input() {
+    let mut child = saltus().args(["fit", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(b"bounce,height_cm\n0,100\n1,64\n2,41\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && text(&output.stdout).contains("COR"));
+}
+
+#[test]
+fn simulating_for_programs() {
+    let json = done(&[
+        "simulate",
+        "--drop",
+        "1m",
+        "--cor",
+        "0.5",
+        "--gravity",
+        "9.8m/s^2",
+        "--until",
+        "4s",
+        "--format",
+        "json",
+    ]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["schema"], 1);
+    let jumps = json["jumps"].as_array().unwrap();
+    assert_eq!(jumps.len(), 53);
+    for (index, jump) in jumps.iter().enumerate() {
+        assert_eq!(jump["j"], index + 1);
+        assert!(jump["before"]["height"].as_f64().unwrap() >= 0.0);
+    }
+    assert_eq!((&jumps[0]["edge"], &jumps[52]["edge"]), (&Value::from("floor"), &Value::from("zeno")));
+    assert!((jumps[52]["t"].as_f64().unwrap() - 1.355_261_854_357_876_8).abs() < 1e-15);
+    assert_eq!((&json["stop"]["reason"], &json["stop"]["mode"]), (&Value::from("time"), &Value::from("rest")));
+}
+
+#[test]
+fn simulating_for_spreadsheets() {
+    let csv = done(&["simulate", "--drop", "1m", "--cor", "0.5", "--fps", "24", "--format", "csv"]);
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("time_s,jumps,mode,height_m,velocity_m_per_s"));
+    let rows: Vec<(f64, usize)> = lines
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            assert!(cells[3].parse::<f64>().unwrap() >= 0.0, "{line}");
+            (cells[0].parse().unwrap(), cells[1].parse().unwrap())
+        })
+        .collect();
+    assert!(rows.windows(2).all(|pair| pair[0] <= pair[1]), "rows are in the order of hybrid time");
+    assert!((0..30).all(|k| rows.iter().any(|row| row.0 == f64::from(k) / 24.0)), "every frame is there");
+}
+
+#[test]
+fn simulating_what_cannot_be() {
+    for (arguments, part) in [
+        (&["--drop", "1", "--cor", "0.5"][..], "give a unit of length"),
+        (&["--drop", "1m", "--cor", "1.2"], "1.2 is not a coefficient of restitution"),
+        (&["--drop", "1s", "--cor", "0.5"], "'s' in '1s' is not a unit of length"),
+        (&["--drop", "-1m", "--cor", "0.5"], "below the floor"),
+        (&["--drop", "1m", "--cor", "0.5", "--gravity", "-9.81m/s^2"], "not a gravity"),
+        (&["--drop", "1m", "--cor", "0.5", "--gravity", "0m/s^2"], "--until"),
+        (&["--drop", "1m", "--cor", "0.5", "--until", "0s"], "not above zero"),
+        (&["--drop", "1m", "--cor", "0.5", "-o", "motion.xls"], "'.xls'"),
+        (&["--drop", "1m", "--cor", "0.5", "--plot", "bounce.png"], "bounce.svg"),
+    ] {
+        let message = refused(&[&["simulate"], arguments].concat());
+        assert!(message.contains(part), "{arguments:?}: no '{part}' in:\n{message}");
+    }
+}
+
+#[test]
+fn an_elastic_ball_never_rests_and_says_when_it_stopped() {
+    let output = run(&["simulate", "--drop", "1m", "--cor", "1", "--most-jumps", "50"]);
+    assert!(output.status.success());
+    assert!(text(&output.stderr).contains("stopped after 50 jumps"), "{}", text(&output.stderr));
+}
+
+/// A file that is there stays whole when it cannot be written, and is replaced whole when it can.
+#[test]
+fn files_are_whole() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("bounce.csv");
+    fs::write(&path, "precious").unwrap();
+    let before = || fs::read_dir(folder.path()).unwrap().count();
+    refused(&["simulate", "--drop", "1m", "--cor", "2", "-o", path.to_str().unwrap()]);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
+    done(&["simulate", "--drop", "1m", "--cor", "0.5", "-o", path.to_str().unwrap()]);
+    assert!(fs::read_to_string(&path).unwrap().starts_with("time_s,"));
+    assert_eq!(before(), 1, "no temporary file is left");
+    let nowhere = folder.path().join("no/such/folder/bounce.csv");
+    assert!(
+        refused(&["simulate", "--drop", "1m", "--cor", "0.5", "-o", nowhere.to_str().unwrap()])
+            .contains("there is no folder")
+    );
+    assert!(
+        refused(&[
+            "simulate",
+            "--drop",
+            "1m",
+            "--cor",
+            "0.5",
+            "--format",
+            "csv",
+            "-o",
+            folder.path().to_str().unwrap()
+        ])
+        .contains("is a folder")
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_are_written_to_and_not_replaced() {
+    done(&["simulate", "--drop", "1m", "--cor", "0.5", "--format", "csv", "-o", "/dev/null"]);
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn nobody_reading_on_is_no_failure() {
+    let mut child = saltus()
+        .args(["simulate", "--drop", "1m", "--cor", "0.99", "--fps", "1000", "--format", "csv"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn completions_and_the_manual() {
+    assert!(done(&["completions", "bash"]).contains("_saltus"));
+    assert!(done(&["completions", "zsh"]).contains("#compdef saltus"));
+    let manual = done(&["man"]);
+    for part in [".TH saltus 1", "saltus\\-fit", "\\-\\-sigma\\-height"] {
+        assert!(manual.contains(part), "{part}");
+    }
+}

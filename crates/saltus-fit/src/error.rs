@@ -1,0 +1,135 @@
+//! What can go wrong before there is anything to report: a table that cannot be read, an option that makes no sense.
+
+use std::fmt;
+
+/// A table that could not be read: what is wrong, in which line and column, and what to do about it.
+///
+/// Its `Display` form shows the line itself with a caret below the cell:
+///
+/// ```
+/// use saltus_fit::{ReadOptions, Table};
+///
+/// let csv = b"bounce,height_cm\n0,100\n1,thirty\n";
+/// let error = Table::parse("drop.csv", csv, &ReadOptions::default()).unwrap_err();
+/// assert_eq!((error.line(), error.column()), (Some(3), Some(3)));
+/// let shown = [
+///     "drop.csv:3:3: 'thirty' is not a number",
+///     "    3 | 1,thirty",
+///     "      |   ^^^^^^",
+///     "  help: write a plain number; the unit belongs in the header",
+/// ];
+/// assert_eq!(error.to_string(), shown.join("\n"));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableError {
+    name: String,
+    place: Option<Box<Place>>,
+    message: String,
+    help: Option<String>,
+}
+
+/// Where in the file: 1-based line and column (in characters), and the line as it stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) line: u64,
+    pub(crate) column: usize,
+    pub(crate) width: usize,
+    pub(crate) text: String,
+}
+
+impl TableError {
+    pub(crate) fn new(name: &str, message: impl Into<String>) -> Self {
+        Self { name: name.to_owned(), place: None, message: message.into(), help: None }
+    }
+
+    pub(crate) fn at(mut self, place: Place) -> Self {
+        self.place = Some(Box::new(place));
+        self
+    }
+
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The line the problem is in, counted from 1; `None` when it is the file as a whole.
+    #[must_use]
+    pub fn line(&self) -> Option<u64> {
+        self.place.as_ref().map(|place| place.line)
+    }
+
+    /// The column the problem starts at, in characters counted from 1; `None` when it is the file as a whole.
+    #[must_use]
+    pub fn column(&self) -> Option<usize> {
+        self.place.as_ref().map(|place| place.column)
+    }
+}
+
+/// The longest part of a line that is shown; a longer line is cut around the caret.
+const SHOWN: usize = 90;
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.name)?;
+        if let Some(place) = &self.place {
+            write!(f, ":{}:{}", place.line, place.column)?;
+        }
+        write!(f, ": {}", self.message)?;
+        if let Some(place) = &self.place {
+            let at = place.column.saturating_sub(1);
+            let from = if at + place.width > SHOWN { at.saturating_sub(SHOWN / 2) } else { 0 };
+            let shown: String = place
+                .text
+                .chars()
+                .skip(from)
+                .take(SHOWN)
+                .map(|c| if c.is_control() || c == char::REPLACEMENT_CHARACTER { ' ' } else { c })
+                .collect();
+            let number = place.line.to_string();
+            let carets = "^".repeat(place.width.clamp(1, SHOWN.saturating_sub(at - from).max(1)));
+            write!(f, "\n  {number:>3} | {}", shown.trim_end())?;
+            write!(f, "\n  {:>w$} | {}{carets}", "", " ".repeat(at - from), w = number.len().max(3))?;
+        }
+        match &self.help {
+            Some(help) => write!(f, "\n  help: {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for TableError {}
+
+/// A fit that could not be started: an option out of its range, or a solver that failed.
+///
+/// A table that simply does not determine a COR is no error: it gives a report whose verdict is *refused*.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// An option is not a positive finite number.
+    Option {
+        /// Which option.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// The least-squares solver gave no answer that passes its checks; this is a defect worth reporting.
+    Solver {
+        /// What was being fitted.
+        what: String,
+        /// What the solver said.
+        reason: String,
+    },
+}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Option { name, value } => write!(f, "{name} is {value}: it must be a positive, finite number"),
+            Self::Solver { what, reason } => {
+                write!(f, "the fit of {what} failed: {reason}; please report it together with the table")
+            }
+        }
+    }
+}
+
+impl std::error::Error for FitError {}

@@ -1,0 +1,173 @@
+//! From a table to a report.
+
+use crate::bounces::{self, Setting};
+use crate::diagnose::{self, Findings};
+use crate::error::FitError;
+use crate::estimate::{self, Kind, Source, Sourced, one_kind};
+use crate::evidence::Evidence;
+use crate::joint;
+use crate::model::{Contacts, Heights};
+use crate::motion;
+use crate::report::Report;
+use crate::table::{Event, Reading, Table};
+
+/// Gravity where nobody states it, m/s².
+const GRAVITY: f64 = 9.81;
+/// More lines of repairs than this are counted, not listed.
+const LISTED: usize = 20;
+
+/// What is known beside the table, and the fit itself.
+///
+/// ```
+/// use saltus_fit::{Fit, ReadOptions, Table, Verdict};
+///
+/// let csv = b"# frame rate: 30\nevent,time_s,height_cm\nrelease,0,100\ncontact,0.45,\napex,,30\ncontact,0.85,\napex,,10\ncontact,1.11,\n";
+/// let table = Table::parse("squash.csv", csv, &ReadOptions::default())?;
+/// let report = Fit::new().gravity(9.8).run(&table)?;
+///
+/// // Heights say 0.56 and times say 0.54, but no one COR holds both columns: it is not given a small error.
+/// assert_eq!(report.verdict(), Verdict::Doubtful);
+/// let cor = report.cor().expect("a doubtful table still has a range");
+/// assert!(cor.low < 0.443 && cor.high > 0.650);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fit {
+    sigma_height: Option<f64>,
+    sigma_time: Option<f64>,
+    gravity: Option<f64>,
+}
+
+impl Fit {
+    /// A fit with nothing stated: reading errors come from the table, its frame rate, the scatter, or are assumed (1 cm, 10 ms).
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The standard error of a height reading, in metres. It yields to an error column of the table.
+    #[must_use]
+    pub fn sigma_height(mut self, metres: f64) -> Self {
+        self.sigma_height = Some(metres);
+        self
+    }
+
+    /// The standard error of a time reading, in seconds. It yields to an error column of the table.
+    #[must_use]
+    pub fn sigma_time(mut self, seconds: f64) -> Self {
+        self.sigma_time = Some(seconds);
+        self
+    }
+
+    /// Gravity, in m/s²; without it that of the table, else 9.81. It matters only where heights meet times.
+    #[must_use]
+    pub fn gravity(mut self, metres_per_second_squared: f64) -> Self {
+        self.gravity = Some(metres_per_second_squared);
+        self
+    }
+
+    /// Fits the COR.
+    ///
+    /// A table that does not determine a COR gives a report whose verdict is [`Verdict::Refused`](crate::Verdict::Refused).
+    ///
+    /// # Errors
+    /// [`FitError::Option`] for an option that is not positive and finite; [`FitError::Solver`] if a least-squares solution does
+    /// not pass its checks.
+    pub fn run(&self, table: &Table) -> Result<Report, FitError> {
+        self.check()?;
+        let gravity = sourced(self.gravity, table.metadata.gravity)
+            .unwrap_or(Sourced { value: GRAVITY, source: Source::Assumed });
+        let frame = table.metadata.frame_rate.map(|rate| 1.0 / rate);
+        let known_height =
+            sourced(self.sigma_height, table.metadata.sigma_height).or(stated_by_rows(table, |r| r.sigma_height));
+        let known_time = sourced(self.sigma_time, table.metadata.sigma_time)
+            .or(stated_by_rows(table, |r| r.sigma_time))
+            .or(frame.map(|frame| Sourced { value: frame / 12f64.sqrt(), source: Source::FrameRate }));
+        let evidence = Evidence::of(table, known_time.map(|s| s.value));
+        let heights: Option<Kind<Heights>> = one_kind(&evidence, known_height)?;
+        let times: Option<Kind<Contacts>> = estimate::times(&evidence, known_time)?;
+        let assumed = Sourced { value: 0.01, source: Source::Assumed };
+        let sigma_height = heights.as_ref().map(|k| k.sigma).or(known_height).unwrap_or(assumed);
+        let sigma_time = times.as_ref().map(|k| k.sigma).or(known_time).unwrap_or(assumed);
+        let setting =
+            Setting { gravity: gravity.value, sigma_height: sigma_height.value, sigma_time: sigma_time.value };
+
+        let mut report = Report::new(table.name(), gravity);
+        let has = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
+        report.sigma_height =
+            (table.zero_rebounds > 0 || has(|r| r.event == Event::Apex && r.height.is_some())).then_some(sigma_height);
+        report.sigma_time = has(|r| r.event == Event::Contact).then_some(sigma_time);
+        report.frame_rate = table.metadata.frame_rate;
+        report.trials = table.trials().len();
+        report.notes.clone_from(&table.notes);
+        report.repairs = listed(table.repairs.iter().chain(&evidence.repairs));
+        report.warnings.clone_from(&table.warnings);
+        report.bounces = bounces::list(&evidence, &setting);
+
+        let joint = joint::joint(&evidence, gravity.value, sigma_height.value, sigma_time.value)?;
+        if let Some(joint) = &joint {
+            let agreement = joint::agreement(joint, &evidence, gravity.value, table.metadata.frame_rate);
+            if agreement.p.is_some_and(|p| p < diagnose::REJECT) {
+                report.hypotheses = joint::hypotheses(joint, sigma_height.value, sigma_time.value, frame)?;
+            }
+            report.agreement = Some(agreement);
+        } else if let Some(kind) = heights.as_ref().filter(|k| k.trend.is_some_and(|p| p < diagnose::REJECT)) {
+            let one_cor = (kind.fitted.shared[0].exp(), gravity.value, sigma_height.value);
+            report.hypotheses.extend(joint::height_zero(&evidence, one_cor)?);
+        }
+        let means = bounces::means(&evidence, &setting);
+        let findings =
+            Findings { heights, times, means, joint, table, evidence: &evidence, sigma_height: sigma_height.value };
+        diagnose::judge(&mut report, &findings);
+
+        let (motions, release_is_fitted) = match (&findings.joint, &findings.times, &findings.heights) {
+            (Some(joint), _, _) => (motion::of_joint(joint, &evidence), false),
+            (None, Some(times), _) => (motion::of_times(times, &evidence, gravity.value), false),
+            (None, None, Some(heights)) => (motion::of_heights(heights, &evidence, gravity.value), true),
+            (None, None, None) => (Vec::new(), false),
+        };
+        let sigmas = (sigma_height.value, sigma_time.value);
+        (report.points, report.residuals) = motion::beside(&motions, &evidence, sigmas, release_is_fitted);
+        report.motion = motions.into_iter().next().map(|(_, motion)| motion);
+        Ok(report)
+    }
+
+    fn check(&self) -> Result<(), FitError> {
+        let options = [
+            ("the standard error of heights", self.sigma_height),
+            ("the standard error of times", self.sigma_time),
+            ("gravity", self.gravity),
+        ];
+        for (name, value) in options {
+            if let Some(value) = value.filter(|v| !v.is_finite() || *v <= 0.0) {
+                return Err(FitError::Option { name, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn sourced(stated: Option<f64>, table: Option<f64>) -> Option<Sourced> {
+    let stated = stated.map(|value| Sourced { value, source: Source::Stated });
+    stated.or(table.map(|value| Sourced { value, source: Source::Table }))
+}
+
+/// The root mean square of the errors that rows state; it stands for the error of a row that states none.
+#[allow(clippy::cast_precision_loss)]
+fn stated_by_rows(table: &Table, sigma: fn(&Reading) -> Option<f64>) -> Option<Sourced> {
+    let stated = || table.trials().iter().flat_map(|t| t.readings()).filter_map(sigma);
+    let count = stated().count();
+    let value = (stated().map(|s| s * s).sum::<f64>() / count as f64).sqrt();
+    (count > 0 && value.is_finite() && value > 0.0).then_some(Sourced { value, source: Source::Table })
+}
+
+/// The first lines, and how many more there are.
+fn listed<'a>(lines: impl Iterator<Item = &'a String>) -> Vec<String> {
+    let mut lines: Vec<String> = lines.cloned().collect();
+    if lines.len() > LISTED {
+        let more = lines.len() - LISTED;
+        lines.truncate(LISTED);
+        lines.push(format!("and {more} more of the kind"));
+    }
+    lines
+}

@@ -1,0 +1,115 @@
+//! Contact times: t = a + τ (1 + e + … + eⁿ⁻¹), with a clock and a first flight per trial. Gravity and scale drop out.
+
+use nalgebra::DMatrix;
+
+use crate::least_squares::Bounds;
+use crate::successive::Model;
+
+/// A time: after how many flights, whether at the apex of the next one, when (s), its standard error (s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moment {
+    pub(crate) flights: usize,
+    pub(crate) apex: bool,
+    pub(crate) time: f64,
+    pub(crate) sigma: f64,
+}
+
+/// Times of contacts (and apexes). Shared: e, and on request a trend. Own: a, τ.
+///
+/// The times themselves are fitted, not the intervals: neighbouring intervals share a contact, so their errors are correlated.
+#[derive(Clone, Debug)]
+pub(crate) struct Contacts {
+    /// In ascending order of flights.
+    pub(crate) trials: Vec<Vec<Moment>>,
+    /// The upper bound of e.
+    pub(crate) high: f64,
+    /// Adds an unknown m: flight k lasts τ eᵏ (1 + m k (k − 1)/2), a COR that changes from bounce to bounce. Derivatives are at m = 0.
+    pub(crate) trend: bool,
+}
+
+impl Contacts {
+    /// A start for the own unknowns: the first contact and flight, extrapolated to the first row where need be.
+    pub(crate) fn start(&self, e: f64) -> Vec<Vec<f64>> {
+        let start = |moments: &Vec<Moment>| match (moments.first(), moments.last()) {
+            (Some(first), Some(last)) if moments.len() > 1 => {
+                let (a, b) = (Sums::at(e, first), Sums::at(e, last));
+                let tau = (last.time - first.time) / (b.position - a.position);
+                vec![first.time - tau * a.position, tau]
+            }
+            _ => vec![moments.first().map_or(0.0, |m| m.time), 1.0],
+        };
+        self.trials.iter().map(start).collect()
+    }
+}
+
+/// Running sums over flights: Σ eʲ, its derivative, and Σ eʲ j (j − 1)/2.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    flights: usize,
+    /// e to the number of flights, and its derivative.
+    power: f64,
+    slope: f64,
+    sum: f64,
+    sum_slope: f64,
+    trend: f64,
+    position: f64,
+}
+
+impl Sums {
+    fn new() -> Self {
+        Self { power: 1.0, ..Self::default() }
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn advance(&mut self, e: f64, to: usize) {
+        while self.flights < to {
+            let k = self.flights as f64;
+            self.trend += self.power * (k * (k - 1.0) / 2.0);
+            self.sum += self.power;
+            self.sum_slope += self.slope;
+            (self.power, self.slope) = (self.power * e, self.slope * e + self.power);
+            self.flights += 1;
+        }
+    }
+
+    /// The place of one moment in units of τ.
+    fn at(e: f64, moment: &Moment) -> Self {
+        let mut sums = Self::new();
+        sums.advance(e, moment.flights);
+        sums.position = sums.sum + if moment.apex { 0.5 * sums.power } else { 0.0 };
+        sums
+    }
+}
+
+impl Model for Contacts {
+    fn ranges(&self) -> Vec<(Bounds, f64)> {
+        let mut ranges = vec![(Bounds { low: 0.0, high: self.high }, 0.1)];
+        if self.trend {
+            ranges.push((Bounds { low: -1e3, high: 1e3 }, 1e3));
+        }
+        ranges
+    }
+
+    fn size(&self, block: usize) -> (usize, usize) {
+        (self.trials[block].len(), 2)
+    }
+
+    fn fill(&self, block: usize, shared: &[f64], own: &[f64], rows: &mut DMatrix<f64>) {
+        let (e, tau) = (shared[0], own[1]);
+        let mut sums = Sums::new();
+        for (i, moment) in self.trials[block].iter().enumerate() {
+            sums.advance(e, moment.flights);
+            let half = if moment.apex { 0.5 } else { 0.0 };
+            let position = sums.sum + half * sums.power;
+            let mut predicted = own[0] + tau * position;
+            rows[(i, 0)] = 1.0 / moment.sigma;
+            rows[(i, 1)] = position / moment.sigma;
+            rows[(i, 2)] = tau * (sums.sum_slope + half * sums.slope) / moment.sigma;
+            if self.trend {
+                rows[(i, 3)] = tau * sums.trend / moment.sigma;
+                predicted += tau * sums.trend * shared[1];
+            }
+            rows[(i, 2 + shared.len())] = (moment.time - predicted) / moment.sigma;
+        }
+    }
+}

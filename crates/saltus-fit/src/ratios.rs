@@ -1,0 +1,182 @@
+//! Times again, where the bounces themselves scatter: every impact has a COR of its own around the mean.
+//!
+//! A rough floor makes the COR a random quantity (Montaine, Heckel, Kruelle, Schwager and Pöschel 2011, arXiv:1104.0049). Its
+//! scatter adds up along the times, which then are no longer a curve with independent errors; but the logarithms of the ratios of
+//! neighbouring intervals stay independent but for the reading errors that they share:
+//! yₖ = ln(Δₖ₊₁/Δₖ) = L + ηₖ + B δt, with covariance s² I + σ² B Bᵀ.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::estimate::{Estimate, REPLICATED, SCATTER, Source, Sourced};
+use crate::evidence::{Evidence, TrialEvidence};
+use crate::statistics::{student, variance_ratio_p};
+
+/// A trial with more ratios than this is left to the fit of the times: its covariance would be too large a matrix.
+const LARGEST: usize = 400;
+
+/// A table with more ratios than this is left to the fit of the times too.
+const MOST: usize = 20_000;
+
+/// One trial's log-ratios and the covariance that a reading error of 1 s gives them.
+struct Ratios {
+    trial: usize,
+    y: DVector<f64>,
+    reading: DMatrix<f64>,
+}
+
+/// Generalised least squares at given variances.
+struct Solved {
+    mean: f64,
+    /// 1/Σ 1ᵀC⁻¹1.
+    variance: f64,
+    /// Σ rᵀC⁻¹r.
+    square: f64,
+    /// Twice the negative restricted log-likelihood, with a common factor of the covariance profiled out.
+    deviance: f64,
+    /// For each trial 1ᵀC⁻¹1 and 1ᵀC⁻¹y.
+    parts: Vec<(f64, f64)>,
+}
+
+/// A COR from the ratios, with the scatter of the bounces.
+#[derive(Clone, Debug)]
+pub(crate) struct FromRatios {
+    pub(crate) estimate: Estimate,
+    /// The standard deviation of the COR from bounce to bounce, relative to the COR.
+    pub(crate) scatter: f64,
+    pub(crate) trend: Option<f64>,
+    pub(crate) replicated: bool,
+    /// For each trial of the table its information on ln e, and its own ln e less that of all.
+    pub(crate) separate: Vec<(f64, f64)>,
+}
+
+fn collect(trial: &TrialEvidence) -> Option<Ratios> {
+    let contacts: Vec<(usize, f64)> = trial.moments.iter().filter(|m| !m.1).map(|m| (m.0, m.2)).collect();
+    let whole: Vec<&[(usize, f64)]> =
+        contacts.windows(3).filter(|w| w[2].0 == w[0].0 + 2 && w[1].1 > w[0].1 && w[2].1 > w[1].1).collect();
+    // The covariance below counts on neighbouring rows being neighbouring bounces.
+    if whole.is_empty() || whole.len() > LARGEST || whole.len() + 2 != contacts.len() {
+        return None;
+    }
+    let n = whole.len();
+    let y = DVector::from_iterator(n, whole.iter().map(|w| ((w[2].1 - w[1].1) / (w[1].1 - w[0].1)).ln()));
+    let mut b = DMatrix::zeros(n, n + 2);
+    for (k, w) in whole.iter().enumerate() {
+        let (before, after) = (1.0 / (w[1].1 - w[0].1), 1.0 / (w[2].1 - w[1].1));
+        b[(k, k)] = before;
+        b[(k, k + 1)] = -before - after;
+        b[(k, k + 2)] = after;
+    }
+    Some(Ratios { trial: trial.trial, y, reading: &b * b.transpose() })
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
+    let mut factors = Vec::with_capacity(trials.len());
+    let (mut log_det, mut count) = (0.0, 0.0);
+    let mut parts = Vec::with_capacity(trials.len());
+    for trial in trials {
+        let n = trial.y.len();
+        let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
+        let factor = covariance.cholesky()?;
+        let ones = factor.solve(&DVector::from_element(n, 1.0));
+        parts.push((ones.sum(), ones.dot(&trial.y)));
+        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        count += n as f64;
+        factors.push(factor);
+    }
+    let (weight, sum) = parts.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+    let mean = sum / weight;
+    let square: f64 = trials
+        .iter()
+        .zip(&factors)
+        .map(|(trial, factor)| {
+            let r = trial.y.add_scalar(-mean);
+            r.dot(&factor.solve(&r))
+        })
+        .sum();
+    let deviance = log_det + weight.ln() + (count - 1.0) * square.ln();
+    let good = mean.is_finite() && square.is_finite() && weight > 0.0;
+    good.then_some(Solved { mean, variance: 1.0 / weight, square, deviance, parts })
+}
+
+/// The COR from ratios, where the readings favour bounces that scatter over times that are read badly; else `None`.
+///
+/// With a known reading error the scatter of the bounces is what is left over (the estimate of Paule and Mandel, J. Res. NBS 87,
+/// 377, 1982); without one, the two explanations are compared by their restricted likelihood, and the better is taken.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRatios> {
+    let trials: Vec<Ratios> = evidence.trials.iter().filter_map(collect).collect();
+    let count: usize = trials.iter().map(|t| t.y.len()).sum();
+    if !(SCATTER + 1..=MOST).contains(&count) {
+        return None;
+    }
+    let freedom = count - 1;
+    let (scatter, reading) = if sigma.source == Source::Scatter || sigma.source == Source::Assumed {
+        let (timing, bouncing) = (solve(&trials, 0.0, 1.0)?, solve(&trials, 1.0, 0.0)?);
+        if timing.deviance <= bouncing.deviance {
+            return None;
+        }
+        ((bouncing.square / freedom as f64).sqrt(), 0.0)
+    } else {
+        let excess = |s: f64| solve(&trials, s, sigma.value).map(|found| found.square - freedom as f64);
+        if excess(0.0)? <= 0.0 {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if excess(middle)? > 0.0 { low = middle } else { high = middle }
+        }
+        (high, sigma.value)
+    };
+    if scatter <= 0.0 {
+        return None;
+    }
+    let found = solve(&trials, scatter, reading)?;
+    let value = found.mean.exp();
+    let mut error = found.variance.sqrt();
+    let mut quantile = student(freedom);
+    let replicated = trials.len() >= REPLICATED;
+    if replicated {
+        let (weight, sum) = found.parts.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+        let without: Vec<f64> = found.parts.iter().map(|(x, y)| (sum - y) / (weight - x)).collect();
+        let n = without.len() as f64;
+        let mean = without.iter().sum::<f64>() / n;
+        let spread = ((n - 1.0) / n * without.iter().map(|l| (l - mean).powi(2)).sum::<f64>()).sqrt();
+        (error, quantile) = (spread, student(trials.len() - 1));
+    }
+    let mut separate = vec![(0.0, 0.0); evidence.trials.len()];
+    for (trial, (weight, sum)) in trials.iter().zip(&found.parts) {
+        separate[trial.trial] = (*weight, sum / weight - found.mean);
+    }
+    let about =
+        "ratios of neighbouring intervals, the COR scattering from bounce to bounce; needs neither gravity nor heights";
+    let mut estimate = Estimate::new("times", about, value, value * error, quantile);
+    estimate.trials = trials.len();
+    estimate.degrees_of_freedom = Some(freedom);
+    Some(FromRatios { estimate, scatter, trend: trend(&trials, evidence, scatter, reading), replicated, separate })
+}
+
+/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do.
+#[allow(clippy::cast_precision_loss)]
+fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<f64> {
+    let mut normal = DMatrix::<f64>::zeros(2, 2);
+    let mut right = DVector::<f64>::zeros(2);
+    let (mut total, mut count) = (0.0, 0);
+    for trial in trials {
+        let n = trial.y.len();
+        let first = evidence.trials.get(trial.trial)?.moments.first().map_or(0, |m| m.0);
+        let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { (first + i) as f64 });
+        let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
+        let factor = covariance.cholesky()?;
+        let weighted = factor.solve(&x);
+        normal += x.transpose() * &weighted;
+        right += weighted.transpose() * &trial.y;
+        total += trial.y.dot(&factor.solve(&trial.y));
+        count += n;
+    }
+    let both = normal.clone().cholesky()?.solve(&right).dot(&right);
+    let level = right[0] * right[0] / normal[(0, 0)];
+    let freedom = count.checked_sub(2).filter(|n| *n > 0)?;
+    variance_ratio_p((both - level).max(0.0) / ((total - both) / freedom as f64), 1, freedom)
+}

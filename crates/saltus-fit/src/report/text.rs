@@ -1,0 +1,417 @@
+//! The report for people: the verdict first, the COR next, then what it rests on, what contradicts it, what to measure.
+
+use std::fmt::{self, Formatter};
+
+use super::{Cor, Report};
+use crate::bounces::{BounceCor, Measured};
+use crate::diagnose::{REJECT, chance};
+use crate::estimate::{Estimate, Source, Sourced};
+use crate::joint::{Agreement, Generous, Hypothesis};
+
+/// Lines are broken before this column.
+const WIDTH: usize = 96;
+/// Tables of more bounces than this are left to the JSON.
+const BOUNCES: usize = 12;
+/// So many conflicting contacts are shown.
+const CONFLICTS: usize = 6;
+
+/// Writes the report.
+pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    writeln!(f, "{}: {}", report.table, report.verdict.to_string().to_uppercase())?;
+    paragraph(f, 2, 2, &format!("{}.", capital(&report.reason)))?;
+    if let Some(cor) = &report.cor {
+        writeln!(f, "\n  COR  {}", headline(report, cor))?;
+    }
+    bounces(report, f)?;
+    if report.agreement.as_ref().is_some_and(rejected) {
+        if let Some(agreement) = &report.agreement {
+            disagreement(report, agreement, f)?;
+        }
+        explanations(report, f)?;
+    } else {
+        methods(report, f)?;
+        explanations(report, f)?;
+    }
+    section(f, "Left out or mended", &report.repairs)?;
+    let mut mind = report.agreement.as_ref().filter(|a| rejected(a)).map_or_else(Vec::new, |a| caveats(report, a));
+    mind.extend(report.warnings.iter().map(|w| capital(w)));
+    section(f, "Keep in mind", &mind)?;
+    footer(report, f)
+}
+
+fn rejected(agreement: &Agreement) -> bool {
+    agreement.p.is_some_and(|p| p < REJECT)
+}
+
+fn headline(report: &Report, cor: &Cor) -> String {
+    match cor.standard_error {
+        Some(_) if report.agreement.as_ref().is_some_and(rejected) => {
+            format!("between {:.2} and {:.2}: the table does not settle on one number", cor.low, cor.high)
+        }
+        Some(error) => {
+            let digits = digits(error);
+            format!("{}   (95 % interval {:.digits$} to {:.digits$})", pair(cor.value, error), cor.low, cor.high)
+        }
+        None => format!("at most {:.2}", cor.high),
+    }
+}
+
+/// Decimals that show an error to two digits if it begins with a one, else to one; from three to nine.
+fn digits(error: f64) -> usize {
+    (3..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
+}
+
+fn pair(value: f64, error: f64) -> String {
+    let digits = digits(error);
+    if error < 0.5e-9 {
+        return format!("{value:.digits$} ± {error:.0e}");
+    }
+    format!("{value:.digits$} ± {error:.digits$}")
+}
+
+fn measured(measured: Option<Measured>) -> String {
+    measured.map_or_else(|| "-".to_owned(), |m| pair(m.value, m.standard_error))
+}
+
+/// The COR bounce by bounce, for small tables.
+fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let list = &report.bounces;
+    if list.is_empty() || list.len() > BOUNCES {
+        return Ok(());
+    }
+    let heights = list.iter().any(|b| b.heights.is_some());
+    let times = list.iter().any(|b| b.times.is_some());
+    writeln!(f)?;
+    let mut row = |name: &str, h: &str, t: &str| {
+        let mut line = format!("  {name:<10}");
+        if heights {
+            line.push_str(&format!("  {h:>17}"));
+        }
+        if times {
+            line.push_str(&format!("  {t:>17}"));
+        }
+        writeln!(f, "{line}")
+    };
+    row("COR of", "from heights", "from times")?;
+    for BounceCor { bounce, heights, times } in list {
+        row(&format!("bounce {bounce}"), &measured(*heights), &measured(*times))?;
+    }
+    let mean = |method: &str| {
+        let found = report.estimates.iter().find(|e| e.method == method)?;
+        found.value.zip(found.standard_error).map(|(value, standard_error)| Measured { value, standard_error })
+    };
+    let (h, t) = (mean("heights-mean"), mean("times-mean"));
+    if h.is_some() || t.is_some() {
+        row("mean", &measured(h), &measured(t))?;
+    }
+    if list.iter().any(|b| b.bounce == 1 && b.times.is_some()) {
+        writeln!(f, "  (bounce 1 from times: the first flight over twice the fall from the release height)")?;
+    }
+    Ok(())
+}
+
+/// The least-squares fits and how well they describe the readings.
+fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let shown = |e: &&Estimate| !e.method.ends_with("mean");
+    if !report.estimates.iter().any(|e| shown(&e)) {
+        return Ok(());
+    }
+    writeln!(f, "\nBy method")?;
+    for estimate in report.estimates.iter().filter(shown) {
+        let name = match estimate.method.as_str() {
+            "joint" => "heights and times",
+            "first-flight" => "drop height, first flight",
+            "heights-unbounded" => "heights, COR > 1 allowed",
+            "times-unbounded" => "times, COR > 1 allowed",
+            other => other,
+        };
+        let value = match (estimate.value, estimate.standard_error) {
+            (Some(value), Some(error)) => pair(value, error),
+            (Some(value), None) => format!("{value:.3}, at its bound"),
+            _ => "-".to_owned(),
+        };
+        let mut line = format!("  {name:<26}{value:>18}");
+        if let (Some(chi_square), Some(freedom), Some(p)) =
+            (estimate.chi_square, estimate.degrees_of_freedom, estimate.p)
+        {
+            line.push_str(&format!("   chi-square {} on {freedom}, p {}", number(chi_square), chance(p)));
+        } else if estimate.degrees_of_freedom.is_some_and(|n| n > 0) && estimate.standard_error.is_some() {
+            line.push_str("   error from the scatter");
+        }
+        if estimate.trials > 1 {
+            line.push_str(&format!("   {} trials", estimate.trials));
+        }
+        writeln!(f, "{line}")?;
+    }
+    Ok(())
+}
+
+/// A number to three digits, without decimals from 100 on.
+fn number(x: f64) -> String {
+    match x {
+        x if x >= 20.0 => format!("{x:.0}"),
+        x if x >= 0.05 => format!("{x:.1}"),
+        x => format!("{x:.2}"),
+    }
+}
+
+/// What a joint fit shows when it fails.
+fn disagreement(report: &Report, agreement: &Agreement, f: &mut Formatter<'_>) -> fmt::Result {
+    let Some(joint) = report.estimates.iter().find(|e| e.method == "joint") else { return Ok(()) };
+    writeln!(f, "\nHeights and times together, in free flight with g = {} m/s²", report.gravity.value)?;
+    let p = agreement.p.unwrap_or(0.0);
+    let text = format!(
+        "One COR for all readings would be {:.3}, and is ruled out: chi-square {} on {} degrees of freedom, which chance alone \
+         gives with p {}.",
+        joint.value.unwrap_or(f64::NAN),
+        number(agreement.chi_square),
+        agreement.degrees_of_freedom,
+        chance(p)
+    );
+    paragraph(f, 2, 2, &text)?;
+    let frames = agreement.conflicts.iter().any(|c| c.frames.is_some());
+    writeln!(f, "\n  contact      measured   from the heights          apart")?;
+    let mut worst: Vec<_> = agreement.conflicts.iter().collect();
+    if worst.len() > CONFLICTS {
+        let size = |c: &&crate::Conflict| (c.measured_s - c.predicted_s).abs();
+        worst.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        worst.truncate(CONFLICTS);
+    }
+    for conflict in worst {
+        let apart = match conflict.frames {
+            Some(n) => format!("{n:+.1} frames"),
+            None => format!("{:+.3} s", conflict.measured_s - conflict.predicted_s),
+        };
+        let trial = if report.trials > 1 { format!("  (trial {})", conflict.trial + 1) } else { String::new() };
+        writeln!(
+            f,
+            "  {:<8} {:>9.3} s {:>16.3} s {apart:>14}{trial}",
+            conflict.contact, conflict.measured_s, conflict.predicted_s
+        )?;
+    }
+    if let (Some(s), true) = (agreement.largest_conflict_s, frames) {
+        let frames = agreement.largest_conflict_frames.unwrap_or(0.0);
+        writeln!(f, "  The largest conflict is {s:.3} s, or {frames:.1} frames.")?;
+    }
+    let implied: Vec<String> =
+        agreement.flights.iter().take(CONFLICTS).map(|flight| format!("{:.1}", flight.gravity)).collect();
+    if implied.len() > 1 {
+        let text = format!(
+            "To reach these heights in these times, g would have to be {} m/s² from flight to flight.",
+            in_words(&implied)
+        );
+        paragraph(f, 2, 2, &text)?;
+    }
+    Ok(())
+}
+
+fn in_words(list: &[String]) -> String {
+    match list {
+        [] => String::new(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+/// Hypotheses: the one worth a measurement in full, the others in a line.
+fn explanations(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let promising = |h: &Hypothesis| {
+        h.p.is_some_and(|p| p >= REJECT) || h.generous.as_ref().is_some_and(|g| g.p.is_some_and(|p| p >= 0.05))
+    };
+    // The best one may still be rejected at the errors stated; any other must not be.
+    let good = report.hypotheses.iter().enumerate().take_while(|(n, h)| *n == 0 && promising(h) || h.p >= Some(REJECT));
+    let (good, poor) = report.hypotheses.split_at(good.count());
+    if report.hypotheses.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\nWhat could explain it")?;
+    for hypothesis in good {
+        paragraph(f, 2, 4, &format!("- {}", explanation(hypothesis)))?;
+        paragraph(f, 4, 4, &format!("To find out: {}.", hypothesis.settle))?;
+    }
+    let named: Vec<String> = poor
+        .iter()
+        .map(|h| format!("{} (chi-square {} on {})", short(&h.name), number(h.chi_square), h.degrees_of_freedom))
+        .collect();
+    if !named.is_empty() {
+        let verb = if named.len() == 1 { "does" } else { "do" };
+        paragraph(f, 2, 4, &format!("- {} {verb} not explain it.", capital(&in_words(&named))))?;
+    }
+    Ok(())
+}
+
+fn short(name: &str) -> &str {
+    match name {
+        "height-zero" => "a wrong zero of the height scale",
+        "cor-per-bounce" => "a COR of its own for every bounce",
+        "clock-lag" => "a late or early clock",
+        other => other,
+    }
+}
+
+fn explanation(hypothesis: &Hypothesis) -> String {
+    let mut text = match (hypothesis.offset_m, hypothesis.lag_s) {
+        (Some(offset), _) => {
+            let way = if offset.value > 0.0 { "high" } else { "low" };
+            format!(
+                "The zero of the height scale may be off: if every height is read {:.1} ± {:.1} cm too {way}",
+                100.0 * offset.value.abs(),
+                100.0 * offset.standard_error
+            )
+        }
+        (None, Some(lag)) => {
+            format!("The clock may be off at the release, by {:+.3} ± {:.3} s", lag.value, lag.standard_error)
+        }
+        (None, None) => {
+            let cors: Vec<String> = hypothesis.cors.iter().map(|e| format!("{e:.3}")).collect();
+            format!("Every bounce may have a COR of its own: with {}", in_words(&cors))
+        }
+    };
+    match hypothesis.cor {
+        Some(cor) => text.push_str(&format!(
+            ", one COR of {} gives chi-square {} on {} (p {})",
+            pair(cor.value, cor.standard_error),
+            number(hypothesis.chi_square),
+            hypothesis.degrees_of_freedom,
+            chance(hypothesis.p.unwrap_or(0.0))
+        )),
+        None => text.push_str(&format!(
+            " chi-square is {} on {} (p {})",
+            number(hypothesis.chi_square),
+            hypothesis.degrees_of_freedom,
+            chance(hypothesis.p.unwrap_or(0.0))
+        )),
+    }
+    if let (Some(generous), true) = (&hypothesis.generous, hypothesis.p.is_some_and(|p| p < REJECT)) {
+        text.push_str(&generously(generous));
+    }
+    text.push('.');
+    text
+}
+
+fn generously(generous: &Generous) -> String {
+    format!(
+        ", and if the readings are only good to {} and {}, {} on {} (p {})",
+        length(generous.sigma_height),
+        duration(generous.sigma_time),
+        number(generous.chi_square),
+        generous.degrees_of_freedom,
+        chance(generous.p.unwrap_or(0.0))
+    )
+}
+
+fn length(metres: f64) -> String {
+    if metres >= 0.001 { format!("{} cm", figures(100.0 * metres)) } else { format!("{} mm", figures(1000.0 * metres)) }
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{} ms", figures(1000.0 * seconds)) } else { format!("{} s", figures(seconds)) }
+}
+
+/// A number to two significant figures, without trailing zeros.
+fn figures(x: f64) -> String {
+    let text = match x {
+        x if x >= 9.95 => format!("{x:.0}"),
+        x if x >= 0.995 => format!("{x:.1}"),
+        x if x >= 0.0995 => format!("{x:.2}"),
+        x => format!("{x:.1e}"),
+    };
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// What must not be concluded from a table whose columns contradict each other.
+fn caveats(report: &Report, agreement: &Agreement) -> Vec<String> {
+    let mut list = Vec::new();
+    let value = |method: &str| report.estimates.iter().find(|e| e.method == method).and_then(|e| e.value);
+    if let Some(total) = &agreement.total_time {
+        let heights: Vec<String> = total.heights_m.iter().take(4).map(|h| figures(100.0 * h)).collect();
+        list.push(format!(
+            "That a total time agrees validates nothing: a COR of {:.3} also ends at {:.2} s, with rebounds of {} cm.",
+            total.cor,
+            total.time_s,
+            in_words(&heights)
+        ));
+        // Rest comes after (1 + e)/(1 − e) falls.
+        let fall = report.motion.as_ref().and_then(|m| m.flights.first().map(|a| a.span)).unwrap_or(0.0);
+        let rest = |e: f64| fall * (1.0 + e) / (1.0 - e);
+        let cors = [Some(total.cor), value("heights-mean"), value("joint"), value("times-mean")];
+        let ends: Vec<f64> = cors.into_iter().flatten().filter(|e| *e < 1.0).map(rest).collect();
+        let (first, last) =
+            (ends.iter().copied().fold(f64::INFINITY, f64::min), ends.iter().copied().fold(0.0, f64::max));
+        if fall > 0.0 && last > first {
+            list.push(format!(
+                "Do not extrapolate to rest: depending on which COR is believed, the ball rests after {first:.2} s or {last:.2} s."
+            ));
+        }
+    }
+    list
+}
+
+fn section(f: &mut Formatter<'_>, title: &str, lines: &[String]) -> fmt::Result {
+    if lines.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\n{title}")?;
+    for line in lines {
+        let end = if line.ends_with(['.', '?']) { "" } else { "." };
+        paragraph(f, 2, 4, &format!("- {line}{end}"))?;
+    }
+    Ok(())
+}
+
+/// Where the reading errors and gravity come from.
+fn footer(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let from = |s: Sourced| match s.source {
+        Source::Stated => "stated",
+        Source::Table => "from the table",
+        Source::FrameRate => "one frame / √12",
+        Source::Scatter => "from the scatter",
+        Source::Assumed => "assumed",
+    };
+    let mut parts = Vec::new();
+    if let Some(s) = report.sigma_height {
+        parts.push(format!("heights ± {} ({})", length(s.value), from(s)));
+    }
+    if let Some(s) = report.sigma_time {
+        parts.push(format!("times ± {} ({})", duration(s.value), from(s)));
+    }
+    if parts.is_empty() {
+        return Ok(());
+    }
+    parts.push(format!("g = {} m/s² ({})", report.gravity.value, from(report.gravity)));
+    writeln!(f)?;
+    paragraph(f, 0, 2, &format!("Readings: {}.", parts.join(", ")))
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Writes a paragraph broken at spaces, with its own indent for the first line.
+fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: &str) -> fmt::Result {
+    let mut line = " ".repeat(first);
+    let mut used = first;
+    let mut fresh = true;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if !fresh && used + 1 + length > WIDTH {
+            writeln!(f, "{line}")?;
+            line = " ".repeat(rest);
+            used = rest;
+            fresh = true;
+        }
+        if !fresh {
+            line.push(' ');
+            used += 1;
+        }
+        line.push_str(word);
+        used += length;
+        fresh = false;
+    }
+    writeln!(f, "{line}")
+}

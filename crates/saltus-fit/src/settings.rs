@@ -1,0 +1,42 @@
+//! Whether trials of different balls, floors or drop heights may share one COR.
+
+use std::collections::BTreeMap;
+
+use crate::statistics::{chi_square_p, variance_ratio_p};
+use crate::table::Trial;
+
+/// From this many spare trials on, the spread within settings is the measure of that between them.
+const SPARE: usize = 3;
+
+/// How settings differ: the probability of that by chance, and the settings with the lowest and the highest COR.
+pub(crate) struct Differ {
+    pub(crate) p: f64,
+    pub(crate) low: (String, f64),
+    pub(crate) high: (String, f64),
+}
+
+/// Analysis of variance of the trials' own CORs by setting, each weighing by its information; `None` for a single setting.
+///
+/// `separate` holds, trial by trial, the information on the COR and the trial's own COR less `cor`.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn differ(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<Differ> {
+    let mut settings: BTreeMap<&str, (f64, f64, f64, usize)> = BTreeMap::new();
+    for (trial, &(weight, shift)) in trials.iter().zip(separate).filter(|(_, s)| s.0 > 0.0) {
+        let sums = settings.entry(&trial.setting).or_default();
+        *sums = (sums.0 + weight, sums.1 + weight * shift, sums.2 + weight * shift * shift, sums.3 + 1);
+    }
+    let above = settings.len().checked_sub(1).filter(|n| *n > 0)?;
+    let all = settings.values().fold((0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1));
+    let mean = all.1 / all.0;
+    let between: f64 = settings.values().map(|s| s.0 * (s.1 / s.0 - mean).powi(2)).sum();
+    let within: f64 = settings.values().map(|s| s.2 - s.1 * s.1 / s.0).sum();
+    let below = settings.values().map(|s| s.3 - 1).sum::<usize>();
+    let p = if below >= SPARE {
+        variance_ratio_p((between / above as f64) / (within.max(0.0) / below as f64), above, below)?
+    } else {
+        chi_square_p(between, above)?
+    };
+    let own = || settings.iter().map(|(name, s)| ((*name).to_owned(), cor + s.1 / s.0));
+    let by_cor = |a: &(String, f64), b: &(String, f64)| a.1.total_cmp(&b.1);
+    Some(Differ { p, low: own().min_by(by_cor)?, high: own().max_by(by_cor)? })
+}

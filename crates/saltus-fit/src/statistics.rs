@@ -1,0 +1,61 @@
+//! Tail probabilities and quantiles, with `None` where they mean nothing.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
+
+/// The 97.5 % point of the normal distribution.
+pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
+
+/// The probability of a chi-square at least this large by chance.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn chi_square_p(chi_square: f64, freedom: usize) -> Option<f64> {
+    if freedom == 0 || !chi_square.is_finite() || chi_square < 0.0 {
+        return None;
+    }
+    let p = ChiSquared::new(freedom as f64).ok()?.sf(chi_square);
+    p.is_finite().then_some(p.clamp(0.0, 1.0))
+}
+
+/// The 97.5 % point of Student's distribution.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn student(freedom: usize) -> f64 {
+    if freedom == 0 || freedom > 10_000 {
+        return NORMAL;
+    }
+    StudentsT::new(0.0, 1.0, freedom as f64).map_or(NORMAL, |t| t.inverse_cdf(0.975))
+}
+
+/// The probability of a ratio of variances at least this large by chance, on `above` over `below` degrees of freedom.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn variance_ratio_p(ratio: f64, above: usize, below: usize) -> Option<f64> {
+    if above == 0 || below == 0 || !ratio.is_finite() || ratio < 0.0 {
+        return None;
+    }
+    let p = FisherSnedecor::new(above as f64, below as f64).ok()?.sf(ratio);
+    p.is_finite().then_some(p.clamp(0.0, 1.0))
+}
+
+/// The middle value (the mean of the two in the middle); `None` of nothing.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    let n = values.len();
+    let high = *values.get(n / 2)?;
+    Some(if n % 2 == 1 { high } else { 0.5 * (values[n / 2 - 1] + high) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tails_match_printed_tables() {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-4 * b;
+        assert!(close(chi_square_p(3.841_458_8, 1).unwrap(), 0.05));
+        // On four degrees of freedom the tail is exp(−x/2) (1 + x/2).
+        assert!(close(chi_square_p(73.244_587, 4).unwrap(), (-36.622_293_5f64).exp() * 37.622_293_5));
+        assert_eq!(chi_square_p(1.0, 0), None);
+        assert!(close(student(4), 2.776_445));
+        assert!(close(variance_ratio_p(7.708_647, 1, 4).unwrap(), 0.05));
+        assert_eq!(median(&mut [3.0, 1.0, 2.0, 10.0]), Some(2.5));
+        assert_eq!(median(&mut []), None);
+    }
+}

@@ -1,0 +1,284 @@
+//! Tables of measured bounces: releases, contacts and apexes, by trial, in SI units.
+
+mod check;
+mod header;
+mod layout;
+mod order;
+mod read;
+
+use std::path::Path;
+
+use crate::error::TableError;
+
+/// What a reading was taken of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Event {
+    /// The ball is let go, at rest, from a known height.
+    Release,
+    /// The ball touches the floor.
+    Contact,
+    /// The ball is at the top of a flight.
+    Apex,
+    /// The ball is somewhere in flight: one row of a series of heights in time.
+    Sample,
+}
+
+/// One row of a table, in metres and seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Reading {
+    /// What the reading was taken of.
+    pub event: Event,
+    /// Which one. A contact counts from 1; an apex bears the number of the contact before it; a release is 0.
+    pub bounce: usize,
+    /// When, in seconds on the trial's own clock.
+    pub time: Option<f64>,
+    /// How high above the floor, in metres.
+    pub height: Option<f64>,
+    /// The standard error of `time` as the table states it, in seconds.
+    pub sigma_time: Option<f64>,
+    /// The standard error of `height` as the table states it, in metres.
+    pub sigma_height: Option<f64>,
+    /// The line of the file, counted from 1 (the position in the list, for a table built in code).
+    pub line: u64,
+}
+
+impl Reading {
+    pub(crate) const fn new(event: Event, bounce: usize, line: u64) -> Self {
+        Self { event, bounce, time: None, height: None, sigma_time: None, sigma_height: None, line }
+    }
+}
+
+/// One drop: its readings, in the order of the events.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    pub(crate) label: String,
+    /// What was tried, such as `ball golf, h0_cm 80`: trials alike in this repeat each other.
+    pub(crate) setting: String,
+    pub(crate) readings: Vec<Reading>,
+}
+
+impl Trial {
+    /// What tells this trial from the others, such as `ball golf, h0_cm 80, trial 3`; empty if the table holds one trial.
+    #[must_use]
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// The readings, in the order of the events.
+    #[must_use]
+    pub fn readings(&self) -> &[Reading] {
+        &self.readings
+    }
+}
+
+/// How to read a table where the table itself does not say.
+///
+/// ```
+/// use saltus_fit::{ReadOptions, Table};
+///
+/// let options = ReadOptions::default().height_unit("cm");
+/// let table = Table::parse("drop.csv", b"bounce,height\n0,100\n1,64\n2,41\n", &options)?;
+/// assert_eq!(table.trials()[0].readings()[1].height, Some(0.64));
+/// # Ok::<(), saltus_fit::TableError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    pub(crate) height_unit: Option<String>,
+    pub(crate) time_unit: Option<String>,
+    pub(crate) column: Option<String>,
+    pub(crate) filters: Vec<(String, String)>,
+}
+
+impl ReadOptions {
+    /// The unit of heights (`m`, `cm`, `mm`, `in`, ...), used for columns whose header names none.
+    #[must_use]
+    pub fn height_unit(mut self, unit: &str) -> Self {
+        self.height_unit = Some(unit.to_owned());
+        self
+    }
+
+    /// The unit of times (`s`, `ms`, ...), used for columns whose header names none.
+    #[must_use]
+    pub fn time_unit(mut self, unit: &str) -> Self {
+        self.time_unit = Some(unit.to_owned());
+        self
+    }
+
+    /// The column to take where several hold readings of the same thing; without it the first is taken.
+    #[must_use]
+    pub fn column(mut self, name: &str) -> Self {
+        self.column = Some(name.to_owned());
+        self
+    }
+
+    /// Keeps only the rows whose cell in the column `name` reads `value`; may be given several times.
+    #[must_use]
+    pub fn filter(mut self, name: &str, value: &str) -> Self {
+        self.filters.push((name.to_owned(), value.to_owned()));
+        self
+    }
+}
+
+/// A table of measured bounces, read and checked.
+///
+/// ```
+/// use saltus_fit::{Event, ReadOptions, Table};
+///
+/// let csv = b"event,time_s,height_cm\nrelease,0,100\ncontact,0.45,\napex,,30\ncontact,0.95,\n";
+/// let table = Table::parse("drop.csv", csv, &ReadOptions::default())?;
+/// let apex = table.trials()[0].readings()[2];
+/// assert_eq!((apex.event, apex.bounce, apex.height), (Event::Apex, 1, Some(0.3)));
+/// # Ok::<(), saltus_fit::TableError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    pub(crate) name: String,
+    pub(crate) trials: Vec<Trial>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) repairs: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) metadata: Metadata,
+    pub(crate) zero_rebounds: usize,
+}
+
+/// What the table's comments state, in SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Metadata {
+    pub(crate) frame_rate: Option<f64>,
+    pub(crate) gravity: Option<f64>,
+    pub(crate) sigma_height: Option<f64>,
+    pub(crate) sigma_time: Option<f64>,
+}
+
+impl Table {
+    /// Reads a table from a file; its name is the file's name.
+    ///
+    /// # Errors
+    /// [`TableError`] when the file cannot be opened, or for any reason of [`Table::parse`].
+    pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, TableError> {
+        let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
+        let shown = path.display().to_string();
+        if path.is_dir() {
+            return Err(TableError::new(&shown, "this is a directory").help("name a file, such as a table in CSV"));
+        }
+        let bytes = std::fs::read(path).map_err(|error| {
+            let (message, help) = match error.kind() {
+                std::io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the name and the folder"),
+                _ => (format!("the file cannot be read: {error}"), "check that you may read it"),
+            };
+            TableError::new(&shown, message).help(help)
+        })?;
+        let mut table = Self::parse(&shown, &bytes, options)?;
+        table.name = name;
+        Ok(table)
+    }
+
+    /// Reads a table from bytes; `name` stands in messages.
+    ///
+    /// Understood are CSV with commas, and with semicolons or tabs (then also with decimal commas), in UTF-8, with a
+    /// header line, `#` comments and blank lines. `docs/fitting.md` shows every layout.
+    ///
+    /// # Errors
+    /// [`TableError`], with line and column, for a cell that is not a finite number, a height below the floor, a column
+    /// that is not known or has no unit, times that run backwards, readings given twice; and for an empty file.
+    pub fn parse(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, TableError> {
+        let mut table = read::table(name, bytes, options)?;
+        check::table(&mut table);
+        Ok(table)
+    }
+
+    /// One trial from the heights of its apexes in metres: the height of release first, then each rebound.
+    ///
+    /// ```
+    /// let table = saltus_fit::Table::from_heights(&[1.0, 0.30, 0.10])?;
+    /// assert_eq!(table.trials()[0].readings().len(), 3);
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TableError`] when a height is negative or not finite, or there is none.
+    pub fn from_heights(heights: &[f64]) -> Result<Self, TableError> {
+        Self::from_list("heights", heights, |n, height, line| {
+            let event = if n == 0 { Event::Release } else { Event::Apex };
+            let below = height.is_sign_negative() && height != 0.0;
+            (!below).then_some(Reading { height: Some(height), ..Reading::new(event, n, line) })
+        })
+    }
+
+    /// One trial from the times of its floor contacts in seconds, on any clock, in ascending order.
+    ///
+    /// ```
+    /// let table = saltus_fit::Table::from_contacts(&[0.587, 1.549, 2.403, 3.164])?;
+    /// assert_eq!(table.trials()[0].readings()[3].bounce, 4);
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`TableError`] when a time is not finite or not later than the one before, or there is none.
+    pub fn from_contacts(times: &[f64]) -> Result<Self, TableError> {
+        let mut last = f64::NEG_INFINITY;
+        Self::from_list("contact times", times, |n, time, line| {
+            let ascending = time > last;
+            last = time;
+            ascending.then_some(Reading { time: Some(time), ..Reading::new(Event::Contact, n + 1, line) })
+        })
+    }
+
+    fn from_list(
+        name: &str,
+        values: &[f64],
+        mut reading: impl FnMut(usize, f64, u64) -> Option<Reading>,
+    ) -> Result<Self, TableError> {
+        if values.is_empty() {
+            return Err(TableError::new(name, "the list is empty").help("give at least two readings"));
+        }
+        let mut readings = Vec::with_capacity(values.len());
+        for (n, &value) in values.iter().enumerate() {
+            let wrong = |what| TableError::new(name, format!("entry {} of the list, {value}, {what}", n + 1));
+            if !value.is_finite() {
+                return Err(wrong("is not finite"));
+            }
+            let line = n as u64 + 1;
+            readings.push(
+                reading(n, value, line)
+                    .ok_or_else(|| wrong("is below the floor, or not later than the contact before"))?,
+            );
+        }
+        let trials = vec![Trial { label: String::new(), setting: String::new(), readings }];
+        let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
+        check::table(&mut table);
+        Ok(table)
+    }
+
+    /// The table's name: that of its file, without the folder.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The trials, in the order in which the table first mentions them.
+    #[must_use]
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
+    }
+
+    /// What was recognised and what was left aside, a line each, for people.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The frame rate a comment states (`# frame rate: 30`), in frames per second.
+    #[must_use]
+    pub fn frame_rate(&self) -> Option<f64> {
+        self.metadata.frame_rate
+    }
+
+    /// The gravity a comment states (`# gravity: 9.8 m/s^2`), in m/s².
+    #[must_use]
+    pub fn gravity(&self) -> Option<f64> {
+        self.metadata.gravity
+    }
+}

@@ -1,0 +1,76 @@
+//! What a table may hold that must not be counted: rebounds of zero height, copied trials.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::{Event, Table, Trial};
+
+/// A copied trial must have at least this many readings: two rebounds to the same centimetre are no copy.
+const COPY: usize = 3;
+
+/// Takes out what must not be counted, and says so.
+pub(super) fn table(table: &mut Table) {
+    zeros(table);
+    copies(table);
+}
+
+fn zeros(table: &mut Table) {
+    let mut lines = Vec::new();
+    for trial in &mut table.trials {
+        trial.readings.retain(|r| {
+            let zero = r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
+            if zero {
+                lines.push(r.line);
+            }
+            !zero
+        });
+    }
+    if let Some(first) = lines.first() {
+        let where_ =
+            if lines.len() == 1 { format!("line {first}") } else { format!("{} lines from {first}", lines.len()) };
+        table.warnings.push(format!(
+            "{where_}: a rebound of zero height is below what can be read; it was left out, and its logarithm with it"
+        ));
+        table.zero_rebounds = lines.len();
+    }
+}
+
+fn copies(table: &mut Table) {
+    let mut seen: HashMap<u64, Vec<usize>> = HashMap::new();
+    let mut copies = vec![false; table.trials.len()];
+    for (n, trial) in table.trials.iter().enumerate() {
+        if trial.readings.len() < COPY || trial.readings.iter().any(|r| r.event == Event::Sample) {
+            continue;
+        }
+        let candidates = seen.entry(fingerprint(trial)).or_default();
+        if let Some(&original) = candidates.iter().find(|&&m| alike(&table.trials[m], trial)) {
+            copies[n] = true;
+            let (a, b) = (shown(trial, n), shown(&table.trials[original], original));
+            table.repairs.push(format!("{a} repeats {b} reading by reading: counted once"));
+        } else {
+            candidates.push(n);
+        }
+    }
+    let mut copied = copies.iter();
+    table.trials.retain(|_| !copied.next().copied().unwrap_or(false));
+}
+
+fn shown(trial: &Trial, n: usize) -> String {
+    if trial.label.is_empty() { format!("trial {}", n + 1) } else { format!("'{}'", trial.label) }
+}
+
+fn fingerprint(trial: &Trial) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for r in &trial.readings {
+        (r.event, r.bounce, r.time.map(f64::to_bits), r.height.map(f64::to_bits)).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+fn alike(a: &Trial, b: &Trial) -> bool {
+    a.readings.len() == b.readings.len()
+        && a.readings
+            .iter()
+            .zip(&b.readings)
+            .all(|(x, y)| (x.event, x.bounce, x.time, x.height) == (y.event, y.bounce, y.time, y.height))
+}

@@ -1,0 +1,112 @@
+//! A 95 % interval holds the truth 95 times in a hundred.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod noise;
+
+use noise::Noise;
+use saltus_fit::{Fit, ReadOptions, Table};
+
+const RUNS: usize = 2000;
+
+/// The part of runs whose interval holds `truth`.
+fn coverage(truth: f64, mut run: impl FnMut(&mut Noise) -> (Fit, Table)) -> f64 {
+    let mut noise = Noise(20_240_607);
+    let held = (0..RUNS).filter(|_| {
+        let (fit, table) = run(&mut noise);
+        let report = fit.run(&table).expect("a fit");
+        let cor = *report.cor().expect("a COR");
+        cor.low <= truth && truth <= cor.high
+    });
+    held.count() as f64 / RUNS as f64
+}
+
+fn within_two_percent(what: &str, coverage: f64) {
+    println!("{what}: {:.1} % of {RUNS} intervals hold the truth", 100.0 * coverage);
+    assert!((coverage - 0.95).abs() <= 0.02, "{what}: {coverage}");
+}
+
+fn heights(noise: &mut Noise, e: f64, sigma: f64, count: i32) -> Vec<f64> {
+    (0..count).map(|n| e.powi(2 * n) + noise.normal(sigma)).collect()
+}
+
+fn times(noise: &mut Noise, e: f64, sigma: f64, count: i32) -> Vec<f64> {
+    (0..count).map(|n| 0.9 * (1.0 - e.powi(n)) / (1.0 - e) + noise.normal(sigma)).collect()
+}
+
+#[test]
+fn of_heights_with_a_stated_error() {
+    let held = coverage(0.8, |noise| {
+        (Fit::new().sigma_height(0.01), Table::from_heights(&heights(noise, 0.8, 0.01, 6)).unwrap())
+    });
+    within_two_percent("heights", held);
+}
+
+#[test]
+fn of_heights_with_an_error_from_the_scatter() {
+    let held = coverage(0.8, |noise| (Fit::new(), Table::from_heights(&heights(noise, 0.8, 0.004, 8)).unwrap()));
+    within_two_percent("heights, scatter", held);
+}
+
+#[test]
+fn of_times_with_a_stated_error() {
+    let held = coverage(0.85, |noise| {
+        (Fit::new().sigma_time(0.004), Table::from_contacts(&times(noise, 0.85, 0.004, 9)).unwrap())
+    });
+    within_two_percent("times", held);
+}
+
+#[test]
+fn of_heights_and_times_together() {
+    let held = coverage(0.7, |noise| {
+        let fall = (2.0f64 / 9.81).sqrt();
+        let mut text = "event,time_s,height_m\nrelease,0,1\n".to_owned();
+        let mut contact = fall;
+        for n in 1..5 {
+            text += &format!(
+                "contact,{},\napex,,{}\n",
+                contact + noise.normal(0.005),
+                0.7f64.powi(2 * n) + noise.normal(0.005)
+            );
+            contact += 2.0 * fall * 0.7f64.powi(n);
+        }
+        let table = Table::parse("planted", text.as_bytes(), &ReadOptions::default()).unwrap();
+        (Fit::new().sigma_height(0.005).sigma_time(0.005), table)
+    });
+    // One table in a hundred is said to contradict itself and gets a wide range instead.
+    within_two_percent("both", held);
+}
+
+#[test]
+fn of_trials_whose_cor_differs() {
+    // Ten launches, the COR of each 0.8 ± 0.01: the spread between launches, not the reading error, sets the interval.
+    let held = coverage(0.8, |noise| {
+        let mut text = "trial,bounce,height_m\n".to_owned();
+        for trial in 0..10 {
+            let e = 0.8 + noise.normal(0.01);
+            for (n, h) in heights(noise, e, 0.002, 5).iter().enumerate() {
+                text += &format!("{trial},{n},{h}\n");
+            }
+        }
+        (Fit::new().sigma_height(0.002), Table::parse("planted", text.as_bytes(), &ReadOptions::default()).unwrap())
+    });
+    within_two_percent("trials", held);
+}
+
+#[test]
+fn of_bounces_that_scatter() {
+    // Eight launches on a rough floor: every impact has a COR of its own, 0.9 ± 1 %, and the clock is good to 0.2 ms.
+    let held = coverage(0.9, |noise| {
+        let mut text = "trial,bounce,time_s\n".to_owned();
+        for trial in 0..8 {
+            let (mut t, mut d) = (0.0, 0.8);
+            for n in 0..8 {
+                text += &format!("{trial},{n},{}\n", t + noise.normal(0.0002));
+                t += d;
+                d *= 0.9 * (1.0 + noise.normal(0.01));
+            }
+        }
+        (Fit::new(), Table::parse("planted", text.as_bytes(), &ReadOptions::default()).unwrap())
+    });
+    within_two_percent("bounces", held);
+}

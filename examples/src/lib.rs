@@ -1,1 +1,0 @@
-//! Small programs that end in a picture: see the files beside this package.
