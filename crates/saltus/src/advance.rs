@@ -37,34 +37,40 @@ struct Spent<E> {
 
 type Found<A> = Option<(<A as Automaton>::Edge, Crossing)>;
 
-/// Advances arcs; keeps between them what a jump does not change.
-pub(crate) struct Advance<'a, A: Automaton, M> {
-    automaton: &'a A,
-    stepper: M,
-    options: &'a Options,
-    stats: &'a mut Stats,
+/// What is kept from arc to arc.
+#[derive(Clone, Copy)]
+pub(crate) struct Memory<E> {
+    pub(crate) stats: Stats,
     controller: Controller,
     step: Option<f64>,
-    spent: Option<Spent<A::Edge>>,
+    spent: Option<Spent<E>>,
+    /// When a scheduled edge was last taken.
+    clock_took: Option<f64>,
     slack: f64,
     last_duration: f64,
 }
 
-impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
-    pub(crate) fn new(automaton: &'a A, stepper: M, options: &'a Options, stats: &'a mut Stats) -> Self {
-        let controller = Controller::new(M::ERROR_ORDER);
-        let step = options.first_step;
-        Self { automaton, stepper, options, stats, controller, step, spent: None, slack: 0.0, last_duration: 0.0 }
+impl<E: Copy + PartialEq> Memory<E> {
+    pub(crate) fn new(error_order: f64, first_step: Option<f64>) -> Self {
+        Self {
+            stats: Stats::default(),
+            controller: Controller::new(error_order),
+            step: first_step,
+            spent: None,
+            clock_took: None,
+            slack: 0.0,
+            last_duration: 0.0,
+        }
     }
 
     /// After a jump: the root of `edge` is spent.
-    pub(crate) fn jumped(&mut self, edge: A::Edge, duration: f64) {
+    pub(crate) fn jumped(&mut self, edge: E, duration: f64) {
         self.spent = Some(Spent { edge, slack: self.slack });
         self.last_duration = duration;
     }
 
     /// Whether the last jump took this very edge.
-    pub(crate) fn just_took(&self, edge: A::Edge) -> bool {
+    pub(crate) fn just_took(&self, edge: E) -> bool {
         self.spent.is_some_and(|spent| spent.edge == edge)
     }
 
@@ -72,28 +78,17 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     pub(crate) fn beyond(&mut self) {
         self.spent = None;
     }
+}
 
-    /// What the run cost, with its `jumps`.
-    pub(crate) fn cost(&mut self, jumps: usize) -> Stats {
-        self.stats.jumps = jumps;
-        *self.stats
-    }
+/// Advances one arc.
+pub(crate) struct Advance<'a, A: Automaton, M> {
+    pub(crate) automaton: &'a A,
+    pub(crate) stepper: M,
+    pub(crate) options: &'a Options,
+    pub(crate) memory: &'a mut Memory<A::Edge>,
+}
 
-    /// The state stands for a time too short to resolve.
-    pub(crate) fn still(
-        &mut self,
-        mode: A::Mode,
-        x: &A::State,
-        span: f64,
-        clock: &mut Clock,
-        observer: &mut impl Observer<A>,
-    ) -> bool {
-        let told =
-            if span > 0.0 { observer.piece(mode, &Piece::new(clock.now, span, 1.0, &[*x])).is_break() } else { false };
-        clock.now = clock.now.after(span);
-        told
-    }
-
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x` in `mode` to the first crossing or the end of the span.
     #[inline]
     pub(crate) fn arc(
@@ -106,13 +101,39 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         if let Some(edge) = self.enter(mode, x, clock.now)? {
             return Ok(ArcEnd::Crossing { edge, before: *x });
         }
-        if clock.end.since(clock.now) <= 0.0 {
-            return Ok(ArcEnd::Stop { stop: Stop::Time, state: *x });
-        }
-        match self.automaton.exact(mode, clock.now.seconds(), x) {
-            Some(solution) => self.exact(mode, &solution, clock, observer),
-            None => self.stepped(mode, *x, clock, observer),
-        }
+        let scheduled = self.scheduled(mode, clock);
+        let horizon = scheduled.map_or(clock.end, |(t, _)| Time::new(t));
+        let state = if horizon.since(clock.now) <= 0.0 {
+            *x
+        } else {
+            let mut within = Clock { end: horizon, ..*clock };
+            let end = match self.automaton.exact(mode, clock.now.seconds(), x) {
+                Some(solution) => self.exact(mode, &solution, &mut within, observer),
+                None => self.stepped(mode, *x, &mut within, observer),
+            };
+            clock.now = within.now;
+            match end? {
+                ArcEnd::Stop { stop: Stop::Time, state } => state,
+                end => return Ok(end),
+            }
+        };
+        Ok(match scheduled {
+            Some((t, edge)) => {
+                self.memory.clock_took = Some(t);
+                ArcEnd::Crossing { edge, before: state }
+            }
+            None => ArcEnd::Stop { stop: Stop::Time, state },
+        })
+    }
+
+    /// The next scheduled edge after the start of the span; one that falls on the present time is due unless one was just taken.
+    #[inline]
+    fn scheduled(&self, mode: A::Mode, clock: &Clock) -> Option<(f64, A::Edge)> {
+        let now = clock.now.seconds();
+        let taken = self.memory.clock_took == Some(now);
+        let after = if taken { now } else { now.next_down().max(clock.start.seconds()) };
+        let next = self.automaton.scheduled(mode, after)?;
+        (next.0 > after && next.0 <= clock.end.seconds()).then_some(next)
     }
 
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
@@ -120,9 +141,9 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
         for edge in self.automaton.edges(mode).iter() {
-            self.stats.guards += 1;
+            self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
-            let spent = self.spent.filter(|spent| spent.edge == edge);
+            let spent = self.memory.spent.filter(|spent| spent.edge == edge);
             if g > 0.0 && spent.is_none() || g == 0.0 || spent.is_some_and(|spent| g.abs() <= spent.slack) {
                 continue;
             }
@@ -135,7 +156,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
             let on_wall = g.abs() <= rounding;
             match (on_wall, spent.is_some()) {
                 (true, true) => {}
-                (_, _) if g > 0.0 => self.spent = None, // the reset led away from the wall: no root to spend
+                (_, _) if g > 0.0 => self.memory.spent = None, // the reset led away from the wall: no root to spend
                 (true, false) if slope > 0.0 => {}
                 (true, false) => return Ok(Some(edge)),
                 (false, _) => match self.automaton.entry(edge) {
@@ -150,8 +171,8 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
 
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
     fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let h = if self.last_duration > 0.0 { self.last_duration * 1e-6 } else { 1e-9 };
-        self.stats.guards += 1;
+        let h = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-9 };
+        self.memory.stats.guards += 1;
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * h, &x.with(|i| x.get(i) + 0.5 * h * slope.get(i)));
         let ahead = x.with(|i| x.get(i) + h * middle.get(i));
@@ -161,7 +182,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     /// How the search for `edge` starts on the first piece of an arc.
     #[inline]
     fn start(&self, edge: A::Edge, first: bool) -> Start {
-        if first && self.just_took(edge) { Start::Spent } else { Start::Open }
+        if first && self.memory.just_took(edge) { Start::Spent } else { Start::Open }
     }
 
     // --- a mode whose flow is solved exactly ---
@@ -174,7 +195,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         clock: &mut Clock,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
-        self.stats.exact += 1;
+        self.memory.stats.exact += 1;
         let c = solution.coefficients();
         let remaining = clock.end.since(clock.now);
         let mut found: Found<A> = None;
@@ -220,7 +241,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         if near == 0.0 {
             return Some(Crossing::at_start(f64::MIN_POSITIVE));
         }
-        let (automaton, count) = (self.automaton, &mut self.stats.guards);
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
         settle(
             |s| {
                 *count += 1;
@@ -247,7 +268,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) };
         let mut from = 0.0;
         let mut start = start;
-        let (automaton, count) = (self.automaton, &mut self.stats.guards);
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
             automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
@@ -288,7 +309,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
             if remaining <= 0.0 {
                 return Ok(ArcEnd::Stop { stop: Stop::Time, state: x });
             }
-            if self.stats.steps >= self.options.most_steps {
+            if self.memory.stats.steps >= self.options.most_steps {
                 return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
@@ -337,7 +358,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         let t = now.seconds();
         let longest = remaining.min(self.options.longest_step);
         let tolerance = self.options.tolerance;
-        let mut h = match self.step {
+        let mut h = match self.memory.step {
             Some(h) => h,
             None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, M::ERROR_ORDER, longest),
         };
@@ -353,13 +374,13 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
             let trial = self.trial(mode, t, x, slope, size);
             let norm = self.stepper.error(size, &trial, |error| tolerance.norm(error, x, &trial.end));
             let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
-            let (accepted, factor) = self.controller.judge(if finite { norm } else { f64::INFINITY });
+            let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY });
             if accepted {
-                self.stats.steps += 1;
-                self.step = Some(if size < h { (size * factor).max(h) } else { size * factor });
+                self.memory.stats.steps += 1;
+                self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });
                 return Ok((size, trial));
             }
-            self.stats.rejected += 1;
+            self.memory.stats.rejected += 1;
             h = size * factor;
             if h <= 2.0 * (t.abs().next_up() - t.abs()) {
                 let kind = if finite { ErrorKind::StepSize } else { ErrorKind::Flow };
@@ -376,8 +397,8 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         slope: &A::State,
         h: f64,
     ) -> Trial<A::State, M::Stages<A::State>> {
-        self.stats.jacobians += M::JACOBIANS;
-        let (automaton, count) = (self.automaton, &mut self.stats.flows);
+        self.memory.stats.jacobians += M::JACOBIANS;
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
             automaton.flow(mode, t, x)
@@ -393,7 +414,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         h: f64,
         trial: &Trial<A::State, M::Stages<A::State>>,
     ) -> M::Dense<A::State> {
-        let (automaton, count) = (self.automaton, &mut self.stats.flows);
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
             automaton.flow(mode, t, x)
@@ -402,7 +423,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     }
 
     fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
-        self.stats.flows += 1;
+        self.memory.stats.flows += 1;
         self.automaton.flow(mode, t, x)
     }
 
@@ -435,7 +456,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
                 return Ok(None);
             }
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
-            self.stats.guards += 1;
+            self.memory.stats.guards += 1;
             let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
             if shift.is_nan() || shift.abs() > 0.1 * h {
                 return Ok(None);
@@ -467,7 +488,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
             let start = self.start(edge, first);
             let affine = self.automaton.affine(edge);
             let p = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
-            let (automaton, count) = (self.automaton, &mut self.stats.guards);
+            let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
             let guard = |s: f64| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
@@ -486,7 +507,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     #[inline]
     fn composed(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> [f64; MAX_DEGREE + 1] {
         let t = now.seconds();
-        self.stats.guards += c.len() as u64 + 1;
+        self.memory.stats.guards += c.len() as u64 + 1;
         let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
         let mut p = [0.0; MAX_DEGREE + 1];
         p[0] = self.automaton.guard(edge, t, &c[0]);
@@ -508,7 +529,7 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
     }
 
     fn guard_on(&mut self, edge: A::Edge, now: Time, c: &[A::State], scale: f64, s: f64) -> f64 {
-        self.stats.guards += 1;
+        self.memory.stats.guards += 1;
         self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
     }
 
@@ -528,11 +549,11 @@ impl<'a, A: Automaton, M: Stepper> Advance<'a, A, M> {
         let outer = self.guard_on(edge, now, c, scale, outside);
         let t = now.after(root).seconds();
         let mut guard = |x: &A::State| {
-            self.stats.guards += 1;
+            self.memory.stats.guards += 1;
             self.automaton.guard(edge, t, x)
         };
         let state = innermost(&mut guard, &nearest, &inner);
-        self.slack = 4.0 * guard(&state).abs().max(outer.abs());
+        self.memory.slack = 4.0 * guard(&state).abs().max(outer.abs());
         Close { span, time: now.after(root.min(remaining)), state }
     }
 

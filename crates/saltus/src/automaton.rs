@@ -95,6 +95,15 @@ pub trait Automaton {
         None
     }
 
+    /// The first edge that the clock takes in `mode` strictly after time `t`, and when: a kick each second, a switch at 3 s.
+    ///
+    /// A crossing at the same time is taken first; one scheduled edge is taken at any one time. What is due at the very start of a run is not taken. Such an edge needs no guard and is not listed in [`edges`](Self::edges).
+    /// A time that is not a number, or not after `t`, is ignored.
+    fn scheduled(&self, mode: Self::Mode, t: f64) -> Option<(f64, Self::Edge)> {
+        let _ = (mode, t);
+        None
+    }
+
     /// Whether `mode` is a mode of this automaton; a run that starts in or jumps to another one is refused.
     fn has_mode(&self, mode: Self::Mode) -> bool {
         let _ = mode;

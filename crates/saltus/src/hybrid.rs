@@ -44,11 +44,17 @@ struct Mode<'a, S> {
 
 struct EdgeOf<'a, S> {
     to: &'static str,
-    guard: Guard<'a, S>,
+    when: When<'a, S>,
     reset: Flow<'a, S>,
     entry: Entry,
     affine: bool,
     terminal: bool,
+}
+
+/// What takes an edge: the state, or the clock.
+enum When<'a, S> {
+    Guard(Guard<'a, S>),
+    Clock(Box<dyn Fn(f64) -> Option<f64> + Send + Sync + 'a>),
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
@@ -65,6 +71,27 @@ pub struct Link {
 impl fmt::Debug for Link {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} -> {} (edge {})", self.from, self.to, self.place)
+    }
+}
+
+impl<'a, S> EdgeOf<'a, S> {
+    fn new(to: &'static str, when: When<'a, S>, reset: Flow<'a, S>) -> Self {
+        Self { to, when, reset, entry: Entry::Refuse, affine: false, terminal: false }
+    }
+}
+
+/// The multiples of a `period` in seconds: the first one strictly after a time, for [`Hybrid::scheduled`].
+///
+/// Multiple k is k · period rounded once, so the hundred-thousandth is as exact as the first. A period that is not positive has no multiples.
+///
+/// ```
+/// let next = saltus::every(0.1);
+/// assert_eq!((next(0.0), next(0.3), next(0.1 * 3.0)), (Some(0.1), Some(0.1 * 3.0), Some(0.4)));
+/// ```
+pub fn every(period: f64) -> impl Fn(f64) -> Option<f64> + Copy + Send + Sync {
+    move |t| {
+        let near = (t / period).round();
+        [near - 1.0, near, near + 1.0, near + 2.0].into_iter().map(|k| k * period).find(|&multiple| multiple > t)
     }
 }
 
@@ -114,30 +141,38 @@ impl<'a, S: State> Hybrid<'a, S> {
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        let (guard, reset) = (Box::new(guard), Box::new(reset));
-        self.entry_of(from).edges.push(EdgeOf {
-            to,
-            guard,
-            reset,
-            entry: Entry::Refuse,
-            affine: false,
-            terminal: false,
-        });
+        self.entry_of(from).edges.push(EdgeOf::new(to, When::Guard(Box::new(guard)), Box::new(reset)));
+        self
+    }
+
+    /// Declares an edge that the clock takes: `next` gives the first time strictly after its argument; see [`every`].
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation, every};
+    /// let kicked = Hybrid::new()
+    ///     .mode("drift", |_t, _x: &f64| 0.0)
+    ///     .scheduled("drift", "drift", every(0.1), |_t, x| x + 1.0);
+    /// let run = Simulation::of(&kicked).run("drift", 0.0, 0.0..1.05)?;
+    /// assert_eq!(run.state, 10.0);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn scheduled(
+        mut self,
+        from: &'static str,
+        to: &'static str,
+        next: impl Fn(f64) -> Option<f64> + Send + Sync + 'a,
+        reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
+    ) -> Self {
+        self.entry_of(from).edges.push(EdgeOf::new(to, When::Clock(Box::new(next)), Box::new(reset)));
         self
     }
 
     /// An edge at which the run ends, without a reset.
     #[must_use]
     pub fn terminal(mut self, from: &'static str, guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a) -> Self {
-        let (guard, reset): (Guard<'a, S>, Flow<'a, S>) = (Box::new(guard), Box::new(|_, x| *x));
-        self.entry_of(from).edges.push(EdgeOf {
-            to: from,
-            guard,
-            reset,
-            entry: Entry::Refuse,
-            affine: false,
-            terminal: true,
-        });
+        let edge = EdgeOf::new(from, When::Guard(Box::new(guard)), Box::new(|_, x| *x));
+        self.entry_of(from).edges.push(EdgeOf { terminal: true, ..edge });
         self
     }
 
@@ -202,11 +237,24 @@ impl<S: State> Automaton for Hybrid<'_, S> {
 
     fn edges(&self, mode: &'static str) -> Edges<Link> {
         let edges = self.find(mode).map_or(&[][..], |mode| &mode.edges[..]);
-        edges.iter().enumerate().map(|(place, edge)| Link { from: mode, to: edge.to, place }).collect()
+        let guarded = edges.iter().enumerate().filter(|(_, edge)| matches!(edge.when, When::Guard(_)));
+        guarded.map(|(place, edge)| Link { from: mode, to: edge.to, place }).collect()
     }
 
     fn guard(&self, edge: Link, t: f64, x: &S) -> f64 {
-        self.edge_of(edge).map_or(f64::NAN, |edge| (edge.guard)(t, x))
+        match self.edge_of(edge).map(|edge| &edge.when) {
+            Some(When::Guard(guard)) => guard(t, x),
+            _ => f64::NAN,
+        }
+    }
+
+    fn scheduled(&self, mode: &'static str, t: f64) -> Option<(f64, Link)> {
+        let edges = self.find(mode)?.edges.iter().enumerate();
+        let due = edges.filter_map(|(place, edge)| match &edge.when {
+            When::Clock(next) => Some((next(t)?, Link { from: mode, to: edge.to, place })),
+            When::Guard(_) => None,
+        });
+        due.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     fn reset(&self, edge: Link, t: f64, x: &S) -> (&'static str, S) {

@@ -25,6 +25,7 @@
 mod advance;
 mod automaton;
 mod control;
+mod course;
 pub mod cross;
 mod error;
 mod hybrid;
@@ -40,8 +41,9 @@ mod zeno;
 pub use nalgebra;
 
 pub use automaton::{Automaton, Edges, Entry, Polynomial};
+pub use course::{Checkpoint, Course};
 pub use error::{Error, ErrorKind};
-pub use hybrid::{Hybrid, Link};
+pub use hybrid::{Hybrid, Link, every};
 pub use observe::Observer;
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
 pub use state::{Coords, State};

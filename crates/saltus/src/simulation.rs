@@ -1,18 +1,18 @@
-//! The loop: advance an arc to its first crossing, jump, look again.
+//! How to run an automaton, how a run ends, what it cost.
 
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Clock};
+use crate::advance::Memory;
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
+use crate::course::{Checkpoint, Course};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::state::State;
 use crate::step::{Stepper, Tsit5};
 use crate::time::Time;
-use crate::trajectory::{Cause, Jump, Trajectory};
-use crate::zeno::Contraction;
+use crate::trajectory::Trajectory;
 
 /// How to run an automaton: its stepper, tolerances and limits.
 ///
@@ -44,8 +44,8 @@ pub(crate) struct Options {
     pub(crate) first_step: Option<f64>,
     pub(crate) longest_step: f64,
     pub(crate) most_steps: u64,
-    most_jumps: usize,
-    longest_cascade: usize,
+    pub(crate) most_jumps: usize,
+    pub(crate) longest_cascade: usize,
 }
 
 impl<'a, A: Automaton> Simulation<'a, A> {
@@ -129,10 +129,13 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`] where a function returns that.
     pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Run<A>, Box<Failed<A>>> {
         let mut trajectory = Trajectory::starting(mode, state, Time::new(span.start));
-        let mut stats = Stats::default();
-        match self.advance(mode, state, span, &mut trajectory, &mut stats) {
-            Ok(ending) => Ok(Run { trajectory, stop: ending.stop, stats, mode: ending.mode, state: ending.state }),
-            Err(error) => Err(Box::new(Failed { error, trajectory, stats })),
+        let mut course = match self.start(mode, state, span) {
+            Ok(course) => course,
+            Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),
+        };
+        match course.finish(&mut trajectory) {
+            Ok(Ending { stop, stats, mode, state, .. }) => Ok(Run { trajectory, stop, stats, mode, state }),
+            Err(error) => Err(Box::new(Failed { error, trajectory, stats: course.stats() })),
         }
     }
 
@@ -147,81 +150,25 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         span: Range<f64>,
         observer: &mut impl Observer<A>,
     ) -> Result<Ending<A>, Error> {
-        self.advance(mode, state, span, observer, &mut Stats::default())
+        self.start(mode, state, span)?.finish(observer)
     }
 
-    fn advance(
-        &self,
-        mode: A::Mode,
-        state: A::State,
-        span: Range<f64>,
-        observer: &mut impl Observer<A>,
-        stats: &mut Stats,
-    ) -> Result<Ending<A>, Error> {
+    /// Begins a run that is advanced jump by jump.
+    ///
+    /// # Errors
+    /// See [`Error`]: a span, tolerance, mode or state that cannot be run.
+    pub fn start(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Course<'a, A, M>, Error> {
         self.check(mode, &state, &span)?;
-        let mut clock = Clock { start: Time::new(span.start), now: Time::new(span.start), end: Time::new(span.end) };
-        let mut advance = Advance::new(self.automaton, self.stepper, &self.options, stats);
-        let (mut mode, mut x, mut j) = (mode, state, 0);
-        let mut contraction = Contraction::new();
-        let mut cascade = 0;
-        let stop = loop {
-            // x is x⁺ of the last jump, or the initial state.
-            let began = clock.now;
-            let (edge, before) = match advance.arc(mode, &x, &mut clock, observer)? {
-                ArcEnd::Crossing { edge, before } => (edge, before),
-                ArcEnd::Stop { stop, state } => {
-                    x = state;
-                    break stop;
-                }
-            };
-            // Here x⁻ = before, still inside the domain of the mode.
-            let (to, after) = self.automaton.reset(edge, clock.now.seconds(), &before);
-            let duration = clock.now.since(began);
-            // The same edge taken again at once changes nothing: the limit is here.
-            let stands = duration == 0.0 && advance.just_took(edge) && to == mode && same(&x, &after);
-            if !stands {
-                j += 1;
-                cascade = if duration == 0.0 { cascade + 1 } else { 0 };
-                let jump = Jump { time: clock.now, j, cause: Cause::Edge(edge), from: mode, before, to, after };
-                self.check_after(&jump, edge)?;
-                let told = observer.jump(&jump);
-                (mode, x) = (to, after);
-                if told.is_break() {
-                    break Stop::Observer;
-                }
-                if self.automaton.terminal(edge) {
-                    break Stop::Terminal { edge };
-                }
-            }
-            advance.jumped(edge, duration);
-            // x is x⁺.
-            contraction.push(duration);
-            let elapsed = clock.now.since(clock.start);
-            let remaining = if stands { Some(0.0) } else { contraction.remaining(elapsed.next_up() - elapsed) };
-            if let Some(remaining) = remaining.filter(|&s| clock.now.after(s).seconds() <= clock.end.seconds()) {
-                advance.still(mode, &x, remaining, &mut clock, observer);
-                let limit = clock.now.seconds();
-                let Some((to, after)) = self.automaton.beyond(mode, limit, &x) else {
-                    break Stop::Zeno { limit };
-                };
-                j += 1;
-                let jump = Jump { time: clock.now, j, cause: Cause::Zeno, from: mode, before: x, to, after };
-                let told = observer.jump(&jump);
-                (mode, x) = (to, after);
-                contraction = Contraction::new();
-                advance.beyond();
-                if told.is_break() {
-                    break Stop::Observer;
-                }
-            }
-            if j >= self.options.most_jumps {
-                break Stop::Jumps { most: j };
-            }
-            if cascade >= self.options.longest_cascade {
-                break Stop::Cascade { edge };
-            }
-        };
-        Ok(Ending { stop, stats: advance.cost(j), time: clock.now, jumps: j, mode, state: x })
+        let memory = Memory::new(M::ERROR_ORDER, self.options.first_step);
+        Ok(self.resume(Checkpoint::start(mode, state, span, memory)))
+    }
+
+    /// Goes on from a checkpoint, to the bit as if there had been no pause.
+    ///
+    /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
+    #[must_use]
+    pub fn resume(&self, checkpoint: Checkpoint<A>) -> Course<'a, A, M> {
+        Course::new(self.automaton, self.stepper, self.options, checkpoint)
     }
 
     fn check(&self, mode: A::Mode, state: &A::State, span: &Range<f64>) -> Result<(), Error> {
@@ -239,22 +186,6 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         };
         Err(Error::new(kind, Place::new(span.start, mode, None::<A::Edge>, state)))
     }
-
-    fn check_after(&self, jump: &Jump<A>, edge: A::Edge) -> Result<(), Error> {
-        let kind = if !jump.after.is_finite() {
-            ErrorKind::Reset
-        } else if !self.automaton.has_mode(jump.to) {
-            ErrorKind::UnknownMode
-        } else {
-            return Ok(());
-        };
-        Err(Error::new(kind, Place::new(jump.t(), jump.to, Some(edge), &jump.after)))
-    }
-}
-
-/// Whether two states are equal coordinate by coordinate.
-fn same<S: State>(x: &S, y: &S) -> bool {
-    x.len() == y.len() && (0..x.len()).all(|i| x.get(i) == y.get(i))
 }
 
 /// Why a run ended.

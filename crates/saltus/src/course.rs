@@ -1,0 +1,239 @@
+//! The loop: advance an arc to its first crossing, jump, look again.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::advance::{Advance, ArcEnd, Clock, Memory};
+use crate::automaton::Automaton;
+use crate::error::{Error, ErrorKind, Place};
+use crate::observe::Observer;
+use crate::simulation::{Ending, Options, Stats, Stop};
+use crate::state::State;
+use crate::step::{Stepper, Tsit5};
+use crate::time::Time;
+use crate::trajectory::{Cause, Jump, Piece};
+use crate::zeno::Contraction;
+
+/// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Hybrid, Simulation};
+///
+/// let ball = Hybrid::new()
+///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81])
+///     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.8 * x[1]]);
+/// let simulation = Simulation::of(&ball);
+/// let mut course = simulation.start("flight", vector![1.0, 0.0], 0.0..3.0)?;
+///
+/// course.advance(&mut ())?; // to just after the first impact
+/// assert_eq!(course.jumps(), 1);
+/// let pause = course.checkpoint();
+///
+/// let (one, other) = (course.finish(&mut ())?, simulation.resume(pause).finish(&mut ())?);
+/// assert_eq!(one.state, other.state);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+pub struct Course<'a, A: Automaton, M = Tsit5> {
+    automaton: &'a A,
+    stepper: M,
+    options: Options,
+    at: Checkpoint<A>,
+}
+
+/// Everything a run needs to go on from just after a jump, to the bit.
+pub struct Checkpoint<A: Automaton> {
+    mode: A::Mode,
+    state: A::State,
+    clock: Clock,
+    jumps: usize,
+    cascade: usize,
+    contraction: Contraction,
+    memory: Memory<A::Edge>,
+    stop: Option<Stop<A::Edge>>,
+}
+
+impl<A: Automaton> Checkpoint<A> {
+    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Edge>) -> Self {
+        let start = Time::new(span.start);
+        let clock = Clock { start, now: start, end: Time::new(span.end) };
+        Self { mode, state, clock, jumps: 0, cascade: 0, contraction: Contraction::new(), memory, stop: None }
+    }
+
+    /// When it was taken.
+    #[must_use]
+    pub fn time(&self) -> Time {
+        self.clock.now
+    }
+}
+
+impl<A: Automaton> Clone for Checkpoint<A> {
+    fn clone(&self) -> Self {
+        Self { contraction: self.contraction.clone(), ..*self }
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Checkpoint<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, state, clock, jumps, .. } = self;
+        write!(f, "{mode:?} {state:?} at (t = {}, j = {jumps})", clock.now.seconds())
+    }
+}
+
+impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.at.fmt(f)
+    }
+}
+
+impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
+    pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, at: Checkpoint<A>) -> Self {
+        Self { automaton, stepper, options, at }
+    }
+
+    /// The time reached.
+    #[must_use]
+    pub fn time(&self) -> Time {
+        self.at.clock.now
+    }
+
+    /// The mode reached.
+    #[must_use]
+    pub fn mode(&self) -> A::Mode {
+        self.at.mode
+    }
+
+    /// The state reached, x⁺ of the last jump.
+    #[must_use]
+    pub fn state(&self) -> A::State {
+        self.at.state
+    }
+
+    /// How many jumps there have been.
+    #[must_use]
+    pub fn jumps(&self) -> usize {
+        self.at.jumps
+    }
+
+    /// What it has cost so far.
+    #[must_use]
+    pub fn stats(&self) -> Stats {
+        Stats { jumps: self.at.jumps, ..self.at.memory.stats }
+    }
+
+    /// What it takes to go on from here.
+    #[must_use]
+    pub fn checkpoint(&self) -> Checkpoint<A> {
+        self.at.clone()
+    }
+
+    /// Advances to the end.
+    ///
+    /// # Errors
+    /// See [`Error`]; the observer has been told of everything before it, and the course stays where it was.
+    pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<Ending<A>, Error> {
+        let stop = loop {
+            if let Some(stop) = self.advance(observer)? {
+                break stop;
+            }
+        };
+        let Checkpoint { mode, state, clock, jumps, .. } = self.at;
+        Ok(Ending { stop, stats: self.stats(), time: clock.now, jumps, mode, state })
+    }
+
+    /// Advances through one arc and the jump at its end; says why the run is over, once it is.
+    ///
+    /// # Errors
+    /// See [`Error`].
+    #[inline]
+    pub fn advance(&mut self, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+        if self.at.stop.is_none() {
+            self.at.stop = self.arc_and_jump(observer)?;
+        }
+        Ok(self.at.stop)
+    }
+
+    #[inline]
+    fn arc_and_jump(&mut self, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+        let Self { automaton, stepper, options, at } = self;
+        // x is x⁺ of the last jump, or the initial state.
+        let (mode, x, began) = (at.mode, at.state, at.clock.now);
+        let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory: &mut at.memory };
+        let (edge, before) = match arc.arc(mode, &x, &mut at.clock, observer)? {
+            ArcEnd::Crossing { edge, before } => (edge, before),
+            ArcEnd::Stop { stop, state } => {
+                at.state = state;
+                return Ok(Some(stop));
+            }
+        };
+        // Here x⁻ = before, still inside the domain of the mode.
+        let (to, after) = automaton.reset(edge, at.clock.now.seconds(), &before);
+        let duration = at.clock.now.since(began);
+        // The same edge taken again at once changes nothing: the limit is here.
+        let stands = duration == 0.0 && at.memory.just_took(edge) && to == mode && same(&x, &after);
+        if !stands {
+            at.cascade = if duration == 0.0 { at.cascade + 1 } else { 0 };
+            let cause = Cause::Edge(edge);
+            let jump = Jump { time: at.clock.now, j: at.jumps + 1, cause, from: mode, before, to, after };
+            check_after(*automaton, &jump, edge)?;
+            (at.mode, at.state, at.jumps) = (to, after, jump.j);
+            if observer.jump(&jump).is_break() {
+                return Ok(Some(Stop::Observer));
+            }
+            if automaton.terminal(edge) {
+                return Ok(Some(Stop::Terminal { edge }));
+            }
+        }
+        at.memory.jumped(edge, duration);
+        // x is x⁺.
+        at.contraction.push(duration);
+        let elapsed = at.clock.now.since(at.clock.start);
+        let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed.next_up() - elapsed) };
+        if let Some(remaining) = remaining.filter(|&s| at.clock.now.after(s).seconds() <= at.clock.end.seconds()) {
+            return self.at_limit(remaining, observer);
+        }
+        Ok(if at.jumps >= options.most_jumps {
+            Some(Stop::Jumps { most: at.jumps })
+        } else if at.cascade >= options.longest_cascade {
+            Some(Stop::Cascade { edge })
+        } else {
+            None
+        })
+    }
+
+    /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to resolve, and the model says what lies beyond.
+    #[cold]
+    fn at_limit(&mut self, remaining: f64, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+        let Self { automaton, at, .. } = self;
+        let (mode, x) = (at.mode, at.state);
+        if remaining > 0.0 && observer.piece(mode, &Piece::new(at.clock.now, remaining, 1.0, &[x])).is_break() {
+            return Ok(Some(Stop::Observer));
+        }
+        at.clock.now = at.clock.now.after(remaining);
+        let limit = at.clock.now.seconds();
+        let Some((to, after)) = automaton.beyond(mode, limit, &x) else {
+            return Ok(Some(Stop::Zeno { limit }));
+        };
+        let jump = Jump { time: at.clock.now, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
+        (at.mode, at.state, at.jumps) = (to, after, jump.j);
+        at.contraction = Contraction::new();
+        at.memory.beyond();
+        Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
+    }
+}
+
+fn check_after<A: Automaton>(automaton: &A, jump: &Jump<A>, edge: A::Edge) -> Result<(), Error> {
+    let kind = if !jump.after.is_finite() {
+        ErrorKind::Reset
+    } else if !automaton.has_mode(jump.to) {
+        ErrorKind::UnknownMode
+    } else {
+        return Ok(());
+    };
+    Err(Error::new(kind, Place::new(jump.t(), jump.to, Some(edge), &jump.after)))
+}
+
+/// Whether two states are equal coordinate by coordinate.
+fn same<S: State>(x: &S, y: &S) -> bool {
+    x.len() == y.len() && (0..x.len()).all(|i| x.get(i) == y.get(i))
+}
