@@ -14,6 +14,7 @@ use crate::trajectory::{Piece, horner};
 
 /// The span of a run and where it stands.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
     pub(crate) start: Time,
     pub(crate) now: Time,
@@ -30,6 +31,7 @@ pub(crate) enum ArcEnd<A: Automaton> {
 
 /// The edge just taken, whose root is spent, and how far from zero its guard is there for rounding alone.
 #[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Spent<E> {
     edge: E,
     slack: f64,
@@ -39,6 +41,7 @@ type Found<A> = Option<(<A as Automaton>::Edge, Crossing)>;
 
 /// What is kept from arc to arc.
 #[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory<E> {
     pub(crate) stats: Stats,
     controller: Controller,
@@ -233,8 +236,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         limit: f64,
         start: Start,
     ) -> Option<Crossing> {
-        let p = self.composed(edge, now, c);
-        let near = quadratic_fall([p[0], p[1], p[2]], start == Start::Spent)?;
+        let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
+        self.memory.stats.guards += c.len() as u64 + 1;
+        let constant = g(&c[0].with(|_| 0.0));
+        let power = |k: usize| c.get(k).map_or(0.0, |c| g(c) - constant);
+        let near = quadratic_fall([g(&c[0]), power(1), power(2)], start == Start::Spent)?;
         if near > limit {
             return None;
         }
@@ -545,15 +551,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Close<A::State> {
         let Crossing { inside, outside, root } = crossing;
         let span = inside.min(remaining);
-        let (inner, nearest) = (horner(c, span / scale), horner(c, root / scale));
         let outer = self.guard_on(edge, now, c, scale, outside);
         let t = now.after(root).seconds();
         let mut guard = |x: &A::State| {
             self.memory.stats.guards += 1;
             self.automaton.guard(edge, t, x)
         };
-        let state = innermost(&mut guard, &nearest, &inner);
-        self.memory.slack = 4.0 * guard(&state).abs().max(outer.abs());
+        let nearest = horner(c, root / scale);
+        let g = guard(&nearest);
+        let (state, g) =
+            if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &horner(c, span / scale)) };
+        self.memory.slack = 4.0 * g.abs().max(outer.abs());
         Close { span, time: now.after(root.min(remaining)), state }
     }
 
@@ -574,15 +582,18 @@ struct Close<S> {
 ///
 /// Always keeping the inner end would make every crossing early by half a rounding, and an elastic ball lose energy at each impact.
 /// So coordinates are taken from the inner end only as far as it takes to stay inside: a ball's height, not its speed.
+///
+/// Returns the state and its guard, for a nearest one that is outside.
 #[inline]
-fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S) -> S {
-    if guard(nearest) >= 0.0 {
-        return *nearest;
+fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S) -> (S, f64) {
+    for k in 0..nearest.len() {
+        let mixed = nearest.with(|i| if i == k { inner.get(i) } else { nearest.get(i) });
+        let g = guard(&mixed);
+        if g >= 0.0 {
+            return (mixed, g);
+        }
     }
-    (0..nearest.len())
-        .map(|k| nearest.with(|i| if i == k { inner.get(i) } else { nearest.get(i) }))
-        .find(|mixed| guard(mixed) >= 0.0)
-        .unwrap_or(*inner)
+    (*inner, guard(inner))
 }
 
 /// The state at the end of a piece that may last for ever.

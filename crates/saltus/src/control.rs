@@ -26,6 +26,7 @@ impl Tolerance {
 
 /// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K. Gustafsson, ACM TOMS 17 (1991) 533).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     order: f64,
     previous: f64,

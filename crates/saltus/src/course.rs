@@ -42,6 +42,14 @@ pub struct Course<'a, A: Automaton, M = Tsit5> {
 }
 
 /// Everything a run needs to go on from just after a jump, to the bit.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Checkpoint<A: Automaton> {
     mode: A::Mode,
     state: A::State,

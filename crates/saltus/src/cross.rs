@@ -106,21 +106,27 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
     let mut step = near.next_up() - near;
     let (mut a, mut b) = (near, near);
     if guard(near) >= 0.0 {
-        while guard(b) >= 0.0 {
-            a = b;
+        loop {
             b = a + step;
+            if guard(b) < 0.0 {
+                break;
+            }
+            a = b;
             step *= 2.0;
             if b > 2.0 * near {
                 return None;
             }
         }
     } else {
-        while guard(a) < 0.0 {
+        loop {
+            a = (b - step).max(0.0);
+            if guard(a) >= 0.0 {
+                break;
+            }
             if a == 0.0 {
                 return None;
             }
             b = a;
-            a = (b - step).max(0.0);
             step *= 2.0;
         }
     }

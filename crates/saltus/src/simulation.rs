@@ -30,11 +30,25 @@ use crate::trajectory::Trajectory;
 /// assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-9));
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[derive(Clone, Debug)]
 pub struct Simulation<'a, A, M = Tsit5> {
     automaton: &'a A,
     stepper: M,
     options: Options,
+}
+
+impl<A, M: Copy> Clone for Simulation<'_, A, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<A, M: Copy> Copy for Simulation<'_, A, M> {}
+
+impl<A, M: fmt::Debug> fmt::Debug for Simulation<'_, A, M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stepper, options, .. } = self;
+        f.debug_struct("Simulation").field("stepper", stepper).field("options", options).finish_non_exhaustive()
+    }
 }
 
 /// What a run may cost and how exact it is to be.
@@ -190,6 +204,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Stop<E> {
     /// The end of the span was reached.
@@ -250,6 +265,7 @@ impl<E: fmt::Debug> fmt::Display for Stop<E> {
 
 /// What a run cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stats {
     /// Jumps made.
     pub jumps: usize,

@@ -17,6 +17,7 @@
 ///
 /// The sum is Knuth's two-sum (D. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2, theorem B).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Time {
     hi: f64,
     lo: f64,

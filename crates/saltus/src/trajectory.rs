@@ -63,6 +63,7 @@ impl<'a, S: State> Piece<'a, S> {
 
 /// Why a jump happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Cause<E> {
     /// An edge was taken.
@@ -72,6 +73,14 @@ pub enum Cause<E> {
 }
 
 /// A jump, with both its limits.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Jump<A: Automaton> {
     /// When.
     pub time: Time,
@@ -123,6 +132,14 @@ impl<A: Automaton> Jump<A> {
 }
 
 /// An arc: the stay in one mode between two jumps.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Arc<A: Automaton> {
     mode: A::Mode,
     start: Time,
@@ -173,6 +190,7 @@ impl<A: Automaton> Arc<A> {
 }
 
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Stored {
     start: Time,
     span: f64,
@@ -184,6 +202,14 @@ struct Stored {
 /// A hybrid arc: the state as a function of hybrid time (t, j).
 ///
 /// At a jump the state has two limits: [`before`](Self::before) and [`at`](Self::at). Several jumps may share one time.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Trajectory<A: Automaton> {
     arcs: Vec<Arc<A>>,
     jumps: Vec<Jump<A>>,
@@ -293,6 +319,10 @@ impl<A: Automaton> Trajectory<A> {
     }
 
     fn state_in(&self, index: usize, t: f64) -> A::State {
+        // At its own time an arc starts from x⁺, though the double may lie a rounding after the moment.
+        if t == self.arcs[index].start.seconds() {
+            return self.arcs[index].state;
+        }
         let pieces = &self.pieces[self.piece_range(index)];
         let next = pieces.partition_point(|piece| piece.start.seconds() <= t);
         match next.checked_sub(1).and_then(|i| pieces.get(i)) {

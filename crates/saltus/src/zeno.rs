@@ -7,6 +7,7 @@ const LONGEST_CYCLE: usize = 4;
 
 /// Watches the durations between jumps for geometric contraction.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Contraction {
     durations: [f64; MEMORY],
     count: usize,
@@ -32,10 +33,12 @@ impl Contraction {
     ///
     /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are all below one; with r the largest
     /// of them and S the last cycle's duration, what remains is at most S r/(1-r).
+    #[inline]
     pub(crate) fn remaining(&self, resolution: f64) -> Option<f64> {
-        if self.count == 0 || self.last(0) > resolution * 1e6 {
-            return None;
-        }
+        if self.count == 0 || self.last(0) > resolution * 1e6 { None } else { self.certified(resolution) }
+    }
+
+    fn certified(&self, resolution: f64) -> Option<f64> {
         let known = self.count.min(MEMORY);
         (1..=LONGEST_CYCLE).find_map(|cycle| {
             if known < cycle + 4 {

@@ -1,0 +1,192 @@
+//! Ways of running: recorded, observed, pulled, paused and resumed, sampled; and what the loop does not do.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use std::ops::ControlFlow;
+
+use saltus::nalgebra::{Vector2, vector};
+use saltus::{Automaton, Checkpoint, Edges, Jump, Observer, Piece, Simulation, Stop, Trajectory};
+use serde::{Deserialize, Serialize};
+
+/// A ball with quadratic drag, risen and fallen in two smooth modes, that keeps 0.9 of its speed.
+struct Drag;
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Mode {
+    Rising,
+    Falling,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Edge {
+    Apex,
+    Floor,
+}
+
+impl Automaton for Drag {
+    type Mode = Mode;
+    type State = Vector2<f64>;
+    type Edge = Edge;
+
+    fn flow(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+        let drag = 0.1 * x[1] * x[1];
+        match mode {
+            Mode::Rising => vector![x[1], -9.8 - drag],
+            Mode::Falling => vector![x[1], -9.8 + drag],
+        }
+    }
+    fn edges(&self, mode: Mode) -> Edges<Edge> {
+        match mode {
+            Mode::Rising => Edges::from([Edge::Apex]),
+            Mode::Falling => Edges::from([Edge::Floor]),
+        }
+    }
+    fn guard(&self, edge: Edge, _t: f64, x: &Vector2<f64>) -> f64 {
+        match edge {
+            Edge::Apex => x[1],
+            Edge::Floor => x[0],
+        }
+    }
+    fn affine(&self, _: Edge) -> bool {
+        true
+    }
+    fn reset(&self, edge: Edge, _t: f64, x: &Vector2<f64>) -> (Mode, Vector2<f64>) {
+        match edge {
+            Edge::Apex => (Mode::Falling, *x),
+            Edge::Floor => (Mode::Rising, vector![0.0, -0.9 * x[1]]),
+        }
+    }
+}
+
+const START: Vector2<f64> = vector![10.0, 0.0];
+
+/// The closed form: fall from h in acosh(exp(kh))/sqrt(gk) to v² = g/k (1 - exp(-2kh)); rise from v in atan(v sqrt(k/g))/sqrt(gk) to ln(1 + kv²/g)/2k.
+fn impact_times(count: usize) -> Vec<f64> {
+    let (g, k, e) = (9.8_f64, 0.1_f64, 0.9_f64);
+    let (mut t, mut h) = (0.0, START[0]);
+    (0..count)
+        .map(|_| {
+            t += (k * h).exp().acosh() / (g * k).sqrt();
+            let v = e * (g / k * -(-2.0 * k * h).exp_m1()).sqrt();
+            let impact = t;
+            t += (v * (k / g).sqrt()).atan() / (g * k).sqrt();
+            h = (k * v * v / g).ln_1p() / (2.0 * k);
+            impact
+        })
+        .collect()
+}
+
+/// Twenty impacts to 1e-12 s by steps alone: the crossings have the stepper's own order.
+#[test]
+fn quadratic_drag_to_the_last_digits() {
+    let simulation = Simulation::of(&Drag).stepper(saltus::Dop853).tolerance(1e-14).absolute_tolerance(1e-15);
+    let run = simulation.most_jumps(39).run(Mode::Falling, START, 0.0..100.0).unwrap();
+    let impacts: Vec<f64> =
+        run.trajectory.jumps().iter().filter(|j| j.edge() == Some(Edge::Floor)).map(Jump::t).collect();
+    assert_eq!(impacts.len(), 20);
+    for (n, (got, exact)) in impacts.iter().zip(impact_times(20)).enumerate() {
+        assert!((got - exact).abs() < 1e-12, "impact {}: {got} instead of {exact}", n + 1);
+    }
+}
+
+/// Keeps the bits of every jump.
+#[derive(Default, PartialEq, Debug)]
+struct Bits(Vec<[u64; 3]>);
+
+impl Observer<Drag> for Bits {
+    fn jump(&mut self, jump: &Jump<Drag>) -> ControlFlow<()> {
+        self.0.push([jump.t().to_bits(), jump.after[0].to_bits(), jump.after[1].to_bits()]);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A run that is paused at any jump, written down, read back and resumed gives the same bits.
+#[test]
+fn resumed_to_the_bit() {
+    let simulation = Simulation::of(&Drag);
+    let mut whole = Bits::default();
+    let end = simulation.drive(Mode::Falling, START, 0.0..10.0, &mut whole).unwrap();
+    for pause in [0, 1, 2, 7, 12] {
+        let mut pieced = Bits::default();
+        let mut course = simulation.start(Mode::Falling, START, 0.0..10.0).unwrap();
+        for _ in 0..pause {
+            course.advance(&mut pieced).unwrap();
+        }
+        let written = serde_json::to_string(&course.checkpoint()).unwrap();
+        let checkpoint: Checkpoint<Drag> = serde_json::from_str(&written).unwrap();
+        let resumed = simulation.resume(checkpoint).finish(&mut pieced).unwrap();
+        assert_eq!(whole, pieced, "paused after {pause}");
+        assert_eq!((end.stats, end.stop), (resumed.stats, resumed.stop));
+        assert_eq!(end.state, resumed.state);
+    }
+}
+
+#[test]
+fn a_trajectory_written_and_read_back() {
+    let run = Simulation::of(&Drag).run(Mode::Falling, START, 0.0..5.0).unwrap();
+    let written = serde_json::to_string(&run.trajectory).unwrap();
+    let read: Trajectory<Drag> = serde_json::from_str(&written).unwrap();
+    for k in 0..=500_u32 {
+        let t = f64::from(k) / 100.0;
+        assert_eq!(run.trajectory.at(t), read.at(t));
+    }
+    assert_eq!(read.jumps().len(), run.trajectory.jumps().len());
+}
+
+/// Recording, observing and pulling are one run; so is looking at it on any grid.
+#[test]
+fn one_list_of_jumps_however_it_is_run() {
+    let simulation = Simulation::of(&Drag);
+    let run = simulation.run(Mode::Falling, START, 0.0..10.0).unwrap();
+    let mut observed = Bits::default();
+    simulation.drive(Mode::Falling, START, 0.0..10.0, &mut observed).unwrap();
+    let recorded: Vec<u64> = run.trajectory.jumps().iter().map(|jump| jump.t().to_bits()).collect();
+    assert_eq!(recorded, observed.0.iter().map(|bits| bits[0]).collect::<Vec<_>>());
+    let mut course = simulation.start(Mode::Falling, START, 0.0..10.0).unwrap();
+    let mut pulled = Vec::new();
+    while course.advance(&mut ()).unwrap().is_none() {
+        pulled.push(course.time().seconds().to_bits());
+    }
+    assert_eq!(recorded, pulled);
+    assert_eq!(course.advance(&mut ()).unwrap(), Some(Stop::Time), "an ended course stays ended");
+}
+
+/// The left and right limits at a jump are its two states; between jumps the two are one.
+#[test]
+fn both_limits() {
+    let run = Simulation::of(&Drag).run(Mode::Falling, START, 0.0..10.0).unwrap();
+    for jump in run.trajectory.jumps() {
+        assert_eq!(run.trajectory.before(jump.t()), Some(jump.before));
+        assert_eq!(run.trajectory.at(jump.t()), Some(jump.after));
+        assert_eq!(run.trajectory.mode_at(jump.t()), Some(jump.to));
+    }
+    assert_eq!(run.trajectory.before(3.0), run.trajectory.at(3.0));
+    assert_eq!(run.trajectory.at(-0.1), None);
+    assert_eq!(run.trajectory.at(10.1), None);
+}
+
+#[test]
+fn limits_are_endings() {
+    let simulation = Simulation::of(&Drag);
+    let jumps = simulation.most_jumps(5).run(Mode::Falling, START, 0.0..10.0).unwrap();
+    assert_eq!((jumps.stop, jumps.trajectory.jumps().len()), (Stop::Jumps { most: 5 }, 5));
+    let steps = simulation.most_steps(20).run(Mode::Falling, START, 0.0..10.0).unwrap();
+    assert_eq!((steps.stop, steps.stats.steps), (Stop::Steps { most: 20 }, 20));
+    struct Enough;
+    impl Observer<Drag> for Enough {
+        fn piece(&mut self, _: Mode, piece: &Piece<'_, Vector2<f64>>) -> ControlFlow<()> {
+            if piece.start().seconds() > 2.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+    }
+    let ended = simulation.drive(Mode::Falling, START, 0.0..10.0, &mut Enough).unwrap();
+    assert_eq!(ended.stop, Stop::Observer);
+}
+
+#[test]
+fn runs_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Simulation<'_, Drag>>();
+    shared::<Trajectory<Drag>>();
+    shared::<Checkpoint<Drag>>();
+    shared::<saltus::Hybrid<'_, Vector2<f64>>>();
+}
