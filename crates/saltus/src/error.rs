@@ -97,7 +97,10 @@ impl fmt::Display for Error {
         let edge = edge.as_deref().unwrap_or("?");
         match self.kind {
             ErrorKind::Span => {
-                return write!(f, "the span must run forwards from a finite time: give start..end with start < end");
+                return write!(
+                    f,
+                    "the span must run forwards from a finite time: give start..end with start < end; to run backwards, implement Invertible and run Reversed"
+                );
             }
             ErrorKind::Tolerance => {
                 return write!(

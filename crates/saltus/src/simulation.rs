@@ -148,7 +148,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),
         };
         match course.finish(&mut trajectory) {
-            Ok(Ending { stop, stats, mode, state, .. }) => Ok(Run { trajectory, stop, stats, mode, state }),
+            Ok(Ending { stop, stats, time, mode, state, .. }) => {
+                trajectory.finish(time);
+                Ok(Run { trajectory, stop, stats, mode, state })
+            }
             Err(error) => Err(Box::new(Failed { error, trajectory, stats: course.stats() })),
         }
     }

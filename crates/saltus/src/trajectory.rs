@@ -259,6 +259,11 @@ impl<A: Automaton> Trajectory<A> {
         self.jumps.push(jump);
     }
 
+    /// The run ended at this moment, which the end of its last piece may miss by a rounding.
+    pub(crate) fn finish(&mut self, end: Time) {
+        self.end = end;
+    }
+
     /// The jumps in order.
     #[must_use]
     pub fn jumps(&self) -> &[Jump<A>] {

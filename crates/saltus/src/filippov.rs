@@ -1,0 +1,448 @@
+//! Filippov sliding: two smooth flows and a surface between them become an automaton with a third mode on the surface.
+
+use std::marker::PhantomData;
+
+use crate::automaton::{Automaton, Edges};
+use crate::state::State;
+
+/// Two smooth flows on the two sides of a surface h(t, x) = 0.
+///
+/// | | |
+/// |---|---|
+/// | above, h > 0 | x' = f₊(t, x) |
+/// | below, h < 0 | x' = f₋(t, x) |
+/// | speed away from the surface, upwards | L± = n · f± + ∂h/∂t, with n = ∂h/∂x |
+///
+/// Each flow and the surface must be smooth on both sides of it, at least within one step of the stepper: a step may look past the surface
+/// before the crossing is found. The gradient must not vanish on the surface. [`Filippov`] makes an [`Automaton`] of it;
+/// [`Sides`] makes it of closures.
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Filippov, Side, Simulation, TwoSided};
+///
+/// /// A block of 1 kg on a spring of 100 N/m, rubbing with 3 N.
+/// struct Block;
+///
+/// impl TwoSided for Block {
+///     type State = Vector2<f64>; // position in m, velocity in m/s
+///     fn above(&self, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+///         vector![x[1], -100.0 * x[0] - 3.0]
+///     }
+///     fn below(&self, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+///         vector![x[1], -100.0 * x[0] + 3.0]
+///     }
+///     fn surface(&self, _t: f64, x: &Vector2<f64>) -> f64 {
+///         x[1]
+///     }
+///     fn normal(&self, _t: f64, _x: &Vector2<f64>) -> Vector2<f64> {
+///         vector![0.0, 1.0]
+///     }
+///     fn affine(&self) -> bool {
+///         true
+///     }
+/// }
+///
+/// let block = Filippov::of(Block);
+/// let run = Simulation::of(&block).run(Side::Below, vector![0.1, 0.0], 0.0..10.0)?;
+/// // Each half cycle takes 6 cm off: from 10 cm it swings to -4 cm and then to -2 cm, where the spring pulls with less than 3 N.
+/// assert_eq!(run.mode, Side::Sliding);
+/// assert!((run.state[0] + 0.02).abs() < 1e-9 && run.state[1].abs() < 1e-15);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+pub trait TwoSided {
+    /// The continuous state.
+    type State: State;
+
+    /// The flow f₊ above the surface, in units of the state per second.
+    fn above(&self, t: f64, x: &Self::State) -> Self::State;
+
+    /// The flow f₋ below the surface, in units of the state per second.
+    fn below(&self, t: f64, x: &Self::State) -> Self::State;
+
+    /// h(t, x): positive above, negative below, zero on the surface; in any unit.
+    fn surface(&self, t: f64, x: &Self::State) -> f64;
+
+    /// The gradient n = ∂h/∂x, in units of h per unit of the state.
+    fn normal(&self, t: f64, x: &Self::State) -> Self::State;
+
+    /// ∂h/∂t, in units of h per second; zero for a surface at rest.
+    fn surface_rate(&self, t: f64, x: &Self::State) -> f64 {
+        let _ = (t, x);
+        0.0
+    }
+
+    /// The margin by which the surface holds the state against leaving upwards, in units of h per second; the default is -L₊.
+    ///
+    /// More than that is a surface that holds more than it drags: static friction above kinetic friction.
+    fn hold_above(&self, t: f64, x: &Self::State) -> f64 {
+        -normal_speed(self, t, x, &self.above(t, x))
+    }
+
+    /// The margin by which the surface holds the state against leaving downwards, in units of h per second; the default is L₋.
+    fn hold_below(&self, t: f64, x: &Self::State) -> f64 {
+        normal_speed(self, t, x, &self.below(t, x))
+    }
+
+    /// Promises that h(t, x) = a · x + b with constants a and b: crossings cost less, and sliding needs no correction.
+    fn affine(&self) -> bool {
+        false
+    }
+
+    /// The rate κ, in 1/s, at which a deviation from the surface decays while sliding: h' = -κ h. Not used where the surface is affine.
+    ///
+    /// Anything slow against a step and fast against the slide will do: it acts on deviations of the size of the tolerance.
+    /// The default is 1/s.
+    fn pull(&self) -> f64 {
+        1.0
+    }
+}
+
+impl<T: TwoSided + ?Sized> TwoSided for &T {
+    type State = T::State;
+    fn above(&self, t: f64, x: &T::State) -> T::State {
+        (**self).above(t, x)
+    }
+    fn below(&self, t: f64, x: &T::State) -> T::State {
+        (**self).below(t, x)
+    }
+    fn surface(&self, t: f64, x: &T::State) -> f64 {
+        (**self).surface(t, x)
+    }
+    fn normal(&self, t: f64, x: &T::State) -> T::State {
+        (**self).normal(t, x)
+    }
+    fn surface_rate(&self, t: f64, x: &T::State) -> f64 {
+        (**self).surface_rate(t, x)
+    }
+    fn hold_above(&self, t: f64, x: &T::State) -> f64 {
+        (**self).hold_above(t, x)
+    }
+    fn hold_below(&self, t: f64, x: &T::State) -> f64 {
+        (**self).hold_below(t, x)
+    }
+    fn affine(&self) -> bool {
+        (**self).affine()
+    }
+    fn pull(&self) -> f64 {
+        (**self).pull()
+    }
+}
+
+/// L = n · f + ∂h/∂t: how fast h grows along the flow `f`.
+fn normal_speed<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State, f: &T::State) -> f64 {
+    let n = system.normal(t, x);
+    (0..x.len()).map(|i| n.get(i) * f.get(i)).sum::<f64>() + system.surface_rate(t, x)
+}
+
+/// Where a state of a [`Filippov`] automaton is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// h > 0.
+    Above,
+    /// h < 0.
+    Below,
+    /// On the surface, held there by the flows of both sides.
+    Sliding,
+}
+
+/// The edges of a [`Filippov`] automaton.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Passage {
+    /// The surface is met from above: into the slide, or through.
+    FromAbove,
+    /// The surface is met from below: into the slide, or through.
+    FromBelow,
+    /// The slide ends upwards.
+    LeaveAbove,
+    /// The slide ends downwards.
+    LeaveBelow,
+}
+
+/// The automaton of a discontinuous flow in Filippov's sense: three modes, [`Side::Above`], [`Side::Below`] and [`Side::Sliding`].
+///
+/// **At the surface** the two normal speeds decide. If both point to the same side, the state crosses. If they point at each other
+/// (L₊ < 0 < L₋), it slides, along the one convex combination of the two flows that stays on the surface,
+///
+/// x' = α f₊ + (1 - α) f₋, α = L₋/(L₋ - L₊).
+///
+/// **The slide ends** where α reaches 1 (upwards: L₊ rises to zero) or 0 (downwards: L₋ falls to zero). These are guards like any
+/// other, so the exit is found to full accuracy although the state leaves tangentially, and nothing chatters: a slide is one arc.
+///
+/// **If they point away** from each other (L₋ < 0 < L₊, an escaping surface) the future is not unique. No run reaches such a place;
+/// one that starts there must say to which side it goes: [`side`](Self::side) answers `None`, and a run started there in
+/// [`Side::Sliding`] is refused.
+///
+/// **Drift.** On entry and exit the state is put on the surface, by no more than its rounding where the surface is affine. In between, an affine surface
+/// keeps the state to rounding, because Runge-Kutta methods conserve linear invariants; for a curved or moving one α is chosen such that
+/// h' = -κ h instead of h' = 0 (see [`TwoSided::pull`]), which stays within the same convex set.
+///
+/// Limits: one surface; where two meet, or where L₊ and L₋ vanish together, Filippov's solution need not be unique and the first
+/// of the two exits is taken.
+///
+/// ```
+/// use saltus::{Filippov, Side, Sides, Simulation};
+///
+/// // A relay: x' = -sign(x).
+/// let relay = Filippov::of(Sides::new(|_, _: &f64| -1.0, |_, _| 1.0, |_, x| *x, |_, _| 1.0));
+/// let run = Simulation::of(&relay).run(Side::Above, 1.5, 0.0..10.0)?;
+/// assert_eq!((run.mode, run.state), (Side::Sliding, 0.0));
+/// assert_eq!(run.trajectory.jumps().len(), 1);
+/// assert!((run.trajectory.jumps()[0].t() - 1.5).abs() < 1e-15);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+///
+/// A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides* (Kluwer, 1988), 2.4;
+/// L. Dieci, L. Lopez, J. Comput. Appl. Math. 236 (2012) 3967, doi:10.1016/j.cam.2012.02.011.
+#[derive(Clone, Copy, Debug)]
+pub struct Filippov<T> {
+    system: T,
+}
+
+impl<T: TwoSided> Filippov<T> {
+    /// The automaton of `system`, which may be a reference.
+    #[must_use]
+    pub const fn of(system: T) -> Self {
+        Self { system }
+    }
+
+    /// The mode in which the state `x` at time `t` is; `None` on an escaping surface, where the model must choose.
+    ///
+    /// A state counts as on the surface when h is zero but for the rounding of its coordinates.
+    #[must_use]
+    pub fn side(&self, t: f64, x: &T::State) -> Option<Side> {
+        let h = self.system.surface(t, x);
+        if h.abs() > self.rounding(t, x) {
+            return Some(if h > 0.0 { Side::Above } else { Side::Below });
+        }
+        match (self.system.hold_above(t, x) >= 0.0, self.system.hold_below(t, x) >= 0.0) {
+            (true, true) => Some(Side::Sliding),
+            (false, true) => Some(Side::Above),
+            (true, false) => Some(Side::Below),
+            (false, false) => None,
+        }
+    }
+
+    /// What rounding of t and of the coordinates may make of h = 0.
+    fn rounding(&self, t: f64, x: &T::State) -> f64 {
+        let n = self.system.normal(t, x);
+        let size: f64 = (0..x.len()).map(|i| (n.get(i) * x.get(i)).abs()).sum();
+        4.0 * f64::EPSILON * (size + (self.system.surface_rate(t, x) * t).abs())
+    }
+
+    fn slide(&self, t: f64, x: &T::State) -> T::State {
+        let (above, below) = (self.system.above(t, x), self.system.below(t, x));
+        let (up, down) = (normal_speed(&self.system, t, x, &above), normal_speed(&self.system, t, x, &below));
+        let pull = if self.system.affine() { 0.0 } else { self.system.pull() * self.system.surface(t, x) };
+        // Weighted like this, a coordinate that both flows hold against each other stands still exactly.
+        let (up, down, gap) = (up + pull, down + pull, down - up);
+        x.with(|i| (down * above.get(i) - up * below.get(i)) / gap)
+    }
+
+    /// The state moved to h = `target`, each coordinate in proportion to its own rounding.
+    fn moved_to(&self, target: f64, t: f64, x: &T::State) -> T::State {
+        let n = self.system.normal(t, x);
+        let weight = |i: usize| (n.get(i) * x.get(i)) * x.get(i);
+        let total: f64 = (0..x.len()).map(|i| n.get(i) * weight(i)).sum();
+        let missing = target - self.system.surface(t, x);
+        if missing == 0.0 {
+            return *x;
+        }
+        let y = if total > 0.0 {
+            x.with(|i| x.get(i) + missing * (weight(i) / total))
+        } else {
+            let total: f64 = (0..x.len()).map(|i| n.get(i) * n.get(i)).sum();
+            x.with(|i| x.get(i) + missing * (n.get(i) / total))
+        };
+        if y.is_finite() { y } else { *x }
+    }
+
+    /// On the surface: two of Newton's steps.
+    fn onto(&self, t: f64, x: &T::State) -> T::State {
+        self.moved_to(0.0, t, &self.moved_to(0.0, t, x))
+    }
+
+    /// To the given side of the surface by the fewest of these distances that make the side's own guard not negative.
+    fn beside(&self, sign: f64, distances: [f64; 3], t: f64, x: &T::State) -> T::State {
+        let mut moved = distances.into_iter().map(|distance| self.moved_to(sign * distance, t, x));
+        moved.find(|y| sign * self.system.surface(t, y) >= 0.0).unwrap_or(*x)
+    }
+
+    fn entered(&self, side: Side, t: f64, x: &T::State) -> (Side, T::State) {
+        let sign = if side == Side::Above { 1.0 } else { -1.0 };
+        let x = if side == Side::Sliding {
+            self.onto(t, x)
+        } else if sign * self.system.surface(t, x) < 0.0 {
+            let rounding = self.rounding(t, x);
+            self.beside(sign, [0.0, 0.25 * rounding, rounding], t, x)
+        } else {
+            *x
+        };
+        (side, x)
+    }
+
+    /// A slide is left tangentially: which side of the surface the state is on, is for a while below the rounding of its coordinates and of time.
+    /// Of the states that rounding cannot tell from the one on the surface, the reset gives one on the side to which it leaves.
+    fn left(&self, side: Side, t: f64, x: &T::State) -> (Side, T::State) {
+        let x = self.onto(t, x);
+        let gap = self.system.hold_above(t, &x).abs().max(self.system.hold_below(t, &x).abs());
+        let rounding = self.rounding(t, &x) + f64::EPSILON * gap * t.abs();
+        let sign = if side == Side::Above { 1.0 } else { -1.0 };
+        (side, self.beside(sign, [rounding, 2.0 * rounding, 4.0 * rounding], t, &x))
+    }
+}
+
+impl<T: TwoSided> Automaton for Filippov<T> {
+    type Mode = Side;
+    type State = T::State;
+    type Edge = Passage;
+
+    fn flow(&self, mode: Side, t: f64, x: &T::State) -> T::State {
+        match mode {
+            Side::Above => self.system.above(t, x),
+            Side::Below => self.system.below(t, x),
+            Side::Sliding => self.slide(t, x),
+        }
+    }
+
+    fn edges(&self, mode: Side) -> Edges<Passage> {
+        match mode {
+            Side::Above => Edges::from([Passage::FromAbove]),
+            Side::Below => Edges::from([Passage::FromBelow]),
+            Side::Sliding => Edges::from([Passage::LeaveAbove, Passage::LeaveBelow]),
+        }
+    }
+
+    fn guard(&self, edge: Passage, t: f64, x: &T::State) -> f64 {
+        match edge {
+            Passage::FromAbove => self.system.surface(t, x),
+            Passage::FromBelow => -self.system.surface(t, x),
+            Passage::LeaveAbove => self.system.hold_above(t, x),
+            Passage::LeaveBelow => self.system.hold_below(t, x),
+        }
+    }
+
+    fn reset(&self, edge: Passage, t: f64, x: &T::State) -> (Side, T::State) {
+        match edge {
+            Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => self.entered(Side::Below, t, x),
+            Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => self.entered(Side::Above, t, x),
+            Passage::FromAbove | Passage::FromBelow => self.entered(Side::Sliding, t, x),
+            Passage::LeaveAbove => self.left(Side::Above, t, x),
+            Passage::LeaveBelow => self.left(Side::Below, t, x),
+        }
+    }
+
+    fn affine(&self, edge: Passage) -> bool {
+        matches!(edge, Passage::FromAbove | Passage::FromBelow) && self.system.affine()
+    }
+}
+
+/// A [`TwoSided`] system made of closures: the flows above and below, h and its gradient.
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Filippov, Side, Sides, Simulation};
+///
+/// // Two uniform flows against a unit circle that both must keep to: the state runs round it at speed 1.
+/// let rim = Sides::new(
+///     |_, x: &Vector2<f64>| vector![-x[1] - x[0], x[0] - x[1]],
+///     |_, x| vector![-x[1] + x[0], x[0] + x[1]],
+///     |_, x| x.norm_squared() - 1.0,
+///     |_, x| 2.0 * x,
+/// );
+/// let rim = Filippov::of(rim);
+/// let start = vector![1.0, 0.0];
+/// assert_eq!(rim.side(0.0, &start), Some(Side::Sliding));
+/// let run = Simulation::of(&rim).run(Side::Sliding, start, 0.0..100.0)?;
+/// assert!((run.state - vector![100.0_f64.cos(), 100.0_f64.sin()]).norm() < 1e-6);
+/// assert!((run.state.norm() - 1.0).abs() < 1e-9);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Sides<S, F, G, H, N, R = fn(f64, &S) -> f64> {
+    above: F,
+    below: G,
+    surface: H,
+    normal: N,
+    rate: R,
+    affine: bool,
+    pull: f64,
+    state: PhantomData<fn(&S) -> S>,
+}
+
+impl<S, F, G, H, N> Sides<S, F, G, H, N>
+where
+    S: State,
+    F: Fn(f64, &S) -> S,
+    G: Fn(f64, &S) -> S,
+    H: Fn(f64, &S) -> f64,
+    N: Fn(f64, &S) -> S,
+{
+    /// The flow where h > 0, the flow where h < 0, h itself, and its gradient with respect to the state.
+    #[must_use]
+    pub fn new(above: F, below: G, surface: H, normal: N) -> Self {
+        Self { above, below, surface, normal, rate: |_, _| 0.0, affine: false, pull: 1.0, state: PhantomData }
+    }
+}
+
+impl<S, F, G, H, N, R> Sides<S, F, G, H, N, R> {
+    /// Lets the surface move: `rate` is ∂h/∂t.
+    #[must_use]
+    pub fn moving<Q: Fn(f64, &S) -> f64>(self, rate: Q) -> Sides<S, F, G, H, N, Q> {
+        let Self { above, below, surface, normal, affine, pull, state, .. } = self;
+        Sides { above, below, surface, normal, rate, affine, pull, state }
+    }
+
+    /// Promises that the surface is affine and at rest; see [`TwoSided::affine`].
+    #[must_use]
+    pub fn affine(mut self) -> Self {
+        self.affine = true;
+        self
+    }
+
+    /// The rate at which a deviation from the surface decays while sliding, in 1/s; see [`TwoSided::pull`].
+    #[must_use]
+    pub fn pull(mut self, rate: f64) -> Self {
+        self.pull = rate;
+        self
+    }
+}
+
+impl<S, F, G, H, N, R> std::fmt::Debug for Sides<S, F, G, H, N, R> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Sides").field("affine", &self.affine).field("pull", &self.pull).finish_non_exhaustive()
+    }
+}
+
+impl<S, F, G, H, N, R> TwoSided for Sides<S, F, G, H, N, R>
+where
+    S: State,
+    F: Fn(f64, &S) -> S,
+    G: Fn(f64, &S) -> S,
+    H: Fn(f64, &S) -> f64,
+    N: Fn(f64, &S) -> S,
+    R: Fn(f64, &S) -> f64,
+{
+    type State = S;
+    fn above(&self, t: f64, x: &S) -> S {
+        (self.above)(t, x)
+    }
+    fn below(&self, t: f64, x: &S) -> S {
+        (self.below)(t, x)
+    }
+    fn surface(&self, t: f64, x: &S) -> f64 {
+        (self.surface)(t, x)
+    }
+    fn normal(&self, t: f64, x: &S) -> S {
+        (self.normal)(t, x)
+    }
+    fn surface_rate(&self, t: f64, x: &S) -> f64 {
+        (self.rate)(t, x)
+    }
+    fn affine(&self) -> bool {
+        self.affine
+    }
+    fn pull(&self) -> f64 {
+        self.pull
+    }
+}
