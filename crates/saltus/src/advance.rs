@@ -37,6 +37,12 @@ struct Spent<E> {
     slack: f64,
 }
 
+/// How many edges that were taken at one time, and go on falling, are remembered.
+const MOST_IDLE: usize = 16;
+
+/// A guard farther from zero than this is not asked whether it crosses at the time of the last jump.
+const NEAR: f64 = 1e-9;
+
 type Found<A> = Option<(<A as Automaton>::Edge, Crossing)>;
 
 /// What is kept from arc to arc.
@@ -47,6 +53,8 @@ pub(crate) struct Memory<E> {
     controller: Controller,
     step: Option<f64>,
     spent: Option<Spent<E>>,
+    /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
+    idle: [Option<Spent<E>>; MOST_IDLE],
     /// When a scheduled edge was last taken.
     clock_took: Option<f64>,
     slack: f64,
@@ -60,16 +68,17 @@ impl<E: Copy + PartialEq> Memory<E> {
             controller: Controller::new(error_order),
             step: first_step,
             spent: None,
+            idle: [None; MOST_IDLE],
             clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
         }
     }
 
-    /// After a jump: the root of `edge` is spent.
-    pub(crate) fn jumped(&mut self, edge: E, duration: f64) {
-        self.spent = Some(Spent { edge, slack: self.slack });
-        self.last_duration = duration;
+    /// The edge among those taken earlier at this time that go on falling.
+    #[inline]
+    fn idle_as(&self, edge: E) -> Option<Spent<E>> {
+        self.idle.iter().map_while(|idle| *idle).find(|idle| idle.edge == edge)
     }
 
     /// Whether the last jump took this very edge.
@@ -92,6 +101,24 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent.
+    #[inline]
+    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: f64, t: f64) {
+        if duration > 0.0 {
+            if self.memory.idle[0].is_some() {
+                self.memory.idle = [None; MOST_IDLE];
+            }
+        } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
+            let g = self.automaton.guard(last.edge, t, x);
+            if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
+                self.memory.idle.rotate_right(1);
+                self.memory.idle[0] = Some(last);
+            }
+        }
+        self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
+        self.memory.last_duration = duration;
+    }
+
     /// From `x` in `mode` to the first crossing or the end of the span.
     #[inline]
     pub(crate) fn arc(
@@ -146,7 +173,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
-            let spent = self.memory.spent.filter(|spent| spent.edge == edge);
+            let spent = self.memory.spent.filter(|spent| spent.edge == edge).or_else(|| self.memory.idle_as(edge));
+            if spent.is_none() && g >= 0.0 && (g == 0.0 || self.memory.spent.is_some() && g <= NEAR) {
+                // Zero, or so near after a jump that time cannot tell this crossing from the last: taken now if it falls.
+                let slope = self.guard_slope(mode, edge, t, x, g);
+                if slope < 0.0 && g <= -slope * 8.0 * f64::EPSILON * self.memory.last_duration {
+                    return Ok(Some(edge));
+                }
+                continue;
+            }
             if g > 0.0 && spent.is_none() || g == 0.0 || spent.is_some_and(|spent| g.abs() <= spent.slack) {
                 continue;
             }
@@ -159,6 +194,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let on_wall = g.abs() <= rounding;
             match (on_wall, spent.is_some()) {
                 (true, true) => {}
+                (_, _) if g > 0.0 && !self.memory.just_took(edge) => {}
                 (_, _) if g > 0.0 => self.memory.spent = None, // the reset led away from the wall: no root to spend
                 (true, false) if slope > 0.0 => {}
                 (true, false) => return Ok(Some(edge)),
@@ -173,19 +209,43 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
+    ///
+    /// The shortest time is taken over which the change of the guard doubles (or quadruples) with time twice in a row: longer than
+    /// rounding, shorter than the way to the guard's next root.
     fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let h = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-9 };
-        self.memory.stats.guards += 1;
+        let longest = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 };
         let slope = self.flow(mode, t, x);
-        let middle = self.flow(mode, t + 0.5 * h, &x.with(|i| x.get(i) + 0.5 * h * slope.get(i)));
-        let ahead = x.with(|i| x.get(i) + h * middle.get(i));
-        (self.automaton.guard(edge, t + h, &ahead) - g) / h
+        let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
+        let mut h = longest / f64::from(1_u32 << 30);
+        loop {
+            let mut change = |h: f64| {
+                self.memory.stats.guards += 1;
+                let bend = h / longest;
+                let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
+                self.automaton.guard(edge, t + h, &ahead) - g
+            };
+            let far = change(h);
+            if h >= longest || h == 0.0 {
+                return far / h.max(f64::MIN_POSITIVE);
+            }
+            let (half, quarter) = (change(0.5 * h), change(0.25 * h));
+            let grows =
+                |by: f64| (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
+            if grows(2.0) || grows(4.0) {
+                return far / h;
+            }
+            h = (8.0 * h).min(longest);
+        }
     }
 
     /// How the search for `edge` starts on the first piece of an arc.
     #[inline]
     fn start(&self, edge: A::Edge, first: bool) -> Start {
-        if first && self.memory.just_took(edge) { Start::Spent } else { Start::Open }
+        if first && (self.memory.just_took(edge) || self.memory.idle_as(edge).is_some()) {
+            Start::Spent
+        } else {
+            Start::Open
+        }
     }
 
     // --- a mode whose flow is solved exactly ---
@@ -268,8 +328,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<Crossing>, Undefined> {
         let size = |k: usize| (0..c[k].len()).map(|i| c[k].get(i).abs()).fold(0.0, f64::max);
         let natural = (1..c.len())
-            .filter(|&k| size(k) > 0.0)
-            .map(|k| (size(0).max(f64::MIN_POSITIVE) / size(k)).powf(1.0 / f64::from(k as u32)))
+            .flat_map(|k| (0..k).map(move |j| (j, k)))
+            .filter(|&(j, k)| size(j) > 0.0 && size(k) > 0.0)
+            .map(|(j, k)| (size(j) / size(k)).powf(1.0 / (k - j) as f64))
             .fold(0.0, f64::max);
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) };
         let mut from = 0.0;
@@ -310,6 +371,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
         }
         let mut first = true;
+        let began = clock.now;
+        let (mut shortened, mut retries) = (f64::INFINITY, 0);
         loop {
             let remaining = clock.end.since(clock.now);
             if remaining <= 0.0 {
@@ -318,12 +381,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if self.memory.stats.steps >= self.options.most_steps {
                 return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
             }
-            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
+            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining.min(shortened))?;
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
             let last = h >= remaining;
-            let limit = if last { past(h) } else { h };
+            let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
             let found = self.first_crossing(mode, clock.now, c, h, limit, first)?;
+            if let Some((_, crossing)) = found
+                && crossing.inside < 1e-3 * h
+                && retries < 8
+            {
+                // A dense output of a step a thousand times too long rounds too coarsely to say what happens so near its start.
+                shortened = (100.0 * crossing.outside).max(1e-4 * h);
+                retries += 1;
+                continue;
+            }
+            (shortened, retries) = (f64::INFINITY, 0);
             let Some(rough) = found else {
                 let state = horner(c, 1.0);
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
@@ -510,6 +583,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// The powers of an affine guard along a polynomial: g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ.
+    ///
+    /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
     #[inline]
     fn composed(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> [f64; MAX_DEGREE + 1] {
         let t = now.seconds();
@@ -518,7 +593,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut p = [0.0; MAX_DEGREE + 1];
         p[0] = self.automaton.guard(edge, t, &c[0]);
         for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
-            *p = self.automaton.guard(edge, t, c) - constant;
+            const LARGER: f64 = (1_u128 << 70) as f64;
+            let far = self.automaton.guard(edge, t, &c.with(|i| LARGER * c.get(i))) - constant;
+            *p = if far.is_finite() { far / LARGER } else { self.automaton.guard(edge, t, c) - constant };
         }
         p
     }

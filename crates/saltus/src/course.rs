@@ -192,7 +192,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Some(Stop::Terminal { edge }));
             }
         }
-        at.memory.jumped(edge, duration);
+        let memory = &mut at.memory;
+        let t = at.clock.now.seconds();
+        Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory }
+            .jumped(mode, &x, edge, duration, t);
         // x is x⁺.
         at.contraction.push(duration);
         let elapsed = at.clock.now.since(at.clock.start);

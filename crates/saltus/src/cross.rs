@@ -71,8 +71,8 @@ pub fn first_fall(guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Res
             Departure::Again => return Ok(Some(Crossing::at_start(span * AT_START))),
         },
     };
-    let bracket = search.sampled(0.0, span, inside, start, DEEPEST)?;
-    search.refined(bracket)
+    let bracket = search.sampled(0.0, span, inside, start, DEEPEST, f64::INFINITY)?;
+    search.refined(bracket, start)
 }
 
 /// The same for a guard that is known to be the polynomial `p(s / span)`; `guard` decides signs and refines.
@@ -98,11 +98,13 @@ pub(crate) fn first_fall_of_polynomial(
         Start::Spent => p.coefficients().first().is_some_and(|&q| q >= 0.0),
     };
     let bracket = search.halved(&p, margin, 0.0, span, inside, DEEPEST)?;
-    search.refined(bracket)
+    search.refined(bracket, start)
 }
 
-/// The fall close to `near`, a root known but for rounding, between neighbouring numbers; `None` if the guard does not fall there.
+/// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
+    // Where rounding hides the guard's sign all around, the root that is known decides: a ball does not fall through a floor at height one.
+    let known = Crossing { inside: near, outside: near.next_up(), root: near };
     let mut step = near.next_up() - near;
     let (mut a, mut b) = (near, near);
     if guard(near) >= 0.0 {
@@ -114,7 +116,7 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
             a = b;
             step *= 2.0;
             if b > 2.0 * near {
-                return None;
+                return Some(known);
             }
         }
     } else {
@@ -124,7 +126,7 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
                 break;
             }
             if a == 0.0 {
-                return None;
+                return Some(known);
             }
             b = a;
             step *= 2.0;
@@ -168,23 +170,27 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     /// Where the guard goes from a spent root at the start, where its value is `first`.
     ///
     /// Looked at closer than rounding can tell, then ever farther away, until two doublings of time in a row double the change of the
-    /// guard (a simple root: its sign decides) or quadruple it (a double root: if the guard falls, it holds one more fall).
+    /// guard (a simple root: its sign decides; times eight, a triple one) or quadruple it (a double root: if the guard falls, it holds one more fall).
     fn after_spent_root(&mut self, first: f64, span: f64) -> Result<Departure, Undefined> {
         let mut s = span * AT_START;
         let mut far = 0.0;
+        let mut rose = false;
         while s < span {
             far = self.value(s)? - first;
             let (half, quarter) = (self.value(0.5 * s)? - first, self.value(0.25 * s)? - first);
+            rose |= far > 0.0;
             let grows =
                 |by: f64| (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
-            match (grows(2.0), grows(4.0), far > 0.0) {
+            match (grows(2.0) || grows(8.0), grows(4.0), far > 0.0) {
                 (true, _, true) | (_, true, true) => return Ok(Departure::Inside),
                 (true, _, false) => return Ok(Departure::Outside),
                 (_, true, false) => return Ok(Departure::Again),
                 _ => s *= 8.0,
             }
         }
-        Ok(if far >= 0.0 { Departure::Inside } else { Departure::Outside })
+        // Nothing but steps of rounding: the end decides, unless the guard was seen to rise.
+        let fell = far < 0.0 || self.value(span)? < first;
+        Ok(if rose || !fell { Departure::Inside } else { Departure::Outside })
     }
 
     /// Signs at the ends alone; a zero leaves the guard on the side it came from.
@@ -217,18 +223,31 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         }
     }
 
-    fn sampled(&mut self, a: f64, b: f64, inside: bool, start: Start, depth: u32) -> Result<Part, Undefined> {
+    /// `whole` is how far the guard may be from its interpolant on the interval of which this is a half.
+    fn sampled(
+        &mut self,
+        a: f64,
+        b: f64,
+        inside: bool,
+        start: Start,
+        depth: u32,
+        whole: f64,
+    ) -> Result<Part, Undefined> {
+        let mut error = f64::INFINITY;
         let middle = 0.5 * (a + b);
         let narrow = depth == 0 || !(a < middle && middle < b) || self.samples > MOST_SAMPLES;
         let undecided = match self.proxy(a, b) {
             Err(undefined) if narrow => return Err(undefined),
             Err(_) => true,
             Ok((p, margin)) => {
+                // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
+                let rounding = margin >= 0.1 * whole;
+                error = margin;
                 let p = if start == Start::Spent { p.without_root_at_start() } else { p };
                 match p.shape(margin) {
                     Shape::Above => return Ok(Part::None { inside: true }),
                     Shape::Unclear => true,
-                    Shape::Falling | Shape::Rising => margin > 1e-6 * p.scale(),
+                    Shape::Falling | Shape::Rising => margin > if rounding { 0.02 } else { 1e-6 } * p.scale(),
                     Shape::Below => false,
                     Shape::Flat => p.scale() > 64.0 * f64::EPSILON * self.largest,
                 }
@@ -237,8 +256,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         if !undecided || narrow {
             return self.by_signs(a, b, inside);
         }
-        match self.sampled(a, middle, inside, start, depth - 1)? {
-            Part::None { inside } => self.sampled(middle, b, inside, Start::Open, depth - 1),
+        match self.sampled(a, middle, inside, start, depth - 1, error)? {
+            Part::None { inside } => self.sampled(middle, b, inside, Start::Open, depth - 1, error),
             fall @ Part::Fall(..) => Ok(fall),
         }
     }
@@ -269,19 +288,35 @@ impl<G: FnMut(f64) -> f64> Search<G> {
 
     /// The bracket narrowed to neighbouring numbers by ITP, which is never slower than bisection by more than one step
     /// (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
-    fn refined(&mut self, part: Part) -> Result<Option<Crossing>, Undefined> {
+    fn refined(&mut self, part: Part, start: Start) -> Result<Option<Crossing>, Undefined> {
         let Part::Fall(mut a, mut b) = part else { return Ok(None) };
-        if a == 0.0 && self.value(b * AT_START)? < 0.0 {
+        if a == 0.0 && start == Start::Open && self.value(b * AT_START)? < 0.0 {
             return Ok(Some(Crossing::at_start(b * AT_START)));
         }
+        if a == 0.0 && start == Start::Spent {
+            // Rounding may leave the guard negative at the spent root: begin where it is seen to have risen.
+            let mut middle = 0.5 * b;
+            while self.value(middle)? <= 0.0 {
+                if middle <= b * AT_START {
+                    return Ok(Some(Crossing::at_start(middle)));
+                }
+                middle *= 0.5;
+            }
+            a = middle;
+            let mut ahead = 2.0 * a;
+            while ahead < b && self.value(ahead)? >= 0.0 {
+                a = ahead;
+                ahead *= 2.0;
+            }
+            b = ahead.min(b);
+        }
         let (mut above, mut below) = (self.value(a)?.max(0.0), self.value(b)?);
-        let resolution = b * 0.25 * f64::EPSILON;
         let mut allowance = 2.0 * (b - a);
         let truncation = 0.2 / (b - a);
         while a.next_up() < b && b - a > f64::MIN_POSITIVE {
             let (middle, width) = (0.5 * (a + b), b - a);
             let slack = (allowance - 0.5 * width).max(0.0);
-            allowance = (0.5 * allowance).max(resolution);
+            allowance *= 0.5; // without a floor: a guard that is zero on a stretch is not crept along number by number
             let secant = (b * above - a * below) / (above - below);
             let towards = (middle - secant).signum();
             let shift = truncation * width * width;

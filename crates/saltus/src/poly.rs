@@ -96,12 +96,12 @@ impl Bernstein {
         }
     }
 
-    /// The polynomial divided by u, its value at 0 taken to be zero: the root there is spent.
+    /// What changes from the start on, divided by u: (p(u) - p(0)) / u. The root at the start is spent, and its value there is rounding.
     pub(crate) fn without_root_at_start(&self) -> Self {
         let mut b = [0.0; MAX_DEGREE + 1];
         #[allow(clippy::cast_precision_loss)]
         for (i, value) in b.iter_mut().enumerate().take(self.degree) {
-            *value = self.b[i + 1] * self.degree as f64 / (i + 1) as f64;
+            *value = (self.b[i + 1] - self.b[0]) * self.degree as f64 / (i + 1) as f64;
         }
         Self { b, degree: self.degree.saturating_sub(1) }
     }

@@ -18,8 +18,12 @@ impl Contraction {
         Self { durations: [0.0; MEMORY], count: 0 }
     }
 
+    /// Adds the time since the last jump; jumps at one time are one instant and add nothing.
     #[inline]
     pub(crate) fn push(&mut self, duration: f64) {
+        if duration == 0.0 {
+            return;
+        }
         self.durations[self.count % MEMORY] = duration;
         self.count += 1;
     }
@@ -76,6 +80,15 @@ mod tests {
         let mut contraction = Contraction::new();
         for n in 1..100_000 {
             contraction.push(1e-3 / f64::from(n));
+            assert_eq!(contraction.remaining(1e-12), None);
+        }
+    }
+
+    #[test]
+    fn a_cascade_is_not_zeno() {
+        let mut contraction = Contraction::new();
+        for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
+            contraction.push(duration);
             assert_eq!(contraction.remaining(1e-12), None);
         }
     }

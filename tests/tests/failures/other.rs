@@ -1,0 +1,45 @@
+//! Dense output at the ends of steps, and runs side by side.
+
+use saltus::nalgebra::vector;
+use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
+use saltus::{Hybrid, Simulation};
+
+use super::{Flight, G, PATHS, ball};
+
+fn largest_gap<M: Stepper>(stepper: M) -> f64 {
+    let automaton = Hybrid::new().mode("run", |_t, x: &Flight| vector![x[1], (1.0 - x[0] * x[0]) * x[1] - x[0]]);
+    let run = Simulation::of(&automaton).stepper(stepper).run("run", vector![2.0, 0.0], 0.0..10.0).unwrap();
+    let pieces: Vec<_> = run.trajectory.pieces(0).collect();
+    assert!(pieces.len() > 10);
+    let gap = |a: &Flight, b: &Flight| (0..2).map(|i| (a[i] - b[i]).abs() / b[i].abs().max(1.0)).fold(0.0, f64::max);
+    let inner = pieces.windows(2).map(|pair| gap(&pair[0].at(pair[0].span()), &pair[1].at(0.0))).fold(0.0, f64::max);
+    let end = pieces[pieces.len() - 1];
+    inner.max(gap(&end.at(end.span()), &run.state))
+}
+
+/// A dense output that is off near the ends of its steps; here it meets the step's own values to a rounding.
+#[test]
+fn the_dense_output_meets_the_steps() {
+    for gap in [largest_gap(Tsit5), largest_gap(Dop853), largest_gap(Rodas5P)] {
+        assert!(gap <= f64::EPSILON, "{gap:e}");
+    }
+}
+
+/// Runs side by side differ from the same runs alone; here they are the same to the last bit.
+#[test]
+fn runs_side_by_side_are_the_runs_alone() {
+    for path in PATHS {
+        let automaton = ball(G, 0.8, path);
+        let lane = |k: u32| {
+            let start = vector![0.1 + 0.1 * f64::from(k), 0.3];
+            let run = Simulation::of(&automaton).run("flight", start, 0.0..2.0).unwrap();
+            run.trajectory.jumps().iter().map(|jump| (jump.t().to_bits(), jump.after[1].to_bits())).collect::<Vec<_>>()
+        };
+        let alone: Vec<_> = (0..16).map(lane).collect();
+        let beside: Vec<_> = std::thread::scope(|scope| {
+            let lanes: Vec<_> = (0..16).map(|k| scope.spawn(move || lane(k))).collect();
+            lanes.into_iter().map(|lane| lane.join().unwrap()).collect()
+        });
+        assert_eq!(alone, beside, "{path:?}");
+    }
+}
