@@ -13,6 +13,10 @@ pub struct Model;
 pub struct Fitting;
 
 #[cfg(doctest)]
+#[doc = include_str!("../../docs/sensitivities.md")]
+pub struct Sensitivities;
+
+#[cfg(doctest)]
 #[doc = include_str!("../../docs/simulating.md")]
 pub struct Simulating;
 

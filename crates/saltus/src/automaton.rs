@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use crate::error::ErrorKind;
 use crate::state::State;
 
 /// A hybrid automaton: in each mode a flow x' = f(t, x); out of each mode edges, each with a guard and a reset.
@@ -60,6 +61,25 @@ pub trait Automaton {
 
     /// The mode and state just after `edge` is taken from the state `x` just before.
     fn reset(&self, edge: Self::Edge, t: f64, x: &Self::State) -> (Self::Mode, Self::State);
+
+    /// Takes `edge` out of `mode`: what a run does at a jump. The default is the [`reset`](Self::reset) and never fails.
+    ///
+    /// Models leave this alone. It is for automata made of others, whose jump depends on the mode left
+    /// (the flow before it, say) or may not exist; the run then fails with an error of the kind returned.
+    ///
+    /// # Errors
+    /// What kind of failure it is; the run adds the time, mode, edge and state.
+    #[inline]
+    fn take(
+        &self,
+        mode: Self::Mode,
+        edge: Self::Edge,
+        t: f64,
+        x: &Self::State,
+    ) -> Result<(Self::Mode, Self::State), ErrorKind> {
+        let _ = mode;
+        Ok(self.reset(edge, t, x))
+    }
 
     /// What to do when the guard of `edge` is already negative as its mode is entered. The default refuses, with an error.
     fn entry(&self, edge: Self::Edge) -> Entry {
@@ -225,7 +245,7 @@ pub struct Polynomial<S> {
     len: usize,
 }
 
-impl<S: State> Polynomial<S> {
+impl<S> Polynomial<S> {
     /// The coefficients c₀, c₁, …, lowest first.
     #[must_use]
     #[inline]
@@ -233,6 +253,14 @@ impl<S: State> Polynomial<S> {
         &self.coefficients[..self.len]
     }
 
+    /// The polynomial whose coefficient k is `f(k, cₖ)`.
+    #[cfg(feature = "num-dual")]
+    pub(crate) fn map<R>(&self, mut f: impl FnMut(usize, &S) -> R) -> Polynomial<R> {
+        Polynomial { coefficients: std::array::from_fn(|k| f(k, &self.coefficients[k])), len: self.len }
+    }
+}
+
+impl<S: State> Polynomial<S> {
     /// The state a time `s` after the start.
     #[must_use]
     pub fn at(&self, s: f64) -> S {
@@ -240,7 +268,7 @@ impl<S: State> Polynomial<S> {
     }
 }
 
-impl<S: State, const N: usize> From<[S; N]> for Polynomial<S> {
+impl<S: Copy, const N: usize> From<[S; N]> for Polynomial<S> {
     #[inline]
     fn from(list: [S; N]) -> Self {
         const { assert!(1 <= N && N <= 4, "a polynomial has one to four coefficients") };

@@ -175,7 +175,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         };
         // Here x⁻ = before, still inside the domain of the mode.
-        let (to, after) = automaton.reset(edge, at.clock.now.seconds(), &before);
+        let now = at.clock.now.seconds();
+        let (to, after) = automaton
+            .take(mode, edge, now, &before)
+            .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
         let duration = at.clock.now.since(began);
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = duration == 0.0 && at.memory.just_took(edge) && to == mode && same(&x, &after);

@@ -51,6 +51,8 @@ pub enum ErrorKind {
     Reset,
     /// A guard is already negative as its mode is entered, and its edge refuses that.
     Entry,
+    /// A crossing without speed, where derivatives were asked for: they do not exist there.
+    Grazing,
     /// The step size fell below the spacing of time.
     StepSize,
 }
@@ -124,6 +126,10 @@ impl fmt::Display for Error {
             ErrorKind::Entry => write!(
                 f,
                 "the guard of edge {edge} is already negative as the mode is entered: correct the state or the reset, or let Automaton::entry answer Wait or Fire"
+            )?,
+            ErrorKind::Grazing => write!(
+                f,
+                "edge {edge} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
             )?,
             ErrorKind::StepSize => write!(
                 f,

@@ -31,6 +31,8 @@ mod distance;
 mod error;
 mod filippov;
 mod hybrid;
+#[cfg(feature = "num-dual")]
+mod linearize;
 mod observe;
 mod poly;
 mod reverse;
@@ -42,6 +44,8 @@ mod trajectory;
 mod zeno;
 
 pub use nalgebra;
+#[cfg(feature = "num-dual")]
+pub use num_dual;
 
 pub use automaton::{Automaton, Edges, Entry, Polynomial};
 pub use course::{Checkpoint, Course};
@@ -49,6 +53,8 @@ pub use distance::Closeness;
 pub use error::{Error, ErrorKind};
 pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
 pub use hybrid::{Hybrid, Link, every};
+#[cfg(feature = "num-dual")]
+pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
 pub use observe::Observer;
 pub use reverse::{Invertible, Reversed};
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};

@@ -1,0 +1,260 @@
+//! Derivatives of runs: a model written once over numbers that carry a derivative, and what jumps do to derivatives.
+
+mod passage;
+mod sensitive;
+
+pub use passage::{Saltation, saltation};
+pub use sensitive::{Sensitive, Tangent, Wrt};
+
+use nalgebra::SVector;
+use num_dual::{Dual64, DualNum};
+
+use crate::automaton::{Automaton, Polynomial};
+use crate::state::{Coords, State};
+
+/// A number that a model may be written over: `f64`, or a dual number that carries derivatives along.
+///
+/// Has the arithmetic of `f64`, with `f64` on the right side of an operator, and its functions (`sin`, `sqrt`, `powi`, `abs`, …) by the same
+/// names. Comparisons look at the value alone.
+///
+/// ```
+/// use saltus::Number;
+/// use saltus::num_dual::Dual64;
+///
+/// fn drag<D: Number>(v: D, k: D) -> D {
+///     -k * v * v.abs()
+/// }
+/// assert_eq!(drag(-3.0, 0.1), 0.1 * 3.0 * 3.0);
+/// // d/dv at v = -3: -2 k |v|
+/// assert!((drag(Dual64::new(-3.0, 1.0), Dual64::from(0.1)).eps + 0.6).abs() < 1e-15);
+/// ```
+pub trait Number: DualNum<Primitive = f64> + Copy {}
+
+impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
+
+/// A state whose coordinates can be made dual numbers.
+///
+/// Over a number D, `f64` becomes `D`, and `[f64; N]`, [`SVector<f64, N>`] and [`Coords<N>`](Coords) become `[D; N]`; where a state has
+/// fewer than N coordinates the rest are zeros, and ignored where they come back.
+pub trait Lift: State {
+    /// The coordinates over another number.
+    type Over<D: Number>: Copy;
+
+    /// The coordinates of a state of this shape, `f(i)` the i-th.
+    fn lift<D: Number>(&self, f: impl FnMut(usize) -> D) -> Self::Over<D>;
+
+    /// Coordinate `i`.
+    fn pick<D: Number>(over: &Self::Over<D>, i: usize) -> D;
+
+    /// The coordinates as they are.
+    fn over(&self) -> Self::Over<f64> {
+        self.lift(|i| self.get(i))
+    }
+}
+
+/// The coordinates of a state `S` over the number `D`: see [`Lift`].
+pub type Over<S, D> = <S as Lift>::Over<D>;
+
+impl Lift for f64 {
+    type Over<D: Number> = D;
+    #[inline]
+    fn lift<D: Number>(&self, mut f: impl FnMut(usize) -> D) -> D {
+        f(0)
+    }
+    #[inline]
+    fn pick<D: Number>(over: &D, _: usize) -> D {
+        *over
+    }
+}
+
+impl<const N: usize> Lift for [f64; N] {
+    type Over<D: Number> = [D; N];
+    #[inline]
+    fn lift<D: Number>(&self, f: impl FnMut(usize) -> D) -> [D; N] {
+        std::array::from_fn(f)
+    }
+    #[inline]
+    fn pick<D: Number>(over: &[D; N], i: usize) -> D {
+        over[i]
+    }
+}
+
+impl<const N: usize> Lift for SVector<f64, N> {
+    type Over<D: Number> = [D; N];
+    #[inline]
+    fn lift<D: Number>(&self, f: impl FnMut(usize) -> D) -> [D; N] {
+        std::array::from_fn(f)
+    }
+    #[inline]
+    fn pick<D: Number>(over: &[D; N], i: usize) -> D {
+        over[i]
+    }
+}
+
+impl<const CAP: usize> Lift for Coords<CAP> {
+    type Over<D: Number> = [D; CAP];
+    #[inline]
+    fn lift<D: Number>(&self, mut f: impl FnMut(usize) -> D) -> [D; CAP] {
+        std::array::from_fn(|i| if i < self.len() { f(i) } else { D::zero() })
+    }
+    #[inline]
+    fn pick<D: Number>(over: &[D; CAP], i: usize) -> D {
+        over[i]
+    }
+}
+
+/// An automaton whose flow, guards and resets can be differentiated: each is written once, over any [`Number`].
+///
+/// The methods of [`Automaton`] are then one line each. The **parameters** p are the numbers in the model with respect to which
+/// derivatives may be wanted; they have the same units in every mode.
+///
+/// A ball with gravity and coefficient of restitution as parameters:
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Automaton, Edges, Lift, Linearize, Number, saltation};
+///
+/// struct Ball {
+///     gravity: f64,
+///     cor: f64,
+/// }
+///
+/// impl Linearize for Ball {
+///     type Parameters = [f64; 2];
+///
+///     fn parameters(&self) -> [f64; 2] {
+///         [self.gravity, self.cor]
+///     }
+///     fn flow_over<D: Number>(&self, _: (), _t: D, [_, v]: [D; 2], [g, _]: [D; 2]) -> [D; 2] {
+///         [v, -g]
+///     }
+///     fn guard_over<D: Number>(&self, _: (), _t: D, [y, _]: [D; 2], _: [D; 2]) -> D {
+///         y
+///     }
+///     fn reset_over<D: Number>(&self, _: (), _t: D, [_, v]: [D; 2], [_, e]: [D; 2]) -> [D; 2] {
+///         [D::zero(), -e * v]
+///     }
+/// }
+///
+/// impl Automaton for Ball {
+///     type Mode = ();
+///     type State = Vector2<f64>; // height in m, velocity in m/s
+///     type Edge = ();
+///
+///     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+///         self.flow_at(mode, t, x)
+///     }
+///     fn edges(&self, _: ()) -> Edges<()> {
+///         Edges::from([()])
+///     }
+///     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 {
+///         self.guard_at(edge, t, x)
+///     }
+///     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
+///         ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+///     }
+/// }
+///
+/// // An impact at 4 m/s turns both the height and the velocity of a neighbour round: Ξ = -e [1 0; g (1 + e)/(e v⁻) 1].
+/// let ball = Ball { gravity: 10.0, cor: 0.5 };
+/// let jump = saltation(&ball, (), (), 0.0, &vector![0.0, -4.0])?;
+/// assert_eq!(jump.state, saltus::nalgebra::dmatrix![-0.5, 0.0; 3.75, -0.5]);
+/// // Raised by 1 m, it would have landed a quarter of a second later.
+/// assert_eq!(jump.time_by_state[0], 0.25);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+///
+/// The numbers that decide events are those of [`Automaton`]; of the methods here the derivatives count. The two must describe the same
+/// model. What a mode or edge carries frozen (`Stance { foot }`) counts as constant: if it depends on the state, make it a coordinate
+/// that stands still.
+pub trait Linearize: Automaton<State: Lift> {
+    /// The parameters, `[f64; P]` for P of them (P may be zero).
+    type Parameters: Lift;
+
+    /// The values of the parameters.
+    fn parameters(&self) -> Self::Parameters;
+
+    /// The flow, as [`Automaton::flow`].
+    fn flow_over<D: Number>(
+        &self,
+        mode: Self::Mode,
+        t: D,
+        x: Over<Self::State, D>,
+        p: Over<Self::Parameters, D>,
+    ) -> Over<Self::State, D>;
+
+    /// The guard, as [`Automaton::guard`].
+    fn guard_over<D: Number>(&self, edge: Self::Edge, t: D, x: Over<Self::State, D>, p: Over<Self::Parameters, D>)
+    -> D;
+
+    /// The state after the jump, as [`Automaton::reset`].
+    fn reset_over<D: Number>(
+        &self,
+        edge: Self::Edge,
+        t: D,
+        x: Over<Self::State, D>,
+        p: Over<Self::Parameters, D>,
+    ) -> Over<Self::State, D>;
+
+    /// The state beyond a Zeno limit, as [`Automaton::beyond`]. Without it, a run with derivatives ends at the limit.
+    fn beyond_over<D: Number>(
+        &self,
+        mode: Self::Mode,
+        t: D,
+        x: Over<Self::State, D>,
+        p: Over<Self::Parameters, D>,
+    ) -> Option<Over<Self::State, D>> {
+        let _ = (mode, t, x, p);
+        None
+    }
+
+    /// The exact solution, as [`Automaton::exact`]. Without it, a run with derivatives takes steps.
+    fn exact_over<D: Number>(
+        &self,
+        mode: Self::Mode,
+        t: D,
+        x: Over<Self::State, D>,
+        p: Over<Self::Parameters, D>,
+    ) -> Option<Polynomial<Over<Self::State, D>>> {
+        let _ = (mode, t, x, p);
+        None
+    }
+
+    /// What [`Automaton::flow`] may answer.
+    #[inline]
+    fn flow_at(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Self::State {
+        let slope = self.flow_over(mode, t, x.over(), self.parameters().over());
+        x.with(|i| Self::State::pick(&slope, i))
+    }
+
+    /// What [`Automaton::guard`] may answer.
+    #[inline]
+    fn guard_at(&self, edge: Self::Edge, t: f64, x: &Self::State) -> f64 {
+        self.guard_over(edge, t, x.over(), self.parameters().over())
+    }
+
+    /// What [`Automaton::exact`] may answer.
+    #[inline]
+    fn exact_at(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Option<Polynomial<Self::State>> {
+        let solution = self.exact_over(mode, t, x.over(), self.parameters().over())?;
+        Some(solution.map(|_, c| x.with(|i| Self::State::pick(c, i))))
+    }
+}
+
+/// `x` moving with velocity `dx`.
+#[inline]
+fn moving<S: Lift>(x: &S, dx: &S) -> Over<S, Dual64> {
+    x.lift(|i| Dual64::new(x.get(i), dx.get(i)))
+}
+
+/// `x` with its coordinate `moves`, if any, moving with unit velocity.
+#[inline]
+fn moving_in<S: Lift>(x: &S, moves: Option<usize>) -> Over<S, Dual64> {
+    x.lift(|i| Dual64::new(x.get(i), if moves == Some(i) { 1.0 } else { 0.0 }))
+}
+
+/// The velocity of coordinates, in the shape of `like`.
+#[inline]
+fn velocity<S: Lift>(over: &Over<S, Dual64>, like: &S) -> S {
+    like.with(|i| S::pick(over, i).eps)
+}

@@ -1,0 +1,193 @@
+//! What a jump does to neighbouring runs: they cross a little earlier or later, at another place, and land elsewhere.
+
+use nalgebra::{DMatrix, RowDVector};
+use num_dual::{Dual2_64, Dual64};
+
+use super::{Lift, Linearize, moving, moving_in, velocity};
+use crate::error::{Error, ErrorKind, Place};
+use crate::state::State;
+
+/// A jump to first order: what becomes of a small change of the state x⁻ before it and of the parameters.
+///
+/// With n⁻ coordinates before the jump, n⁺ after it and P parameters:
+///
+/// | field | shape | equation |
+/// |---|---|---|
+/// | `state` | n⁺ × n⁻ | `Ξ = R_x + (f⁺ - R_x f⁻ - R_t) g_x / ġ` |
+/// | `parameters` | n⁺ × P | `R_p + (f⁺ - R_x f⁻ - R_t) g_p / ġ` |
+/// | `time_by_state` | 1 × n⁻ | `-g_x / ġ` |
+/// | `time_by_parameters` | 1 × P | `-g_p / ġ` |
+///
+/// where g is the guard, R the reset, f⁻ and f⁺ the flows at both sides, and `ġ = g_t + g_x f⁻ < 0` the rate at which the guard falls.
+/// Units are those of the quotients: a coordinate after by a coordinate before, seconds by a coordinate, and so on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Saltation {
+    /// The saltation matrix Ξ: δx⁺ = Ξ δx⁻ at one and the same time.
+    pub state: DMatrix<f64>,
+    /// How the state after the jump depends on the parameters, the state before held fixed.
+    pub parameters: DMatrix<f64>,
+    /// How the time of the jump depends on the state before.
+    pub time_by_state: RowDVector<f64>,
+    /// How the time of the jump depends on the parameters.
+    pub time_by_parameters: RowDVector<f64>,
+}
+
+/// The saltation matrix of `edge`, taken out of `mode` at time `t` from the state `x` just before; rectangular where the dimension changes.
+///
+/// `Ξ = R_x + (f⁺ - R_x f⁻ - R_t) g_x / (g_t + g_x f⁻)`; see [`Saltation`] for the rest. The derivatives are exact to rounding (dual numbers).
+///
+/// Sources: M. A. Aizerman, F. R. Gantmacher, *On the stability of periodic motions*, J. Appl. Math. Mech. 22 (1958) 1065; R. I. Leine,
+/// H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 7; N. J. Kong, J. J. Payne, J. Zhu,
+/// A. M. Johnson, *Saltation matrices: the essential tool for linearizing hybrid dynamical systems*, Proc. IEEE 112 (2024) 585.
+///
+/// An example is at [`Linearize`].
+///
+/// # Errors
+/// [`ErrorKind::Grazing`] if the guard does not fall at `x` with a rate that exceeds rounding: the jump has no derivative there.
+pub fn saltation<A: Linearize>(
+    automaton: &A,
+    mode: A::Mode,
+    edge: A::Edge,
+    t: f64,
+    x: &A::State,
+) -> Result<Saltation, Error> {
+    let failed = |kind| Error::new(kind, Place::new(t, mode, Some(edge), x));
+    let passage = Passage::of(automaton, mode, edge, t, x).map_err(failed)?;
+    if passage.grazes(f64::INFINITY) {
+        return Err(failed(ErrorKind::Grazing));
+    }
+    let (rows, columns, parameters) = (passage.after.len(), x.len(), automaton.parameters().len());
+    let zero = x.with(|_| 0.0);
+    let mut jump = Saltation {
+        state: DMatrix::zeros(rows, columns),
+        parameters: DMatrix::zeros(rows, parameters),
+        time_by_state: RowDVector::zeros(columns),
+        time_by_parameters: RowDVector::zeros(parameters),
+    };
+    for k in 0..columns {
+        let unit = x.with(|i| if i == k { 1.0 } else { 0.0 });
+        let delay = passage.delay(&unit, None);
+        let after = passage.across(&unit, None, delay);
+        jump.time_by_state[k] = delay;
+        (0..rows).for_each(|i| jump.state[(i, k)] = after.get(i));
+    }
+    for k in 0..parameters {
+        let delay = passage.delay(&zero, Some(k));
+        let after = passage.across(&zero, Some(k), delay);
+        jump.time_by_parameters[k] = delay;
+        (0..rows).for_each(|i| jump.parameters[(i, k)] = after.get(i));
+    }
+    Ok(jump)
+}
+
+/// A jump and what it takes to follow a neighbouring run through it.
+///
+/// A neighbour, off by δx at the time of the jump, crosses the guard later by the **delay** `τ = -(g_x δx + g_p δp)/ġ`, where it has been carried
+/// to x + δx + f⁻ τ. There it is reset. Carried back to the time of the jump by the flow after it, it is off by
+/// `δx⁺ = R_x (δx + f⁻ τ) + R_t τ + R_p δp - f⁺ τ`: the saltation matrix times δx, without the matrix.
+pub(super) struct Passage<'a, A: Linearize> {
+    automaton: &'a A,
+    edge: A::Edge,
+    t: f64,
+    x: &'a A::State,
+    /// The mode after.
+    pub(super) to: A::Mode,
+    /// The state after, x⁺.
+    pub(super) after: A::State,
+    /// The flows f⁻ and f⁺.
+    flows: (A::State, A::State),
+    /// The guard's value, its gradient `g_x`, and its first and second derivative by time along the flow before.
+    guard: f64,
+    gradient: A::State,
+    rate: f64,
+    bend: f64,
+}
+
+impl<'a, A: Linearize> Passage<'a, A> {
+    pub(super) fn of(
+        automaton: &'a A,
+        mode: A::Mode,
+        edge: A::Edge,
+        t: f64,
+        x: &'a A::State,
+    ) -> Result<Self, ErrorKind> {
+        let (to, after) = automaton.take(mode, edge, t, x)?;
+        let flows = (automaton.flow(mode, t, x), automaton.flow(to, t, &after));
+        let p = automaton.parameters();
+        // Along the flow x moves with velocity f and acceleration df/dt.
+        let f = &flows.0;
+        let changing = automaton.flow_over(mode, Dual64::new(t, 1.0), moving(x, f), moving_in(&p, None));
+        let along = x.lift(|i| Dual2_64::new(x.get(i), f.get(i), A::State::pick(&changing, i).eps));
+        let fixed = p.lift(|i| Dual2_64::new(p.get(i), 0.0, 0.0));
+        let guard = automaton.guard_over(edge, Dual2_64::new(t, 1.0, 0.0), along, fixed);
+        let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;
+        let gradient = x.with(slope);
+        Ok(Self { automaton, edge, t, x, to, after, flows, guard: guard.re, gradient, rate: guard.v1, bend: guard.v2 })
+    }
+
+    /// Whether the crossing has no speed, but for rounding, at the end of an arc of `duration`.
+    ///
+    /// The rate ġ must be negative and exceed its own rounding; it must not be what g̈ makes of it within the rounding of time; and
+    /// unless g̈ has had just the arc to build it up (as in the last of a ball's bounces, however low), the guard must have fallen from further
+    /// away than its rounding, ġ²/2g̈.
+    pub(super) fn grazes(&self, duration: f64) -> bool {
+        let (rate, bend) = (self.rate.abs(), self.bend.abs());
+        let low = rate * rate <= 2.0 * bend * 4.0 * f64::EPSILON * self.size(self.x);
+        self.rate >= 0.0
+            || rate <= 8.0 * f64::EPSILON * self.size(&self.flows.0)
+            || duration.is_finite() && rate <= 16.0 * f64::EPSILON * bend * duration
+            || low && rate * 64.0 <= bend * duration
+    }
+
+    /// Whether the state before is outside the guard by more than rounding, as only an edge that fires on entry allows.
+    pub(super) fn is_outside(&self) -> bool {
+        let moment = self.t.abs().next_up() - self.t.abs();
+        self.guard < -8.0 * (self.rate.abs() * moment).max(f64::EPSILON * self.size(self.x))
+    }
+
+    /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any, moving.
+    pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> f64 {
+        -(self.along(dx) + self.by_parameter(p)) / self.rate
+    }
+
+    /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the rounding of the guard's terms can tell.
+    pub(super) fn keeps(&self, last: f64, dx: &A::State, p: Option<usize>) -> bool {
+        let by_parameter = self.by_parameter(p);
+        let off = self.along(dx) + by_parameter + self.rate * last;
+        let terms = self.size(dx) + by_parameter.abs() + self.size(&self.flows.0) * last.abs();
+        off.abs() <= 64.0 * f64::EPSILON * terms
+    }
+
+    /// Whether an arc of `duration` was too short for time to tell its ends apart, but for rounding.
+    pub(super) fn is_at_once(&self, duration: f64) -> bool {
+        duration <= 64.0 * (self.t.abs().next_up() - self.t.abs())
+    }
+
+    /// `g_x y`, and the sum of its terms' sizes.
+    fn along(&self, y: &A::State) -> f64 {
+        (0..y.len()).map(|i| self.gradient.get(i) * y.get(i)).sum()
+    }
+    fn size(&self, y: &A::State) -> f64 {
+        (0..y.len()).map(|i| (self.gradient.get(i) * y.get(i)).abs()).sum()
+    }
+
+    /// `g_p` for the parameter `p`, zero for none.
+    fn by_parameter(&self, p: Option<usize>) -> f64 {
+        if p.is_none() {
+            return 0.0;
+        }
+        let parameters = moving_in(&self.automaton.parameters(), p);
+        self.automaton.guard_over(self.edge, Dual64::from(self.t), moving_in(self.x, None), parameters).eps
+    }
+
+    /// Where the neighbour that crosses with this `delay` is after the jump, δx⁺.
+    pub(super) fn across(&self, dx: &A::State, p: Option<usize>, delay: f64) -> A::State {
+        let (before, after) = &self.flows;
+        let carried = dx.with(|i| dx.get(i) + before.get(i) * delay);
+        let parameters = moving_in(&self.automaton.parameters(), p);
+        let reset =
+            self.automaton.reset_over(self.edge, Dual64::new(self.t, delay), moving(self.x, &carried), parameters);
+        let landed = velocity(&reset, &self.after);
+        landed.with(|i| landed.get(i) - after.get(i) * delay)
+    }
+}
