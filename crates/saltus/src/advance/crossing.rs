@@ -1,0 +1,160 @@
+//! The first crossing on a piece of an arc, and the state on its inner side.
+
+use crate::automaton::Automaton;
+use crate::cross::{Crossing, Undefined, first_fall, first_fall_of_polynomial};
+use crate::error::{Error, ErrorKind, Place};
+use crate::poly::{Bernstein, MAX_DEGREE};
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+use crate::trajectory::horner;
+
+use super::{Advance, Found};
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// The earliest crossing within `0..=limit` of a dense output.
+    pub(super) fn first_crossing(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        c: &[A::State],
+        scale: f64,
+        limit: f64,
+        first: bool,
+    ) -> Result<Found<A>, Error> {
+        let mut found: Found<A> = None;
+        for edge in self.automaton.edges(mode).iter() {
+            let start = self.start(edge, first);
+            let affine = self.automaton.affine(edge);
+            let p = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
+            let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+            let guard = |s: f64| {
+                *count += 1;
+                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+            };
+            let crossing = match &p {
+                Some(p) => first_fall_of_polynomial(p, guard, limit, start),
+                None => first_fall(guard, limit, start),
+            };
+            let crossing = crossing.map_err(|s| self.undefined(mode, edge, now, c, scale, s))?;
+            found = earlier(found, edge, crossing);
+        }
+        Ok(found)
+    }
+
+    /// The powers of an affine guard along a polynomial: g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ.
+    ///
+    /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
+    #[inline]
+    fn composed(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> [f64; MAX_DEGREE + 1] {
+        let t = now.seconds();
+        self.memory.stats.guards += c.len() as u64 + 1;
+        let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
+        let mut p = [0.0; MAX_DEGREE + 1];
+        p[0] = self.automaton.guard(edge, t, &c[0]);
+        for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
+            const LARGER: f64 = (1_u128 << 70) as f64;
+            let far = self.automaton.guard(edge, t, &c.with(|i| LARGER * c.get(i))) - constant;
+            *p = if far.is_finite() { far / LARGER } else { self.automaton.guard(edge, t, c) - constant };
+        }
+        p
+    }
+
+    /// The same in the Bernstein basis over `0..=stretch` times the scale.
+    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Bernstein> {
+        let mut p = self.composed(edge, now, c);
+        let mut power = 1.0;
+        for value in &mut p {
+            *value *= power;
+            power *= stretch;
+        }
+        Bernstein::from_powers(p[..].get(..c.len())?)
+    }
+
+    pub(super) fn guard_on(&mut self, edge: A::Edge, now: Time, c: &[A::State], scale: f64, s: f64) -> f64 {
+        self.memory.stats.guards += 1;
+        self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+    }
+
+    /// How the arc's last piece ends at a crossing; notes how far from zero rounding may leave the guard there.
+    #[inline]
+    pub(super) fn close(
+        &mut self,
+        (edge, crossing): (A::Edge, Crossing),
+        now: Time,
+        c: &[A::State],
+        scale: f64,
+        remaining: f64,
+    ) -> Close<A::State> {
+        let Crossing { inside, outside, root } = crossing;
+        let span = inside.min(remaining);
+        let outer = self.guard_on(edge, now, c, scale, outside);
+        let t = now.after(root).seconds();
+        let mut guard = |x: &A::State| {
+            self.memory.stats.guards += 1;
+            self.automaton.guard(edge, t, x)
+        };
+        let nearest = horner(c, root / scale);
+        let g = guard(&nearest);
+        let (state, g) =
+            if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &horner(c, span / scale)) };
+        self.memory.slack = 4.0 * g.abs().max(outer.abs());
+        Close { span, time: now.after(root.min(remaining)), state }
+    }
+
+    pub(super) fn undefined(
+        &self,
+        mode: A::Mode,
+        edge: A::Edge,
+        now: Time,
+        c: &[A::State],
+        scale: f64,
+        at: Undefined,
+    ) -> Error {
+        let Undefined(s) = at;
+        Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), &horner(c, s / scale)))
+    }
+}
+
+/// The end of an arc's last piece.
+pub(super) struct Close<S> {
+    pub(super) span: f64,
+    pub(super) time: Time,
+    pub(super) state: S,
+}
+
+/// Of the states within rounding of a crossing, the one nearest to the root whose guard is not negative.
+///
+/// Always keeping the inner end would make every crossing early by half a rounding, and an elastic ball lose energy at each impact.
+/// So coordinates are taken from the inner end only as far as it takes to stay inside: a ball's height, not its speed.
+///
+/// Returns the state and its guard, for a nearest one that is outside.
+#[inline]
+fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S) -> (S, f64) {
+    for k in 0..nearest.len() {
+        let mixed = nearest.with(|i| if i == k { inner.get(i) } else { nearest.get(i) });
+        let g = guard(&mixed);
+        if g >= 0.0 {
+            return (mixed, g);
+        }
+    }
+    (*inner, guard(inner))
+}
+
+/// The earlier of two crossings; those that time cannot tell apart keep the order of their edges.
+#[inline]
+pub(super) fn earlier<E: Copy>(
+    found: Option<(E, Crossing)>,
+    edge: E,
+    crossing: Option<Crossing>,
+) -> Option<(E, Crossing)> {
+    match (found, crossing) {
+        (found, None) => found,
+        (None, Some(crossing)) => Some((edge, crossing)),
+        (Some((first, a)), Some(b)) => {
+            let same = b.inside >= a.inside * (1.0 - 4.0 * f64::EPSILON);
+            // Of two at one time the inner end of both is kept, so that neither guard is past zero there.
+            if same { Some((first, Crossing { inside: a.inside.min(b.inside), ..a })) } else { Some((edge, b)) }
+        }
+    }
+}

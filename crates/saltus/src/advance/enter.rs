@@ -1,0 +1,86 @@
+//! What a mode's guards say as it is entered.
+
+use crate::automaton::{Automaton, Entry};
+use crate::error::{Error, ErrorKind, Place};
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+
+use super::Advance;
+
+/// A guard farther from zero than this is not asked whether it crosses at the time of the last jump.
+const NEAR: f64 = 1e-9;
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
+    #[inline]
+    pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
+        let t = now.seconds();
+        for edge in self.automaton.edges(mode).iter() {
+            self.memory.stats.guards += 1;
+            let g = self.automaton.guard(edge, t, x);
+            let spent = self.memory.spent.filter(|spent| spent.edge == edge).or_else(|| self.memory.idle_as(edge));
+            if spent.is_none() && g >= 0.0 && (g == 0.0 || self.memory.spent.is_some() && g <= NEAR) {
+                // Zero, or so near after a jump that time cannot tell this crossing from the last: taken now if it falls.
+                let slope = self.guard_slope(mode, edge, t, x, g);
+                if slope < 0.0 && g <= -slope * 8.0 * f64::EPSILON * self.memory.last_duration {
+                    return Ok(Some(edge));
+                }
+                continue;
+            }
+            if g > 0.0 && spent.is_none() || g == 0.0 || spent.is_some_and(|spent| g.abs() <= spent.slack) {
+                continue;
+            }
+            if g.is_nan() {
+                return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
+            }
+            let slope = self.guard_slope(mode, edge, t, x, g);
+            let size = (0..x.len()).map(|i| x.get(i).abs()).fold(1.0, f64::max);
+            let rounding = (slope.abs() * 4.0 * (t.abs().next_up() - t.abs())).max(4.0 * f64::EPSILON * size);
+            let on_wall = g.abs() <= rounding;
+            match (on_wall, spent.is_some()) {
+                (true, true) => {}
+                (_, _) if g > 0.0 && !self.memory.just_took(edge) => {}
+                (_, _) if g > 0.0 => self.memory.spent = None, // the reset led away from the wall: no root to spend
+                (true, false) if slope > 0.0 => {}
+                (true, false) => return Ok(Some(edge)),
+                (false, _) => match self.automaton.entry(edge) {
+                    Entry::Refuse => return Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
+                    Entry::Fire => return Ok(Some(edge)),
+                    Entry::Wait => {}
+                },
+            }
+        }
+        Ok(None)
+    }
+
+    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
+    ///
+    /// The shortest time is taken over which the change of the guard doubles (or quadruples) with time twice in a row: longer than
+    /// rounding, shorter than the way to the guard's next root.
+    pub(super) fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        let longest = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 };
+        let slope = self.flow(mode, t, x);
+        let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
+        let mut h = longest / f64::from(1_u32 << 30);
+        loop {
+            let mut change = |h: f64| {
+                self.memory.stats.guards += 1;
+                let bend = h / longest;
+                let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
+                self.automaton.guard(edge, t + h, &ahead) - g
+            };
+            let far = change(h);
+            if h >= longest || h == 0.0 {
+                return far / h.max(f64::MIN_POSITIVE);
+            }
+            let (half, quarter) = (change(0.5 * h), change(0.25 * h));
+            let grows =
+                |by: f64| (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
+            if grows(2.0) || grows(4.0) {
+                return far / h;
+            }
+            h = (8.0 * h).min(longest);
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! An arc whose flow is solved exactly.
+
+use crate::automaton::{Automaton, Polynomial};
+use crate::cross::{Crossing, Start, Undefined, first_fall, settle};
+use crate::error::Error;
+use crate::observe::Observer;
+use crate::poly::quadratic_fall;
+use crate::simulation::Stop;
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+use crate::trajectory::{Piece, horner};
+
+use super::crossing::{Close, earlier};
+use super::{Advance, ArcEnd, Clock, Found};
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    #[inline]
+    pub(super) fn exact(
+        &mut self,
+        mode: A::Mode,
+        solution: &Polynomial<A::State>,
+        clock: &mut Clock,
+        observer: &mut impl Observer<A>,
+    ) -> Result<ArcEnd<A>, Error> {
+        self.memory.stats.exact += 1;
+        let c = solution.coefficients();
+        let remaining = clock.end.since(clock.now);
+        let mut found: Found<A> = None;
+        for edge in self.automaton.edges(mode).iter() {
+            let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
+            let start = self.start(edge, true);
+            let crossing = if c.len() <= 3 && self.automaton.affine(edge) {
+                self.fall_of_parabola(edge, clock.now, c, limit, start)
+            } else {
+                self.fall_in_windows(edge, clock.now, c, limit, start)
+                    .map_err(|s| self.undefined(mode, edge, clock.now, c, 1.0, s))?
+            };
+            found = earlier(found, edge, crossing);
+        }
+        let close = match found {
+            Some(found) => self.close(found, clock.now, c, 1.0, remaining),
+            None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
+        };
+        let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
+        clock.now = close.time;
+        Ok(match found {
+            _ if told.is_break() => ArcEnd::Stop { stop: Stop::Observer, state: close.state },
+            Some((edge, _)) => ArcEnd::Crossing { edge, before: close.state },
+            None => ArcEnd::Stop { stop: Stop::Time, state: close.state },
+        })
+    }
+
+    /// An affine guard along a parabola is a parabola.
+    #[inline]
+    fn fall_of_parabola(
+        &mut self,
+        edge: A::Edge,
+        now: Time,
+        c: &[A::State],
+        limit: f64,
+        start: Start,
+    ) -> Option<Crossing> {
+        let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
+        self.memory.stats.guards += c.len() as u64 + 1;
+        let constant = g(&c[0].with(|_| 0.0));
+        let power = |k: usize| c.get(k).map_or(0.0, |c| g(c) - constant);
+        let near = quadratic_fall([g(&c[0]), power(1), power(2)], start == Start::Spent)?;
+        if near > limit {
+            return None;
+        }
+        if near == 0.0 {
+            return Some(Crossing::at_start(f64::MIN_POSITIVE));
+        }
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+        settle(
+            |s| {
+                *count += 1;
+                automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
+            },
+            near,
+        )
+    }
+
+    /// Searches ever longer windows, the first as long as it takes the solution to change by its own size.
+    fn fall_in_windows(
+        &mut self,
+        edge: A::Edge,
+        now: Time,
+        c: &[A::State],
+        limit: f64,
+        start: Start,
+    ) -> Result<Option<Crossing>, Undefined> {
+        let size = |k: usize| (0..c[k].len()).map(|i| c[k].get(i).abs()).fold(0.0, f64::max);
+        let natural = (1..c.len())
+            .flat_map(|k| (0..k).map(move |j| (j, k)))
+            .filter(|&(j, k)| size(j) > 0.0 && size(k) > 0.0)
+            .map(|(j, k)| (size(j) / size(k)).powf(1.0 / (k - j) as f64))
+            .fold(0.0, f64::max);
+        let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) };
+        let mut from = 0.0;
+        let mut start = start;
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+        let mut guard = |s: f64| {
+            *count += 1;
+            automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
+        };
+        loop {
+            let to = if from + window < limit { from + window } else { limit };
+            if let Some(crossing) =
+                first_fall(|s| guard(from + s), to - from, start).map_err(|Undefined(s)| Undefined(from + s))?
+            {
+                let here = from + crossing.inside;
+                return Ok(if here == 0.0 { Some(crossing) } else { settle(&mut guard, here) });
+            }
+            if to >= limit || !to.is_finite() {
+                return Ok(None);
+            }
+            from = to;
+            window *= 2.0;
+            start = Start::Open;
+        }
+    }
+}
+
+/// The state at the end of a piece that may last for ever.
+fn end_of<S: State>(c: &[S], span: f64) -> S {
+    if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0] }
+}
+
+/// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken at it.
+#[inline]
+fn past(remaining: f64) -> f64 {
+    remaining * (1.0 + 4.0 * f64::EPSILON)
+}

@@ -1,0 +1,177 @@
+//! One arc: from the state just after a jump to the first crossing, by the exact solution or by steps.
+
+mod crossing;
+mod enter;
+mod exact;
+mod stepped;
+
+use crate::automaton::Automaton;
+use crate::control::Controller;
+use crate::cross::{Crossing, Start};
+use crate::error::Error;
+use crate::observe::Observer;
+use crate::simulation::{Options, Stats, Stop};
+use crate::step::Stepper;
+use crate::time::Time;
+
+/// The span of a run and where it stands.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Clock {
+    pub(crate) start: Time,
+    pub(crate) now: Time,
+    pub(crate) end: Time,
+}
+
+/// How an arc ended.
+pub(crate) enum ArcEnd<A: Automaton> {
+    /// At a crossing; `before` is the state at its inner side.
+    Crossing { edge: A::Edge, before: A::State },
+    /// The run ends here.
+    Stop { stop: Stop<A::Edge>, state: A::State },
+}
+
+/// The edge just taken, whose root is spent, and how far from zero its guard is there for rounding alone.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Spent<E> {
+    edge: E,
+    slack: f64,
+}
+
+/// How many edges that were taken at one time, and go on falling, are remembered.
+const MOST_IDLE: usize = 16;
+
+type Found<A> = Option<(<A as Automaton>::Edge, Crossing)>;
+
+/// What is kept from arc to arc.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Memory<E> {
+    pub(crate) stats: Stats,
+    controller: Controller,
+    step: Option<f64>,
+    spent: Option<Spent<E>>,
+    /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
+    idle: [Option<Spent<E>>; MOST_IDLE],
+    /// When a scheduled edge was last taken.
+    clock_took: Option<f64>,
+    slack: f64,
+    last_duration: f64,
+}
+
+impl<E: Copy + PartialEq> Memory<E> {
+    pub(crate) fn new(error_order: f64, first_step: Option<f64>) -> Self {
+        Self {
+            stats: Stats::default(),
+            controller: Controller::new(error_order),
+            step: first_step,
+            spent: None,
+            idle: [None; MOST_IDLE],
+            clock_took: None,
+            slack: 0.0,
+            last_duration: 0.0,
+        }
+    }
+
+    /// The edge among those taken earlier at this time that go on falling.
+    #[inline]
+    fn idle_as(&self, edge: E) -> Option<Spent<E>> {
+        self.idle.iter().map_while(|idle| *idle).find(|idle| idle.edge == edge)
+    }
+
+    /// Whether the last jump took this very edge.
+    pub(crate) fn just_took(&self, edge: E) -> bool {
+        self.spent.is_some_and(|spent| spent.edge == edge)
+    }
+
+    /// After a jump that no edge made.
+    pub(crate) fn beyond(&mut self) {
+        self.spent = None;
+    }
+}
+
+/// Advances one arc.
+pub(crate) struct Advance<'a, A: Automaton, M> {
+    pub(crate) automaton: &'a A,
+    pub(crate) stepper: M,
+    pub(crate) options: &'a Options,
+    pub(crate) memory: &'a mut Memory<A::Edge>,
+}
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent.
+    #[inline]
+    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: f64, t: f64) {
+        if duration > 0.0 {
+            if self.memory.idle[0].is_some() {
+                self.memory.idle = [None; MOST_IDLE];
+            }
+        } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
+            let g = self.automaton.guard(last.edge, t, x);
+            if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
+                self.memory.idle.rotate_right(1);
+                self.memory.idle[0] = Some(last);
+            }
+        }
+        self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
+        self.memory.last_duration = duration;
+    }
+
+    /// From `x` in `mode` to the first crossing or the end of the span.
+    #[inline]
+    pub(crate) fn arc(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        clock: &mut Clock,
+        observer: &mut impl Observer<A>,
+    ) -> Result<ArcEnd<A>, Error> {
+        if let Some(edge) = self.enter(mode, x, clock.now)? {
+            return Ok(ArcEnd::Crossing { edge, before: *x });
+        }
+        let scheduled = self.scheduled(mode, clock);
+        let horizon = scheduled.map_or(clock.end, |(t, _)| Time::new(t));
+        let state = if horizon.since(clock.now) <= 0.0 {
+            *x
+        } else {
+            let mut within = Clock { end: horizon, ..*clock };
+            let end = match self.automaton.exact(mode, clock.now.seconds(), x) {
+                Some(solution) => self.exact(mode, &solution, &mut within, observer),
+                None => self.stepped(mode, *x, &mut within, observer),
+            };
+            clock.now = within.now;
+            match end? {
+                ArcEnd::Stop { stop: Stop::Time, state } => state,
+                end => return Ok(end),
+            }
+        };
+        Ok(match scheduled {
+            Some((t, edge)) => {
+                self.memory.clock_took = Some(t);
+                ArcEnd::Crossing { edge, before: state }
+            }
+            None => ArcEnd::Stop { stop: Stop::Time, state },
+        })
+    }
+
+    /// The next scheduled edge after the start of the span; one that falls on the present time is due unless one was just taken.
+    #[inline]
+    fn scheduled(&self, mode: A::Mode, clock: &Clock) -> Option<(f64, A::Edge)> {
+        let now = clock.now.seconds();
+        let taken = self.memory.clock_took == Some(now);
+        let after = if taken { now } else { now.next_down().max(clock.start.seconds()) };
+        let next = self.automaton.scheduled(mode, after)?;
+        (next.0 > after && next.0 <= clock.end.seconds()).then_some(next)
+    }
+
+    /// How the search for `edge` starts on the first piece of an arc.
+    #[inline]
+    fn start(&self, edge: A::Edge, first: bool) -> Start {
+        if first && (self.memory.just_took(edge) || self.memory.idle_as(edge).is_some()) {
+            Start::Spent
+        } else {
+            Start::Open
+        }
+    }
+}

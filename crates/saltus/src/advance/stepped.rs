@@ -1,0 +1,207 @@
+//! An arc whose flow is stepped.
+
+use crate::automaton::Automaton;
+use crate::control::first_step;
+use crate::cross::Crossing;
+use crate::error::{Error, ErrorKind, Place};
+use crate::observe::Observer;
+use crate::simulation::Stop;
+use crate::state::State;
+use crate::step::{Stepper, Trial};
+use crate::time::Time;
+use crate::trajectory::{Piece, horner};
+
+use super::{Advance, ArcEnd, Clock};
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    pub(super) fn stepped(
+        &mut self,
+        mode: A::Mode,
+        mut x: A::State,
+        clock: &mut Clock,
+        observer: &mut impl Observer<A>,
+    ) -> Result<ArcEnd<A>, Error> {
+        let mut slope = self.flow(mode, clock.now.seconds(), &x);
+        if !slope.is_finite() {
+            return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
+        }
+        let mut first = true;
+        let began = clock.now;
+        let (mut shortened, mut retries) = (f64::INFINITY, 0);
+        loop {
+            let remaining = clock.end.since(clock.now);
+            if remaining <= 0.0 {
+                return Ok(ArcEnd::Stop { stop: Stop::Time, state: x });
+            }
+            if self.memory.stats.steps >= self.options.most_steps {
+                return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
+            }
+            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining.min(shortened))?;
+            let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
+            let c = dense.as_ref();
+            let last = h >= remaining;
+            let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
+            let found = self.first_crossing(mode, clock.now, c, h, limit, first)?;
+            if let Some((_, crossing)) = found
+                && crossing.inside < 1e-3 * h
+                && retries < 8
+            {
+                // A dense output of a step a thousand times too long rounds too coarsely to say what happens so near its start.
+                shortened = (100.0 * crossing.outside).max(1e-4 * h);
+                retries += 1;
+                continue;
+            }
+            (shortened, retries) = (f64::INFINITY, 0);
+            let Some(rough) = found else {
+                let state = horner(c, 1.0);
+                let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
+                clock.now = if last { clock.end } else { clock.now.after(h) };
+                if told.is_break() {
+                    return Ok(ArcEnd::Stop { stop: Stop::Observer, state });
+                }
+                (x, slope, first) = (state, trial.slope, false);
+                continue;
+            };
+            let relocated = self.relocated(mode, clock.now, &x, &slope, c, h, rough, limit, first)?;
+            let (found, c, scale) = match &relocated {
+                Some((found, dense, scale)) => (*found, dense.as_ref(), *scale),
+                None => (rough, c, h),
+            };
+            let close = self.close(found, clock.now, c, scale, remaining);
+            let told =
+                close.span > 0.0 && observer.piece(mode, &Piece::new(clock.now, close.span, scale, c)).is_break();
+            clock.now = close.time;
+            return Ok(if told {
+                ArcEnd::Stop { stop: Stop::Observer, state: close.state }
+            } else {
+                ArcEnd::Crossing { edge: found.0, before: close.state }
+            });
+        }
+    }
+
+    /// A step that the error estimate accepts, and its size.
+    #[allow(clippy::type_complexity)] // a pair
+    fn accepted(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        slope: &A::State,
+        remaining: f64,
+    ) -> Result<(f64, Trial<A::State, M::Stages<A::State>>), Error> {
+        let t = now.seconds();
+        let longest = remaining.min(self.options.longest_step);
+        let tolerance = self.options.tolerance;
+        let mut h = match self.memory.step {
+            Some(h) => h,
+            None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, M::ERROR_ORDER, longest),
+        };
+        loop {
+            // The last step is stretched or halved a little rather than followed by a tiny one.
+            let size = if h * 1.01 >= longest {
+                longest
+            } else if h * 2.0 > longest {
+                longest * 0.5
+            } else {
+                h
+            };
+            let trial = self.trial(mode, t, x, slope, size);
+            let norm = self.stepper.error(size, &trial, |error| tolerance.norm(error, x, &trial.end));
+            let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
+            let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY });
+            if accepted {
+                self.memory.stats.steps += 1;
+                self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });
+                return Ok((size, trial));
+            }
+            self.memory.stats.rejected += 1;
+            h = size * factor;
+            if h <= 2.0 * (t.abs().next_up() - t.abs()) {
+                let kind = if finite { ErrorKind::StepSize } else { ErrorKind::Flow };
+                return Err(Error::new(kind, Place::new(t, mode, None::<A::Edge>, x)));
+            }
+        }
+    }
+
+    fn trial(
+        &mut self,
+        mode: A::Mode,
+        t: f64,
+        x: &A::State,
+        slope: &A::State,
+        h: f64,
+    ) -> Trial<A::State, M::Stages<A::State>> {
+        self.memory.stats.jacobians += M::JACOBIANS;
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
+        let mut flow = |t: f64, x: &A::State| {
+            *count += 1;
+            automaton.flow(mode, t, x)
+        };
+        self.stepper.trial(&mut flow, t, x, slope, h)
+    }
+
+    fn dense(
+        &mut self,
+        mode: A::Mode,
+        t: f64,
+        x: &A::State,
+        h: f64,
+        trial: &Trial<A::State, M::Stages<A::State>>,
+    ) -> M::Dense<A::State> {
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
+        let mut flow = |t: f64, x: &A::State| {
+            *count += 1;
+            automaton.flow(mode, t, x)
+        };
+        self.stepper.dense(&mut flow, t, x, h, trial)
+    }
+
+    pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
+        self.memory.stats.flows += 1;
+        self.automaton.flow(mode, t, x)
+    }
+
+    /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,
+    /// looked at close to its end, where it errs by the square of the correction only.
+    #[allow(clippy::too_many_arguments, clippy::type_complexity)]
+    fn relocated(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        slope: &A::State,
+        c: &[A::State],
+        scale: f64,
+        rough: (A::Edge, Crossing),
+        limit: f64,
+        first: bool,
+    ) -> Result<Option<((A::Edge, Crossing), M::Dense<A::State>, f64)>, Error> {
+        let (edge, crossing) = rough;
+        let mut h = crossing.outside;
+        if h <= scale * 1e-9 {
+            return Ok(None); // at the start, where the dense output is exact
+        }
+        let near = (crossing.inside - scale * 1e-3).max(0.0);
+        let rise = self.guard_on(edge, now, c, scale, near) - self.guard_on(edge, now, c, scale, crossing.inside);
+        let fall = rise / (crossing.inside - near); // -dg/dt
+        for _ in 0..3 {
+            let trial = self.trial(mode, now.seconds(), x, slope, h);
+            if !(trial.end.is_finite() && trial.slope.is_finite()) {
+                return Ok(None);
+            }
+            let dense = self.dense(mode, now.seconds(), x, h, &trial);
+            self.memory.stats.guards += 1;
+            let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
+            if shift.is_nan() || shift.abs() > 0.1 * h {
+                return Ok(None);
+            }
+            if shift.abs() <= 1e-5 * h {
+                let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
+                let found = self.first_crossing(mode, now, dense.as_ref(), h, ahead, first)?;
+                return Ok(found.map(|found| (found, dense, h)));
+            }
+            h = (h + shift).min(limit);
+        }
+        Ok(None)
+    }
+}
