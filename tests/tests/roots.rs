@@ -135,7 +135,6 @@ fn guard_nan() {
 }
 
 #[test]
-#[ignore = "does not end within six seconds"]
 fn guard_jump() {
     let case = Case::named("guard-jump");
     let c = case.param("c");

@@ -153,7 +153,6 @@ fn through_a_zeno_limit() {
 }
 
 #[test]
-#[ignore = "three thousand bounces by steps: dt/de is 5e-10 off of 9e3, relative, where 64 roundings a bounce allow 4e-11"]
 fn through_the_zeno_limit_of_a_lively_ball_by_steps() {
     zeno_limits(false, &[(0.99, 0.0)]);
 }

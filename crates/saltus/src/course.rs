@@ -55,6 +55,8 @@ pub struct Checkpoint<A: Automaton> {
     state: A::State,
     clock: Clock,
     jumps: usize,
+    /// The time of the last jump that was not at once after another.
+    instant: Time,
     cascade: usize,
     contraction: Contraction,
     memory: Memory<A::Edge>,
@@ -65,7 +67,17 @@ impl<A: Automaton> Checkpoint<A> {
     pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Edge>) -> Self {
         let start = Time::new(span.start);
         let clock = Clock { start, now: start, end: Time::new(span.end) };
-        Self { mode, state, clock, jumps: 0, cascade: 0, contraction: Contraction::new(), memory, stop: None }
+        Self {
+            mode,
+            state,
+            clock,
+            jumps: 0,
+            instant: start,
+            cascade: 0,
+            contraction: Contraction::new(),
+            memory,
+            stop: None,
+        }
     }
 
     /// When it was taken.
@@ -180,12 +192,17 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             .take(mode, edge, now, &before)
             .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
         let duration = at.clock.now.since(began);
+        let at_once = at.memory.at_once(at.clock.now.since(at.instant));
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = duration == 0.0 && at.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
-            at.cascade = if duration == 0.0 { at.cascade + 1 } else { 0 };
+            if at_once {
+                at.cascade += 1;
+            } else {
+                (at.cascade, at.instant) = (0, at.clock.now);
+            }
             let cause = Cause::Edge(edge);
-            let jump = Jump { time: at.clock.now, j: at.jumps + 1, cause, from: mode, before, to, after };
+            let jump = Jump { time: at.instant, j: at.jumps + 1, cause, from: mode, before, to, after };
             check_after(*automaton, &jump, edge)?;
             (at.mode, at.state, at.jumps) = (to, after, jump.j);
             if observer.jump(&jump).is_break() {
@@ -197,10 +214,17 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         let memory = &mut at.memory;
         let t = at.clock.now.seconds();
-        Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory }
-            .jumped(mode, &x, edge, duration, t);
+        Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory }.jumped(
+            mode,
+            &x,
+            edge,
+            (!at_once).then_some(duration),
+            t,
+        );
         // x is x⁺.
-        at.contraction.push(duration);
+        if !at_once {
+            at.contraction.push(duration);
+        }
         let elapsed = at.clock.now.since(at.clock.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed.next_up() - elapsed) };
         if let Some(remaining) = remaining.filter(|&s| at.clock.now.after(s).seconds() <= at.clock.end.seconds()) {
@@ -228,7 +252,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Some((to, after)) = automaton.beyond(mode, limit, &x) else {
             return Ok(Some(Stop::Zeno { limit }));
         };
-        let jump = Jump { time: at.clock.now, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
+        at.instant = at.clock.now;
+        let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         at.contraction = Contraction::new();
         at.memory.beyond();

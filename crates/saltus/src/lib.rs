@@ -55,7 +55,7 @@ pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
 pub use hybrid::{Hybrid, Link, every};
 #[cfg(feature = "num-dual")]
 pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
-pub use observe::Observer;
+pub use observe::{Inspection, Observer};
 pub use reverse::{Invertible, Reversed};
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
 pub use state::{Coords, State};

@@ -1,9 +1,33 @@
 //! Who is told of pieces and jumps as they come: nobody, a recorder, or the user.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
+use crate::cross::Evidence;
+use crate::time::Time;
 use crate::trajectory::{Jump, Piece, Trajectory};
+
+/// How the guard of one edge was searched over one step, or over one exact arc.
+pub struct Inspection<A: Automaton> {
+    /// The mode.
+    pub mode: A::Mode,
+    /// The edge.
+    pub edge: A::Edge,
+    /// Where the step starts.
+    pub start: Time,
+    /// How far the search went, in seconds; infinite on an exact arc of a run without an end.
+    pub span: f64,
+    /// What is known: no crossing, one that was isolated, or where rounding or haste hides one. Times count from `start`.
+    pub evidence: Evidence,
+}
+
+impl<A: Automaton> fmt::Debug for Inspection<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, edge, start, span, evidence } = self;
+        write!(f, "{mode:?} edge {edge:?} from t = {} for {span} s: {evidence:?}", start.seconds())
+    }
+}
 
 /// Is told of each piece and each jump of a run, in order; may end the run.
 ///
@@ -34,6 +58,11 @@ pub trait Observer<A: Automaton> {
         let _ = jump;
         ControlFlow::Continue(())
     }
+
+    /// The guard of an edge was searched for a crossing.
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        let _ = inspection;
+    }
 }
 
 impl<A: Automaton> Observer<A> for () {}
@@ -45,6 +74,9 @@ impl<A: Automaton, O: Observer<A>> Observer<A> for &mut O {
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         (**self).jump(jump)
     }
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        (**self).inspection(inspection);
+    }
 }
 
 impl<A: Automaton, O: Observer<A>, P: Observer<A>> Observer<A> for (O, P) {
@@ -55,6 +87,10 @@ impl<A: Automaton, O: Observer<A>, P: Observer<A>> Observer<A> for (O, P) {
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         let (first, second) = (self.0.jump(jump), self.1.jump(jump));
         if first.is_break() { first } else { second }
+    }
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        self.0.inspection(inspection);
+        self.1.inspection(inspection);
     }
 }
 

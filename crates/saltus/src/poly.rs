@@ -20,9 +20,9 @@ pub(crate) enum Shape {
     Above,
     /// Negative throughout.
     Below,
-    /// Falling throughout.
+    /// Falling throughout, faster than the margin could undo, and not within the margin of zero throughout.
     Falling,
-    /// Rising throughout.
+    /// Rising throughout, likewise.
     Rising,
     /// Zero throughout, as far as can be told.
     Flat,
@@ -81,19 +81,72 @@ impl Bernstein {
         } else if b.iter().all(|&b| b.abs() <= margin) {
             Shape::Flat
         } else {
-            self.trend()
+            self.trend(margin)
         }
     }
 
-    fn trend(&self) -> Shape {
+    fn trend(&self, margin: f64) -> Shape {
+        let least = 8.0 * margin;
         let b = self.coefficients();
-        if b.windows(2).all(|pair| pair[1] <= pair[0]) {
+        if b.windows(2).all(|pair| pair[0] - pair[1] > least) {
             Shape::Falling
-        } else if b.windows(2).all(|pair| pair[1] >= pair[0]) {
+        } else if b.windows(2).all(|pair| pair[1] - pair[0] > least) {
             Shape::Rising
         } else {
             Shape::Unclear
         }
+    }
+
+    /// The value at the start.
+    pub(crate) fn start(&self) -> f64 {
+        self.b[0]
+    }
+
+    /// The value at the end.
+    pub(crate) fn end(&self) -> f64 {
+        self.b[self.degree]
+    }
+
+    /// The value at `u` (de Casteljau).
+    fn at(&self, u: f64) -> f64 {
+        let mut work = self.b;
+        for level in 1..=self.degree {
+            for i in 0..=self.degree - level {
+                work[i] += u * (work[i + 1] - work[i]);
+            }
+        }
+        work[0]
+    }
+
+    /// Where it changes sign, if its signs at both ends differ: by regula falsi with Illinois' halving, to rounding.
+    pub(crate) fn root(&self) -> Option<f64> {
+        let (mut a, mut b, mut at_a, mut at_b) = (0.0, 1.0, self.start(), self.end());
+        if at_a == 0.0 || at_b == 0.0 || (at_a > 0.0) == (at_b > 0.0) {
+            return None;
+        }
+        for _ in 0..100 {
+            let u = b - at_b * (b - a) / (at_b - at_a);
+            let at_u = self.at(u);
+            if at_u == 0.0 || (u - b).abs() <= f64::EPSILON * u {
+                return Some(u);
+            }
+            if (at_u > 0.0) != (at_b > 0.0) {
+                (a, at_a) = (b, at_b);
+            } else {
+                at_a *= 0.5;
+            }
+            (b, at_b) = (u, at_u);
+        }
+        Some(b)
+    }
+
+    /// p(u) - p(0).
+    pub(crate) fn less_start(&self) -> Self {
+        let mut b = self.b;
+        for value in &mut b[..=self.degree] {
+            *value -= self.b[0];
+        }
+        Self { b, degree: self.degree }
     }
 
     /// What changes from the start on, divided by u: (p(u) - p(0)) / u. The root at the start is spent, and its value there is rounding.

@@ -135,7 +135,7 @@ fn the_bracket_is_two_neighbours() {
         |s| (6.207 - s) * (s + 1e-3),
     ];
     for (k, guard) in guards.into_iter().enumerate() {
-        let crossing = first_fall(guard, 10.0, Start::Open).unwrap().unwrap();
+        let crossing = first_fall(guard, 10.0, Start::Open).unwrap().fall.unwrap();
         assert_eq!(crossing.inside.next_up(), crossing.outside, "guard {k}");
         assert!(guard(crossing.inside) >= 0.0 && guard(crossing.outside) < 0.0, "guard {k}: {crossing:?}");
         assert!(crossing.inside <= crossing.root && crossing.root <= crossing.outside, "guard {k}: {crossing:?}");

@@ -1,8 +1,9 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
-use crate::cross::{Crossing, Undefined, first_fall, first_fall_of_polynomial};
+use crate::cross::{Crossing, Searched, Undefined, first_fall, first_fall_of_polynomial};
 use crate::error::{Error, ErrorKind, Place};
+use crate::observe::{Inspection, Observer};
 use crate::poly::{Bernstein, MAX_DEGREE};
 use crate::state::State;
 use crate::step::Stepper;
@@ -13,6 +14,7 @@ use super::{Advance, Found};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output.
+    #[allow(clippy::too_many_arguments)]
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,
@@ -21,6 +23,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         scale: f64,
         limit: f64,
         first: bool,
+        observer: &mut impl Observer<A>,
     ) -> Result<Found<A>, Error> {
         let mut found: Found<A> = None;
         for edge in self.automaton.edges(mode).iter() {
@@ -32,43 +35,42 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
             };
-            let crossing = match &p {
-                Some(p) => first_fall_of_polynomial(p, guard, limit, start),
+            let searched = match &p {
+                Some((p, margin)) => first_fall_of_polynomial(p, *margin, guard, limit, start),
                 None => first_fall(guard, limit, start),
             };
-            let crossing = crossing.map_err(|s| self.undefined(mode, edge, now, c, scale, s))?;
-            found = earlier(found, edge, crossing);
+            let Searched { fall, evidence } = searched.map_err(|s| self.undefined(mode, edge, now, c, scale, s))?;
+            observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+            found = earlier(found, edge, fall);
         }
         Ok(found)
     }
 
-    /// The powers of an affine guard along a polynomial: g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ.
+    /// An affine guard along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     ///
     /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
     #[inline]
-    fn composed(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> [f64; MAX_DEGREE + 1] {
+    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<(Bernstein, f64)> {
+        const LARGER: f64 = (1_u128 << 70) as f64;
+        if c.len() > MAX_DEGREE + 1 {
+            return None;
+        }
         let t = now.seconds();
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
+        let start = self.automaton.guard(edge, t, &c[0]);
         let mut p = [0.0; MAX_DEGREE + 1];
-        p[0] = self.automaton.guard(edge, t, &c[0]);
+        p[0] = start;
+        let mut power = stretch;
         for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
-            const LARGER: f64 = (1_u128 << 70) as f64;
             let far = self.automaton.guard(edge, t, &c.with(|i| LARGER * c.get(i))) - constant;
-            *p = if far.is_finite() { far / LARGER } else { self.automaton.guard(edge, t, c) - constant };
-        }
-        p
-    }
-
-    /// The same in the Bernstein basis over `0..=stretch` times the scale.
-    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Bernstein> {
-        let mut p = self.composed(edge, now, c);
-        let mut power = 1.0;
-        for value in &mut p {
-            *value *= power;
+            let difference = if far.is_finite() { far / LARGER } else { self.automaton.guard(edge, t, c) - constant };
+            *p = difference * power;
             power *= stretch;
         }
-        Bernstein::from_powers(p[..].get(..c.len())?)
+        let p = Bernstein::from_powers(&p[..c.len()])?;
+        let margin = f64::EPSILON * (4.0 * (constant.abs() + start.abs()) + 8.0 * p.scale());
+        Some((p, margin))
     }
 
     pub(super) fn guard_on(&mut self, edge: A::Edge, now: Time, c: &[A::State], scale: f64, s: f64) -> f64 {
@@ -99,7 +101,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (state, g) =
             if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &horner(c, span / scale)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
-        Close { span, time: now.after(root.min(remaining)), state }
+        let time = now.after(root.min(remaining));
+        Close { span, time, state }
     }
 
     pub(super) fn undefined(
@@ -152,7 +155,7 @@ pub(super) fn earlier<E: Copy>(
         (found, None) => found,
         (None, Some(crossing)) => Some((edge, crossing)),
         (Some((first, a)), Some(b)) => {
-            let same = b.inside >= a.inside * (1.0 - 4.0 * f64::EPSILON);
+            let same = b.outside >= a.inside;
             // Of two at one time the inner end of both is kept, so that neither guard is past zero there.
             if same { Some((first, Crossing { inside: a.inside.min(b.inside), ..a })) } else { Some((edge, b)) }
         }

@@ -8,9 +8,6 @@ use crate::time::Time;
 
 use super::Advance;
 
-/// A guard farther from zero than this is not asked whether it crosses at the time of the last jump.
-const NEAR: f64 = 1e-9;
-
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
     #[inline]
@@ -19,39 +16,48 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
-            let spent = self.memory.spent.filter(|spent| spent.edge == edge).or_else(|| self.memory.idle_as(edge));
-            if spent.is_none() && g >= 0.0 && (g == 0.0 || self.memory.spent.is_some() && g <= NEAR) {
-                // Zero, or so near after a jump that time cannot tell this crossing from the last: taken now if it falls.
-                let slope = self.guard_slope(mode, edge, t, x, g);
-                if slope < 0.0 && g <= -slope * 8.0 * f64::EPSILON * self.memory.last_duration {
+            if g.is_nan() {
+                return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
+            }
+            let spent = self.memory.spent_as(edge);
+            if spent.is_some_and(|spent| g.abs() <= spent.slack) {
+                continue;
+            }
+            if g >= 0.0 {
+                if spent.is_some() {
+                    self.memory.unspend(edge); // the reset led away from the wall
+                }
+                continue; // a zero that falls at once is found like every other crossing
+            }
+            let slope = self.guard_slope(mode, edge, t, x, g);
+            let on_wall =
+                -g <= 4.0 * (slope.abs() * (t.abs().next_up() - t.abs()) + self.guard_rounding(edge, t, x, g));
+            if on_wall {
+                if spent.is_none() && slope < 0.0 {
                     return Ok(Some(edge));
                 }
                 continue;
             }
-            if g > 0.0 && spent.is_none() || g == 0.0 || spent.is_some_and(|spent| g.abs() <= spent.slack) {
-                continue;
-            }
-            if g.is_nan() {
-                return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
-            }
-            let slope = self.guard_slope(mode, edge, t, x, g);
-            let size = (0..x.len()).map(|i| x.get(i).abs()).fold(1.0, f64::max);
-            let rounding = (slope.abs() * 4.0 * (t.abs().next_up() - t.abs())).max(4.0 * f64::EPSILON * size);
-            let on_wall = g.abs() <= rounding;
-            match (on_wall, spent.is_some()) {
-                (true, true) => {}
-                (_, _) if g > 0.0 && !self.memory.just_took(edge) => {}
-                (_, _) if g > 0.0 => self.memory.spent = None, // the reset led away from the wall: no root to spend
-                (true, false) if slope > 0.0 => {}
-                (true, false) => return Ok(Some(edge)),
-                (false, _) => match self.automaton.entry(edge) {
-                    Entry::Refuse => return Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
-                    Entry::Fire => return Ok(Some(edge)),
-                    Entry::Wait => {}
-                },
+            match self.automaton.entry(edge) {
+                Entry::Refuse => return Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
+                Entry::Fire => return Ok(Some(edge)),
+                Entry::Wait => self.memory.unspend(edge),
             }
         }
         Ok(None)
+    }
+
+    /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, 1) units in the last place.
+    fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const NUDGE: f64 = 1.0 / (1 << 20) as f64;
+        let mut sum = 0.0;
+        for k in 0..x.len() {
+            self.memory.stats.guards += 1;
+            let nudged = x.with(|i| if i == k { x.get(i) + NUDGE * x.get(i).abs().max(1.0) } else { x.get(i) });
+            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
+            sum += if change.is_finite() { change } else { 0.0 };
+        }
+        sum * (f64::EPSILON / NUDGE)
     }
 
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².

@@ -1,9 +1,9 @@
 //! An arc whose flow is solved exactly.
 
 use crate::automaton::{Automaton, Polynomial};
-use crate::cross::{Crossing, Start, Undefined, first_fall, settle};
+use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, settle};
 use crate::error::Error;
-use crate::observe::Observer;
+use crate::observe::{Inspection, Observer};
 use crate::poly::quadratic_fall;
 use crate::simulation::Stop;
 use crate::state::State;
@@ -30,13 +30,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
-            let crossing = if c.len() <= 3 && self.automaton.affine(edge) {
-                self.fall_of_parabola(edge, clock.now, c, limit, start)
+            let Searched { fall, evidence } = if c.len() <= 3 && self.automaton.affine(edge) {
+                Searched::solved(self.fall_of_parabola(edge, clock.now, c, limit, start))
             } else {
                 self.fall_in_windows(edge, clock.now, c, limit, start)
                     .map_err(|s| self.undefined(mode, edge, clock.now, c, 1.0, s))?
             };
-            found = earlier(found, edge, crossing);
+            observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
+            found = earlier(found, edge, fall);
         }
         let close = match found {
             Some(found) => self.close(found, clock.now, c, 1.0, remaining),
@@ -90,7 +91,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         c: &[A::State],
         limit: f64,
         start: Start,
-    ) -> Result<Option<Crossing>, Undefined> {
+    ) -> Result<Searched, Undefined> {
         let size = |k: usize| (0..c[k].len()).map(|i| c[k].get(i).abs()).fold(0.0, f64::max);
         let natural = (1..c.len())
             .flat_map(|k| (0..k).map(move |j| (j, k)))
@@ -105,20 +106,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *count += 1;
             automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
         };
+        let mut evidence = Evidence::Excluded;
         loop {
             let to = if from + window < limit { from + window } else { limit };
-            if let Some(crossing) =
-                first_fall(|s| guard(from + s), to - from, start).map_err(|Undefined(s)| Undefined(from + s))?
-            {
-                let here = from + crossing.inside;
-                return Ok(if here == 0.0 { Some(crossing) } else { settle(&mut guard, here) });
+            let searched =
+                first_fall(|s| guard(from + s), to - from, start).map_err(|Undefined(s)| Undefined(from + s))?;
+            evidence = evidence.and(searched.evidence.later(from));
+            if let Some(crossing) = searched.fall {
+                let fall = if from == 0.0 { Some(crossing) } else { settle(&mut guard, from + crossing.root) };
+                return Ok(Searched { fall, evidence });
             }
             if to >= limit || !to.is_finite() {
-                return Ok(None);
+                return Ok(Searched { fall: None, evidence });
             }
             from = to;
             window *= 2.0;
-            start = Start::Open;
+            start = Start::Resumed;
         }
     }
 }

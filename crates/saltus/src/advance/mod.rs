@@ -74,10 +74,24 @@ impl<E: Copy + PartialEq> Memory<E> {
         }
     }
 
-    /// The edge among those taken earlier at this time that go on falling.
+    /// The edge among those whose root at this time is spent.
     #[inline]
-    fn idle_as(&self, edge: E) -> Option<Spent<E>> {
-        self.idle.iter().map_while(|idle| *idle).find(|idle| idle.edge == edge)
+    fn spent_as(&self, edge: E) -> Option<Spent<E>> {
+        self.spent.iter().chain(self.idle.iter().flatten()).find(|spent| spent.edge == edge).copied()
+    }
+
+    /// The guard of `edge` is away from zero: no root is spent.
+    fn unspend(&mut self, edge: E) {
+        self.spent = self.spent.filter(|spent| spent.edge != edge);
+        for idle in &mut self.idle {
+            *idle = idle.filter(|idle| idle.edge != edge);
+        }
+    }
+
+    /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
+    #[inline]
+    pub(crate) fn at_once(&self, since: f64) -> bool {
+        since <= 4.0 * f64::EPSILON * self.last_duration
     }
 
     /// Whether the last jump took this very edge.
@@ -100,13 +114,12 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent.
+    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent. Without a duration, it was at once after another.
     #[inline]
-    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: f64, t: f64) {
-        if duration > 0.0 {
-            if self.memory.idle[0].is_some() {
-                self.memory.idle = [None; MOST_IDLE];
-            }
+    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: Option<f64>, t: f64) {
+        if let Some(duration) = duration {
+            self.memory.idle = [None; MOST_IDLE];
+            self.memory.last_duration = duration;
         } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
             let g = self.automaton.guard(last.edge, t, x);
             if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
@@ -115,7 +128,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
-        self.memory.last_duration = duration;
     }
 
     /// From `x` in `mode` to the first crossing or the end of the span.
@@ -168,10 +180,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How the search for `edge` starts on the first piece of an arc.
     #[inline]
     fn start(&self, edge: A::Edge, first: bool) -> Start {
-        if first && (self.memory.just_took(edge) || self.memory.idle_as(edge).is_some()) {
-            Start::Spent
-        } else {
-            Start::Open
-        }
+        if first && self.memory.spent_as(edge).is_some() { Start::Spent } else { Start::Open }
     }
 }

@@ -27,7 +27,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let mut first = true;
         let began = clock.now;
-        let (mut shortened, mut retries) = (f64::INFINITY, 0);
         loop {
             let remaining = clock.end.since(clock.now);
             if remaining <= 0.0 {
@@ -36,22 +35,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if self.memory.stats.steps >= self.options.most_steps {
                 return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
             }
-            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining.min(shortened))?;
+            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
             let last = h >= remaining;
             let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
-            let found = self.first_crossing(mode, clock.now, c, h, limit, first)?;
-            if let Some((_, crossing)) = found
-                && crossing.inside < 1e-3 * h
-                && retries < 8
-            {
-                // A dense output of a step a thousand times too long rounds too coarsely to say what happens so near its start.
-                shortened = (100.0 * crossing.outside).max(1e-4 * h);
-                retries += 1;
-                continue;
-            }
-            (shortened, retries) = (f64::INFINITY, 0);
+            let found = self.first_crossing(mode, clock.now, c, h, limit, first, observer)?;
             let Some(rough) = found else {
                 let state = horner(c, 1.0);
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
@@ -197,7 +186,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             if shift.abs() <= 1e-5 * h {
                 let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
-                let found = self.first_crossing(mode, now, dense.as_ref(), h, ahead, first)?;
+                let found = self.first_crossing(mode, now, dense.as_ref(), h, ahead, first, &mut ())?;
                 return Ok(found.map(|found| (found, dense, h)));
             }
             h = (h + shift).min(limit);

@@ -1,0 +1,112 @@
+//! Interpolation at the nine Chebyshev points of the second kind (L. N. Trefethen, *Approximation Theory and Approximation Practice*, 2013, ch. 3).
+
+/// cos(j pi / 8), from -1 up to 1.
+pub(super) const NODES: [f64; 9] = [
+    -1.0,
+    -0.923_879_532_511_286_7,
+    -std::f64::consts::FRAC_1_SQRT_2,
+    -0.382_683_432_365_089_8,
+    0.0,
+    0.382_683_432_365_089_8,
+    std::f64::consts::FRAC_1_SQRT_2,
+    0.923_879_532_511_286_7,
+    1.0,
+];
+
+/// `T_k` at node j is cos(jk pi / 8), itself a node up to the order.
+fn value(k: usize, j: usize) -> f64 {
+    // Node j has the angle (8 - j) pi / 8; fold the multiple of pi / 8 back into 0..=8.
+    let turn = (k * (8 - j)) % 16;
+    let fold = if turn > 8 { 16 - turn } else { turn };
+    NODES[8 - fold]
+}
+
+/// The coefficients of `T_0` to `T_8` of the interpolant.
+pub(super) fn series(values: &[f64; 9]) -> [f64; 9] {
+    std::array::from_fn(|k| {
+        let sum: f64 = (0..9)
+            .map(|j| {
+                let end = if j == 0 || j == 8 { 0.5 } else { 1.0 };
+                end * values[j] * value(k, j)
+            })
+            .sum();
+        if k == 0 || k == 8 { sum / 8.0 } else { sum / 4.0 }
+    })
+}
+
+/// Clenshaw's sum of the series at `x`.
+pub(super) fn sum(series: &[f64; 9], x: f64) -> f64 {
+    let (mut next, mut after) = (0.0, 0.0);
+    for &c in series[1..].iter().rev() {
+        (next, after) = (2.0 * x * next - after + c, next);
+    }
+    x * next - after + series[0]
+}
+
+/// The Bernstein coefficients of degree eight on the interval.
+pub(super) fn bernstein(series: &[f64; 9]) -> [f64; 9] {
+    const TABLE: [[f64; 9]; 9] = table();
+    std::array::from_fn(|i| (0..9).map(|k| series[k] * TABLE[k][i]).sum())
+}
+
+/// Row k: `T_k` in the Bernstein basis, (-1)^(k-i) C(2k, 2i) / C(k, i), raised to degree eight.
+const fn table() -> [[f64; 9]; 9] {
+    let mut rows = [[0.0; 9]; 9];
+    let mut k = 0;
+    while k < 9 {
+        let mut row = [0.0; 9];
+        let mut i = 0;
+        while i <= k {
+            let sign = if (k - i) % 2 == 0 { 1.0 } else { -1.0 };
+            row[i] = sign * binomial(2 * k, 2 * i) / binomial(k, i);
+            i += 1;
+        }
+        let mut degree = k;
+        while degree < 8 {
+            let mut raised = [0.0; 9];
+            let mut i = 0;
+            while i <= degree + 1 {
+                let w = i as f64 / (degree + 1) as f64;
+                let left = if i > 0 { row[i - 1] } else { 0.0 };
+                let here = if i <= degree { row[i] } else { 0.0 };
+                raised[i] = w * left + (1.0 - w) * here;
+                i += 1;
+            }
+            row = raised;
+            degree += 1;
+        }
+        rows[k] = row;
+        k += 1;
+    }
+    rows
+}
+
+const fn binomial(n: usize, k: usize) -> f64 {
+    let mut value = 1.0;
+    let mut i = 0;
+    while i < k {
+        value = value * (n - i) as f64 / (i + 1) as f64;
+        i += 1;
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_of_degree_eight_is_reproduced() {
+        let f = |x: f64| ((x - 0.3) * (x + 0.7)).powi(4) - 0.1 * x;
+        let values = NODES.map(f);
+        let series = series(&values);
+        for x in [-0.9, -0.2, 0.44, 0.99] {
+            assert!((sum(&series, x) - f(x)).abs() < 1e-14);
+            let u = 0.5 * (x + 1.0);
+            let b = bernstein(&series);
+            let total: f64 =
+                (0..9).map(|i| b[i] * binomial(8, i) * u.powi(i as i32) * (1.0 - u).powi(8 - i as i32)).sum();
+            assert!((total - f(x)).abs() < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! A fall that is isolated, narrowed to neighbouring numbers.
+
+use super::{AT_START, Crossing, Search, Undefined};
+
+/// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
+pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
+    // Where rounding hides the guard's sign all around, the root that is known decides: a ball does not fall through a floor at height one.
+    let known = Crossing { inside: near, outside: near.next_up(), root: near };
+    let mut step = near.next_up() - near;
+    let (mut a, mut b) = (near, near);
+    if guard(near) >= 0.0 {
+        loop {
+            b = a + step;
+            if guard(b) < 0.0 {
+                break;
+            }
+            a = b;
+            step *= 2.0;
+            if b > 2.0 * near {
+                return Some(known);
+            }
+        }
+    } else {
+        loop {
+            a = (b - step).max(0.0);
+            if guard(a) >= 0.0 {
+                break;
+            }
+            if a == 0.0 {
+                return Some(known);
+            }
+            b = a;
+            step *= 2.0;
+        }
+    }
+    while a.next_up() < b {
+        let middle = 0.5 * (a + b);
+        if guard(middle) >= 0.0 { a = middle } else { b = middle }
+    }
+    Some(Crossing { inside: a, outside: b, root: near })
+}
+
+impl<G: FnMut(f64) -> f64> Search<G> {
+    /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than
+    /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
+    pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {
+        if a == 0.0 && self.value(self.span * AT_START)? < 0.0 && self.value(0.0)? >= 0.0 {
+            return Ok(Crossing::at_start(self.span * AT_START));
+        }
+        let (mut above, mut below) = (self.value(a)?.max(0.0), self.value(b)?);
+        if a == 0.0 && self.base < 0.0 {
+            // Rounding leaves the guard negative at the spent root: begin where it is seen to have risen.
+            let mut middle = 0.5 * b;
+            while self.value(middle)? <= 0.0 {
+                if middle <= b * AT_START {
+                    return Ok(Crossing::at_start(middle));
+                }
+                middle *= 0.5;
+            }
+            a = middle;
+            let mut ahead = 2.0 * a;
+            while ahead < b && self.value(ahead)? >= 0.0 {
+                a = ahead;
+                ahead *= 2.0;
+            }
+            b = ahead.min(b);
+            (above, below) = (self.value(a)?.max(0.0), self.value(b)?);
+        }
+        let mut allowance = 2.0 * (b - a);
+        let truncation = 0.2 / (b - a);
+        while a.next_up() < b && b - a > f64::MIN_POSITIVE {
+            let (middle, width) = (0.5 * (a + b), b - a);
+            let slack = (allowance - 0.5 * width).max(0.0);
+            allowance *= 0.5; // without a floor: a guard that is zero on a stretch is not crept along number by number
+            let secant = (b * above - a * below) / (above - below);
+            let towards = (middle - secant).signum();
+            let shift = truncation * width * width;
+            let guess = if shift <= (middle - secant).abs() { secant + towards * shift } else { middle };
+            let guess = if (guess - middle).abs() <= slack { guess } else { middle - towards * slack };
+            let guess = if guess.is_finite() { guess.clamp(a.next_up(), b.next_down()) } else { middle };
+            let value = self.value(guess)?;
+            if value >= 0.0 {
+                (a, above) = (guess, value);
+            } else {
+                (b, below) = (guess, value);
+            }
+        }
+        Ok(Crossing { inside: a, outside: b, root: if above <= -below { a } else { b } })
+    }
+}
