@@ -21,3 +21,7 @@ pub struct Sensitivities;
 pub struct Simulating;
 
 pub mod reference;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/physics.md")]
+pub struct Physics;

@@ -5,9 +5,19 @@
 
 mod ball;
 mod ballistic;
-mod restitution;
+pub mod contact;
+pub mod effects;
+pub mod flight;
+pub mod friction;
+pub mod materials;
+mod parameter;
+pub mod restitution;
+mod sphere;
+mod stable;
 pub mod units;
 
 pub use ball::{Ball, Floor, GravityError, Mode, STANDARD_GRAVITY};
 pub use ballistic::Drop;
-pub use restitution::{Cor, CorError};
+pub use parameter::ParameterError;
+pub use restitution::{Cor, CorError, Restitution};
+pub use sphere::Sphere;
