@@ -108,6 +108,24 @@ pub trait Automaton {
         None
     }
 
+    /// The exact solution of the flow in `mode` where a formula gives it that is no polynomial: the state at `t + s`, for s ≥ 0, if it is
+    /// `x` at `t`. No step is then taken; the trajectory's pieces interpolate it to twelve digits.
+    ///
+    /// A mode answers always or never. Asked only where [`exact`](Self::exact) says nothing.
+    fn flown(&self, mode: Self::Mode, t: f64, x: &Self::State, s: f64) -> Option<Self::State> {
+        let _ = (mode, t, x, s);
+        None
+    }
+
+    /// When the guard of `edge` first falls through zero on the solution [`flown`](Self::flown) from `x` at `t`, where a formula says so.
+    /// The default has it searched for.
+    ///
+    /// A wrong answer is believed: it breaks the guarantee that no crossing is missed.
+    fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall {
+        let _ = (mode, edge, t, x);
+        Fall::Unknown
+    }
+
     /// What lies beyond a Zeno limit: the mode and state in which the run goes on from `t`, where infinitely many jumps
     /// have accumulated at the state `x` of `mode`. The default says nothing, and the run ends with [`Stop::Zeno`](crate::Stop::Zeno).
     fn beyond(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Option<(Self::Mode, Self::State)> {
@@ -129,6 +147,18 @@ pub trait Automaton {
         let _ = mode;
         true
     }
+}
+
+/// When a guard falls on a solution that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Fall {
+    /// No formula says: it is searched for.
+    #[default]
+    Unknown,
+    /// It never does.
+    Never,
+    /// After this time, in seconds.
+    After(f64),
 }
 
 /// What to do with an edge whose guard is already negative when its mode is entered.

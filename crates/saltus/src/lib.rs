@@ -47,7 +47,7 @@ pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
 
-pub use automaton::{Automaton, Edges, Entry, Polynomial};
+pub use automaton::{Automaton, Edges, Entry, Fall, Polynomial};
 pub use course::{Checkpoint, Course};
 pub use distance::Closeness;
 pub use error::{Error, ErrorKind};

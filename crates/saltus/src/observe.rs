@@ -53,6 +53,11 @@ pub trait Observer<A: Automaton> {
         ControlFlow::Continue(())
     }
 
+    /// Whether pieces are wanted. If not, some may not be told of: those of a mode without edges are then not even computed.
+    fn wants_pieces(&self) -> bool {
+        true
+    }
+
     /// A jump was made.
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         let _ = jump;
@@ -65,11 +70,19 @@ pub trait Observer<A: Automaton> {
     }
 }
 
-impl<A: Automaton> Observer<A> for () {}
+impl<A: Automaton> Observer<A> for () {
+    #[inline]
+    fn wants_pieces(&self) -> bool {
+        false
+    }
+}
 
 impl<A: Automaton, O: Observer<A>> Observer<A> for &mut O {
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         (**self).piece(mode, piece)
+    }
+    fn wants_pieces(&self) -> bool {
+        (**self).wants_pieces()
     }
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         (**self).jump(jump)
@@ -83,6 +96,9 @@ impl<A: Automaton, O: Observer<A>, P: Observer<A>> Observer<A> for (O, P) {
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         let (first, second) = (self.0.piece(mode, piece), self.1.piece(mode, piece));
         if first.is_break() { first } else { second }
+    }
+    fn wants_pieces(&self) -> bool {
+        self.0.wants_pieces() || self.1.wants_pieces()
     }
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         let (first, second) = (self.0.jump(jump), self.1.jump(jump));

@@ -39,7 +39,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Some((p, margin)) => first_fall_of_polynomial(p, *margin, guard, limit, start),
                 None => first_fall(guard, limit, start),
             };
-            let Searched { fall, evidence } = searched.map_err(|s| self.undefined(mode, edge, now, c, scale, s))?;
+            let Searched { fall, evidence } =
+                searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             found = earlier(found, edge, fall);
         }
@@ -73,49 +74,34 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Some((p, margin))
     }
 
-    pub(super) fn guard_on(&mut self, edge: A::Edge, now: Time, c: &[A::State], scale: f64, s: f64) -> f64 {
-        self.memory.stats.guards += 1;
-        self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
-    }
-
-    /// How the arc's last piece ends at a crossing; notes how far from zero rounding may leave the guard there.
+    /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
+    /// the guard there.
     #[inline]
     pub(super) fn close(
         &mut self,
         (edge, crossing): (A::Edge, Crossing),
         now: Time,
-        c: &[A::State],
-        scale: f64,
+        at: impl Fn(f64) -> A::State,
         remaining: f64,
     ) -> Close<A::State> {
         let Crossing { inside, outside, root } = crossing;
         let span = inside.min(remaining);
-        let outer = self.guard_on(edge, now, c, scale, outside);
         let t = now.after(root).seconds();
         let mut guard = |x: &A::State| {
             self.memory.stats.guards += 1;
             self.automaton.guard(edge, t, x)
         };
-        let nearest = horner(c, root / scale);
+        let outer = guard(&at(outside));
+        let nearest = at(root);
         let g = guard(&nearest);
-        let (state, g) =
-            if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &horner(c, span / scale)) };
+        let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
-        let time = now.after(root.min(remaining));
-        Close { span, time, state }
+        Close { span, time: now.after(root.min(remaining)), state }
     }
 
-    pub(super) fn undefined(
-        &self,
-        mode: A::Mode,
-        edge: A::Edge,
-        now: Time,
-        c: &[A::State],
-        scale: f64,
-        at: Undefined,
-    ) -> Error {
-        let Undefined(s) = at;
-        Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), &horner(c, s / scale)))
+    /// The guard of `edge` is not a number a time `s` after `now`.
+    pub(super) fn undefined(&self, mode: A::Mode, edge: A::Edge, now: Time, s: f64, x: &A::State) -> Error {
+        Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), x))
     }
 }
 

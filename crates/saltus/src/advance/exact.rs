@@ -33,14 +33,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Searched { fall, evidence } = if c.len() <= 3 && self.automaton.affine(edge) {
                 Searched::solved(self.fall_of_parabola(edge, clock.now, c, limit, start))
             } else {
-                self.fall_in_windows(edge, clock.now, c, limit, start)
-                    .map_err(|s| self.undefined(mode, edge, clock.now, c, 1.0, s))?
+                self.fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
+                    .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?
             };
             observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
             found = earlier(found, edge, fall);
         }
         let close = match found {
-            Some(found) => self.close(found, clock.now, c, 1.0, remaining),
+            Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
@@ -83,28 +83,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         )
     }
 
-    /// Searches ever longer windows, the first as long as it takes the solution to change by its own size.
-    fn fall_in_windows(
+    /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.
+    pub(super) fn fall_in_windows(
         &mut self,
         edge: A::Edge,
         now: Time,
-        c: &[A::State],
+        natural: f64,
+        at: impl Fn(f64) -> A::State,
         limit: f64,
         start: Start,
     ) -> Result<Searched, Undefined> {
-        let size = |k: usize| (0..c[k].len()).map(|i| c[k].get(i).abs()).fold(0.0, f64::max);
-        let natural = (1..c.len())
-            .flat_map(|k| (0..k).map(move |j| (j, k)))
-            .filter(|&(j, k)| size(j) > 0.0 && size(k) > 0.0)
-            .map(|(j, k)| (size(j) / size(k)).powf(1.0 / (k - j) as f64))
-            .fold(0.0, f64::max);
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) };
         let mut from = 0.0;
         let mut start = start;
         let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
-            automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
+            automaton.guard(edge, now.after(s).seconds(), &at(s))
         };
         let mut evidence = Evidence::Excluded;
         loop {
@@ -126,6 +121,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
+/// The time in which a polynomial changes by its own size.
+fn natural<S: State>(c: &[S]) -> f64 {
+    (1..c.len())
+        .flat_map(|k| (0..k).map(move |j| (j, k)))
+        .map(|(j, k)| (j, k, size(&c[j]), size(&c[k])))
+        .filter(|&(_, _, low, high)| low > 0.0 && high > 0.0)
+        .map(|(j, k, low, high)| (low / high).powf(1.0 / (k - j) as f64))
+        .fold(0.0, f64::max)
+}
+
+/// The largest magnitude of a coordinate.
+pub(super) fn size(x: &impl State) -> f64 {
+    (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max)
+}
+
 /// The state at the end of a piece that may last for ever.
 fn end_of<S: State>(c: &[S], span: f64) -> S {
     if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0] }
@@ -133,6 +143,6 @@ fn end_of<S: State>(c: &[S], span: f64) -> S {
 
 /// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken at it.
 #[inline]
-fn past(remaining: f64) -> f64 {
+pub(super) fn past(remaining: f64) -> f64 {
     remaining * (1.0 + 4.0 * f64::EPSILON)
 }

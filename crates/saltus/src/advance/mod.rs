@@ -1,5 +1,6 @@
 //! One arc: from the state just after a jump to the first crossing, by the exact solution or by steps.
 
+mod closed;
 mod crossing;
 mod enter;
 mod exact;
@@ -150,6 +151,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let mut within = Clock { end: horizon, ..*clock };
             let end = match self.automaton.exact(mode, clock.now.seconds(), x) {
                 Some(solution) => self.exact(mode, &solution, &mut within, observer),
+                None if self.automaton.flown(mode, clock.now.seconds(), x, 0.0).is_some() => {
+                    self.closed(mode, x, &mut within, observer)
+                }
                 None => self.stepped(mode, *x, &mut within, observer),
             };
             clock.now = within.now;

@@ -56,7 +56,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Some((found, dense, scale)) => (*found, dense.as_ref(), *scale),
                 None => (rough, c, h),
             };
-            let close = self.close(found, clock.now, c, scale, remaining);
+            let close = self.close(found, clock.now, |s| horner(c, s / scale), remaining);
             let told =
                 close.span > 0.0 && observer.piece(mode, &Piece::new(clock.now, close.span, scale, c)).is_break();
             clock.now = close.time;
@@ -171,7 +171,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(None); // at the start, where the dense output is exact
         }
         let near = (crossing.inside - scale * 1e-3).max(0.0);
-        let rise = self.guard_on(edge, now, c, scale, near) - self.guard_on(edge, now, c, scale, crossing.inside);
+        let mut guard = |s: f64| {
+            self.memory.stats.guards += 1;
+            self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+        };
+        let rise = guard(near) - guard(crossing.inside);
         let fall = rise / (crossing.inside - near); // -dg/dt
         for _ in 0..3 {
             let trial = self.trial(mode, now.seconds(), x, slope, h);

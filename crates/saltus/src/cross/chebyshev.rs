@@ -1,7 +1,7 @@
 //! Interpolation at the nine Chebyshev points of the second kind (L. N. Trefethen, *Approximation Theory and Approximation Practice*, 2013, ch. 3).
 
 /// cos(j pi / 8), from -1 up to 1.
-pub(super) const NODES: [f64; 9] = [
+pub(crate) const NODES: [f64; 9] = [
     -1.0,
     -0.923_879_532_511_286_7,
     -std::f64::consts::FRAC_1_SQRT_2,
@@ -22,7 +22,7 @@ fn value(k: usize, j: usize) -> f64 {
 }
 
 /// The coefficients of `T_0` to `T_8` of the interpolant.
-pub(super) fn series(values: &[f64; 9]) -> [f64; 9] {
+pub(crate) fn series(values: &[f64; 9]) -> [f64; 9] {
     std::array::from_fn(|k| {
         let sum: f64 = (0..9)
             .map(|j| {
@@ -35,7 +35,7 @@ pub(super) fn series(values: &[f64; 9]) -> [f64; 9] {
 }
 
 /// Clenshaw's sum of the series at `x`.
-pub(super) fn sum(series: &[f64; 9], x: f64) -> f64 {
+pub(crate) fn sum(series: &[f64; 9], x: f64) -> f64 {
     let (mut next, mut after) = (0.0, 0.0);
     for &c in series[1..].iter().rev() {
         (next, after) = (2.0 * x * next - after + c, next);
@@ -44,9 +44,21 @@ pub(super) fn sum(series: &[f64; 9], x: f64) -> f64 {
 }
 
 /// The Bernstein coefficients of degree eight on the interval.
-pub(super) fn bernstein(series: &[f64; 9]) -> [f64; 9] {
+pub(crate) fn bernstein(series: &[f64; 9]) -> [f64; 9] {
     const TABLE: [[f64; 9]; 9] = table();
     std::array::from_fn(|i| (0..9).map(|k| series[k] * TABLE[k][i]).sum())
+}
+
+/// The coefficients of 1, u, … u⁸ of the interpolant, u = (x + 1)/2 in `0..=1`.
+pub(crate) fn powers(values: &[f64; 9]) -> [f64; 9] {
+    // From the Bernstein coefficients: cₖ = C(8,k) Δᵏb₀.
+    let mut differences = bernstein(&series(values));
+    for level in 1..9 {
+        for i in (level..9).rev() {
+            differences[i] -= differences[i - 1];
+        }
+    }
+    std::array::from_fn(|k| binomial(8, k) * differences[k])
 }
 
 /// Row k: `T_k` in the Bernstein basis, (-1)^(k-i) C(2k, 2i) / C(k, i), raised to degree eight.

@@ -1,6 +1,6 @@
 //! Where a guard first falls through zero: excluded by bounds, isolated by halving, refined to neighbouring times.
 
-mod chebyshev;
+pub(crate) mod chebyshev;
 mod refine;
 
 use crate::poly::{Bernstein, Shape};

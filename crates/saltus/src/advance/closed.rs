@@ -1,0 +1,127 @@
+//! An arc whose flow is known by a formula that is no polynomial.
+
+use std::ops::ControlFlow;
+
+use crate::automaton::{Automaton, Fall};
+use crate::cross::{Crossing, Searched, Undefined, chebyshev, settle};
+use crate::error::{Error, ErrorKind, Place};
+use crate::observe::{Inspection, Observer};
+use crate::simulation::Stop;
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+use crate::trajectory::{Piece, horner};
+
+use super::crossing::{Close, earlier};
+use super::exact::{past, size};
+use super::{Advance, ArcEnd, Clock, Found};
+
+/// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
+const AS_GOOD_AS_EXACT: f64 = 1e-12;
+/// The shortest piece, as a part of its arc.
+const SHORTEST: f64 = 1.0 / (1_u64 << 20) as f64;
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    pub(super) fn closed(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        clock: &mut Clock,
+        observer: &mut impl Observer<A>,
+    ) -> Result<ArcEnd<A>, Error> {
+        self.memory.stats.exact += 1;
+        let automaton = self.automaton;
+        let (now, t) = (clock.now, clock.now.seconds());
+        let at = |s: f64| automaton.flown(mode, t, x, s).unwrap_or_else(|| x.with(|_| f64::NAN));
+        let remaining = clock.end.since(now);
+        let mut found: Found<A> = None;
+        for edge in automaton.edges(mode).iter() {
+            let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
+            let start = self.start(edge, true);
+            let Searched { fall, evidence } = match automaton.falls(mode, edge, t, x) {
+                Fall::Never => Searched::solved(None),
+                Fall::After(s) if s > limit => Searched::solved(None),
+                Fall::After(s) if s <= 0.0 => Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE))),
+                Fall::After(s) => {
+                    let guard = |s: f64| automaton.guard(edge, now.after(s).seconds(), &at(s));
+                    self.memory.stats.guards += 1;
+                    Searched::solved(if guard(s) >= 0.0 {
+                        Some(Crossing { inside: s, outside: s.next_up(), root: s })
+                    } else {
+                        settle(guard, s)
+                    })
+                }
+                Fall::Unknown => {
+                    let natural = size(x) / size(&self.flow(mode, t, x));
+                    let natural = if natural.is_finite() { natural } else { 0.0 };
+                    self.fall_in_windows(edge, now, natural, at, limit, start)
+                        .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
+                }
+            };
+            observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+            found = earlier(found, edge, fall);
+        }
+        let close = match found {
+            Some(found) => self.close(found, now, at, remaining),
+            None => Close { span: remaining, time: clock.end, state: at(remaining) },
+        };
+        if !close.state.is_finite() {
+            return Err(Error::new(
+                ErrorKind::Flow,
+                Place::new(close.time.seconds(), mode, None::<A::Edge>, &close.state),
+            ));
+        }
+        let told = observer.wants_pieces() && interpolated(mode, now, close.span, at, observer).is_break();
+        clock.now = close.time;
+        Ok(match found {
+            _ if told => ArcEnd::Stop { stop: Stop::Observer, state: close.state },
+            Some((edge, _)) => ArcEnd::Crossing { edge, before: close.state },
+            None => ArcEnd::Stop { stop: Stop::Time, state: close.state },
+        })
+    }
+}
+
+/// Tells `observer` of the solution in pieces of degree eight, as long as they are as good as exact.
+fn interpolated<A: Automaton>(
+    mode: A::Mode,
+    now: Time,
+    span: f64,
+    at: impl Fn(f64) -> A::State,
+    observer: &mut impl Observer<A>,
+) -> ControlFlow<()> {
+    let (mut from, mut length) = (0.0, span);
+    while from < span {
+        let last = from + length >= span;
+        let h = if last { span - from } else { length };
+        let c = fitted(|u| at(from + h * u));
+        let fits = [0.221_324_6, 0.635_914_1, 0.97].iter().all(|&u| {
+            let (exact, fit) = (at(from + h * u), horner(&c, u));
+            (0..exact.len()).all(|i| {
+                let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
+                (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most
+            })
+        });
+        if !fits && h > SHORTEST * span {
+            length = 0.5 * h;
+            continue;
+        }
+        observer.piece(mode, &Piece::new(now.after(from), h, h, &c))?;
+        from = if last { span } else { from + h };
+        length = 2.0 * h;
+    }
+    ControlFlow::Continue(())
+}
+
+/// The powers of u of the interpolant of degree eight on `0..=1`.
+fn fitted<S: State>(at: impl Fn(f64) -> S) -> [S; 9] {
+    let values = chebyshev::NODES.map(|x| at(0.5 + 0.5 * x));
+    let mut powers = values;
+    for i in 0..values[0].len() {
+        let column = chebyshev::powers(&values.each_ref().map(|value| value.get(i)));
+        for (power, value) in powers.iter_mut().zip(column) {
+            *power = power.with(|k| if k == i { value } else { power.get(k) });
+        }
+    }
+    powers[0] = values[0];
+    powers
+}
