@@ -55,7 +55,8 @@ impl Automaton for Ball {
 fn three_ways_agree() {
     let times = |path: Path| {
         let ball = Ball { flight: QuadraticDragFlight::new(G, K).unwrap(), path };
-        let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(false, vector![10.0, 0.0], 0.0..9.0).unwrap();
+        let run =
+            Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(false, vector![10.0, 0.0], 0.0..9.0).unwrap();
         assert_eq!(run.stop, Stop::Time);
         for arc in 0..run.trajectory.arcs().len() {
             for piece in run.trajectory.pieces(arc) {

@@ -226,7 +226,11 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             at.contraction.push(duration);
         }
         let elapsed = at.clock.now.since(at.clock.start);
-        let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed.next_up() - elapsed) };
+        let remaining = if stands {
+            Some(0.0)
+        } else {
+            at.contraction.remaining(elapsed.next_up() - elapsed, at.memory.hides_durations())
+        };
         if let Some(remaining) = remaining.filter(|&s| at.clock.now.after(s).seconds() <= at.clock.end.seconds()) {
             return self.at_limit(remaining, observer);
         }

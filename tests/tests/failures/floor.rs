@@ -93,7 +93,6 @@ fn a_floor_at_any_height() {
 
 /// The same where the guard is not promised affine, or by steps.
 #[test]
-#[ignore = "on an unpromised guard over exact arcs the rest is 1e-7 s early; steps have not been seen to do better"]
 fn a_floor_at_any_height_by_steps() {
     a_floor_at_any_height_on(&[Path::Exact, Path::Affine, Path::General]);
 }

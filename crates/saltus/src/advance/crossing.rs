@@ -96,7 +96,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
+        self.memory.hidden = root < 1e-5 * self.memory.longest_duration && self.hides(edge, t, &at(0.5 * root), &state);
         Close { span, time: now.after(root.min(remaining)), state }
+    }
+
+    /// Whether on a short arc the guard rises so little, to its value at the state `middle`, that its rounding at the end shows.
+    #[cold]
+    fn hides(&mut self, edge: A::Edge, t: f64, middle: &A::State, end: &A::State) -> bool {
+        self.memory.stats.guards += 2;
+        let [rise, g] = [middle, end].map(|x| self.automaton.guard(edge, t, x));
+        rise < 4096.0 * self.guard_rounding(edge, t, end, g, 0.0)
     }
 
     /// The guard of `edge` is not a number a time `s` after `now`.

@@ -31,7 +31,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let slope = self.guard_slope(mode, edge, t, x, g);
             let on_wall =
-                -g <= 4.0 * (slope.abs() * (t.abs().next_up() - t.abs()) + self.guard_rounding(edge, t, x, g));
+                -g <= 4.0 * (slope.abs() * (t.abs().next_up() - t.abs()) + self.guard_rounding(edge, t, x, g, 1.0));
             if on_wall {
                 if spent.is_none() && slope < 0.0 {
                     return Ok(Some(edge));
@@ -47,13 +47,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
-    /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, 1) units in the last place.
-    fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+    /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
+    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
         const NUDGE: f64 = 1.0 / (1 << 20) as f64;
         let mut sum = 0.0;
         for k in 0..x.len() {
             self.memory.stats.guards += 1;
-            let nudged = x.with(|i| if i == k { x.get(i) + NUDGE * x.get(i).abs().max(1.0) } else { x.get(i) });
+            let nudged = x.with(|i| if i == k { x.get(i) + NUDGE * x.get(i).abs().max(least) } else { x.get(i) });
             let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
             sum += if change.is_finite() { change } else { 0.0 };
         }

@@ -59,6 +59,9 @@ pub(crate) struct Memory<E> {
     clock_took: Option<f64>,
     slack: f64,
     last_duration: f64,
+    longest_duration: f64,
+    /// Whether the last arc was so short that the rounding of a guard spoils its duration.
+    hidden: bool,
 }
 
 impl<E: Copy + PartialEq> Memory<E> {
@@ -72,6 +75,8 @@ impl<E: Copy + PartialEq> Memory<E> {
             clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
+            longest_duration: 0.0,
+            hidden: false,
         }
     }
 
@@ -93,6 +98,11 @@ impl<E: Copy + PartialEq> Memory<E> {
     #[inline]
     pub(crate) fn at_once(&self, since: f64) -> bool {
         since <= 4.0 * f64::EPSILON * self.last_duration
+    }
+
+    /// Whether the rounding of a guard spoils the duration of the last arc.
+    pub(crate) fn hides_durations(&self) -> bool {
+        self.hidden
     }
 
     /// Whether the last jump took this very edge.
@@ -121,6 +131,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if let Some(duration) = duration {
             self.memory.idle = [None; MOST_IDLE];
             self.memory.last_duration = duration;
+            self.memory.longest_duration = self.memory.longest_duration.max(duration);
         } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
             let g = self.automaton.guard(last.edge, t, x);
             if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
