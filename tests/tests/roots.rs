@@ -37,7 +37,8 @@ fn tight<A: Automaton>(automaton: &A) -> Simulation<'_, A, Dop853> {
 
 fn swing(c: f64, end: f64) -> Run<Hybrid<'static, Vector2<f64>>> {
     let automaton = watched(|_t, x: &Vector2<f64>| vector![x[1], -x[0]], move |_t, x| x[0] - c);
-    tight(&automaton).run("run", vector![0.0, 1.0], 0.0..end).unwrap()
+    // A touch is a touch only for a solution that does not overshoot it.
+    tight(&automaton).tolerance(1e-15).run("run", vector![0.0, 1.0], 0.0..end).unwrap()
 }
 
 #[test]

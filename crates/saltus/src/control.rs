@@ -1,6 +1,7 @@
-//! How long the next step may be: a proportional-integral controller on the estimated error.
+//! How long the next step may be, from the estimated errors of the last ones.
 
 use crate::state::State;
+use crate::step::Stepper;
 
 /// Local error allowed per step: in coordinate i, absolute + relative · max(|xᵢ| before, |xᵢ| after).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +25,16 @@ impl Tolerance {
     }
 }
 
-/// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K. Gustafsson, ACM TOMS 17 (1991) 533).
+/// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K. Gustafsson, ACM TOMS 17 (1991) 533), or
+/// one that predicts how the error will go on changing and is no bolder than without memory (IV.8; K. Gustafsson, ACM TOMS 20 (1994) 496).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     order: f64,
+    predictive: bool,
+    /// The logarithm of the error accepted last, and the step it was made with.
     previous: f64,
+    step: f64,
     rejected: bool,
 }
 
@@ -37,25 +42,37 @@ impl Controller {
     const SAFETY: f64 = 0.9;
     const SMALLEST: f64 = 0.2;
     const LARGEST: f64 = 10.0;
+    /// The logarithm of 1e-4, below which an error is not remembered.
+    const LEAST: f64 = -9.210_340_371_976_182;
 
-    /// For an error estimate that shrinks as h^`order`.
-    pub(crate) const fn new(order: f64) -> Self {
-        Self { order, previous: 1e-4, rejected: false }
+    pub(crate) fn new<M: Stepper>(stepper: &M) -> Self {
+        let order = stepper.error_order();
+        Self { order, predictive: stepper.predictive(), previous: Self::LEAST, step: 0.0, rejected: false }
     }
 
-    /// By which factor to change the step after an error of `norm`, and whether to accept it.
+    /// By which factor to change the step `h` after an error of `norm`, and whether to accept it.
     #[inline]
-    pub(crate) fn judge(&mut self, norm: f64) -> (bool, f64) {
+    pub(crate) fn judge(&mut self, norm: f64, h: f64) -> (bool, f64) {
         if norm <= 1.0 {
-            let norm = norm.max(1e-10);
-            let factor = Self::SAFETY * norm.powf(-0.7 / self.order) * self.previous.powf(0.4 / self.order);
-            self.previous = norm.max(1e-4);
+            let error = norm.max(1e-10).ln();
+            let factor = if self.predictive {
+                let plain = (-error / self.order).exp();
+                if self.step > 0.0 {
+                    plain.min(h / self.step * ((self.previous - 2.0 * error) / self.order).exp())
+                } else {
+                    plain
+                }
+            } else {
+                ((0.4 * self.previous - 0.7 * error) / self.order).exp()
+            };
+            self.previous = error.max(Self::LEAST);
+            self.step = h;
             let most = if self.rejected { 1.0 } else { Self::LARGEST };
             self.rejected = false;
-            (true, factor.clamp(Self::SMALLEST, most))
+            (true, (Self::SAFETY * factor).clamp(Self::SMALLEST, most))
         } else {
             self.rejected = true;
-            let factor = if norm.is_finite() { Self::SAFETY * norm.powf(-1.0 / self.order) } else { Self::SMALLEST };
+            let factor = if norm.is_finite() { Self::SAFETY * (-norm.ln() / self.order).exp() } else { Self::SMALLEST };
             (false, factor.clamp(Self::SMALLEST, Self::SAFETY))
         }
     }

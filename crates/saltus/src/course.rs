@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::simulation::{Ending, Options, Stats, Stop};
 use crate::state::State;
-use crate::step::{Stepper, Tsit5};
+use crate::step::{Auto, Stepper};
 use crate::time::Time;
 use crate::trajectory::{Cause, Jump, Piece};
 use crate::zeno::Contraction;
@@ -34,7 +34,7 @@ use crate::zeno::Contraction;
 /// assert_eq!(one.state, other.state);
 /// # Ok::<(), saltus::Error>(())
 /// ```
-pub struct Course<'a, A: Automaton, M = Tsit5> {
+pub struct Course<'a, A: Automaton, M = Auto> {
     automaton: &'a A,
     stepper: M,
     options: Options,

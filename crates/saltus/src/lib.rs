@@ -59,6 +59,6 @@ pub use observe::{Inspection, Observer};
 pub use reverse::{Invertible, Reversed};
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
 pub use state::{Coords, State};
-pub use step::{Dop853, Rodas5P, Tsit5};
+pub use step::{Auto, Dop853, Rodas5P, Tsit5};
 pub use time::Time;
 pub use trajectory::{Arc, Cause, Jump, Piece, Trajectory};

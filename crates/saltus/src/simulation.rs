@@ -10,7 +10,7 @@ use crate::course::{Checkpoint, Course};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::state::State;
-use crate::step::{Stepper, Tsit5};
+use crate::step::{Auto, Stepper};
 use crate::time::Time;
 use crate::trajectory::Trajectory;
 
@@ -30,7 +30,7 @@ use crate::trajectory::Trajectory;
 /// assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-9));
 /// # Ok::<(), saltus::Error>(())
 /// ```
-pub struct Simulation<'a, A, M = Tsit5> {
+pub struct Simulation<'a, A, M = Auto> {
     automaton: &'a A,
     stepper: M,
     options: Options,
@@ -63,7 +63,7 @@ pub(crate) struct Options {
 }
 
 impl<'a, A: Automaton> Simulation<'a, A> {
-    /// A simulation of `automaton` with [`Tsit5`], relative tolerance 1e-9, absolute tolerance 1e-12,
+    /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
     /// and limits of 10⁷ jumps, 10⁸ steps and 10⁴ jumps at one time.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
@@ -75,7 +75,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
         };
-        Self { automaton, stepper: Tsit5, options }
+        Self { automaton, stepper: Auto::new(), options }
     }
 }
 
@@ -176,7 +176,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// See [`Error`]: a span, tolerance, mode or state that cannot be run.
     pub fn start(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Course<'a, A, M>, Error> {
         self.check(mode, &state, &span)?;
-        let memory = Memory::new(M::ERROR_ORDER, self.options.first_step);
+        let memory = Memory::new(&self.fitted(), self.options.first_step);
         Ok(self.resume(Checkpoint::start(mode, state, span, memory)))
     }
 
@@ -185,7 +185,12 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
     #[must_use]
     pub fn resume(&self, checkpoint: Checkpoint<A>) -> Course<'a, A, M> {
-        Course::new(self.automaton, self.stepper, self.options, checkpoint)
+        Course::new(self.automaton, self.fitted(), self.options, checkpoint)
+    }
+
+    /// The stepper for the tolerance asked for.
+    fn fitted(&self) -> M {
+        self.stepper.for_tolerance(self.options.tolerance.relative)
     }
 
     fn check(&self, mode: A::Mode, state: &A::State, span: &Range<f64>) -> Result<(), Error> {

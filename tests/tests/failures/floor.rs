@@ -48,7 +48,6 @@ fn a_ball_comes_to_rest_on_every_path() {
 
 /// The same by steps, without an exact arc.
 #[test]
-#[ignore = "steps drift: an elastic ball is 1e-11 off in height after 293 impacts, a rest 1e-13 off in time"]
 fn a_ball_comes_to_rest_on_every_path_by_steps() {
     a_ball_comes_to_rest_on_every_path_on(&[Path::Affine, Path::General]);
 }
@@ -156,7 +155,6 @@ fn a_ball_stopped_below_a_least_speed() {
 
 /// The same by steps, without an exact arc.
 #[test]
-#[ignore = "steps drift: an elastic ball is 1e-11 off in height after 293 impacts, a rest 1e-13 off in time"]
 fn a_ball_stopped_below_a_least_speed_by_steps() {
     a_ball_stopped_below_a_least_speed_on(&[Path::Affine, Path::General]);
 }
@@ -261,7 +259,6 @@ fn an_elastic_ball_keeps_its_height() {
 
 /// The same by steps, without an exact arc.
 #[test]
-#[ignore = "steps drift: an elastic ball is 1e-11 off in height after 293 impacts, a rest 1e-13 off in time"]
 fn an_elastic_ball_keeps_its_height_by_steps() {
     an_elastic_ball_keeps_its_height_on(&[Path::Affine, Path::General]);
 }

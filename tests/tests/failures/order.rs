@@ -97,8 +97,14 @@ fn eight_balls_land_together() {
     let jumps = run.trajectory.jumps();
     assert_eq!(jumps.iter().filter_map(|jump| jump.edge()).collect::<Vec<_>>(), (0..8).collect::<Vec<_>>());
     assert!(jumps.iter().all(|jump| jump.t() == jumps[0].t()), "{jumps:?}");
-    let first = &run.state[..2];
-    assert!(run.state.chunks(2).all(|ball| ball == first) && first[1] != 0.0, "{:?}", run.state);
+    // The same but for rounding: each bounces from where the one before left the others.
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
+    let [height, speed] = [run.state[0], run.state[1]];
+    assert!(
+        speed > 0.0 && run.state.chunks(2).all(|ball| near(ball[0], height) && near(ball[1], speed)),
+        "{:?}",
+        run.state
+    );
 }
 
 /// Two groups land at their own times: each gets its own flags.

@@ -1,7 +1,7 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
-use crate::cross::{Crossing, Searched, Undefined, first_fall, first_fall_of_polynomial};
+use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::poly::{Bernstein, MAX_DEGREE};
@@ -29,15 +29,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let start = self.start(edge, first);
             let affine = self.automaton.affine(edge);
-            let p = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
+            let powers = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
+            if start != Start::Spent && powers.as_ref().is_some_and(Powers::stay_above) {
+                observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence: Evidence::Excluded });
+                continue;
+            }
+            let p = powers.as_ref().and_then(Powers::bernstein);
+            let bend = if p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
             let guard = |s: f64| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
             };
             let searched = match &p {
-                Some((p, margin)) => first_fall_of_polynomial(p, *margin, guard, limit, start),
-                None => first_fall(guard, limit, start),
+                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, guard, limit, start),
+                None => first_fall_on_step(guard, limit, start, bend),
             };
             let Searched { fall, evidence } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
@@ -47,11 +53,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(found)
     }
 
+    /// How far the guard bends along a polynomial: by its powers from the second on.
+    fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
+        self.memory.stats.guards += 2;
+        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));
+        let [bent, start] = [&bent, &c[0]].map(|x| self.automaton.guard(edge, now.seconds(), x));
+        let bend = (bent - start).abs();
+        if bend.is_finite() { bend } else { 0.0 }
+    }
+
     /// An affine guard along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     ///
     /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
     #[inline]
-    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<(Bernstein, f64)> {
+    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Powers> {
         const LARGER: f64 = (1_u128 << 70) as f64;
         if c.len() > MAX_DEGREE + 1 {
             return None;
@@ -69,14 +84,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *p = difference * power;
             power *= stretch;
         }
-        let p = Bernstein::from_powers(&p[..c.len()])?;
-        let margin = f64::EPSILON * (4.0 * (constant.abs() + start.abs()) + 8.0 * p.scale());
-        Some((p, margin))
+        Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + start.abs()) })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
     /// the guard there.
-    #[inline]
+    #[inline(always)] // an exact solution has the scale 1, by which nothing need then be divided
     pub(super) fn close(
         &mut self,
         (edge, crossing): (A::Edge, Crossing),
@@ -137,6 +150,30 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
         }
     }
     (*inner, guard(inner))
+}
+
+/// A guard along a step in powers of time.
+struct Powers {
+    p: [f64; MAX_DEGREE + 1],
+    len: usize,
+    /// How far its value at the start may be off.
+    rounding: f64,
+}
+
+impl Powers {
+    /// Whether no fall is possible for the size of the powers alone, which is far cheaper to see than by their Bernstein form.
+    #[inline]
+    fn stay_above(&self) -> bool {
+        let most: f64 = self.p[1..self.len].iter().map(|p| p.abs()).sum();
+        self.p[0] > (1.0 + 16.0 * f64::EPSILON) * most + self.rounding && most.is_finite()
+    }
+
+    /// The same in the Bernstein basis, how far it may be off, and how far it bends.
+    fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
+        let p = Bernstein::from_powers(&self.p[..self.len])?;
+        let bend = self.p[..self.len].iter().skip(2).map(|p| p.abs()).sum();
+        Some((p, self.rounding + 8.0 * f64::EPSILON * p.scale(), bend))
+    }
 }
 
 /// The earlier of two crossings; those that time cannot tell apart keep the order of their edges.

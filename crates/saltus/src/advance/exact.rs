@@ -43,6 +43,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
+        // What a formula says is not spoilt by rounding.
+        self.memory.hidden &= found.is_some_and(|(edge, _)| c.len() > 3 || !self.automaton.affine(edge));
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
         clock.now = close.time;
         Ok(match found {

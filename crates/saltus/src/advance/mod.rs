@@ -65,10 +65,10 @@ pub(crate) struct Memory<E> {
 }
 
 impl<E: Copy + PartialEq> Memory<E> {
-    pub(crate) fn new(error_order: f64, first_step: Option<f64>) -> Self {
+    pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
-            controller: Controller::new(error_order),
+            controller: Controller::new(stepper),
             step: first_step,
             spent: None,
             idle: [None; MOST_IDLE],

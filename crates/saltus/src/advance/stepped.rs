@@ -26,6 +26,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
         }
         let mut first = true;
+        let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
         loop {
             let remaining = clock.end.since(clock.now);
@@ -36,13 +37,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
+            let last = h >= remaining;
+            if unguarded && !observer.wants_pieces() {
+                clock.now = if last { clock.end } else { clock.now.after(h) };
+                (x, slope, first) = (trial.end, trial.slope, false);
+                continue;
+            }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
-            let last = h >= remaining;
             let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
             let found = self.first_crossing(mode, clock.now, c, h, limit, first, observer)?;
             let Some(rough) = found else {
-                let state = horner(c, 1.0);
+                // Where guards were looked at, the state goes on from where they were seen last.
+                let state = if unguarded { trial.end } else { horner(c, 1.0) };
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 if told.is_break() {
@@ -81,9 +88,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let t = now.seconds();
         let longest = remaining.min(self.options.longest_step);
         let tolerance = self.options.tolerance;
+        let order = self.stepper.error_order();
         let mut h = match self.memory.step {
             Some(h) => h,
-            None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, M::ERROR_ORDER, longest),
+            None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, order, longest),
         };
         loop {
             // The last step is stretched or halved a little rather than followed by a tiny one.
@@ -97,7 +105,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let trial = self.trial(mode, t, x, slope, size);
             let norm = self.stepper.error(size, &trial, |error| tolerance.norm(error, x, &trial.end));
             let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
-            let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY });
+            let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY }, size);
             if accepted {
                 self.memory.stats.steps += 1;
                 self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });

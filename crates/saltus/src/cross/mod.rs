@@ -126,6 +126,9 @@ const LOOKS: usize = 128;
 const MOST_TURNS: usize = 8;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
 const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
+/// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
+/// higher powers carry the error of the step and the rounding of its stages.
+const ROUGH: f64 = 1e-6;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
@@ -154,17 +157,33 @@ const MOST_EVALUATIONS: u32 = 20_000;
 /// # Errors
 /// [`Undefined`] if the guard is not a number somewhere before its first fall.
 pub fn first_fall(guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Result<Searched, Undefined> {
+    searched(Search::new(guard, span), start)
+}
+
+/// The same for a guard on the dense output of a step, which bends by `bend` over it.
+pub(crate) fn first_fall_on_step(
+    guard: impl FnMut(f64) -> f64,
+    span: f64,
+    start: Start,
+    bend: f64,
+) -> Result<Searched, Undefined> {
     let mut search = Search::new(guard, span);
+    search.rough = ROUGH * bend;
+    searched(search, start)
+}
+
+fn searched<G: FnMut(f64) -> f64>(mut search: Search<G>, start: Start) -> Result<Searched, Undefined> {
     let side = search.side_at(start)?;
-    let all = Stretch { a: 0.0, b: span, depth: DEEPEST, margin: f64::INFINITY, known: None };
+    let all = Stretch { a: 0.0, b: search.span, depth: DEEPEST, margin: f64::INFINITY, known: None };
     let part = search.part(&all, side)?;
     search.conclude(part)
 }
 
-/// The same for a guard that is known to be the polynomial `p(s / span)` to within `margin`; where that decides, `guard` is not asked.
+/// The same for a guard on a step, which bends by `bend` over it, that is known to be the polynomial `p(s / span)` to within `margin`; where that decides, `guard` is not asked.
 pub(crate) fn first_fall_of_polynomial(
     p: &Bernstein,
     margin: f64,
+    bend: f64,
     guard: impl FnMut(f64) -> f64,
     span: f64,
     start: Start,
@@ -181,6 +200,7 @@ pub(crate) fn first_fall_of_polynomial(
         return Ok(Searched { fall: None, evidence: Evidence::Excluded });
     }
     let mut search = Search::new(guard, span);
+    search.rough = ROUGH * bend;
     let side = search.side_at(start)?;
     let all = Stretch { a: 0.0, b: span, depth: DEEPEST, margin, known: Some(p) };
     let part = search.part(&all, side)?;
@@ -194,6 +214,9 @@ struct Search<G> {
     spent: bool,
     /// The guard's value at a spent start.
     base: f64,
+    /// What a guard on a step is rough by: close to its start, where the solution is zero but for rounding, it is known no better than
+    /// to this times the square of the part of the step.
+    rough: f64,
     /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros after it are rounding and no plateau.
     falls_smoothly: bool,
     evaluations: u32,
@@ -253,6 +276,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             span,
             spent: false,
             base: 0.0,
+            rough: 0.0,
             falls_smoothly: false,
             evaluations: 0,
             largest: 0.0,
@@ -322,6 +346,13 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         if leaving && known.is_some() {
             margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
         }
+        if side == Side::Wall {
+            let roughness = self.roughness(b);
+            if p.coefficients().iter().all(|value| (value - self.base).abs() < roughness) {
+                return Ok(Part::None(Side::Wall));
+            }
+            margin += roughness;
+        }
         let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
         let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
@@ -358,7 +389,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
                 _ => Some(Part::None(Side::Inside)),
             },
             Shape::Rising if resolved => match side {
-                Side::Wall if q.end().abs() <= q_margin || !self.spent && q.start() <= q_margin => None,
+                Side::Wall if q.end().abs() <= q_margin => None,
+                Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => None,
                 Side::Wall => Some(Part::None(Side::of(q.end(), side))),
                 _ => Some(Part::None(Side::of(end, side))),
             },
@@ -386,6 +418,11 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             }
         }
         self.halved(stretch, margin, side)
+    }
+
+    /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
+    fn roughness(&self, s: f64) -> f64 {
+        self.rough * (s / self.span).powi(2)
     }
 
     /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter times, and so not rounding.
@@ -434,7 +471,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         let mut s = a;
         while s < b {
             s = s.next_up();
-            match walk.to(s, self.value(s)?) {
+            match walk.to(s, self.value(s)?, self.roughness(s)) {
                 Tread::Falls => return Ok(Part::Fall { a: walk.last, b: s, near: None }),
                 Tread::FallsAtStart if !self.spent => return Ok(Part::AtStart),
                 _ => {}
@@ -479,7 +516,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         }
         let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };
         for (s, value) in samples {
-            match walk.to(s, value) {
+            match walk.to(s, value, self.roughness(s)) {
                 Tread::Falls => return Ok(Look::Steps(Part::Fall { a: walk.last, b: s, near: None })),
                 Tread::FallsAtStart if !self.spent => return Ok(Look::Steps(Part::AtStart)),
                 _ => {}
@@ -560,8 +597,9 @@ struct Walk {
 
 impl Walk {
     /// What the guard has done on the way to `s`.
-    fn to(&mut self, s: f64, value: f64) -> Tread {
+    fn to(&mut self, s: f64, value: f64, roughness: f64) -> Tread {
         let side = match self.side {
+            Side::Wall if (value - self.base).abs() <= roughness => Side::Wall,
             Side::Wall => Side::of(value - self.base, Side::Wall),
             side => Side::of(value, side),
         };

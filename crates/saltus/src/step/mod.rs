@@ -2,14 +2,17 @@
 //!
 //! | stepper | order | dense output | flows per step | made for |
 //! |---|---|---|---|---|
+//! | [`Auto`] | | | | the default: the next or the one after it, by the tolerance |
 //! | [`Tsit5`] | 5(4) | 4 | 6 | everyday work, relative tolerances of 1e-3 to 1e-7 |
 //! | [`Dop853`] | 8(5, 3) | 7 | 12, and 3 for the dense output | tight tolerances, 1e-7 to 1e-14 |
 //! | [`Rodas5P`] | 5(4) | 4 | 8, and 2 n + 1 for the Jacobian of n coordinates | stiff flows |
 
+mod auto;
 mod dop853;
 mod rodas5p;
 mod tsit5;
 
+pub use auto::{Auto, Either};
 pub use dop853::Dop853;
 pub use rodas5p::Rodas5P;
 pub use tsit5::Tsit5;
@@ -26,11 +29,26 @@ pub trait Stepper: Copy {
     /// The coefficients of the dense output in powers of (t - t₀)/h, lowest first.
     type Dense<S: State>: AsRef<[S]>;
 
-    /// The power of h with which the error estimate shrinks.
-    const ERROR_ORDER: f64;
-
     /// How many Jacobians a trial evaluates.
     const JACOBIANS: u64 = 0;
+
+    /// Whether the next step is predicted from how error and step changed together over the last two.
+    ///
+    /// That saves evaluations where accuracy alone limits the step, as it does for a stiff stepper or a tight tolerance. Where stability limits
+    /// it, as it may an explicit stepper's, the proportional-integral control that is used otherwise rejects fewer steps.
+    fn predictive(&self) -> bool {
+        false
+    }
+
+    /// The power of h with which the error estimate shrinks.
+    fn error_order(&self) -> f64;
+
+    /// The method to use at this relative tolerance; asked for once, as a run starts. Most methods are one for all.
+    #[must_use]
+    fn for_tolerance(self, relative: f64) -> Self {
+        let _ = relative;
+        self
+    }
 
     /// One step of size `h` from `x` at `t`, where the flow is `slope`.
     fn trial<S: State>(
@@ -69,6 +87,14 @@ pub struct Trial<S, K> {
     pub stages: K,
 }
 
+impl<S, K> Trial<S, K> {
+    /// The same with its stages kept as something else.
+    #[inline]
+    fn with_stages<L>(self, keep: impl FnOnce(K) -> L) -> Trial<S, L> {
+        Trial { end: self.end, slope: self.slope, stages: keep(self.stages) }
+    }
+}
+
 /// Coordinate `i` of Σ wₖ kₖ.
 #[inline]
 fn weighted<S: State, const N: usize>(weights: &[f64; N], slopes: [&S; N], i: usize) -> f64 {
@@ -79,6 +105,40 @@ fn weighted<S: State, const N: usize>(weights: &[f64; N], slopes: [&S; N], i: us
 #[inline]
 fn moved<S: State, const N: usize>(x: &S, h: f64, weights: &[f64; N], slopes: [&S; N]) -> S {
     x.with(|i| x.get(i) + h * weighted(weights, slopes, i))
+}
+
+/// y - x.
+#[inline]
+fn difference<S: State>(y: &S, x: &S) -> S {
+    x.with(|i| y.get(i) - x.get(i))
+}
+
+/// The stages of an explicit step, kept as differences dₖ from the slope at its start.
+///
+/// With x + h (c f + Σ wₖ dₖ) in place of x + h Σ wₖ kₖ the large weights of opposite signs that methods have act on differences only:
+/// where the slope hardly changes they add no rounding, and a constant slope is integrated to the last digit.
+struct Differences<'a, F, S> {
+    flow: &'a mut F,
+    t: f64,
+    x: &'a S,
+    slope: &'a S,
+    h: f64,
+}
+
+impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
+    /// The state that is `c` of the step ahead by these weights.
+    #[inline]
+    fn state<const N: usize>(&self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
+        let Self { x, slope, h, .. } = self;
+        x.with(|i| x.get(i) + h * (c * slope.get(i) + weighted(weights, differences, i)))
+    }
+
+    /// The flow there, less the one at the start.
+    #[inline]
+    fn next<const N: usize>(&mut self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
+        let state = self.state(c, weights, differences);
+        difference(&(self.flow)(self.t + c * self.h, &state), self.slope)
+    }
 }
 
 /// The coefficient of θ² with which the polynomial that starts at `x` and has these `first` (of θ) and `higher` (of θ³, θ⁴, …)

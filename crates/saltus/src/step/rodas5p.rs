@@ -115,8 +115,16 @@ impl Stepper for Rodas5P {
     type Stages<S: State> = ([S; 8], S);
     type Dense<S: State> = [S; 5];
 
-    const ERROR_ORDER: f64 = 5.0;
     const JACOBIANS: u64 = 1;
+
+    fn predictive(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn error_order(&self) -> f64 {
+        5.0
+    }
 
     #[inline]
     fn trial<S: State>(
@@ -343,7 +351,7 @@ mod tests {
         let (at_ends, inside) = errors_with(Rodas5P, 1.0 / 32.0);
         assert!(at_ends < 1e-9 && inside < 1e-8, "{at_ends:e} {inside:e}");
         let estimate = error_order(Rodas5P, 1.0 / 8.0);
-        assert!((Rodas5P::ERROR_ORDER - estimate).abs() < 0.4, "{estimate}");
+        assert!((Rodas5P.error_order() - estimate).abs() < 0.4, "{estimate}");
     }
 
     #[test]

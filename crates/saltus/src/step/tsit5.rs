@@ -1,6 +1,6 @@
 //! Tsit5: order 5(4), six flow evaluations a step, dense output of order 4.
 
-use super::{Stepper, Trial, closing, moved, weighted};
+use super::{Differences, Stepper, Trial, closing, difference, weighted};
 use crate::state::State;
 
 /// The explicit Runge–Kutta pair of order 5(4) by Tsitouras: the everyday stepper.
@@ -16,30 +16,18 @@ use crate::state::State;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tsit5;
 
-const C: [f64; 4] = [0.161, 0.327, 0.9, 0.980_025_540_904_509_7];
-const A2: [f64; 1] = [0.161];
-const A3: [f64; 2] = [-0.008_480_655_492_356_989, 0.335_480_655_492_357];
-const A4: [f64; 3] = [2.897_153_057_105_493_5, -6.359_448_489_975_075, 4.362_295_432_869_581_5];
-const A5: [f64; 4] =
-    [5.325_864_828_439_257, -11.748_883_564_062_828, 7.495_539_342_889_836_5, -0.092_495_066_361_755_25];
-const A6: [f64; 5] = [
-    5.861_455_442_946_42,
-    -12.920_969_317_847_11,
-    8.159_367_898_576_159,
-    -0.071_584_973_281_401,
-    -0.028_269_050_394_068_383,
-];
-const B: [f64; 6] = [
-    0.096_460_766_818_065_23,
-    0.01,
-    0.479_889_650_414_499_6,
-    1.379_008_574_103_742,
-    -3.290_069_515_436_081,
-    2.324_710_524_099_774,
-];
+/// The times of stages 2 to 6 and of the end, which are the sums of their rows.
+const C: [f64; 6] = [0.161, 0.327, 0.9, 0.980_025_540_904_509_7, 1.0, 1.0];
+// The rows, for k₂ - k₁, k₃ - k₁, …: what k₁ itself gets is given by the sums.
+const A3: [f64; 1] = [0.335_480_655_492_357];
+const A4: [f64; 2] = [-6.359_448_489_975_075, 4.362_295_432_869_581_5];
+const A5: [f64; 3] = [-11.748_883_564_062_828, 7.495_539_342_889_836_5, -0.092_495_066_361_755_25];
+const A6: [f64; 4] =
+    [-12.920_969_317_847_11, 8.159_367_898_576_159, -0.071_584_973_281_401, -0.028_269_050_394_068_383];
+const B: [f64; 5] =
+    [0.01, 0.479_889_650_414_499_6, 1.379_008_574_103_742, -3.290_069_515_436_081, 2.324_710_524_099_774];
 /// Weights of the fifth-order solution less those of the fourth-order one.
-const E: [f64; 7] = [
-    -0.001_780_011_052_225_777,
+const E: [f64; 6] = [
     -0.000_816_434_459_656_746_9,
     0.007_880_878_010_261_995,
     -0.144_711_007_173_262_9,
@@ -49,32 +37,20 @@ const E: [f64; 7] = [
 ];
 /// The weights of the stages and of the slope at the end in θ³ and θ⁴ of the dense output. In θ the first stage stands alone,
 /// and what is left of the step belongs to θ².
-const D: [[f64; 7]; 2] = [
-    [
-        2.913_255_461_821_912_6,
-        -0.223_4,
-        -5.941_033_872_131_505,
-        30.338_188_630_282_32,
-        -88.178_904_894_766_4,
-        65.091_894_674_793_66,
-        -4.0,
-    ],
-    [
-        -1.053_088_497_729_021_6,
-        0.101_7,
-        2.490_627_285_651_253,
-        -16.548_102_889_244_902,
-        47.379_521_962_819_28,
-        -34.870_657_861_496_61,
-        2.5,
-    ],
+const D: [[f64; 6]; 2] = [
+    [-0.223_4, -5.941_033_872_131_505, 30.338_188_630_282_32, -88.178_904_894_766_4, 65.091_894_674_793_66, -4.0],
+    [0.101_7, 2.490_627_285_651_253, -16.548_102_889_244_902, 47.379_521_962_819_28, -34.870_657_861_496_61, 2.5],
 ];
 
 impl Stepper for Tsit5 {
+    /// k₁, and k₂ - k₁ to k₆ - k₁.
     type Stages<S: State> = [S; 6];
     type Dense<S: State> = [S; 5];
 
-    const ERROR_ORDER: f64 = 5.0;
+    #[inline]
+    fn error_order(&self) -> f64 {
+        5.0
+    }
 
     #[inline]
     fn trial<S: State>(
@@ -85,21 +61,20 @@ impl Stepper for Tsit5 {
         slope: &S,
         h: f64,
     ) -> Trial<S, [S; 6]> {
-        let k1 = *slope;
-        let k2 = flow(t + C[0] * h, &moved(x, h, &A2, [&k1]));
-        let k3 = flow(t + C[1] * h, &moved(x, h, &A3, [&k1, &k2]));
-        let k4 = flow(t + C[2] * h, &moved(x, h, &A4, [&k1, &k2, &k3]));
-        let k5 = flow(t + C[3] * h, &moved(x, h, &A5, [&k1, &k2, &k3, &k4]));
-        let k6 = flow(t + h, &moved(x, h, &A6, [&k1, &k2, &k3, &k4, &k5]));
-        let end = moved(x, h, &B, [&k1, &k2, &k3, &k4, &k5, &k6]);
-        let slope = flow(t + h, &end);
-        Trial { end, slope, stages: [k1, k2, k3, k4, k5, k6] }
+        let mut stages = Differences { flow, t, x, slope, h };
+        let d2 = stages.next(C[0], &[], []);
+        let d3 = stages.next(C[1], &A3, [&d2]);
+        let d4 = stages.next(C[2], &A4, [&d2, &d3]);
+        let d5 = stages.next(C[3], &A5, [&d2, &d3, &d4]);
+        let d6 = stages.next(C[4], &A6, [&d2, &d3, &d4, &d5]);
+        let end = stages.state(C[5], &B, [&d2, &d3, &d4, &d5, &d6]);
+        Trial { end, slope: flow(t + h, &end), stages: [*slope, d2, d3, d4, d5, d6] }
     }
 
     #[inline]
     fn error<S: State>(&self, h: f64, trial: &Trial<S, [S; 6]>, norm: impl Fn(&S) -> f64) -> f64 {
-        let k = all(trial);
-        norm(&trial.end.with(|i| h * weighted(&E, k, i)))
+        let last = last(trial);
+        norm(&trial.end.with(|i| h * weighted(&E, all(trial, &last), i)))
     }
 
     #[inline]
@@ -111,19 +86,25 @@ impl Stepper for Tsit5 {
         h: f64,
         trial: &Trial<S, [S; 6]>,
     ) -> [S; 5] {
-        let k = all(trial);
-        let c1 = x.with(|i| h * k[0].get(i));
-        let higher = D.map(|d| x.with(|i| h * weighted(&d, k, i)));
+        let last = last(trial);
+        let c1 = x.with(|i| h * trial.stages[0].get(i));
+        let higher = D.map(|d| x.with(|i| h * weighted(&d, all(trial, &last), i)));
         let [c3, c4] = higher;
         [*x, c1, closing(x, &trial.end, &c1, &higher), c3, c4]
     }
 }
 
-/// The six stages and the slope at the end.
+/// k₇ - k₁.
 #[inline]
-fn all<S>(trial: &Trial<S, [S; 6]>) -> [&S; 7] {
-    let [k1, k2, k3, k4, k5, k6] = &trial.stages;
-    [k1, k2, k3, k4, k5, k6, &trial.slope]
+fn last<S: State>(trial: &Trial<S, [S; 6]>) -> S {
+    difference(&trial.slope, &trial.stages[0])
+}
+
+/// The differences k₂ - k₁ to k₇ - k₁, of which `last` is the last.
+#[inline]
+fn all<'a, S>(trial: &'a Trial<S, [S; 6]>, last: &'a S) -> [&'a S; 6] {
+    let [_, d2, d3, d4, d5, d6] = &trial.stages;
+    [d2, d3, d4, d5, d6, last]
 }
 
 #[cfg(test)]
@@ -139,23 +120,32 @@ mod tests {
         let (at_ends, inside) = errors_with(Tsit5, 1.0 / 32.0);
         assert!(at_ends < 1e-9 && inside < 1e-8, "{at_ends:e} {inside:e}");
         let estimate = error_order(Tsit5, 1.0 / 16.0);
-        assert!((Tsit5::ERROR_ORDER - estimate).abs() < 0.3, "{estimate}");
+        assert!((Tsit5.error_order() - estimate).abs() < 0.3, "{estimate}");
     }
 
     #[test]
     fn rows_are_consistent() {
-        for (row, c) in [(&A3[..], C[1]), (&A4, C[2]), (&A5, C[3]), (&A6, 1.0), (&B, 1.0)] {
-            assert!((row.iter().sum::<f64>() - c).abs() < 1e-14);
+        // With what the source gives k₁ the rows add up to their times, and to nothing.
+        let rows = [
+            (&A3[..], -0.008_480_655_492_356_989, C[1]),
+            (&A4, 2.897_153_057_105_493_5, C[2]),
+            (&A5, 5.325_864_828_439_257, C[3]),
+            (&A6, 5.861_455_442_946_42, C[4]),
+            (&B, 0.096_460_766_818_065_23, C[5]),
+            (&E, -0.001_780_011_052_225_777, 0.0),
+            (&D[0], 2.913_255_461_821_912_6, 0.0),
+            (&D[1], -1.053_088_497_729_021_6, 0.0),
+        ];
+        for (row, first, sum) in rows {
+            assert!((row.iter().sum::<f64>() + first - sum).abs() < 1e-13, "{row:?}");
         }
-        assert!(E.iter().sum::<f64>().abs() < 1e-15);
+        for n in 1..5 {
+            let sum: f64 = B.iter().zip(C).map(|(b, c)| b * c.powi(n)).sum();
+            assert!((sum - 1.0 / f64::from(n + 1)).abs() < 1e-14, "{n}");
+        }
         // The weights of θ², which the closing of the step leaves: those of the source.
-        let squared = [-2.763_706_197_274_826, 0.131_7, 3.930_296_236_894_751_6, -12.411_077_166_933_676];
-        for (k, c2) in squared.into_iter().enumerate() {
-            let first = if k == 0 { 1.0 } else { 0.0 };
-            assert!((D[0][k] + D[1][k] + c2 + first - B[k]).abs() < 1e-14);
-        }
-        for d in [&D[0], &D[1]] {
-            assert!((d.iter().sum::<f64>()).abs() < 1e-13);
+        for (k, c2) in [0.131_7, 3.930_296_236_894_751_6, -12.411_077_166_933_676].into_iter().enumerate() {
+            assert!((D[0][k] + D[1][k] + c2 - B[k]).abs() < 1e-14);
         }
     }
 }
