@@ -163,7 +163,6 @@ fn event_at_the_start() {
 }
 
 #[test]
-#[ignore = "by steps, the rounding of eight arcs puts the last crossing just behind the end of the span"]
 fn event_at_the_end_of_a_step() {
     let case = Case::named("event-at-step-end");
     for exact in [true, false] {

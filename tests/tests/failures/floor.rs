@@ -161,7 +161,6 @@ fn a_ball_stopped_below_a_least_speed_by_steps() {
 
 /// A rimless wheel too slow to go on rocks between two legs, each reset swapping the guards; it comes to stand on both.
 #[test]
-#[ignore = "does not end within six seconds"]
 fn a_wheel_that_rocks_comes_to_stand() {
     let (alpha, gamma) = (std::f64::consts::FRAC_PI_8, 0.03);
     let loss = (2.0 * alpha).cos();

@@ -46,7 +46,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     let guard = |s: f64| automaton.guard(edge, now.after(s).seconds(), &at(s));
                     self.memory.stats.guards += 1;
                     Searched::solved(if guard(s) >= 0.0 {
-                        Some(Crossing { inside: s, outside: s.next_up(), root: s })
+                        Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 })
                     } else {
                         settle(guard, s)
                     })

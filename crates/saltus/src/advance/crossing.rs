@@ -97,7 +97,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         at: impl Fn(f64) -> A::State,
         remaining: f64,
     ) -> Close<A::State> {
-        let Crossing { inside, outside, root } = crossing;
+        let Crossing { inside, outside, root, rest } = crossing;
         let span = inside.min(remaining);
         let t = now.after(root).seconds();
         let mut guard = |x: &A::State| {
@@ -110,7 +110,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
         self.memory.hidden = root < 1e-5 * self.memory.longest_duration && self.hides(edge, t, &at(0.5 * root), &state);
-        Close { span, time: now.after(root.min(remaining)), state }
+        let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
+        Close { span, time, state }
     }
 
     /// Whether on a short arc the guard rises so little, to its value at the state `middle`, that its rounding at the end shows.

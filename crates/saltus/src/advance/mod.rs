@@ -156,7 +156,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let scheduled = self.scheduled(mode, clock);
         let horizon = scheduled.map_or(clock.end, |(t, _)| Time::new(t));
-        let state = if horizon.since(clock.now) <= 0.0 {
+        // What is left of the span may be the rounding of the jumps' times.
+        let state = if horizon.since(clock.now) <= 2.0 * f64::EPSILON * clock.now.since(clock.start) {
             *x
         } else {
             let mut within = Clock { end: horizon, ..*clock };
@@ -178,7 +179,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.clock_took = Some(t);
                 ArcEnd::Crossing { edge, before: state }
             }
-            None => ArcEnd::Stop { stop: Stop::Time, state },
+            None => {
+                clock.now = clock.end;
+                ArcEnd::Stop { stop: Stop::Time, state }
+            }
         })
     }
 

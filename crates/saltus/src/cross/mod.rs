@@ -16,12 +16,14 @@ pub struct Crossing {
     pub outside: f64,
     /// The best estimate of the root, within rounding of both: where `inside` lies early by up to a rounding, this has no bias.
     pub root: f64,
+    /// What rounding takes from the root: it lies at `root + rest`, by the guard's values on both sides.
+    pub rest: f64,
 }
 
 impl Crossing {
     /// A crossing at the very start.
     pub(crate) const fn at_start(outside: f64) -> Self {
-        Self { inside: 0.0, outside, root: 0.0 }
+        Self { inside: 0.0, outside, root: 0.0, rest: 0.0 }
     }
 }
 
@@ -409,12 +411,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         if rounding || margin > 1e-3 * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
-                Look::Rounding if rounding => {
-                    self.weaken(Evidence::Rounding { from: a, to: b });
-                    self.flat = Some(from);
-                    return Ok(Part::None(side));
-                }
-                Look::Rounding | Look::Smooth => {}
+                Look::Rounding(part) if rounding => return Ok(part),
+                Look::Rounding(_) | Look::Smooth => {}
             }
         }
         self.halved(stretch, margin, side)
@@ -509,7 +507,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         }
         let steps = samples.chunk_by(|x, y| x.1 == y.1).count();
         if turns > MOST_TURNS {
-            return Ok(Look::Rounding);
+            return Ok(Look::Rounding(self.seen_through(&samples, a, b, side)));
         }
         if steps > LOOKS / 2 {
             return Ok(Look::Smooth);
@@ -531,6 +529,30 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             return Ok(Look::Steps(self.left(slow.then(|| order(at_half - self.base, last - self.base, half, b)))));
         }
         Ok(Look::Steps(Part::None(walk.side)))
+    }
+
+    /// What is left of samples when all that is as small as their rounding counts as zero.
+    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
+        let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
+        let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let (mut side, mut hidden) = (side, true);
+        for &(s, value) in samples {
+            if value.abs() <= rounding {
+                continue;
+            }
+            let next = Side::of(value, side);
+            if side == Side::Inside && next == Side::Outside {
+                return Part::Fall { a: self.flat.unwrap_or(a), b: s, near: None };
+            }
+            (side, hidden) = (next, false);
+        }
+        if hidden {
+            self.weaken(Evidence::Rounding { from: a, to: b });
+            self.flat = Some(self.flat.unwrap_or(a));
+        } else {
+            self.flat = None;
+        }
+        Part::None(side)
     }
 
     /// The interpolant at the Chebyshev points of `[a, b]`, and how far the guard may be from it.
@@ -572,8 +594,8 @@ fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
 enum Look {
     /// Steps of rounding, seen one by one: their signs count.
     Steps(Part),
-    /// Ups and downs without order.
-    Rounding,
+    /// Ups and downs without order, and what can be seen through them.
+    Rounding(Part),
     /// Neither: it is to be looked at more closely.
     Smooth,
 }

@@ -5,7 +5,7 @@ use super::{AT_START, Crossing, Search, Undefined};
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
     // Where rounding hides the guard's sign all around, the root that is known decides: a ball does not fall through a floor at height one.
-    let known = Crossing { inside: near, outside: near.next_up(), root: near };
+    let known = Crossing { inside: near, outside: near.next_up(), root: near, rest: 0.0 };
     let mut step = near.next_up() - near;
     let (mut a, mut b) = (near, near);
     if guard(near) >= 0.0 {
@@ -37,15 +37,19 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
         let middle = 0.5 * (a + b);
         if guard(middle) >= 0.0 { a = middle } else { b = middle }
     }
-    Some(Crossing { inside: a, outside: b, root: near })
+    Some(Crossing { inside: a, outside: b, root: near, rest: 0.0 })
 }
 
 impl<G: FnMut(f64) -> f64> Search<G> {
     /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than
     /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
     pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {
-        if a == 0.0 && self.value(self.span * AT_START)? < 0.0 && self.value(0.0)? >= 0.0 {
-            return Ok(Crossing::at_start(self.span * AT_START));
+        let start = self.value(0.0)?;
+        if a == 0.0 && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
+            b = self.span * AT_START;
+            if start == 0.0 {
+                return Ok(Crossing::at_start(b));
+            }
         }
         let (mut above, mut below) = (self.value(a)?.max(0.0), self.value(b)?);
         if a == 0.0 && self.base < 0.0 {
@@ -85,6 +89,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
                 (b, below) = (guess, value);
             }
         }
-        Ok(Crossing { inside: a, outside: b, root: if above <= -below { a } else { b } })
+        let rest = |side: f64| (b - a) * (side / (above - below));
+        let (root, rest) = if above <= -below { (a, rest(above)) } else { (b, rest(below)) };
+        Ok(Crossing { inside: a, outside: b, root, rest: if rest.is_finite() { rest } else { 0.0 } })
     }
 }
