@@ -1,6 +1,7 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
-use super::{AT_START, Crossing, Search, Undefined};
+use super::search::{AT_START, Search};
+use super::{Crossing, Undefined};
 
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {

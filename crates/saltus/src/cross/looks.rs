@@ -1,0 +1,151 @@
+//! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
+
+use super::search::{Part, Search, Side};
+use super::{Evidence, Undefined};
+
+/// How many samples are taken of a guard that seems to be nothing but rounding.
+const LOOKS: usize = 128;
+/// If they change direction no more often than this, they are not rounding and their signs count.
+const MOST_TURNS: usize = 8;
+
+impl<G: FnMut(f64) -> f64> Search<G> {
+    /// Number by number.
+    pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
+        let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };
+        let mut s = a;
+        while s < b {
+            s = s.next_up();
+            match walk.to(s, self.value(s)?, self.roughness(s)) {
+                Tread::Falls => return Ok(Part::Fall { a: walk.last, b: s, near: None }),
+                Tread::FallsAtStart if !self.spent => return Ok(Part::AtStart),
+                _ => {}
+            }
+        }
+        Ok(Part::None(walk.side))
+    }
+
+    /// Whether the guard seems to go in steps: it stands still between neighbouring samples.
+    pub(super) fn stands(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
+        for at in [0.3, 0.6] {
+            let s = a + at * (b - a);
+            if self.value(s)? == self.value(s + (b - a) / LOOKS as f64)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Samples of a guard that no polynomial fits.
+    pub(super) fn looked(&mut self, a: f64, b: f64, side: Side) -> Result<Look, Undefined> {
+        let mut samples = [(0.0, 0.0); LOOKS];
+        let (mut last, mut direction, mut turns) = (self.value(a)?, 0.0, 0);
+        for (k, sample) in samples.iter_mut().enumerate() {
+            #[allow(clippy::cast_precision_loss)] // small
+            let s = if k + 1 == LOOKS { b } else { a + (b - a) * ((k + 1) as f64 / LOOKS as f64) };
+            let value = self.value(s)?;
+            *sample = (s, value);
+            let change = value - last;
+            if change != 0.0 {
+                turns += usize::from(direction * change < 0.0);
+                direction = change.signum();
+            }
+            last = value;
+        }
+        let steps = samples.chunk_by(|x, y| x.1 == y.1).count();
+        if turns > MOST_TURNS {
+            return Ok(Look::Rounding(self.seen_through(&samples, a, b, side)));
+        }
+        if steps > LOOKS / 2 {
+            return Ok(Look::Smooth);
+        }
+        let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };
+        for (s, value) in samples {
+            match walk.to(s, value, self.roughness(s)) {
+                Tread::Falls => return Ok(Look::Steps(Part::Fall { a: walk.last, b: s, near: None })),
+                Tread::FallsAtStart if !self.spent => return Ok(Look::Steps(Part::AtStart)),
+                _ => {}
+            }
+        }
+        if side == Side::Wall && walk.side == Side::Outside {
+            // Steps of rounding are of one length where the guard falls with speed; without speed it stands longest on the first.
+            let mut steps = samples.chunk_by(|x, y| x.1 == y.1).map(<[_]>::len);
+            let (first, second) = (steps.next().unwrap_or(0), steps.next().unwrap_or(0));
+            let (half, at_half) = samples[LOOKS / 2];
+            let slow = samples[0].1 == self.base && first > second;
+            return Ok(Look::Steps(self.left(slow.then(|| order(at_half - self.base, last - self.base, half, b)))));
+        }
+        Ok(Look::Steps(Part::None(walk.side)))
+    }
+
+    /// What is left of samples when all that is as small as their rounding counts as zero.
+    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
+        let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
+        let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let (mut side, mut hidden) = (side, true);
+        for &(s, value) in samples {
+            if value.abs() <= rounding {
+                continue;
+            }
+            let next = Side::of(value, side);
+            if side == Side::Inside && next == Side::Outside {
+                return Part::Fall { a: self.flat.unwrap_or(a), b: s, near: None };
+            }
+            (side, hidden) = (next, false);
+        }
+        if hidden {
+            self.weaken(Evidence::Rounding { from: a, to: b });
+            self.flat = Some(self.flat.unwrap_or(a));
+        } else {
+            self.flat = None;
+        }
+        Part::None(side)
+    }
+}
+
+/// The m with which c tᵐ takes these values at times `a` and `b`.
+pub(super) fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
+    (at_b / at_a).ln() / (b / a).ln()
+}
+
+/// What samples of a guard show that no polynomial fits.
+pub(super) enum Look {
+    /// Steps of rounding, seen one by one: their signs count.
+    Steps(Part),
+    /// Ups and downs without order, and what can be seen through them.
+    Rounding(Part),
+    /// Neither: it is to be looked at more closely.
+    Smooth,
+}
+
+/// A walk from sample to sample.
+struct Walk {
+    side: Side,
+    /// The last sample that was inside, or on the wall.
+    last: f64,
+    base: f64,
+}
+
+impl Walk {
+    /// What the guard has done on the way to `s`.
+    fn to(&mut self, s: f64, value: f64, roughness: f64) -> Tread {
+        let side = match self.side {
+            Side::Wall if (value - self.base).abs() <= roughness => Side::Wall,
+            Side::Wall => Side::of(value - self.base, Side::Wall),
+            side => Side::of(value, side),
+        };
+        let tread = match (self.side, side) {
+            (Side::Inside, Side::Outside) => return Tread::Falls,
+            (Side::Wall, Side::Outside) => Tread::FallsAtStart,
+            _ => Tread::Stays,
+        };
+        (self.side, self.last) = (side, s);
+        tread
+    }
+}
+
+/// What the guard does between two samples.
+enum Tread {
+    Falls,
+    FallsAtStart,
+    Stays,
+}

@@ -1,0 +1,318 @@
+//! Halving an interval until bounds exclude a fall in each part, or show one.
+
+use crate::poly::{Bernstein, Shape};
+
+use super::looks::{Look, order};
+use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
+
+/// Halvings after which signs at the ends decide.
+const DEEPEST: u32 = 64;
+/// A fall within this fraction of the interval from its start is at its start.
+pub(super) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
+/// An interval that holds no more numbers than this is looked at number by number.
+const FEW: f64 = 64.0;
+/// Rounding is smaller than this fraction of the guard's largest magnitude.
+const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
+/// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
+/// higher powers carry the error of the step and the rounding of its stages.
+const ROUGH: f64 = 1e-6;
+/// Evaluations within one search, after which halving stops.
+const MOST_EVALUATIONS: u32 = 20_000;
+
+pub(super) struct Search<G> {
+    pub(super) guard: G,
+    pub(super) span: f64,
+    /// Whether the root at the start is spent.
+    pub(super) spent: bool,
+    /// The guard's value at a spent start.
+    pub(super) base: f64,
+    /// What a guard on a step is rough by: close to its start, where the solution is zero but for rounding, it is known no better than
+    /// to this times the square of the part of the step.
+    rough: f64,
+    /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros after it are rounding and no plateau.
+    falls_smoothly: bool,
+    evaluations: u32,
+    /// The largest magnitude of the guard met so far.
+    largest: f64,
+    /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on one.
+    pub(super) flat: Option<f64>,
+    evidence: Evidence,
+}
+
+/// On which side of its zero the guard is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Inside,
+    Outside,
+    /// On a root at the start, not yet left.
+    Wall,
+}
+
+impl Side {
+    /// A zero leaves the guard on the side it came from.
+    pub(super) fn of(value: f64, came_from: Self) -> Self {
+        if value > 0.0 {
+            Self::Inside
+        } else if value < 0.0 {
+            Self::Outside
+        } else {
+            came_from
+        }
+    }
+}
+
+/// An interval of the search.
+pub(super) struct Stretch {
+    a: f64,
+    b: f64,
+    depth: u32,
+    /// How far the guard may be from its polynomial: from the one that is known, or from the interpolant on the interval of which this is a half.
+    margin: f64,
+    known: Option<Bernstein>,
+}
+
+/// What a part of the interval holds.
+pub(super) enum Part {
+    /// Its first fall lies between these times; with the root, as far as the polynomial knows it.
+    Fall { a: f64, b: f64, near: Option<f64> },
+    /// The guard falls at once from the root at the start.
+    AtStart,
+    /// No fall; this is where the guard is at the end.
+    None(Side),
+}
+
+impl<G: FnMut(f64) -> f64> Search<G> {
+    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it.
+    pub(super) fn new(guard: G, span: f64, bend: f64) -> Self {
+        Self {
+            guard,
+            span,
+            spent: false,
+            base: 0.0,
+            rough: ROUGH * bend,
+            falls_smoothly: false,
+            evaluations: 0,
+            largest: 0.0,
+            flat: None,
+            evidence: Evidence::Excluded,
+        }
+    }
+
+    pub(super) fn value(&mut self, s: f64) -> Result<f64, Undefined> {
+        self.evaluations += 1;
+        let value = (self.guard)(s);
+        self.largest = self.largest.max(value.abs());
+        if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
+    }
+
+    /// The search, for a polynomial that is known to within a margin or for interpolants.
+    pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Searched, Undefined> {
+        let side = self.side_at(start)?;
+        let margin = known.map_or(f64::INFINITY, |(_, margin)| margin);
+        let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
+        let fall = match self.part(&all, side)? {
+            Part::None(_) => None,
+            Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
+            Part::Fall { near: Some(near), .. } => settle(&mut self.guard, near),
+            Part::Fall { a, b, near: None } => Some(self.refined(a, b)?),
+        };
+        if fall.is_some() {
+            self.weaken(Evidence::Isolated);
+        }
+        Ok(Searched { fall, evidence: self.evidence })
+    }
+
+    /// On which side the search starts.
+    fn side_at(&mut self, start: Start) -> Result<Side, Undefined> {
+        let value = self.value(0.0)?;
+        Ok(match start {
+            Start::Spent => {
+                (self.spent, self.base) = (true, value);
+                Side::Wall
+            }
+            Start::Resumed if value == 0.0 && (self.guard)(-self.span * ROUNDING) < 0.0 => Side::Outside,
+            Start::Open | Start::Resumed => Side::of(value, Side::Wall),
+        })
+    }
+
+    pub(super) fn weaken(&mut self, evidence: Evidence) {
+        self.evidence = self.evidence.and(evidence);
+    }
+
+    fn part(&mut self, stretch: &Stretch, side: Side) -> Result<Part, Undefined> {
+        let &Stretch { a, b, depth, margin: whole, ref known } = stretch;
+        if b - a <= FEW * (b.next_up() - b) {
+            return self.walked(a, b, side);
+        }
+        if side == Side::Wall && b <= self.span * AT_START {
+            self.flat = Some(a);
+            return Ok(Part::None(Side::Wall));
+        }
+        if depth == 0 || self.evaluations > MOST_EVALUATIONS {
+            self.weaken(Evidence::Unresolved { from: a, to: b });
+            return self.by_sign(a, b, side);
+        }
+        let proxy = match known {
+            Some(p) => Ok(Proxy { p: *p, margin: whole, start: p.start(), end: p.end() }),
+            None => self.proxy(a, b),
+        };
+        let Ok(Proxy { p, mut margin, start, end }) = proxy else {
+            return self.halved(stretch, f64::INFINITY, side);
+        };
+        let leaving = side == Side::Wall && a == 0.0;
+        if leaving && known.is_some() {
+            margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
+        }
+        if side == Side::Wall {
+            let (roughness, base) = (self.roughness(b), if known.is_some() { 0.0 } else { self.base });
+            if p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
+                return Ok(Part::None(Side::Wall));
+            }
+            margin += roughness;
+        }
+        let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
+        // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
+        let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
+        let scale = p.scale();
+        let from = self.flat.unwrap_or(a);
+        if leaving
+            && !self.spent
+            && q.start() < -q_margin
+            && (known.is_some() || self.falls_from_start(b, q.start())?)
+        {
+            return Ok(Part::AtStart);
+        }
+        let decided = match q.shape(q_margin) {
+            Shape::Above => Some(Part::None(Side::Inside)),
+            Shape::Below => Some(match side {
+                Side::Inside => Part::Fall { a: from, b, near: None },
+                Side::Outside => Part::None(Side::Outside),
+                Side::Wall if leaving => self.left(None),
+                Side::Wall => self.left(Some(order(p.start(), p.end(), a, b))),
+            }),
+            Shape::Falling if resolved => match side {
+                Side::Outside => Some(Part::None(Side::Outside)),
+                Side::Wall if !leaving => Some(self.left(Some(order(p.start(), p.end(), a, b)))),
+                Side::Wall if q.start() <= q_margin => {
+                    self.falls_smoothly = true;
+                    None
+                }
+                // Falling strictly from a zero, the rest of which is rounding.
+                Side::Inside if start == 0.0 => Some(Part::Fall { a, b, near: Some(a) }),
+                _ if end < 0.0 => {
+                    let near = known.as_ref().and_then(|_| q.root()).map(|u| a + (b - a) * u);
+                    Some(Part::Fall { a: from, b, near })
+                }
+                _ => Some(Part::None(Side::Inside)),
+            },
+            Shape::Rising if resolved => match side {
+                Side::Wall if q.end().abs() <= q_margin => None,
+                Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => None,
+                Side::Wall => Some(Part::None(Side::of(q.end(), side))),
+                _ => Some(Part::None(Side::of(end, side))),
+            },
+            Shape::Flat if scale == 0.0 => {
+                self.flat = Some(from);
+                let plateau = side == Side::Wall && !self.spent && !self.falls_smoothly;
+                return Ok(Part::None(if plateau { Side::Inside } else { side }));
+            }
+            _ => None,
+        };
+        if let Some(decided) = decided {
+            self.flat = None;
+            return Ok(decided);
+        }
+        let rounding = scale <= 8.0 * margin && (known.is_some() || margin <= ROUNDING * self.largest);
+        if rounding || margin > 1e-3 * scale && self.stands(a, b)? {
+            match self.looked(a, b, side)? {
+                Look::Steps(part) => return Ok(part),
+                Look::Rounding(part) if rounding => return Ok(part),
+                Look::Rounding(_) | Look::Smooth => {}
+            }
+        }
+        self.halved(stretch, margin, side)
+    }
+
+    /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
+    pub(super) fn roughness(&self, s: f64) -> f64 {
+        self.rough * (s / self.span).powi(2)
+    }
+
+    /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter times, and so not rounding.
+    fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
+        for part in [0.5, 0.25] {
+            let shorter = self.proxy(0.0, part * b)?.p.without_root_at_start().start();
+            if (shorter - part * change).abs() > 0.2 * part * change.abs() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The guard has left the root at the start to below zero, as tᵐ with m = `order` where that is not one.
+    ///
+    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again.
+    pub(super) fn left(&self, order: Option<f64>) -> Part {
+        let even = order.is_some_and(|order| order.round().rem_euclid(2.0) == 0.0);
+        if self.spent && !even { Part::None(Side::Outside) } else { Part::AtStart }
+    }
+
+    fn halved(&mut self, stretch: &Stretch, margin: f64, side: Side) -> Result<Part, Undefined> {
+        self.weaken(Evidence::Isolated);
+        let &Stretch { a, b, depth, ref known, .. } = stretch;
+        let middle = 0.5 * (a + b);
+        let (left, right) = match known.as_ref().map(Bernstein::halves) {
+            Some((left, right)) => (Some(left), Some(right)),
+            None => (None, None),
+        };
+        match self.part(&Stretch { a, b: middle, depth: depth - 1, margin, known: left }, side)? {
+            Part::None(side) => self.part(&Stretch { a: middle, b, depth: depth - 1, margin, known: right }, side),
+            found => Ok(found),
+        }
+    }
+
+    /// The sign at the end alone.
+    fn by_sign(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
+        let end = Side::of(self.value(b)?, side);
+        self.flat = None;
+        Ok(if side == Side::Inside && end == Side::Outside { Part::Fall { a, b, near: None } } else { Part::None(end) })
+    }
+
+    /// The interpolant at the Chebyshev points of `[a, b]`, and how far the guard may be from it.
+    fn proxy(&mut self, a: f64, b: f64) -> Result<Proxy, Undefined> {
+        let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
+        let mut values = [0.0; 9];
+        for (value, x) in values.iter_mut().zip(chebyshev::NODES) {
+            let s = if x == -1.0 {
+                a
+            } else if x == 1.0 {
+                b
+            } else {
+                centre + radius * x
+            };
+            *value = self.value(s)?;
+        }
+        let series = chebyshev::series(&values);
+        let p = Bernstein::new(&chebyshev::bernstein(&series));
+        let mut off = 0.0_f64;
+        for x in [-0.557_350_921, 0.271_828_183] {
+            off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
+        }
+        let margin = 8.0 * (series[7].abs() + series[8].abs()).max(off) + 16.0 * f64::EPSILON * p.scale();
+        Ok(Proxy {
+            p,
+            margin: if margin.is_finite() { margin } else { f64::INFINITY },
+            start: values[0],
+            end: values[8],
+        })
+    }
+}
+
+/// A polynomial in place of the guard on an interval.
+struct Proxy {
+    p: Bernstein,
+    margin: f64,
+    /// The guard at both ends.
+    start: f64,
+    end: f64,
+}
