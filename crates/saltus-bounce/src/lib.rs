@@ -1,7 +1,7 @@
 //! Bouncing balls as hybrid automata.
 //!
 //! [`Ball`] is the automaton; run it with [`saltus::Simulation`]. [`Drop`] has the same ball's impacts and apexes in closed form.
-//! [`units`] reads quantities as people write them.
+//! [`units`] reads quantities as people write them; `scene`, behind the feature of this name, whole scenes from TOML.
 
 mod ball;
 mod ballistic;
@@ -12,6 +12,8 @@ pub mod friction;
 pub mod materials;
 mod parameter;
 pub mod restitution;
+#[cfg(feature = "scene")]
+pub mod scene;
 mod sphere;
 mod stable;
 pub mod units;

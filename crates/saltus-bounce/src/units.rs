@@ -1,9 +1,11 @@
 //! Quantities as people write them: `100 cm`, `9.81 m/s^2`, `33ms`, turned into SI numbers.
 
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// What a quantity measures; decides which units are understood and which SI unit the number comes back in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Quantity {
     /// A length, in metres.
     Length,
@@ -13,9 +15,62 @@ pub enum Quantity {
     Speed,
     /// An acceleration, in metres per second squared.
     Acceleration,
+    /// A mass, in kilograms.
+    Mass,
+    /// An angle, in radians.
+    Angle,
+    /// A spin, in radians per second.
+    AngularSpeed,
+    /// How often something happens, in hertz.
+    Frequency,
+    /// How fast something decays, per second.
+    Rate,
+    /// Something per length, in 1/m: a curvature, or drag per distance.
+    PerLength,
+    /// Something per speed, in s/m: a slope over the speed of impact.
+    PerSpeed,
+    /// A density, in kilograms per cubic metre.
+    Density,
+    /// A dynamic viscosity, in pascal seconds.
+    Viscosity,
+    /// A pressure or an elastic modulus, in pascals.
+    Pressure,
+    /// A force, in newtons.
+    Force,
+    /// A linear stiffness, in N/m.
+    Stiffness,
+    /// A linear damping, in N s/m.
+    Damping,
+    /// The stiffness of a Hertz contact, in N/m^(3/2).
+    HertzStiffness,
+    /// The damping of a Hunt-Crossley contact, in N s/m^(5/2).
+    HertzDamping,
 }
 
 impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Self; 19] = [
+        Self::Length,
+        Self::Time,
+        Self::Speed,
+        Self::Acceleration,
+        Self::Mass,
+        Self::Angle,
+        Self::AngularSpeed,
+        Self::Frequency,
+        Self::Rate,
+        Self::PerLength,
+        Self::PerSpeed,
+        Self::Density,
+        Self::Viscosity,
+        Self::Pressure,
+        Self::Force,
+        Self::Stiffness,
+        Self::Damping,
+        Self::HertzStiffness,
+        Self::HertzDamping,
+    ];
+
     /// The units understood, each with its value in the SI unit; the SI unit comes first.
     #[must_use]
     pub const fn units(self) -> &'static [(&'static str, f64)] {
@@ -35,6 +90,59 @@ impl Quantity {
             Self::Acceleration => {
                 &[("m/s^2", 1.0), ("m/s2", 1.0), ("m/s²", 1.0), ("cm/s^2", 1e-2), ("cm/s²", 1e-2), ("ft/s^2", 0.3048)]
             }
+            Self::Mass => &[
+                ("kg", 1.0),
+                ("g", 1e-3),
+                ("mg", 1e-6),
+                ("ug", 1e-9),
+                ("µg", 1e-9),
+                ("t", 1e3),
+                ("lb", 0.453_592_37),
+                ("oz", 0.028_349_523_125),
+            ],
+            Self::Angle => &[("rad", 1.0), ("deg", PI / 180.0), ("°", PI / 180.0), ("rev", TAU)],
+            Self::AngularSpeed => &[
+                ("rad/s", 1.0),
+                ("deg/s", PI / 180.0),
+                ("°/s", PI / 180.0),
+                ("rev/s", TAU),
+                ("rev/min", TAU / 60.0),
+                ("rpm", TAU / 60.0),
+            ],
+            Self::Frequency => {
+                &[("Hz", 1.0), ("kHz", 1e3), ("mHz", 1e-3), ("1/s", 1.0), ("/s", 1.0), ("/min", 1.0 / 60.0)]
+            }
+            Self::Rate => &[("1/s", 1.0), ("/s", 1.0), ("1/min", 1.0 / 60.0), ("/min", 1.0 / 60.0)],
+            Self::PerLength => &[("1/m", 1.0), ("/m", 1.0), ("1/cm", 1e2), ("/cm", 1e2), ("1/km", 1e-3), ("/km", 1e-3)],
+            Self::PerSpeed => &[("s/m", 1.0), ("s/cm", 1e2)],
+            Self::Density => {
+                &[("kg/m^3", 1.0), ("kg/m3", 1.0), ("kg/m³", 1.0), ("g/cm^3", 1e3), ("g/cm³", 1e3), ("g/l", 1.0)]
+            }
+            Self::Viscosity => {
+                &[("Pa s", 1.0), ("mPa s", 1e-3), ("uPa s", 1e-6), ("µPa s", 1e-6), ("P", 0.1), ("cP", 1e-3)]
+            }
+            Self::Pressure => &[("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("bar", 1e5)],
+            Self::Force => &[("N", 1.0), ("mN", 1e-3), ("kN", 1e3)],
+            Self::Stiffness => &[("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6), ("N/mm", 1e3), ("N/cm", 1e2)],
+            Self::Damping => &[("N s/m", 1.0), ("kg/s", 1.0), ("kN s/m", 1e3)],
+            Self::HertzStiffness => {
+                &[("N/m^1.5", 1.0), ("N/m^(3/2)", 1.0), ("kN/m^1.5", 1e3), ("MN/m^1.5", 1e6), ("GN/m^1.5", 1e9)]
+            }
+            Self::HertzDamping => &[("N s/m^2.5", 1.0), ("N s/m^(5/2)", 1.0), ("kN s/m^2.5", 1e3)],
+        }
+    }
+
+    /// The SI unit in which numbers come back, such as `m`.
+    #[must_use]
+    pub const fn si(self) -> &'static str {
+        self.units()[0].0
+    }
+
+    /// The indefinite article that goes before its name.
+    pub(crate) const fn article(self) -> &'static str {
+        match self {
+            Self::Acceleration | Self::Angle | Self::AngularSpeed | Self::PerLength | Self::PerSpeed => "an",
+            _ => "a",
         }
     }
 
@@ -91,6 +199,21 @@ impl fmt::Display for Quantity {
             Self::Time => "time",
             Self::Speed => "speed",
             Self::Acceleration => "acceleration",
+            Self::Mass => "mass",
+            Self::Angle => "angle",
+            Self::AngularSpeed => "angular speed",
+            Self::Frequency => "frequency",
+            Self::Rate => "rate",
+            Self::PerLength => "inverse length",
+            Self::PerSpeed => "inverse speed",
+            Self::Density => "density",
+            Self::Viscosity => "viscosity",
+            Self::Pressure => "pressure",
+            Self::Force => "force",
+            Self::Stiffness => "stiffness",
+            Self::Damping => "damping",
+            Self::HertzStiffness => "Hertz stiffness",
+            Self::HertzDamping => "Hunt-Crossley damping",
         })
     }
 }
@@ -137,17 +260,21 @@ impl fmt::Display for UnitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { text, quantity, problem } = self;
         let names: Vec<&str> = quantity.units().iter().map(|&(name, _)| name).collect();
-        let (known, si) = (names.join(", "), names[0]);
+        let (known, si, a) = (names.join(", "), quantity.si(), quantity.article());
         match problem {
             Problem::NotANumber => {
-                write!(f, "'{text}' is not a {quantity}: write a number and a unit, such as '1 {si}'")
+                write!(f, "'{text}' is not {a} {quantity}: write a number and a unit, such as '1 {si}'")
             }
             Problem::NotFinite => write!(f, "'{text}' is not a finite {quantity}"),
             Problem::NoUnit => {
                 write!(f, "'{text}' has no unit: give a unit of {quantity} ({known}), such as '{text} {si}'")
             }
             Problem::UnknownUnit(unit) => {
-                write!(f, "'{unit}' in '{text}' is not a unit of {quantity}: use one of {known}")
+                write!(f, "'{unit}' in '{text}' is not a unit of {quantity}")?;
+                if let Some(other) = Quantity::ALL.iter().find(|other| other.scale(unit).is_some()) {
+                    write!(f, " but of {other}")?;
+                }
+                write!(f, ": use one of {known}")
             }
         }
     }
@@ -173,9 +300,29 @@ mod tests {
             (Quantity::Acceleration, "9.81 m/s²", 9.81),
             (Quantity::Acceleration, "981cm/s^2", 9.81),
             (Quantity::Speed, "36 km/h", 10.0),
+            (Quantity::Mass, "45 g", 0.045),
+            (Quantity::Angle, "180 deg", PI),
+            (Quantity::AngularSpeed, "2 rev/s", 2.0 * TAU),
+            (Quantity::AngularSpeed, "-60rpm", -TAU),
+            (Quantity::Rate, "0.5 1/s", 0.5),
+            (Quantity::Rate, "1/s", 1.0),
+            (Quantity::Viscosity, "18 µPa s", 18e-6),
+            (Quantity::Pressure, "210 GPa", 210e9),
+            (Quantity::HertzStiffness, "2.5e9 N/m^(3/2)", 2.5e9),
         ] {
             let got = quantity.parse(text).unwrap();
             assert!((got - si).abs() <= 1e-15 * si.abs(), "{text}: {got}");
+        }
+    }
+
+    #[test]
+    fn every_quantity_has_an_si_unit_and_every_unit_one_meaning() {
+        for quantity in Quantity::ALL {
+            assert_eq!(quantity.units()[0].1, 1.0, "{quantity}");
+            for (n, &(unit, scale)) in quantity.units().iter().enumerate() {
+                assert!(scale > 0.0 && quantity.units()[..n].iter().all(|other| other.0 != unit), "{quantity}: {unit}");
+                assert_eq!(quantity.parse(&format!("1 {unit}")), Ok(scale), "{quantity}: {unit}");
+            }
         }
     }
 
@@ -186,7 +333,8 @@ mod tests {
             ("tall", "not a length"),
             ("1.2.3 m", "not a length"),
             ("1", "give a unit"),
-            ("1 parsec", "'parsec' in '1 parsec' is not a unit of length"),
+            ("1 parsec", "'parsec' in '1 parsec' is not a unit of length: use"),
+            ("1 s", "'s' in '1 s' is not a unit of length but of time: use one of m, cm"),
             ("NaN m", "not a length"),
             ("1e999 m", "not a finite length"),
             ("1e308 km", "not a finite length"),

@@ -44,6 +44,11 @@ pub(crate) enum Command {
     },
     /// Write the manual page to standard output, as roff.
     Man,
+    /// Write the JSON Schema of scene files to standard output.
+    ///
+    /// Editors complete and check scenes by it: saltus schema > scene.schema.json, and `#:schema scene.schema.json` as the first line of the
+    /// scene.
+    Schema,
 }
 
 /// Estimate the coefficient of restitution (COR) from a table of bounces.
@@ -90,18 +95,21 @@ pub(crate) struct Fit {
     pub(crate) strict: bool,
 }
 
-/// Simulate a ball that bounces on a level floor.
+/// Simulate a scene, or a ball that bounces on a level floor.
 ///
-/// Gravity and a constant coefficient of restitution, nothing else: every flight is an exact parabola. Without --until the run ends
-/// when the ball has come to rest.
+/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is: gravity and a constant coefficient of
+/// restitution, every flight an exact parabola. Without --until the run ends when the ball has come to rest.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Simulate {
+    /// The scene; `-` for standard input.
+    #[arg(conflicts_with_all = ["drop", "cor", "velocity", "gravity"])]
+    pub(crate) scene: Option<PathBuf>,
     /// The height it starts from, such as `1m` or `100cm`.
     #[arg(long, value_name = "LENGTH", value_parser = quantity(Quantity::Length), allow_hyphen_values = true)]
-    pub(crate) drop: f64,
+    pub(crate) drop: Option<f64>,
     /// The coefficient of restitution, from 0 to 1.
     #[arg(long, value_name = "NUMBER", value_parser = cor, allow_hyphen_values = true)]
-    pub(crate) cor: Cor,
+    pub(crate) cor: Option<Cor>,
     /// The upward velocity it starts with, such as `-2m/s`.
     #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
     pub(crate) velocity: f64,
@@ -111,9 +119,9 @@ pub(crate) struct Simulate {
     /// When to stop, such as `4s`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-    /// After how many jumps to stop.
-    #[arg(long, value_name = "COUNT", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) most_jumps: u32,
+    /// After how many jumps to stop; 10000 unless given here or in the scene.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) most_jumps: Option<u32>,
     /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
     pub(crate) every: Option<f64>,

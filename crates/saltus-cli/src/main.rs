@@ -5,6 +5,7 @@ mod error;
 mod fit;
 mod motion;
 mod output;
+mod plan;
 mod simulate;
 
 use std::process::ExitCode;
@@ -23,6 +24,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Fit(fit) => fit::run(fit, args.quiet),
         args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
+        args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),
         args::Command::Man => output::stdout(&args::man()?),
     }
 }

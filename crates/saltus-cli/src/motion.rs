@@ -7,8 +7,8 @@ use saltus::{Cause, Jump, Run, Stop};
 use saltus_bounce::{Ball, Mode};
 use serde::Serialize;
 
-use crate::args;
 use crate::error::Error;
+use crate::plan::Plan;
 
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
@@ -16,7 +16,11 @@ const SCHEMA: u32 = 1;
 const LISTED: (usize, usize) = (20, 3);
 
 pub(crate) struct Motion<'a> {
-    pub(crate) args: &'a args::Simulate,
+    pub(crate) plan: &'a Plan,
+    /// The interval of samples in s.
+    pub(crate) every: Option<f64>,
+    /// The rate of samples in 1/s.
+    pub(crate) fps: Option<f64>,
     pub(crate) run: &'a Run<Ball>,
 }
 
@@ -94,7 +98,7 @@ fn side(mode: Mode, x: &Vector2<f64>) -> Side {
 impl Motion<'_> {
     /// The jumps as JSON; the contract is written down in docs/simulating.md.
     pub(crate) fn json(&self) -> Result<String, Error> {
-        let Self { args, run } = self;
+        let Self { plan, run, .. } = self;
         let jumps = run.trajectory.jumps();
         let row = |jump: &Jump<Ball>| JumpRow {
             t: jump.t(),
@@ -105,7 +109,12 @@ impl Motion<'_> {
         };
         let document = Document {
             schema: SCHEMA,
-            system: System { gravity: args.gravity, cor: args.cor.value(), height: args.drop, velocity: args.velocity },
+            system: System {
+                gravity: plan.gravity,
+                cor: plan.cor.value(),
+                height: plan.height,
+                velocity: plan.velocity,
+            },
             jumps: jumps.iter().map(row).collect(),
             samples: self.samples(),
             stop: StopRow {
@@ -128,14 +137,14 @@ impl Motion<'_> {
     fn samples(&self) -> Vec<Sample> {
         let trajectory = &self.run.trajectory;
         let end = trajectory.end().seconds();
-        let step = match (self.args.every, self.args.fps) {
+        let step = match (self.every, self.fps) {
             (Some(step), _) => step,
             (None, Some(rate)) => 1.0 / rate,
             (None, None) => return Vec::new(),
         };
         let jumps = trajectory.jumps();
         (0_u32..)
-            .map(|k| match self.args.fps {
+            .map(|k| match self.fps {
                 Some(rate) => f64::from(k) / rate,
                 None => f64::from(k) * step,
             })
@@ -149,8 +158,9 @@ impl Motion<'_> {
 
     /// The start, both sides of every jump, the samples and the end, in order of (t, j).
     pub(crate) fn csv(&self) -> String {
-        let Self { args, run } = self;
-        let mut rows = vec![Sample { t: 0.0, j: 0, side: side(Mode::Flight, &Vector2::new(args.drop, args.velocity)) }];
+        let Self { plan, run, .. } = self;
+        let mut rows =
+            vec![Sample { t: 0.0, j: 0, side: side(Mode::Flight, &Vector2::new(plan.height, plan.velocity)) }];
         for jump in run.trajectory.jumps() {
             rows.push(Sample { t: jump.t(), j: jump.j - 1, side: side(jump.from, &jump.before) });
             rows.push(Sample { t: jump.t(), j: jump.j, side: side(jump.to, &jump.after) });
@@ -169,9 +179,9 @@ impl Motion<'_> {
 
     /// The jumps as a table for people.
     pub(crate) fn text(&self) -> String {
-        let Self { args, run } = self;
+        let Self { plan, run, .. } = self;
         let jumps = run.trajectory.jumps();
-        let gravity = args.gravity;
+        let gravity = plan.gravity;
         let mut text = format!(
             "{:>6} {:>14} {:>16} {:>17} {:>13}\n",
             "impact", "time (s)", "before (m/s)", "after (m/s)", "apex (m)"

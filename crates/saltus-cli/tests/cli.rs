@@ -220,6 +220,79 @@ fn simulating_for_spreadsheets() {
     assert!((0..30).all(|k| rows.iter().any(|row| row.0 == f64::from(k) / 24.0)), "every frame is there");
 }
 
+/// A scene in a folder of its own.
+fn scene(toml: &str) -> (TempDir, String) {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("drop.toml");
+    fs::write(&path, toml).unwrap();
+    let path = path.to_str().unwrap().to_owned();
+    (folder, path)
+}
+
+/// A scene that says what the options say gives the same bytes in every format.
+#[test]
+fn a_scene_is_the_same_motion_as_its_options() {
+    let (folder, path) =
+        scene("gravity = '9.81 m/s^2'\nrestitution = 0.5\nball = { height = '1 m', velocity = '-2 m/s' }\n");
+    let options = ["simulate", "--drop", "1m", "--cor", "0.5", "--velocity", "-2m/s"];
+    for more in [&[][..], &["--format", "csv", "--fps", "24"], &["--format", "json", "--until", "3s"]] {
+        assert_eq!(done(&[&["simulate", &path], more].concat()), done(&[&options[..], more].concat()));
+    }
+    let pictures = ["scene.svg", "options.svg"].map(|name| folder.path().join(name));
+    done(&["simulate", &path, "--plot", pictures[0].to_str().unwrap()]);
+    done(&[&options[..], &["--plot", pictures[1].to_str().unwrap()]].concat());
+    assert_eq!(fs::read(&pictures[0]).unwrap(), fs::read(&pictures[1]).unwrap());
+}
+
+#[test]
+fn a_range_of_restitution_is_said_to_be_one() {
+    let tennis = root().join("examples/scenes/tennis.toml");
+    let output = run(&["simulate", tennis.to_str().unwrap()]);
+    assert!(output.status.success());
+    assert!(text(&output.stderr).contains("e = 0.729 to 0.761"), "{}", text(&output.stderr));
+    assert_eq!(text(&run(&["-q", "simulate", tennis.to_str().unwrap()]).stderr), "");
+}
+
+#[test]
+fn a_scene_that_ends_by_itself_or_when_told() {
+    let (_folder, path) = scene("restitution = 1\nball = { height = 1 }\nrun = { until = '2 s' }\n");
+    let end = |more: &[&str]| {
+        let json = done(&[&["simulate", &path, "--format", "json"], more].concat());
+        serde_json::from_str::<Value>(&json).unwrap()["stop"]["t"].as_f64().unwrap()
+    };
+    assert_eq!((end(&[]), end(&["--until", "1s"])), (2.0, 1.0));
+}
+
+#[test]
+fn scenes_that_cannot_be_run() {
+    let (_folder, path) = scene("restitution = 0.8\n\n[ball]\nheigth = '1 m'\n");
+    let message = refused(&["simulate", &path]);
+    let shown = format!(
+        "error: {path}:4:1: `heigth` is no key here\n    4 | heigth = '1 m'\n      | ^^^^^^\n  help: did you mean `height`?\n"
+    );
+    assert_eq!(message, shown);
+    assert!(refused(&["simulate", "no/such/scene.toml"]).contains("cannot read 'no/such/scene.toml'"));
+    assert!(refused(&["simulate", root().to_str().unwrap()]).contains("cannot read"));
+    assert!(refused(&["simulate"]).contains("give a scene file, or both --drop and --cor"));
+    assert!(refused(&["simulate", &path, "--drop", "1m"]).contains("cannot be used with"));
+    let stairs = root().join("examples/scenes/stairs.toml");
+    assert!(refused(&["simulate", stairs.to_str().unwrap()]).contains("cannot be simulated yet"));
+}
+
+#[test]
+fn a_scene_from_standard_input() {
+    let mut child = saltus().args(["simulate", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(b"restitution = 0.5\nball = { height = '1 m' }\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && text(&output.stdout).contains("At rest"));
+}
+
+#[test]
+fn the_schema_of_scenes() {
+    let schema = fs::read_to_string(root().join("examples/scenes/scene.schema.json")).unwrap();
+    assert_eq!(done(&["schema"]), schema.replace("\r\n", "\n"));
+}
+
 #[test]
 fn simulating_what_cannot_be() {
     for (arguments, part) in [
