@@ -5,10 +5,13 @@
 
 mod ball;
 mod ballistic;
+pub mod cloud;
+pub mod compliant;
 pub mod contact;
 pub mod effects;
 pub mod flight;
 pub mod friction;
+pub mod line;
 pub mod materials;
 mod parameter;
 pub mod restitution;
@@ -20,6 +23,9 @@ pub mod units;
 
 pub use ball::{Ball, Floor, GravityError, Mode, STANDARD_GRAVITY};
 pub use ballistic::Drop;
+pub use cloud::Cloud;
+pub use compliant::Compliant;
+pub use line::Line;
 pub use parameter::ParameterError;
 pub use restitution::{Cor, CorError, Restitution};
 pub use sphere::Sphere;

@@ -90,6 +90,12 @@ impl KelvinVoigt {
         Self { tension: true, ..self }
     }
 
+    /// Whether the contact pulls before it ends.
+    #[must_use]
+    pub const fn has_tension(&self) -> bool {
+        self.tension
+    }
+
     /// The damping ratio ζ = c/(2√(km)) of a ball of `mass` in kg.
     #[must_use]
     pub fn damping_ratio(&self, mass: f64) -> f64 {
@@ -159,6 +165,11 @@ impl ContactLaw for KelvinVoigt {
     #[inline]
     fn margin(&self, deformation: f64, rate: f64) -> f64 {
         if self.tension { deformation } else { self.force(deformation, rate) }
+    }
+
+    #[inline]
+    fn linear(&self) -> Option<Self> {
+        Some(*self)
     }
 
     fn collision(&self, mass: f64, speed: f64) -> Option<Collision> {

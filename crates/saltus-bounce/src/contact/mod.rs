@@ -55,6 +55,11 @@ pub trait ContactLaw {
         deformation
     }
 
+    /// This law, if it is a linear one: the motion in contact is then known by a formula, and no step is taken.
+    fn linear(&self) -> Option<KelvinVoigt> {
+        None
+    }
+
     /// The collision of `mass` in kg at `speed` in m/s without other forces; `None` if it never ends, or for a mass or a speed that is
     /// not above zero.
     fn collision(&self, mass: f64, speed: f64) -> Option<Collision>;
