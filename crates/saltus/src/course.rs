@@ -237,6 +237,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Ok(if at.jumps >= options.most_jumps {
             Some(Stop::Jumps { most: at.jumps })
         } else if at.cascade >= options.longest_cascade {
+            // Collisions that go on at one time: what lies beyond them is the model's to say.
+            if automaton.beyond(at.mode, t, &at.state).is_some() {
+                return self.at_limit(0.0, observer);
+            }
             Some(Stop::Cascade { edge })
         } else {
             None
@@ -259,7 +263,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.instant = at.clock.now;
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        at.contraction = Contraction::new();
+        (at.contraction, at.cascade) = (Contraction::new(), 0);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 #![allow(clippy::excessive_precision)] // references keep all their digits
 
+mod at_once;
 mod floor;
 mod missed;
 mod order;

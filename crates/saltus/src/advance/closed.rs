@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Crossing, Searched, Undefined, chebyshev, settle};
+use crate::cross::{Searched, Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
@@ -39,32 +39,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
             let Searched { fall, evidence } = match automaton.falls(mode, edge, t, x) {
-                Fall::Never => Searched::solved(None),
-                Fall::After(s) if s > limit => Searched::solved(None),
-                Fall::After(s) if s <= 0.0 => Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE))),
-                Fall::After(s) => {
-                    let guard = |s: f64| automaton.guard(edge, now.after(s).seconds(), &at(s));
-                    self.memory.stats.guards += 1;
-                    Searched::solved(if guard(s) >= 0.0 {
-                        Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 })
-                    } else {
-                        settle(guard, s)
-                    })
-                }
                 Fall::Unknown => {
                     let natural = size(x) / size(&self.flow(mode, t, x));
                     let natural = if natural.is_finite() { natural } else { 0.0 };
                     self.fall_in_windows(edge, now, natural, at, limit, start)
                         .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
                 }
+                formula => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
             };
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             found = earlier(found, edge, fall);
         }
+        let by_formula = |edge| automaton.falls(mode, edge, t, x) != Fall::Unknown;
         let close = match found {
             Some(found) => self.close(found, now, at, remaining),
             None => Close { span: remaining, time: clock.end, state: at(remaining) },
         };
+        self.memory.hidden = self.memory.hidden && found.is_some_and(|(edge, _)| !by_formula(edge));
         if !close.state.is_finite() {
             return Err(Error::new(
                 ErrorKind::Flow,

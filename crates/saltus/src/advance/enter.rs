@@ -68,7 +68,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let longest = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 };
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
-        let mut h = longest / f64::from(1_u32 << 30);
+        let mut h = longest / (1_u64 << 60) as f64;
         loop {
             let mut change = |h: f64| {
                 self.memory.stats.guards += 1;

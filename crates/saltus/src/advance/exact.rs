@@ -1,6 +1,6 @@
 //! An arc whose flow is solved exactly.
 
-use crate::automaton::{Automaton, Polynomial};
+use crate::automaton::{Automaton, Fall, Polynomial};
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
@@ -30,11 +30,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
-            let Searched { fall, evidence } = if c.len() <= 3 && self.automaton.affine(edge) {
-                Searched::solved(self.fall_of_parabola(edge, clock.now, c, limit, start))
-            } else {
-                self.fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
-                    .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?
+            let Searched { fall, evidence } = match self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]) {
+                Fall::Unknown if c.len() <= 3 && self.automaton.affine(edge) => {
+                    Searched::solved(self.fall_of_parabola(edge, clock.now, c, limit, start))
+                }
+                Fall::Unknown => self
+                    .fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
+                    .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?,
+                formula => Searched::solved(self.fall_by_formula(edge, clock.now, formula, |s| horner(c, s), limit)),
             };
             observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
             found = earlier(found, edge, fall);
@@ -44,7 +47,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
         // What a formula says is not spoilt by rounding.
-        self.memory.hidden &= found.is_some_and(|(edge, _)| c.len() > 3 || !self.automaton.affine(edge));
+        let solved = |edge| {
+            (c.len() <= 3 && self.automaton.affine(edge))
+                || self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]) != Fall::Unknown
+        };
+        self.memory.hidden = self.memory.hidden && found.is_some_and(|(edge, _)| !solved(edge));
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
         clock.now = close.time;
         Ok(match found {
@@ -83,6 +90,34 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             },
             near,
         )
+    }
+
+    /// The fall that the model's own formula gives, at a time at which the guard is not negative.
+    pub(super) fn fall_by_formula(
+        &mut self,
+        edge: A::Edge,
+        now: Time,
+        formula: Fall,
+        at: impl Fn(f64) -> A::State,
+        limit: f64,
+    ) -> Option<Crossing> {
+        let Fall::After(s) = formula else { return None };
+        if s > limit {
+            return None;
+        }
+        if s <= 0.0 {
+            return Some(Crossing::at_start(f64::MIN_POSITIVE));
+        }
+        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+        let mut guard = |s: f64| {
+            *count += 1;
+            automaton.guard(edge, now.after(s).seconds(), &at(s))
+        };
+        if guard(s) >= 0.0 {
+            Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 })
+        } else {
+            settle(guard, s)
+        }
     }
 
     /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.

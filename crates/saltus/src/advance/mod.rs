@@ -55,6 +55,7 @@ pub(crate) struct Memory<E> {
     spent: Option<Spent<E>>,
     /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
     idle: [Option<Spent<E>>; MOST_IDLE],
+    idle_count: usize,
     /// When a scheduled edge was last taken.
     clock_took: Option<f64>,
     slack: f64,
@@ -72,6 +73,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             step: first_step,
             spent: None,
             idle: [None; MOST_IDLE],
+            idle_count: 0,
             clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
@@ -83,13 +85,14 @@ impl<E: Copy + PartialEq> Memory<E> {
     /// The edge among those whose root at this time is spent.
     #[inline]
     fn spent_as(&self, edge: E) -> Option<Spent<E>> {
-        self.spent.iter().chain(self.idle.iter().flatten()).find(|spent| spent.edge == edge).copied()
+        let idle = self.idle[..self.idle_count].iter().flatten();
+        self.spent.iter().chain(idle).find(|spent| spent.edge == edge).copied()
     }
 
     /// The guard of `edge` is away from zero: no root is spent.
     fn unspend(&mut self, edge: E) {
         self.spent = self.spent.filter(|spent| spent.edge != edge);
-        for idle in &mut self.idle {
+        for idle in &mut self.idle[..self.idle_count] {
             *idle = idle.filter(|idle| idle.edge != edge);
         }
     }
@@ -129,7 +132,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: Option<f64>, t: f64) {
         if let Some(duration) = duration {
-            self.memory.idle = [None; MOST_IDLE];
+            self.memory.idle_count = 0;
             self.memory.last_duration = duration;
             self.memory.longest_duration = self.memory.longest_duration.max(duration);
         } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
@@ -137,6 +140,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
                 self.memory.idle.rotate_right(1);
                 self.memory.idle[0] = Some(last);
+                self.memory.idle_count = MOST_IDLE.min(self.memory.idle_count + 1);
             }
         }
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
