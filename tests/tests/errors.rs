@@ -1,13 +1,21 @@
-//! What a newcomer reads when a run cannot go on.
+//! What a newcomer reads when a run cannot start, cannot go on, or ends.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+use std::ops::{ControlFlow, Range};
+
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{ErrorKind, Hybrid, Simulation};
+use saltus::{
+    Automaton, Coords, Edges, Entry, Error, ErrorKind, Hybrid, Jump, Linearize, Number, Observer, Reversed, Simulation,
+    every, saltation,
+};
 
-type Ball = Hybrid<'static, Vector2<f64>>;
+type Planar = Hybrid<'static, Vector2<f64>>;
+type Line = Hybrid<'static, f64>;
 
-fn ball() -> Ball {
+const DROPPED: Vector2<f64> = vector![1.0, 0.0];
+
+fn ball() -> Planar {
     Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8]).edge(
         "flight",
         "flight",
@@ -16,23 +24,182 @@ fn ball() -> Ball {
     )
 }
 
-fn message(ball: &Ball, mode: &'static str, start: Vector2<f64>, end: f64) -> (ErrorKind, String) {
+fn message(ball: &Planar, mode: &'static str, start: Vector2<f64>, end: f64) -> (ErrorKind, String) {
     let failed = Simulation::of(ball).run(mode, start, 0.0..end).unwrap_err();
     (failed.error.kind(), failed.to_string())
+}
+
+/// The message without where: a time is good to a few units in its last place.
+fn what(error: &Error) -> String {
+    error.to_string().split_once(" (t = ").unwrap().0.into()
+}
+
+/// Why a run of an automaton with one coordinate does not start.
+fn flaw(automaton: &Line) -> String {
+    let error = Simulation::of(automaton).run("heat", 20.0, 0.0..1.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Model);
+    error.to_string()
+}
+
+fn heater() -> Line {
+    Hybrid::new().mode("heat", |_t, _x: &f64| 1.0).mode("cool", |_t, _x| -1.0)
+}
+
+#[test]
+fn a_span_that_runs_backwards() {
+    let ball = ball();
+    let refused = |span: Range<f64>| {
+        let error = Simulation::of(&ball).run("flight", DROPPED, span).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::Span);
+        error.to_string()
+    };
+    #[allow(clippy::reversed_empty_ranges)] // what is refused
+    let text = refused(1.0..0.0);
+    insta::assert_snapshot!(text, @"the span 1..0 does not run forwards from a finite time: give start..end with start <= end; to run backwards, implement Invertible and run Reversed");
+    assert!(refused(f64::NAN..1.0).starts_with("the span NaN..1 does not"));
+    assert!(refused(0.0..f64::NAN).starts_with("the span 0..NaN does not"));
+}
+
+#[test]
+fn a_tolerance_that_cannot_be_kept() {
+    let ball = ball();
+    for simulation in [
+        Simulation::of(&ball).tolerance(0.0),
+        Simulation::of(&ball).tolerance(f64::NAN),
+        Simulation::of(&ball).absolute_tolerance(0.0),
+    ] {
+        let error = simulation.run("flight", DROPPED, 0.0..1.0).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::Tolerance);
+    }
+    let error = Simulation::of(&ball).tolerance(1e-16).run("flight", DROPPED, 0.0..1.0).unwrap_err();
+    insta::assert_snapshot!(error, @"the tolerances (relative 1e-16, absolute 1e-19) cannot be kept: relative must be finite and at least 1e-15, absolute finite and above zero");
+}
+
+#[test]
+fn a_step_that_is_none() {
+    let ball = ball();
+    let simulation = Simulation::of(&ball);
+    for simulation in [
+        simulation.longest_step(0.0),
+        simulation.longest_step(f64::NAN),
+        simulation.first_step(-1.0),
+        simulation.first_step(f64::INFINITY),
+    ] {
+        let error = simulation.run("flight", DROPPED, 0.0..1.0).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::StepLimit);
+    }
+    let error = simulation.longest_step(0.0).run("flight", DROPPED, 0.0..1.0).unwrap_err();
+    insta::assert_snapshot!(error, @"a step cannot have this size: give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out");
+}
+
+#[test]
+fn an_initial_state_that_is_not_finite() {
+    let (kind, text) = message(&ball(), "flight", vector![f64::NAN, 0.0], 1.0);
+    assert_eq!(kind, ErrorKind::InitialState);
+    insta::assert_snapshot!(text, @r#"the initial state is not finite: give finite coordinates (t = 0, mode "flight", state [NaN, 0.0])"#);
 }
 
 #[test]
 fn an_entry_refused() {
     let (kind, text) = message(&ball(), "flight", vector![-0.1, 0.0], 1.0);
     assert_eq!(kind, ErrorKind::Entry);
-    insta::assert_snapshot!(text, @"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset, or let Automaton::entry answer Wait or Fire (t = 0, mode \"flight\", state [-0.1, 0.0])");
+    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset that led to it, or let Automaton::entry or Hybrid::entry say Wait or Fire (t = 0, mode "flight", state [-0.1, 0.0])"#);
 }
 
 #[test]
-fn an_unknown_mode() {
-    let (kind, text) = message(&ball(), "fligth", vector![1.0, 0.0], 1.0);
+fn a_mode_that_is_not_there() {
+    let (kind, text) = message(&ball(), "fligth", DROPPED, 1.0);
     assert_eq!(kind, ErrorKind::UnknownMode);
-    insta::assert_snapshot!(text, @"there is no such mode: declare it, or start in and reset to a declared one (t = 0, mode \"fligth\", state [1.0, 0.0])");
+    insta::assert_snapshot!(text, @r#"the automaton has no mode "fligth": did you mean "flight"? If not, declare it with Hybrid::mode (t = 0, mode "fligth", state [1.0, 0.0])"#);
+    let (_, text) = message(&ball(), "stance", DROPPED, 1.0);
+    insta::assert_snapshot!(text, @r#"the automaton has no mode "stance": declare it with Hybrid::mode (t = 0, mode "stance", state [1.0, 0.0])"#);
+}
+
+/// An automaton with a mode that it says it does not have.
+struct Stairs;
+
+impl Automaton for Stairs {
+    type Mode = u8;
+    type State = f64;
+    type Edge = u8;
+    fn flow(&self, _: u8, _t: f64, _x: &f64) -> f64 {
+        1.0
+    }
+    fn edges(&self, mode: u8) -> Edges<u8> {
+        Edges::from([mode])
+    }
+    fn guard(&self, edge: u8, _t: f64, x: &f64) -> f64 {
+        f64::from(edge) + 1.0 - x
+    }
+    fn reset(&self, edge: u8, _t: f64, x: &f64) -> (u8, f64) {
+        (edge + 1, *x)
+    }
+    fn has_mode(&self, mode: u8) -> bool {
+        mode < 2
+    }
+}
+
+#[test]
+fn a_reset_to_a_mode_that_is_not_there() {
+    let failed = Simulation::of(&Stairs).run(0, 0.0, 0.0..5.0).unwrap_err();
+    assert_eq!((failed.error.kind(), failed.trajectory.jumps().len()), (ErrorKind::UnknownMode, 1));
+    insta::assert_snapshot!(what(&failed.error), @"the reset of edge 1 leads to mode 2, which the automaton does not have: reset to one of its modes, or declare that one");
+    let error = Simulation::of(&Stairs).run(2, 0.0, 0.0..5.0).unwrap_err();
+    insta::assert_snapshot!(error, @"the automaton has no mode 2: start in one of its modes (t = 0, mode 2, state [0.0])");
+}
+
+/// What is misspelt in a `Hybrid` is found before the run starts, not when an edge is taken.
+#[test]
+fn names_misspelt() {
+    let text = flaw(&heater().edge("heat", "coool", |_t, x| 22.0 - x, |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"edge heat -> coool (edge 0) leads to mode "coool", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
+    let text = flaw(&heater().edge("heat", "rest", |_t, x| 22.0 - x, |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"edge heat -> rest (edge 0) leads to mode "rest", which is not declared: declare it with Hybrid::mode"#);
+    let text = flaw(&heater().edge("haet", "cool", |_t, x| 22.0 - x, |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"mode "haet" has an edge but is not declared: did you mean "heat"? If not, declare it with Hybrid::mode"#);
+    let text = flaw(&heater().beyond("heat", "col", |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"beyond a limit in "heat" lies mode "col", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
+    let text = flaw(&heater().scheduled("heat", "Cool", every(1.0), |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"edge heat -> Cool (edge 0) leads to mode "Cool", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
+    let text = flaw(&heater().terminal("heating", |_t, x| 22.0 - x));
+    insta::assert_snapshot!(text, @r#"mode "heating" has an edge but is not declared: declare it with Hybrid::mode"#);
+    let text = flaw(&heater().beyond("het", "cool", |_t, x| *x));
+    insta::assert_snapshot!(text, @r#"mode "het" is named but is not declared: did you mean "heat"? If not, declare it with Hybrid::mode"#);
+}
+
+#[test]
+fn words_about_an_edge_that_is_not_there() {
+    let edge = |automaton: Line| automaton.edge("heat", "cool", |_t, x| 22.0 - x, |_t, x| *x);
+    let text = flaw(&edge(heater().entry("heat", "cool", Entry::Fire)));
+    insta::assert_snapshot!(text, @"Hybrid::entry is about an edge heat -> cool that was not declared before it: declare it first, or mend the names");
+    assert!(flaw(&edge(heater()).affine("cool", "heat")).starts_with("Hybrid::affine is about an edge cool -> heat"));
+    let text = flaw(&edge(heater()).inverse("cool", "heat", |_t, x| 22.0 - x, |_t, x| *x));
+    assert!(text.starts_with("Hybrid::inverse is about an edge cool -> heat"), "{text}");
+}
+
+#[test]
+fn a_way_back_that_is_not_there() {
+    let thermostat = heater()
+        .edge("heat", "cool", |_t, x| 22.0 - x, |_t, x| *x)
+        .edge("cool", "heat", |_t, x| x - 20.0, |_t, x| *x)
+        .inverse("cool", "heat", |_t, x| x - 20.0, |_t, x| *x);
+    let error = Simulation::of(&Reversed::of(&thermostat)).run("heat", 21.0, -1.0..0.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Model);
+    insta::assert_snapshot!(error, @r#"edge heat -> cool (edge 0) has no inverse, so that a run cannot go backwards into mode "heat": give one with Hybrid::inverse"#);
+    let thermostat = thermostat.inverse("heat", "cool", |_t, x| 22.0 - x, |_t, x| *x);
+    let there = Simulation::of(&thermostat).run("heat", 20.5, 0.0..10.0).unwrap();
+    let reversed = Reversed::of(&thermostat);
+    let back = Simulation::of(&reversed).run(there.mode, there.state, Reversed::span(10.0, 0.0)).unwrap();
+    assert_eq!((back.mode, back.trajectory.jumps().len()), ("heat", there.trajectory.jumps().len()));
+    assert!((back.state - 20.5).abs() < 1e-9, "{}", back.state);
+}
+
+#[test]
+fn a_flow_with_too_few_coordinates() {
+    let automaton = Hybrid::new().mode("stance", |_t, x: &Coords<3>| [-x[0]].into());
+    let error = Simulation::of(&automaton).run("stance", [1.0, 2.0].into(), 0.0..1.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Dimension);
+    insta::assert_snapshot!(error, @r#"the flow gives 1 and the state has 2 coordinates: give both as many in this mode, here and in the resets that lead to it (t = 0, mode "stance", state [1.0, 2.0])"#);
 }
 
 #[test]
@@ -40,52 +207,127 @@ fn a_flow_that_is_not_finite() {
     let automaton = Hybrid::new().mode("fall", |_t, x: &Vector2<f64>| vector![x[1], -x[0].sqrt()]);
     let (kind, text) = message(&automaton, "fall", vector![-1.0, 0.0], 1.0);
     assert_eq!(kind, ErrorKind::Flow);
-    insta::assert_snapshot!(text, @"the flow is not finite, however short the step: check it for division by zero or roots of negative numbers near this state (t = 0, mode \"fall\", state [-1.0, 0.0])");
+    insta::assert_snapshot!(text, @r#"the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state (t = 0, mode "fall", state [-1.0, 0.0])"#);
 }
 
 #[test]
 fn a_guard_that_is_not_a_number_keeps_what_was_before() {
     let automaton = ball().edge("flight", "flight", |_t, x| (x[0] - 0.5).sqrt() + 1.0, |_t, x| *x);
-    let failed = Simulation::of(&automaton).run("flight", vector![1.0, 0.0], 0.0..3.0).unwrap_err();
+    let failed = Simulation::of(&automaton).run("flight", DROPPED, 0.0..3.0).unwrap_err();
     assert_eq!(failed.error.kind(), ErrorKind::Guard);
     assert_eq!(failed.error.edge(), Some("flight -> flight (edge 1)"));
     // It is undefined from y = 0.5 on, and that is where the error says it is.
     assert!((failed.error.t() - (1.0_f64 / 9.8).sqrt()).abs() < 1e-6, "{}", failed.error);
+    let automaton = ball().edge("flight", "flight", |_t, x| (x[0] - 2.0).sqrt(), |_t, x| *x);
+    let (_, text) = message(&automaton, "flight", DROPPED, 1.0);
+    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 1) is not a number: define it on the whole domain, or end the mode before (t = 0, mode "flight", state [1.0, 0.0])"#);
 }
 
 #[test]
 fn a_reset_that_is_not_finite() {
-    let automaton = Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8]).edge(
+    let automaton = Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], 0.0]).edge(
         "flight",
         "flight",
         |_t, x| x[0],
-        |_t, x| vector![0.0, 1.0 / (x[1] - x[1])],
+        |_t, x| vector![0.0, 1.0 / (x[1] + 2.0)],
     );
-    let (kind, text) = message(&automaton, "flight", vector![1.0, 0.0], 1.0);
-    assert_eq!(kind, ErrorKind::Reset);
-    assert!(
-        text.contains("the reset of edge flight -> flight (edge 0) gave a state that is not finite (t = 0.4517"),
-        "{text}"
-    );
+    let error = Simulation::of(&automaton).run("flight", vector![1.0, -2.0], 0.0..1.0).unwrap_err().error;
+    assert_eq!((error.kind(), error.mode(), error.state()), (ErrorKind::Reset, "\"flight\"", &[0.0, -2.0][..]));
+    insta::assert_snapshot!(what(&error), @r#"the reset of edge flight -> flight (edge 0) gave [0.0, inf], which is not finite: check it for division by zero or roots of negative numbers at this state"#);
 }
 
 #[test]
 fn a_solution_that_blows_up() {
-    let automaton = Hybrid::new().mode("grow", |_t, x: &Vector2<f64>| vector![x[0] * x[0], 0.0]);
-    let failed = Simulation::of(&automaton).run("grow", vector![1.0, 0.0], 0.0..2.0).unwrap_err();
+    let automaton = Hybrid::new().mode("grow", |_t, x: &f64| x * x);
+    let failed = Simulation::of(&automaton).run("grow", 1.0, 0.0..2.0).unwrap_err();
     assert!(matches!(failed.error.kind(), ErrorKind::StepSize | ErrorKind::Flow), "{}", failed.error);
     assert!((failed.error.t() - 1.0).abs() < 1e-6, "{}", failed.error);
 }
 
 #[test]
-fn spans_and_tolerances() {
-    let ball = ball();
-    let simulation = Simulation::of(&ball);
-    for span in [1.0..0.0, f64::NAN..1.0, 0.0..f64::NAN] {
-        assert_eq!(simulation.run("flight", vector![1.0, 0.0], span).unwrap_err().error.kind(), ErrorKind::Span);
+fn a_step_that_becomes_too_short() {
+    let automaton = Hybrid::new().mode("fall", |_t, x: &f64| -1.0 / x);
+    let failed = Simulation::of(&automaton).run("fall", 1.0, 0.0..2.0).unwrap_err();
+    assert_eq!(failed.error.kind(), ErrorKind::StepSize);
+    assert!((failed.error.t() - 0.5).abs() < 1e-6, "{}", failed.error);
+    insta::assert_snapshot!(what(&failed.error), @"the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there");
+}
+
+/// A ball under a ceiling.
+struct Ceiling;
+
+impl Automaton for Ceiling {
+    type Mode = ();
+    type State = [f64; 2];
+    type Edge = ();
+    fn flow(&self, (): (), t: f64, x: &[f64; 2]) -> [f64; 2] {
+        self.flow_at((), t, x)
     }
-    let failed = Simulation::of(&ball).tolerance(0.0).run("flight", vector![1.0, 0.0], 0.0..1.0).unwrap_err();
-    assert_eq!(failed.error.kind(), ErrorKind::Tolerance);
-    let failed = simulation.run("flight", vector![f64::NAN, 0.0], 0.0..1.0).unwrap_err();
-    assert_eq!(failed.error.kind(), ErrorKind::InitialState);
+    fn edges(&self, (): ()) -> Edges<()> {
+        Edges::from([()])
+    }
+    fn guard(&self, (): (), t: f64, x: &[f64; 2]) -> f64 {
+        self.guard_at((), t, x)
+    }
+    fn reset(&self, (): (), t: f64, x: &[f64; 2]) -> ((), [f64; 2]) {
+        ((), self.reset_over((), t, *x, []))
+    }
+}
+
+impl Linearize for Ceiling {
+    type Parameters = [f64; 0];
+    fn parameters(&self) -> [f64; 0] {
+        []
+    }
+    fn flow_over<D: Number>(&self, (): (), _t: D, [_, v]: [D; 2], _: [D; 0]) -> [D; 2] {
+        [v, D::from(-8.0)]
+    }
+    fn guard_over<D: Number>(&self, (): (), _t: D, [y, _]: [D; 2], _: [D; 0]) -> D {
+        -(y - 1.0)
+    }
+    fn reset_over<D: Number>(&self, (): (), _t: D, [y, v]: [D; 2], _: [D; 0]) -> [D; 2] {
+        [y, -v]
+    }
+}
+
+#[test]
+fn a_crossing_without_speed_has_no_derivative() {
+    let error = saltation(&Ceiling, (), (), 0.5, &[1.0, 0.0]).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Grazing);
+    insta::assert_snapshot!(error, @"edge () is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities (t = 0.5, mode (), state [1.0, 0.0])");
+}
+
+#[test]
+fn every_ending_is_a_sentence() {
+    let ball = ball();
+    let stop = |simulation: Simulation<'_, Planar>, end: f64| {
+        simulation.run("flight", DROPPED, 0.0..end).unwrap().stop.to_string()
+    };
+    insta::assert_snapshot!(stop(Simulation::of(&ball), 1.0), @"the end of the span was reached");
+    insta::assert_snapshot!(stop(Simulation::of(&ball).most_jumps(3), 1.3), @"the limit of 3 jumps was reached: raise Simulation::most_jumps to go on");
+    insta::assert_snapshot!(stop(Simulation::of(&ball).most_steps(3), 1.3), @"the limit of 3 steps was reached: raise Simulation::most_steps to go on");
+    insta::assert_snapshot!(stop(Simulation::of(&ball).most_evaluations(3), 1.3), @"the limit of 3 evaluations of flows and guards was reached: raise Simulation::most_evaluations to go on");
+    let zeno = stop(Simulation::of(&ball), 2.0);
+    let (text, rest) = zeno.split_once("1.3552618543").unwrap();
+    insta::assert_snapshot!(text, @"jumps accumulate at t =");
+    insta::assert_snapshot!(rest.trim_start_matches(char::is_numeric), @": say by Automaton::beyond (Hybrid::beyond) what lies there, to go on");
+
+    let heater = heater().terminal("heat", |_t, x| 22.0 - x);
+    insta::assert_snapshot!(Simulation::of(&heater).run("heat", 20.0, 0.0..5.0).unwrap().stop, @"the terminal edge heat -> heat (edge 0) was taken");
+    let circle = self::heater().edge("heat", "cool", |_t, x| 22.0 - x, |_t, x| x - 2.0).edge(
+        "cool",
+        "heat",
+        |_t, x| x - 20.0,
+        |_t, x| x + 2.0,
+    );
+    insta::assert_snapshot!(Simulation::of(&circle).run("heat", 20.0, 0.0..5.0).unwrap().stop, @"too many jumps at one time, the last by edge heat -> cool (edge 0): let a reset lead away from the guards it meets");
+
+    struct Enough;
+    impl<A: Automaton> Observer<A> for Enough {
+        fn jump(&mut self, _: &Jump<A>) -> ControlFlow<()> {
+            ControlFlow::Break(())
+        }
+    }
+    let end = Simulation::of(&ball).drive("flight", DROPPED, 0.0..5.0, &mut Enough).unwrap();
+    insta::assert_snapshot!(end.stop, @"the observer ended the run");
 }

@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Checkpoint, Edges, Jump, Observer, Piece, Simulation, Stop, Trajectory};
+use saltus::{Automaton, Checkpoint, Coords, Edges, Jump, Observer, Piece, Simulation, State, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// A ball with quadratic drag, risen and fallen in two smooth modes, that keeps 0.9 of its speed.
@@ -133,6 +133,53 @@ fn a_trajectory_written_and_read_back() {
     assert_eq!(read.jumps().len(), run.trajectory.jumps().len());
 }
 
+/// A limit ends a run; raised, it lets the run go on: at a jump to the bit, within an arc but for a rounding.
+#[test]
+fn limits_raised() {
+    let simulation = Simulation::of(&Drag);
+    let whole = simulation.drive(Mode::Falling, START, 0.0..10.0, &mut ()).unwrap();
+    let go_on = |limited: Simulation<'_, Drag>| {
+        let mut course = limited.start(Mode::Falling, START, 0.0..10.0).unwrap();
+        assert_ne!(course.finish(&mut ()).unwrap().stop, Stop::Time);
+        assert_ne!(
+            limited.resume(course.checkpoint()).finish(&mut ()).unwrap().stop,
+            Stop::Time,
+            "no limit was raised"
+        );
+        simulation.resume(course.checkpoint()).finish(&mut ()).unwrap()
+    };
+    let end = go_on(simulation.most_jumps(5));
+    assert_eq!((end.state, end.jumps, end.stats), (whole.state, whole.jumps, whole.stats));
+    for limited in [simulation.most_steps(17), simulation.most_evaluations(321)] {
+        let end = go_on(limited);
+        assert_eq!((end.jumps, end.mode, end.stop), (whole.jumps, whole.mode, Stop::Time));
+        assert!((end.state - whole.state).norm() < 1e-12, "{} {}", end.state, whole.state);
+    }
+}
+
+/// A state whose dimension differs by mode is a list of the coordinates there are.
+#[test]
+fn coordinates_written_and_read_back() {
+    let stance: Coords<4> = [1.0, -0.5].into();
+    assert_eq!(serde_json::to_string(&stance).unwrap(), "[1.0,-0.5]");
+    assert_eq!(serde_json::from_str::<Coords<4>>("[1.0,-0.5]").unwrap(), stance);
+    assert_eq!(serde_json::from_str::<Coords<2>>("[]").unwrap().len(), 0);
+    let error = serde_json::from_str::<Coords<2>>("[1.0,2.0,3.0,4.0]").unwrap_err().to_string();
+    assert!(error.starts_with("invalid length 3, expected a list of at most 2 coordinates"), "{error}");
+    let error = serde_json::from_str::<Coords<2>>("{}").unwrap_err().to_string();
+    assert!(error.starts_with("invalid type: map, expected a list of at most 2 coordinates"), "{error}");
+}
+
+/// Exact arcs cost guards and no steps; their limit is looked at between jumps.
+#[test]
+fn evaluations_of_exact_arcs_have_a_limit() {
+    let ball = saltus_bounce::Ball::new(9.8, saltus_bounce::Cor::new(0.99).unwrap()).unwrap();
+    let simulation = Simulation::of(&ball).most_evaluations(100);
+    let end = simulation.drive(saltus_bounce::Mode::Flight, vector![1.0, 0.0], 0.0..100.0, &mut ()).unwrap();
+    assert_eq!(end.stop, Stop::Evaluations { most: 100 });
+    assert!(end.stats.evaluations() < 120 && end.stats.flows == 0, "{:?}", end.stats);
+}
+
 /// Recording, observing and pulling are one run; so is looking at it on any grid.
 #[test]
 fn one_list_of_jumps_however_it_is_run() {
@@ -172,6 +219,9 @@ fn limits_are_endings() {
     assert_eq!((jumps.stop, jumps.trajectory.jumps().len()), (Stop::Jumps { most: 5 }, 5));
     let steps = simulation.most_steps(20).run(Mode::Falling, START, 0.0..10.0).unwrap();
     assert_eq!((steps.stop, steps.stats.steps), (Stop::Steps { most: 20 }, 20));
+    let evaluations = simulation.most_evaluations(200).run(Mode::Falling, START, 0.0..10.0).unwrap();
+    assert_eq!(evaluations.stop, Stop::Evaluations { most: 200 });
+    assert!((200..300).contains(&evaluations.stats.evaluations()), "{:?}", evaluations.stats);
     struct Enough;
     impl Observer<Drag> for Enough {
         fn piece(&mut self, _: Mode, piece: &Piece<'_, Vector2<f64>>) -> ControlFlow<()> {
@@ -188,5 +238,6 @@ fn runs_can_be_shared_between_threads() {
     shared::<Simulation<'_, Drag>>();
     shared::<Trajectory<Drag>>();
     shared::<Checkpoint<Drag>>();
+    shared::<saltus::Certificate<Drag>>();
     shared::<saltus::Hybrid<'_, Vector2<f64>>>();
 }

@@ -127,7 +127,7 @@ pub trait Automaton {
     }
 
     /// What lies beyond a Zeno limit: the mode and state in which the run goes on from `t`, where infinitely many jumps
-    /// have accumulated at the state `x` of `mode`. The default says nothing, and the run ends with [`Stop::Zeno`](crate::Stop::Zeno).
+    /// have accumulated at the state `x` of `mode`, any mode of the pattern that they make. The default says nothing, and the run ends with [`Stop::Zeno`](crate::Stop::Zeno).
     fn beyond(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Option<(Self::Mode, Self::State)> {
         let _ = (mode, t, x);
         None
@@ -139,6 +139,13 @@ pub trait Automaton {
     /// A time that is not a number, or not after `t`, is ignored.
     fn scheduled(&self, mode: Self::Mode, t: f64) -> Option<(f64, Self::Edge)> {
         let _ = (mode, t);
+        None
+    }
+
+    /// What is wrong with the automaton itself for a run that starts in `mode`, found before it does: a sentence that names it and says what
+    /// to do. Then no run starts. The default finds nothing; [`Hybrid`](crate::Hybrid) finds misspelt modes.
+    fn flaw(&self, mode: Self::Mode) -> Option<String> {
+        let _ = mode;
         None
     }
 
@@ -162,6 +169,20 @@ pub enum Fall {
 }
 
 /// What to do with an edge whose guard is already negative when its mode is entered.
+///
+/// ```
+/// use saltus::{Entry, ErrorKind, Hybrid, Simulation};
+/// let heater = |entry| Hybrid::new()
+///     .mode("on", |_t, _x: &f64| 1.0)
+///     .mode("off", |_t, _x| -1.0)
+///     .edge("on", "off", |_t, x| 22.0 - x, |_t, x| *x)
+///     .entry("on", "off", entry);
+/// // Switched on at 25 °C, which is too warm already.
+/// let mode = |entry| Simulation::of(&heater(entry)).run("on", 25.0, 0.0..1.0).map(|run| run.mode);
+/// assert_eq!(mode(Entry::Refuse).unwrap_err().error.kind(), ErrorKind::Entry);
+/// assert_eq!(mode(Entry::Wait).unwrap(), "on");
+/// assert_eq!(mode(Entry::Fire).unwrap(), "off");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Entry {

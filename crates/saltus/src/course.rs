@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::advance::{Advance, ArcEnd, Clock, Memory};
 use crate::automaton::Automaton;
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::{Error, ErrorKind, Place, listed};
 use crate::observe::Observer;
 use crate::simulation::{Ending, Options, Stats, Stop};
 use crate::state::State;
@@ -41,7 +41,23 @@ pub struct Course<'a, A: Automaton, M = Auto> {
     at: Checkpoint<A>,
 }
 
-/// Everything a run needs to go on from just after a jump, to the bit.
+/// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes it, [`Simulation::resume`](crate::Simulation::resume)
+/// goes on from it; the feature `serde` writes and reads it.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let tank = Hybrid::new()
+///     .mode("fill", |_t, _x: &f64| 1.0)
+///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
+/// let mut first = Simulation::of(&tank).most_jumps(3).start("fill", 0.0, 0.0..10.5)?;
+/// assert_eq!(first.finish(&mut ())?.stop, Stop::Jumps { most: 3 });
+/// let checkpoint = first.checkpoint();
+/// assert!((checkpoint.time().seconds() - 6.0).abs() < 1e-12);
+/// // With a higher limit it goes on from there.
+/// let end = Simulation::of(&tank).resume(checkpoint).finish(&mut ())?;
+/// assert_eq!((end.stop, end.jumps), (Stop::Time, 5));
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -84,6 +100,12 @@ impl<A: Automaton> Checkpoint<A> {
     #[must_use]
     pub fn time(&self) -> Time {
         self.clock.now
+    }
+
+    /// No longer ended by a limit that these options have raised.
+    pub(crate) fn under(mut self, options: &Options) -> Self {
+        self.stop = self.stop.filter(|stop| !stop.is_lifted(options));
+        self
     }
 }
 
@@ -242,6 +264,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return self.at_limit(0.0, observer);
             }
             Some(Stop::Cascade { edge })
+        } else if at.memory.stats.evaluations() >= options.most_evaluations {
+            Some(Stop::Evaluations { most: options.most_evaluations })
         } else {
             None
         })
@@ -270,14 +294,14 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 }
 
 fn check_after<A: Automaton>(automaton: &A, jump: &Jump<A>, edge: A::Edge) -> Result<(), Error> {
-    let kind = if !jump.after.is_finite() {
-        ErrorKind::Reset
+    let (kind, note) = if !jump.after.is_finite() {
+        (ErrorKind::Reset, listed(&jump.after))
     } else if !automaton.has_mode(jump.to) {
-        ErrorKind::UnknownMode
+        (ErrorKind::UnknownMode, format!("{:?}", jump.to))
     } else {
         return Ok(());
     };
-    Err(Error::new(kind, Place::new(jump.t(), jump.to, Some(edge), &jump.after)))
+    Err(Error::new(kind, Place::new(jump.t(), jump.from, Some(edge), &jump.before)).noting(Some(note)))
 }
 
 /// Whether two states are equal coordinate by coordinate.

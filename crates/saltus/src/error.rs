@@ -4,11 +4,22 @@ use std::fmt;
 
 use crate::state::State;
 
-/// Why a run failed, with the time, mode, edge and state where it did.
+/// Why a run failed, with the time, mode, edge and state where it did. Written with `{}`, it is a sentence that says what to do.
+///
+/// ```
+/// use saltus::{ErrorKind, Hybrid, Simulation};
+/// let ball = Hybrid::new()
+///     .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -x[1]]);
+/// let error = Simulation::of(&ball).run("flight", [-0.1, 0.0], 0.0..1.0).unwrap_err().error;
+/// assert_eq!((error.kind(), error.t(), error.state()), (ErrorKind::Entry, 0.0, &[-0.1, 0.0][..]));
+/// assert!(error.to_string().starts_with("the guard of edge flight -> flight (edge 0) is already negative"));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     kind: ErrorKind,
     place: Place,
+    note: Option<Box<str>>,
 }
 
 /// Where a run failed.
@@ -31,6 +42,13 @@ impl Place {
     }
 }
 
+/// A state as a list of its coordinates.
+#[cold]
+pub(crate) fn listed(state: &impl State) -> String {
+    let coordinates: Vec<f64> = (0..state.len()).map(|i| state.get(i)).collect();
+    format!("{coordinates:?}")
+}
+
 /// The kinds of failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -39,10 +57,16 @@ pub enum ErrorKind {
     Span,
     /// The tolerances are not positive finite numbers.
     Tolerance,
+    /// The first or the longest step asked for is not above zero.
+    StepLimit,
     /// The initial state is not finite.
     InitialState,
-    /// The mode is not one of the automaton's.
+    /// The mode to start in, or the one that a reset led to, is not one of the automaton's.
     UnknownMode,
+    /// The automaton contradicts itself: see [`Automaton::flaw`](crate::Automaton::flaw).
+    Model,
+    /// The flow has not as many coordinates as the state.
+    Dimension,
     /// The flow is not finite, however short the step.
     Flow,
     /// The guard is not a number.
@@ -59,7 +83,13 @@ pub enum ErrorKind {
 
 impl Error {
     pub(crate) fn new(kind: ErrorKind, place: Place) -> Self {
-        Self { kind, place }
+        Self { kind, place, note: None }
+    }
+
+    /// With what its kind and place do not say.
+    pub(crate) fn noting(mut self, note: Option<String>) -> Self {
+        self.note = note.map(String::into_boxed_str);
+        self
     }
 
     /// What kind of failure it is.
@@ -86,7 +116,7 @@ impl Error {
         self.place.edge.as_deref()
     }
 
-    /// The state it happened at.
+    /// The state it happened at, coordinate by coordinate; of a jump, the state just before.
     #[must_use]
     pub fn state(&self) -> &[f64] {
         &self.place.state
@@ -96,44 +126,64 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Place { t, mode, edge, state } = &self.place;
-        let edge = edge.as_deref().unwrap_or("?");
+        let note = self.note.as_deref();
+        let said = note.unwrap_or("?");
+        let edge = edge.as_deref();
+        let by = edge.unwrap_or("?");
         match self.kind {
             ErrorKind::Span => {
                 return write!(
                     f,
-                    "the span must run forwards from a finite time: give start..end with start < end; to run backwards, implement Invertible and run Reversed"
+                    "the span {said} does not run forwards from a finite time: give start..end with start <= end; to run backwards, implement Invertible and run Reversed"
                 );
             }
             ErrorKind::Tolerance => {
                 return write!(
                     f,
-                    "the tolerances must be positive and finite: relative at least 1e-15, absolute above zero"
+                    "the tolerances ({said}) cannot be kept: relative must be finite and at least 1e-15, absolute finite and above zero"
                 );
             }
-            ErrorKind::InitialState => write!(f, "the initial state is not finite: give finite coordinates")?,
-            ErrorKind::UnknownMode => {
-                f.write_str("there is no such mode: declare it, or start in and reset to a declared one")?;
+            ErrorKind::StepLimit => {
+                return f.write_str(
+                    "a step cannot have this size: give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out",
+                );
             }
-            ErrorKind::Flow => write!(
+            ErrorKind::InitialState => f.write_str("the initial state is not finite: give finite coordinates")?,
+            ErrorKind::UnknownMode => match (edge, note) {
+                (Some(edge), _) => write!(
+                    f,
+                    "the reset of edge {edge} leads to mode {said}, which the automaton does not have: reset to one of its modes, or declare that one"
+                )?,
+                (None, Some(note)) => f.write_str(note)?,
+                (None, None) => write!(f, "the automaton has no mode {mode}: start in one of its modes")?,
+            },
+            ErrorKind::Model => return f.write_str(said),
+            ErrorKind::Dimension => write!(
                 f,
-                "the flow is not finite, however short the step: check it for division by zero or roots of negative numbers near this state"
+                "the flow gives {said} and the state has {} coordinates: give both as many in this mode, here and in the resets that lead to it",
+                state.len()
+            )?,
+            ErrorKind::Flow => f.write_str(
+                "the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",
             )?,
             ErrorKind::Guard => write!(
                 f,
-                "the guard of edge {edge} is not a number: define it on the whole domain, or end the mode before"
+                "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before"
             )?,
-            ErrorKind::Reset => write!(f, "the reset of edge {edge} gave a state that is not finite")?,
+            ErrorKind::Reset => write!(
+                f,
+                "the reset of edge {by} gave {said}, which is not finite: check it for division by zero or roots of negative numbers at this state"
+            )?,
             ErrorKind::Entry => write!(
                 f,
-                "the guard of edge {edge} is already negative as the mode is entered: correct the state or the reset, or let Automaton::entry answer Wait or Fire"
+                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or let Automaton::entry or Hybrid::entry say Wait or Fire"
             )?,
             ErrorKind::Grazing => write!(
                 f,
-                "edge {edge} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
+                "edge {by} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
             )?,
-            ErrorKind::StepSize => write!(
-                f,
-                "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there"
+            ErrorKind::StepSize => f.write_str(
+                "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there",
             )?,
         }
         write!(f, " (t = {t}, mode {mode}, state {state:?})")

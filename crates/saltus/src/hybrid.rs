@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::automaton::{Automaton, Edges, Entry, Polynomial};
+use crate::reverse::Invertible;
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;
@@ -30,8 +31,24 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 ///
 /// Where speed matters, implement [`Automaton`] instead: the closures are called through pointers.
+///
+/// A name that is misspelt (a mode that an edge leads to or from, an edge that [`entry`](Self::entry) or [`affine`](Self::affine) is about)
+/// is found when a run starts, which then fails with an error that names it and suggests the nearest.
+///
+/// ```
+/// use saltus::{ErrorKind, Hybrid, Simulation};
+/// let lamp = Hybrid::new()
+///     .mode("dark", |_t, _x: &f64| 1.0)
+///     .mode("lit", |_t, _x| 0.0)
+///     .edge("dark", "lid", |_t, x| 1.0 - x, |_t, x| *x);
+/// let error = Simulation::of(&lamp).run("dark", 0.0, 0.0..3.0).unwrap_err().error;
+/// assert_eq!(error.kind(), ErrorKind::Model);
+/// assert!(error.to_string().contains("did you mean \"lit\"?"));
+/// ```
 pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
+    /// What was said of edges that were not there, and of which.
+    misses: Vec<(&'static str, &'static str, &'static str)>,
 }
 
 struct Mode<'a, S> {
@@ -49,6 +66,7 @@ struct EdgeOf<'a, S> {
     entry: Entry,
     affine: bool,
     terminal: bool,
+    inverse: Option<(Guard<'a, S>, Flow<'a, S>)>,
 }
 
 /// What takes an edge: the state, or the clock.
@@ -58,6 +76,12 @@ enum When<'a, S> {
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
+///
+/// ```
+/// use saltus::Link;
+/// let link = Link { from: "flight", to: "rest", place: 1 };
+/// assert_eq!(format!("{link:?}"), "flight -> rest (edge 1)");
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Link {
     /// The mode it leaves.
@@ -76,7 +100,7 @@ impl fmt::Debug for Link {
 
 impl<'a, S> EdgeOf<'a, S> {
     fn new(to: &'static str, when: When<'a, S>, reset: Flow<'a, S>) -> Self {
-        Self { to, when, reset, entry: Entry::Refuse, affine: false, terminal: false }
+        Self { to, when, reset, entry: Entry::Refuse, affine: false, terminal: false, inverse: None }
     }
 }
 
@@ -97,7 +121,7 @@ pub fn every(period: f64) -> impl Fn(f64) -> Option<f64> + Copy + Send + Sync {
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new() }
+        Self { modes: Vec::new(), misses: Vec::new() }
     }
 }
 
@@ -122,7 +146,18 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Gives the mode's exact solution from (t, x), where it is a polynomial in time; no step is then taken in it.
+    /// Gives the mode's exact solution from (t, x), where it is a polynomial in time; no step is then taken in it, and it needs no flow.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let ball = Hybrid::new()
+    ///     .exact("flight", |_t, x: &[f64; 2]| [*x, [x[1], -9.8], [-4.9, 0.0]].into())
+    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]])
+    ///     .affine("flight", "flight");
+    /// let run = Simulation::of(&ball).run("flight", [4.9, 0.0], 0.0..1.5)?;
+    /// assert_eq!((run.trajectory.jumps()[0].t(), run.stats.steps), (1.0, 0));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
     #[must_use]
     pub fn exact(mut self, name: &'static str, solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a) -> Self {
         self.entry_of(name).exact = Some(Box::new(solution));
@@ -132,7 +167,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t, x⁻) into `to`.
     ///
     /// Edges that cross at one time are taken in the order in which they are declared. A mode has at most [`Edges::INLINE`] edges;
-    /// more are a reason to implement [`Automaton`] and are not watched: a run refuses such a mode.
+    /// a run with more does not start.
     #[must_use]
     pub fn edge(
         mut self,
@@ -168,7 +203,16 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// An edge at which the run ends, without a reset.
+    /// An edge at which the run ends, without a reset; it leads from its mode to itself.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation, Stop};
+    /// let tank = Hybrid::new().mode("drain", |_t, _x: &f64| -0.5).terminal("drain", |_t, x| *x);
+    /// let run = Simulation::of(&tank).run("drain", 2.0, 0.0..f64::INFINITY)?;
+    /// assert!(matches!(run.stop, Stop::Terminal { .. }));
+    /// assert!((run.trajectory.end().seconds() - 4.0).abs() < 1e-12);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
     #[must_use]
     pub fn terminal(mut self, from: &'static str, guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a) -> Self {
         let edge = EdgeOf::new(from, When::Guard(Box::new(guard)), Box::new(|_, x| *x));
@@ -176,25 +220,58 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// What to do if a guard out of `from` towards `to` is already negative as `from` is entered; see [`Entry`].
+    /// What to do if a guard declared so far from `from` to `to` is already negative as `from` is entered; see [`Entry`].
+    /// A [`terminal`](Self::terminal) edge leads from its mode to itself.
     #[must_use]
     pub fn entry(mut self, from: &'static str, to: &'static str, entry: Entry) -> Self {
-        for edge in self.entry_of(from).edges.iter_mut().filter(|edge| edge.to == to) {
-            edge.entry = entry;
-        }
+        self.between("entry", from, to, |edge| edge.entry = entry);
         self
     }
 
     /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`Automaton::affine`].
     #[must_use]
     pub fn affine(mut self, from: &'static str, to: &'static str) -> Self {
-        for edge in self.entry_of(from).edges.iter_mut().filter(|edge| edge.to == to) {
-            edge.affine = true;
+        self.between("affine", from, to, |edge| edge.affine = true);
+        self
+    }
+
+    /// Gives the inverse of the edge declared last from `from` to `to`, so that a run can go [backwards](crate::Reversed) through it:
+    /// the `image` margin, positive in `to` and zero just after the jump, and x⁻ from x⁺. See [`Invertible`].
+    ///
+    /// A run backwards is refused where it could meet an edge without an inverse. An edge that is never met backwards may be given
+    /// the margin 1.
+    ///
+    /// ```
+    /// use saltus::nalgebra::{Vector2, vector};
+    /// use saltus::{Hybrid, Reversed, Simulation};
+    ///
+    /// let ball = Hybrid::new()
+    ///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81])
+    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.7 * x[1]])
+    ///     .inverse("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -x[1] / 0.7]);
+    /// let there = Simulation::of(&ball).run("flight", vector![1.0, 0.0], 0.0..1.5)?;
+    /// let back = Simulation::of(&Reversed::of(&ball)).run("flight", there.state, Reversed::span(1.5, 0.0))?;
+    /// assert!((back.state - vector![1.0, 0.0]).norm() < 1e-9);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn inverse(
+        mut self,
+        from: &'static str,
+        to: &'static str,
+        image: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
+        undo: impl Fn(f64, &S) -> S + Send + Sync + 'a,
+    ) -> Self {
+        match self.entry_of(from).edges.iter_mut().rfind(|edge| edge.to == to) {
+            Some(edge) => edge.inverse = Some((Box::new(image), Box::new(undo))),
+            None => self.misses.push(("inverse", from, to)),
         }
         self
     }
 
     /// What lies beyond a Zeno limit reached in `from`: the mode `to`, with the state given by `reset` from the state at the limit.
+    ///
+    /// Where jumps accumulate that go from mode to mode, the limit may be reached in any of them: say it for each.
     #[must_use]
     pub fn beyond(
         mut self,
@@ -212,6 +289,44 @@ impl<'a, S: State> Hybrid<'a, S> {
             self.modes.len() - 1
         });
         &mut self.modes[index]
+    }
+
+    fn between(
+        &mut self,
+        method: &'static str,
+        from: &'static str,
+        to: &'static str,
+        mut change: impl FnMut(&mut EdgeOf<'a, S>),
+    ) {
+        let mut any = false;
+        for edge in self.entry_of(from).edges.iter_mut().filter(|edge| edge.to == to) {
+            change(edge);
+            any = true;
+        }
+        if !any {
+            self.misses.push((method, from, to));
+        }
+    }
+
+    /// Every edge of `mode`, also those of the clock.
+    fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m EdgeOf<'a, S>)> {
+        let from = mode.name;
+        mode.edges.iter().enumerate().map(move |(place, edge)| (Link { from, to: edge.to, place }, edge))
+    }
+
+    fn declares(&self, name: &str) -> bool {
+        self.find(name).is_some_and(|mode| mode.flow.is_some() || mode.exact.is_some())
+    }
+
+    /// What to do about a mode that is not declared.
+    fn declare(&self, name: &str) -> String {
+        let declared = self.modes.iter().map(|mode| mode.name).filter(|name| self.declares(name));
+        let near = declared.map(|other| (distance(name, other), other)).min_by_key(|near| near.0);
+        let most = (name.chars().count() / 3).max(1);
+        match near.filter(|near| near.0 <= most) {
+            Some((_, other)) => format!("did you mean {other:?}? If not, declare it with Hybrid::mode"),
+            None => "declare it with Hybrid::mode".into(),
+        }
     }
 
     fn find(&self, name: &str) -> Option<&Mode<'a, S>> {
@@ -282,9 +397,105 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         Some((to, reset(t, x)))
     }
 
-    fn has_mode(&self, mode: &'static str) -> bool {
-        self.find(mode).is_some_and(|mode| {
-            (mode.flow.is_some() || mode.exact.is_some()) && mode.edges.len() <= Edges::<Link>::INLINE
-        })
+    fn flaw(&self, mode: &'static str) -> Option<String> {
+        if !self.declares(mode) {
+            return Some(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
+        }
+        for mode in &self.modes {
+            let (name, most) = (mode.name, Edges::<Link>::INLINE);
+            if !self.declares(name) {
+                let what = if mode.edges.is_empty() { "is named" } else { "has an edge" };
+                return Some(format!("mode {name:?} {what} but is not declared: {}", self.declare(name)));
+            }
+            if let Some((link, edge)) = Self::links(mode).find(|(_, edge)| !self.declares(edge.to)) {
+                let to = self.declare(edge.to);
+                return Some(format!("edge {link:?} leads to mode {:?}, which is not declared: {to}", edge.to));
+            }
+            if let Some((to, _)) = mode.beyond.as_ref().filter(|(to, _)| !self.declares(to)) {
+                let declare = self.declare(to);
+                return Some(format!("beyond a limit in {name:?} lies mode {to:?}, which is not declared: {declare}"));
+            }
+            if mode.edges.len() > most {
+                let count = mode.edges.len();
+                return Some(format!("mode {name:?} has {count} edges, more than {most}: implement Automaton instead"));
+            }
+        }
+        let (method, from, to) = self.misses.first()?;
+        Some(format!(
+            "Hybrid::{method} is about an edge {from} -> {to} that was not declared before it: declare it first, or mend the names"
+        ))
     }
+
+    fn has_mode(&self, mode: &'static str) -> bool {
+        self.declares(mode)
+    }
+}
+
+impl<S: State> Invertible for Hybrid<'_, S> {
+    fn edges_into(&self, mode: &'static str) -> Edges<Link> {
+        let links = self.modes.iter().flat_map(Self::links);
+        links.filter(|(link, edge)| link.to == mode && !edge.terminal).map(|(link, _)| link).collect()
+    }
+
+    fn image(&self, edge: Link, t: f64, x: &S) -> f64 {
+        let inverse = self.edge_of(edge).and_then(|edge| edge.inverse.as_ref());
+        inverse.map_or(f64::NAN, |(image, _)| image(t, x))
+    }
+
+    fn undo(&self, edge: Link, t: f64, x: &S) -> (&'static str, S) {
+        let inverse = self.edge_of(edge).and_then(|edge| edge.inverse.as_ref());
+        (edge.from, inverse.map_or_else(|| x.with(|_| f64::NAN), |(_, undo)| undo(t, x)))
+    }
+
+    /// Looks at every edge that a run backwards from `mode` could meet.
+    fn undo_flaw(&self, mode: &'static str) -> Option<String> {
+        let mut met = vec![mode];
+        let mut next = 0;
+        while let Some(&mode) = met.get(next) {
+            next += 1;
+            let into = || self.modes.iter().flat_map(Self::links).filter(move |(link, _)| link.to == mode);
+            let count = into().filter(|(_, edge)| !edge.terminal).count();
+            if count > Edges::<Link>::INLINE {
+                let most = Edges::<Link>::INLINE;
+                return Some(format!(
+                    "{count} edges lead into mode {mode:?}, more than {most}: implement Invertible instead"
+                ));
+            }
+            for (link, edge) in into().filter(|(_, edge)| !edge.terminal) {
+                if edge.inverse.is_none() {
+                    return Some(format!(
+                        "edge {link:?} has no inverse, so that a run cannot go backwards into mode {:?}: give one with Hybrid::inverse",
+                        link.from
+                    ));
+                }
+                if !met.contains(&link.from) {
+                    met.push(link.from);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// How many characters must be changed, added, left out or exchanged with their neighbour to make one name of another
+/// (optimal string alignment).
+fn distance(one: &str, other: &str) -> usize {
+    let other: Vec<char> = other.chars().collect();
+    let mut rows = [Vec::new(), (0..=other.len()).collect::<Vec<_>>()];
+    let mut last = None;
+    for (i, c) in one.chars().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, &d) in other.iter().enumerate() {
+            let [before, above] = &rows;
+            let mut least = (above[j] + usize::from(c != d)).min(above[j + 1] + 1).min(row[j] + 1);
+            if j > 0 && i > 0 && Some(d) == last && other[j - 1] == c {
+                least = least.min(before[j - 1] + 1);
+            }
+            row.push(least);
+        }
+        let [_, above] = rows;
+        rows = [above, row];
+        last = Some(c);
+    }
+    rows[1][other.len()]
 }

@@ -24,7 +24,9 @@
 
 mod advance;
 mod automaton;
+mod certificate;
 mod control;
+mod copies;
 mod course;
 pub mod cross;
 mod distance;
@@ -48,6 +50,7 @@ pub use nalgebra;
 pub use num_dual;
 
 pub use automaton::{Automaton, Edges, Entry, Fall, Polynomial};
+pub use certificate::{Certificate, Tally};
 pub use course::{Checkpoint, Course};
 pub use distance::Closeness;
 pub use error::{Error, ErrorKind};

@@ -207,6 +207,13 @@ pub(crate) fn quadratic_fall(c: [f64; 3], spent: bool) -> Option<f64> {
     (s >= 0.0).then_some(s)
 }
 
+/// Where c₀ + c₁ s + c₂ s² touches zero from above at s > 0 without crossing it.
+pub(crate) fn quadratic_touch([c0, c1, c2]: [f64; 3]) -> Option<f64> {
+    let product = 4.0 * c0 * c2;
+    let exact = f64::mul_add(4.0 * c0, c2, -product) == f64::mul_add(c1, c1, -(c1 * c1));
+    (c0 > 0.0 && c1 < 0.0 && c1 * c1 == product && exact).then(|| -c1 / (2.0 * c2))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

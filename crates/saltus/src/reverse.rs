@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::automaton::{Automaton, Edges, Entry, Polynomial};
+use crate::observe::Inspection;
 use crate::state::State;
 use crate::time::Time;
 use crate::trajectory::{Arc, Jump, Piece, Trajectory};
@@ -80,6 +81,12 @@ pub trait Invertible: Automaton {
         Entry::Refuse
     }
 
+    /// What keeps a run backwards from starting in `mode`, found before it does: an edge without an inverse, say. The default finds nothing.
+    fn undo_flaw(&self, mode: Self::Mode) -> Option<String> {
+        let _ = mode;
+        None
+    }
+
     /// Promises that the image margin of `edge` is a·x + b with constants a and b; see [`Automaton::affine`].
     fn image_affine(&self, edge: Self::Edge) -> bool {
         let _ = edge;
@@ -96,6 +103,7 @@ pub trait Invertible: Automaton {
 /// | edges out of a mode, guards | edges into it, [images](Invertible::image) |
 /// | reset, x⁻ to x⁺ | [undo](Invertible::undo), x⁺ to x⁻ |
 /// | terminal edges, what lies beyond a Zeno limit | none: a limit has no last jump to undo |
+/// | the clock's edges ([`Automaton::scheduled`]) | none, unless [`edges_into`](Invertible::edges_into) lists them with a margin in time |
 ///
 /// Run it as it is, over [`Reversed::span`]; [`forwards`](Self::forwards) turns the trajectory round again.
 /// Errors that the flow forwards damps grow backwards at the same rate: a ball of COR e multiplies them by 1/e per bounce.
@@ -154,6 +162,11 @@ impl<'a, A: Invertible> Reversed<'a, A> {
                 trajectory.push_jump(Jump { time, j, cause, from: to, before: after, to: from, after: before });
             }
         }
+        for doubt in backwards.doubts().iter().rev() {
+            let Inspection { mode, edge, start, span, evidence } = doubt.turned(negative);
+            trajectory.push_doubt(&Inspection { mode, edge, start, span, evidence });
+        }
+        trajectory.finish(negative(backwards.start()));
         trajectory
     }
 }
@@ -220,6 +233,10 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
             [c0, c1, c2, c3] => Some(Polynomial::from([c0, turn(&c1), c2, turn(&c3)])),
             _ => None,
         }
+    }
+
+    fn flaw(&self, mode: A::Mode) -> Option<String> {
+        self.automaton.flaw(mode).or_else(|| self.automaton.undo_flaw(mode))
     }
 
     fn has_mode(&self, mode: A::Mode) -> bool {

@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::advance::Memory;
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
+use crate::copies::shown;
 use crate::course::{Checkpoint, Course};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
@@ -58,13 +59,28 @@ pub(crate) struct Options {
     pub(crate) first_step: Option<f64>,
     pub(crate) longest_step: f64,
     pub(crate) most_steps: u64,
+    pub(crate) most_evaluations: u64,
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
 }
 
+impl Options {
+    /// Why a run that has cost so much takes no further step, if it does not.
+    #[inline]
+    pub(crate) fn exceeded<E>(&self, stats: &Stats) -> Option<Stop<E>> {
+        if stats.steps >= self.most_steps {
+            Some(Stop::Steps { most: self.most_steps })
+        } else if stats.evaluations() >= self.most_evaluations {
+            Some(Stop::Evaluations { most: self.most_evaluations })
+        } else {
+            None
+        }
+    }
+}
+
 impl<'a, A: Automaton> Simulation<'a, A> {
     /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
-    /// and limits of 10⁷ jumps, 10⁸ steps and 10⁴ jumps at one time.
+    /// and limits of 10⁷ jumps, 10⁸ steps and 10⁴ jumps at one time; evaluations are not limited.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
@@ -72,6 +88,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             first_step: None,
             longest_step: f64::INFINITY,
             most_steps: 100_000_000,
+            most_evaluations: u64::MAX,
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
         };
@@ -86,7 +103,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         Simulation { automaton: self.automaton, stepper, options: self.options }
     }
 
-    /// The local error allowed per step, relative to each coordinate; the absolute tolerance becomes a thousandth of it.
+    /// The local error allowed per step, relative to each coordinate, at least 1e-15; the absolute tolerance becomes a thousandth of it.
     #[must_use]
     pub const fn tolerance(mut self, relative: f64) -> Self {
         self.options.tolerance = Tolerance { relative, absolute: relative * 1e-3 };
@@ -128,6 +145,24 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
+    /// After how many evaluations of flows and guards together the run ends with [`Stop::Evaluations`].
+    ///
+    /// Looked at between steps and between jumps: one step may go over it by its own evaluations.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation, Stop};
+    /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+    /// let run = Simulation::of(&decay).most_evaluations(100).run("decay", 1.0, 0.0..1e6)?;
+    /// assert_eq!(run.stop, Stop::Evaluations { most: 100 });
+    /// assert!((100..120).contains(&run.stats.evaluations()));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn most_evaluations(mut self, count: u64) -> Self {
+        self.options.most_evaluations = count;
+        self
+    }
+
     /// After how many jumps at one and the same time the run ends with [`Stop::Cascade`].
     #[must_use]
     pub const fn longest_cascade(mut self, count: usize) -> Self {
@@ -152,7 +187,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
                 trajectory.finish(time);
                 Ok(Run { trajectory, stop, stats, mode, state })
             }
-            Err(error) => Err(Box::new(Failed { error, trajectory, stats: course.stats() })),
+            Err(error) => {
+                trajectory.settle(Time::new(error.t()));
+                Err(Box::new(Failed { error, trajectory, stats: course.stats() }))
+            }
         }
     }
 
@@ -182,10 +220,12 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
 
     /// Goes on from a checkpoint, to the bit as if there had been no pause.
     ///
+    /// A run that has ended stays ended, unless it was by a limit on jumps, steps or evaluations that is higher now.
+    ///
     /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
     #[must_use]
     pub fn resume(&self, checkpoint: Checkpoint<A>) -> Course<'a, A, M> {
-        Course::new(self.automaton, self.fitted(), self.options, checkpoint)
+        Course::new(self.automaton, self.fitted(), self.options, checkpoint.under(&self.options))
     }
 
     /// The stepper for the tolerance asked for.
@@ -194,23 +234,37 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     }
 
     fn check(&self, mode: A::Mode, state: &A::State, span: &Range<f64>) -> Result<(), Error> {
-        let Tolerance { relative, absolute } = self.options.tolerance;
-        let kind = if !(span.start.is_finite() && span.start <= span.end) {
-            ErrorKind::Span
+        let Options { tolerance: Tolerance { relative, absolute }, first_step, longest_step, .. } = self.options;
+        let (kind, note) = if !(span.start.is_finite() && span.start <= span.end) {
+            (ErrorKind::Span, Some(format!("{}..{}", span.start, span.end)))
         } else if !(relative >= 1e-15 && absolute > 0.0 && relative.is_finite() && absolute.is_finite()) {
-            ErrorKind::Tolerance
+            (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
+        } else if !(longest_step > 0.0 && first_step.is_none_or(|h| h > 0.0 && h.is_finite())) {
+            (ErrorKind::StepLimit, None)
         } else if !state.is_finite() {
-            ErrorKind::InitialState
+            (ErrorKind::InitialState, None)
         } else if !self.automaton.has_mode(mode) {
-            ErrorKind::UnknownMode
+            (ErrorKind::UnknownMode, self.automaton.flaw(mode))
+        } else if let Some(flaw) = self.automaton.flaw(mode) {
+            (ErrorKind::Model, Some(flaw))
         } else {
             return Ok(());
         };
-        Err(Error::new(kind, Place::new(span.start, mode, None::<A::Edge>, state)))
+        Err(Error::new(kind, Place::new(span.start, mode, None::<A::Edge>, state)).noting(note))
     }
 }
 
-/// Why a run ended.
+/// Why a run ended. Written with `{}`, it is a sentence that says what to do.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let drain = Hybrid::new().mode("drain", |_t, _x: &f64| -1.0).terminal("drain", |_t, x| *x);
+/// let run = Simulation::of(&drain).run("drain", 2.0, 0.0..3.0)?;
+/// assert!(matches!(run.stop, Stop::Terminal { edge } if edge.from == "drain"));
+/// let run = Simulation::of(&drain).most_steps(0).run("drain", 2.0, 0.0..3.0)?;
+/// assert_eq!(run.stop.to_string(), "the limit of 0 steps was reached: raise Simulation::most_steps to go on");
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -239,6 +293,11 @@ pub enum Stop<E> {
         /// The limit.
         most: u64,
     },
+    /// The limit on evaluations of flows and guards was reached.
+    Evaluations {
+        /// The limit.
+        most: u64,
+    },
     /// Too many jumps at one and the same time: the resets send the state round in a circle.
     Cascade {
         /// The edge taken last.
@@ -246,12 +305,27 @@ pub enum Stop<E> {
     },
 }
 
+impl<E> Stop<E> {
+    /// Whether it was by a limit that these options have raised.
+    pub(crate) fn is_lifted(&self, options: &Options) -> bool {
+        match *self {
+            Self::Jumps { most } => options.most_jumps > most,
+            Self::Steps { most } => options.most_steps > most,
+            Self::Evaluations { most } => options.most_evaluations > most,
+            _ => false,
+        }
+    }
+}
+
 impl<E: fmt::Debug> fmt::Display for Stop<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Time => write!(f, "the end of the span was reached"),
             Self::Zeno { limit } => {
-                write!(f, "jumps accumulate at t = {limit}: implement Automaton::beyond to go on from there")
+                write!(
+                    f,
+                    "jumps accumulate at t = {limit}: say by Automaton::beyond (Hybrid::beyond) what lies there, to go on"
+                )
             }
             Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
             Self::Observer => write!(f, "the observer ended the run"),
@@ -260,6 +334,12 @@ impl<E: fmt::Debug> fmt::Display for Stop<E> {
             }
             Self::Steps { most } => {
                 write!(f, "the limit of {most} steps was reached: raise Simulation::most_steps to go on")
+            }
+            Self::Evaluations { most } => {
+                write!(
+                    f,
+                    "the limit of {most} evaluations of flows and guards was reached: raise Simulation::most_evaluations to go on"
+                )
             }
             Self::Cascade { edge } => {
                 write!(
@@ -291,7 +371,26 @@ pub struct Stats {
     pub jacobians: u64,
 }
 
+impl Stats {
+    /// Evaluations of flows and guards together.
+    #[must_use]
+    #[inline]
+    pub const fn evaluations(&self) -> u64 {
+        self.flows + self.guards
+    }
+}
+
 /// A recorded run.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
+/// assert_eq!((run.stop, run.mode), (Stop::Time, "decay"));
+/// assert_eq!(Some(run.state), run.trajectory.at(1.0));
+/// assert!(run.stats.flows > 6 && run.trajectory.doubts().is_empty());
+/// # Ok::<(), saltus::Error>(())
+/// ```
 pub struct Run<A: Automaton> {
     /// The hybrid arc.
     pub trajectory: Trajectory<A>,
@@ -306,6 +405,16 @@ pub struct Run<A: Automaton> {
 }
 
 /// How a driven run ended.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let tank = Hybrid::new()
+///     .mode("fill", |_t, _x: &f64| 1.0)
+///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
+/// let end = Simulation::of(&tank).drive("fill", 0.0, 0.0..5.0, &mut ())?;
+/// assert_eq!((end.stop, end.time.seconds(), end.jumps, end.mode), (Stop::Time, 5.0, 2, "fill"));
+/// # Ok::<(), saltus::Error>(())
+/// ```
 pub struct Ending<A: Automaton> {
     /// Why it ended.
     pub stop: Stop<A::Edge>,
@@ -322,6 +431,15 @@ pub struct Ending<A: Automaton> {
 }
 
 /// A run that failed, and what it had until then.
+///
+/// ```
+/// use saltus::{ErrorKind, Hybrid, Simulation};
+/// // x' = x² from 1 is infinite at t = 1.
+/// let growth = Hybrid::new().mode("grow", |_t, x: &f64| x * x);
+/// let failed = Simulation::of(&growth).run("grow", 1.0, 0.0..2.0).unwrap_err();
+/// assert_eq!(failed.error.kind(), ErrorKind::Flow);
+/// assert!((failed.trajectory.at(0.5).unwrap() - 2.0).abs() < 1e-6);
+/// ```
 pub struct Failed<A: Automaton> {
     /// What went wrong.
     pub error: Error,
@@ -331,39 +449,9 @@ pub struct Failed<A: Automaton> {
     pub stats: Stats,
 }
 
-impl<A: Automaton> fmt::Debug for Run<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { trajectory, stop, stats, mode, state } = self;
-        f.debug_struct("Run")
-            .field("stop", stop)
-            .field("mode", mode)
-            .field("state", state)
-            .field("stats", stats)
-            .field("trajectory", trajectory)
-            .finish()
-    }
-}
-
-impl<A: Automaton> fmt::Debug for Ending<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { stop, stats, time, jumps, mode, state } = self;
-        f.debug_struct("Ending")
-            .field("stop", stop)
-            .field("time", time)
-            .field("jumps", jumps)
-            .field("mode", mode)
-            .field("state", state)
-            .field("stats", stats)
-            .finish()
-    }
-}
-
-impl<A: Automaton> fmt::Debug for Failed<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { error, trajectory, stats } = self;
-        f.debug_struct("Failed").field("error", error).field("stats", stats).field("trajectory", trajectory).finish()
-    }
-}
+shown!(Run { stop, mode, state, stats, trajectory });
+shown!(Ending { stop, time, jumps, mode, state, stats });
+shown!(Failed { error, stats, trajectory });
 
 impl<A: Automaton> From<Box<Failed<A>>> for Error {
     fn from(failed: Box<Failed<A>>) -> Self {

@@ -89,7 +89,7 @@ impl<const N: usize> State for SVector<f64, N> {
 /// assert_eq!((flight.len(), stance.len()), (4, 2));
 /// ```
 ///
-/// A list longer than `CAP` does not compile.
+/// A list longer than `CAP` does not compile; one that is read (feature `serde`) is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coords<const CAP: usize> {
     values: [f64; CAP],
@@ -102,6 +102,44 @@ impl<const CAP: usize, const N: usize> From<[f64; N]> for Coords<CAP> {
         let mut values = [0.0; CAP];
         values[..N].copy_from_slice(&list);
         Self { values, len: N }
+    }
+}
+
+/// Written as the list of the coordinates there are.
+#[cfg(feature = "serde")]
+impl<const CAP: usize> serde::Serialize for Coords<CAP> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.values.iter().take(self.len))
+    }
+}
+
+/// Read from a list of at most `CAP` numbers.
+#[cfg(feature = "serde")]
+impl<'de, const CAP: usize> serde::Deserialize<'de> for Coords<CAP> {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct List<const CAP: usize>;
+
+        impl<'de, const CAP: usize> serde::de::Visitor<'de> for List<CAP> {
+            type Value = Coords<CAP>;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "a list of at most {CAP} coordinates")
+            }
+
+            fn visit_seq<L: serde::de::SeqAccess<'de>>(self, mut list: L) -> Result<Coords<CAP>, L::Error> {
+                let mut coords = Coords { values: [0.0; CAP], len: 0 };
+                while let Some(value) = list.next_element()? {
+                    let Some(place) = coords.values.get_mut(coords.len) else {
+                        return Err(serde::de::Error::invalid_length(coords.len + 1, &self));
+                    };
+                    *place = value;
+                    coords.len += 1;
+                }
+                Ok(coords)
+            }
+        }
+
+        deserializer.deserialize_seq(List)
     }
 }
 

@@ -3,6 +3,9 @@
 use std::fmt;
 
 use crate::automaton::Automaton;
+use crate::certificate::Doubts;
+use crate::copies::{copied, shown};
+use crate::observe::Inspection;
 use crate::state::State;
 use crate::time::Time;
 
@@ -15,7 +18,18 @@ pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
     }
 }
 
-/// A stretch of an arc on which the state is one polynomial in time.
+/// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation};
+/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
+/// let pieces: Vec<_> = run.trajectory.pieces(0).collect();
+/// let last = pieces.last().unwrap();
+/// assert!((last.start().seconds() + last.span() - 1.0).abs() < 1e-15);
+/// assert!((last.at(last.span()) - (-1.0_f64).exp()).abs() < 1e-9);
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Piece<'a, S> {
     start: Time,
@@ -73,6 +87,21 @@ pub enum Cause<E> {
 }
 
 /// A jump, with both its limits.
+///
+/// ```
+/// use saltus::{Cause, Hybrid, Simulation};
+/// let heater = Hybrid::new()
+///     .mode("on", |_t, _x: &f64| 1.0)
+///     .mode("off", |_t, _x| -1.0)
+///     .edge("on", "off", |_t, x| 22.0 - x, |_t, x| x - 0.5);
+/// let run = Simulation::of(&heater).run("on", 20.0, 0.0..3.0)?;
+/// let jump = run.trajectory.jumps()[0];
+/// assert!((jump.t() - 2.0).abs() < 1e-12 && (jump.before - 22.0).abs() < 1e-12);
+/// assert_eq!((jump.from, jump.to, jump.j), ("on", "off", 1));
+/// assert_eq!(jump.after, jump.before - 0.5);
+/// assert!(matches!(jump.cause, Cause::Edge(edge) if Some(edge) == jump.edge()));
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -98,14 +127,7 @@ pub struct Jump<A: Automaton> {
     pub after: A::State,
 }
 
-// Written out because deriving would ask the automaton itself to be `Clone` and `Debug`.
-impl<A: Automaton> Clone for Jump<A> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<A: Automaton> Copy for Jump<A> {}
+copied!(Jump, Arc);
 
 impl<A: Automaton> fmt::Debug for Jump<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -131,7 +153,21 @@ impl<A: Automaton> Jump<A> {
     }
 }
 
-/// An arc: the stay in one mode between two jumps.
+/// An arc: the stay in one mode between two jumps. Between two jumps at one time it has no duration.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation};
+/// let lamp = Hybrid::new()
+///     .mode("dark", |_t, _x: &f64| 1.0)
+///     .mode("lit", |_t, _x| 0.0)
+///     .edge("dark", "lit", |_t, x| 1.0 - x, |_t, x| *x);
+/// let run = Simulation::of(&lamp).run("dark", 0.0, 0.0..3.0)?;
+/// let arcs = run.trajectory.arcs();
+/// assert_eq!((arcs[0].mode(), arcs[1].mode()), ("dark", "lit"));
+/// assert!((arcs[1].start().seconds() - 1.0).abs() < 1e-12 && (arcs[1].state() - 1.0).abs() < 1e-12);
+/// assert_eq!(arcs[1].j(), 1);
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -147,14 +183,6 @@ pub struct Arc<A: Automaton> {
     j: usize,
     first_piece: usize,
 }
-
-impl<A: Automaton> Clone for Arc<A> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<A: Automaton> Copy for Arc<A> {}
 
 impl<A: Automaton> fmt::Debug for Arc<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -202,6 +230,23 @@ struct Stored {
 /// A hybrid arc: the state as a function of hybrid time (t, j).
 ///
 /// At a jump the state has two limits: [`before`](Self::before) and [`at`](Self::at). Several jumps may share one time.
+/// Any time within it can be asked for; that changes nothing about the jumps.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation};
+/// // A tank that fills by 1 L/s and is emptied at 2 L.
+/// let tank = Hybrid::new()
+///     .mode("fill", |_t, _x: &f64| 1.0)
+///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
+/// let hybrid_arc = Simulation::of(&tank).run("fill", 0.0, 0.0..5.0)?.trajectory;
+/// let emptied = hybrid_arc.jumps()[0];
+/// assert_eq!(hybrid_arc.before(emptied.t()), Some(emptied.before));
+/// assert_eq!(hybrid_arc.at(emptied.t()), Some(0.0));
+/// assert!((hybrid_arc.at(4.5).unwrap() - 0.5).abs() < 1e-12);
+/// assert_eq!((hybrid_arc.at(5.1), hybrid_arc.mode_at(4.5)), (None, Some("fill")));
+/// assert_eq!(hybrid_arc.arcs().len(), hybrid_arc.jumps().len() + 1);
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -215,33 +260,38 @@ pub struct Trajectory<A: Automaton> {
     jumps: Vec<Jump<A>>,
     pieces: Vec<Stored>,
     coefficients: Vec<A::State>,
+    doubts: Doubts<A>,
     end: Time,
 }
 
 impl<A: Automaton> Clone for Trajectory<A> {
     fn clone(&self) -> Self {
-        let Self { arcs, jumps, pieces, coefficients, end } = self;
+        let Self { arcs, jumps, pieces, coefficients, doubts, end } = self;
         Self {
             arcs: arcs.clone(),
             jumps: jumps.clone(),
             pieces: pieces.clone(),
             coefficients: coefficients.clone(),
+            doubts: doubts.clone(),
             end: *end,
         }
     }
 }
 
-impl<A: Automaton> fmt::Debug for Trajectory<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Trajectory").field("arcs", &self.arcs).field("jumps", &self.jumps).finish_non_exhaustive()
-    }
-}
+shown!(Trajectory { arcs, jumps, doubts, .. });
 
 impl<A: Automaton> Trajectory<A> {
     /// Empty, from `state` in `mode` at `start`.
     pub(crate) fn starting(mode: A::Mode, state: A::State, start: Time) -> Self {
         let arc = Arc { mode, start, state, j: 0, first_piece: 0 };
-        Self { arcs: vec![arc], jumps: Vec::new(), pieces: Vec::new(), coefficients: Vec::new(), end: start }
+        Self {
+            arcs: vec![arc],
+            jumps: Vec::new(),
+            pieces: Vec::new(),
+            coefficients: Vec::new(),
+            doubts: Doubts::new(),
+            end: start,
+        }
     }
 
     pub(crate) fn push_piece(&mut self, piece: &Piece<'_, A::State>) {
@@ -250,6 +300,7 @@ impl<A: Automaton> Trajectory<A> {
         let len = piece.coefficients.len();
         self.pieces.push(Stored { start: piece.start, span: piece.span, scale: piece.scale, first, len });
         self.end = piece.start.after(piece.span);
+        self.doubts.settle(self.end);
     }
 
     pub(crate) fn push_jump(&mut self, jump: Jump<A>) {
@@ -257,11 +308,22 @@ impl<A: Automaton> Trajectory<A> {
         let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
         self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
         self.jumps.push(jump);
+        self.doubts.settle(jump.time);
+    }
+
+    pub(crate) fn push_doubt(&mut self, doubt: &Inspection<A>) {
+        self.doubts.add(doubt);
     }
 
     /// The run ended at this moment, which the end of its last piece may miss by a rounding.
     pub(crate) fn finish(&mut self, end: Time) {
         self.end = end;
+        self.doubts.settle(end);
+    }
+
+    /// The run got no further than this.
+    pub(crate) fn settle(&mut self, end: Time) {
+        self.doubts.settle(end);
     }
 
     /// The jumps in order.
@@ -276,9 +338,17 @@ impl<A: Automaton> Trajectory<A> {
         &self.arcs
     }
 
-    /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no duration.
+    /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no duration or there is no such arc.
     pub fn pieces(&self, index: usize) -> impl Iterator<Item = Piece<'_, A::State>> {
         self.pieces[self.piece_range(index)].iter().map(|p| self.piece(p))
+    }
+
+    /// Where a crossing may have been missed: the searches of guards that left a doubt, in order; empty where none was.
+    ///
+    /// Each says for people which edge, when, why and what to do; see [`Inspection`]. [`Certificate`](crate::Certificate) has all searches.
+    #[must_use]
+    pub fn doubts(&self) -> &[Inspection<A>] {
+        self.doubts.list()
     }
 
     /// When the trajectory starts.

@@ -13,6 +13,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
+        let mut zero = None;
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
@@ -27,6 +28,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if spent.is_some() {
                     self.memory.unspend(edge); // the reset led away from the wall
                 }
+                if g == 0.0 && spent.is_none() {
+                    zero = zero.or(Some(edge));
+                }
                 continue; // a zero that falls at once is found like every other crossing
             }
             let slope = self.guard_slope(mode, edge, t, x, g);
@@ -34,17 +38,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 -g <= 4.0 * (slope.abs() * (t.abs().next_up() - t.abs()) + self.guard_rounding(edge, t, x, g, 1.0));
             if on_wall {
                 if spent.is_none() && slope < 0.0 {
-                    return Ok(Some(edge));
+                    return Ok(Some(self.first_of(mode, t, x, zero, edge)));
                 }
                 continue;
             }
             match self.automaton.entry(edge) {
                 Entry::Refuse => return Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
-                Entry::Fire => return Ok(Some(edge)),
+                Entry::Fire => return Ok(Some(self.first_of(mode, t, x, zero, edge))),
                 Entry::Wait => self.memory.unspend(edge),
             }
         }
         Ok(None)
+    }
+
+    /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.
+    fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
+        zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0) < 0.0).unwrap_or(edge)
     }
 
     /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.

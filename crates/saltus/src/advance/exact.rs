@@ -4,7 +4,7 @@ use crate::automaton::{Automaton, Fall, Polynomial};
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
-use crate::poly::quadratic_fall;
+use crate::poly::{quadratic_fall, quadratic_touch};
 use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::Stepper;
@@ -32,7 +32,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let start = self.start(edge, true);
             let Searched { fall, evidence } = match self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]) {
                 Fall::Unknown if c.len() <= 3 && self.automaton.affine(edge) => {
-                    Searched::solved(self.fall_of_parabola(edge, clock.now, c, limit, start))
+                    self.fall_of_parabola(edge, clock.now, c, limit, start)
                 }
                 Fall::Unknown => self
                     .fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
@@ -63,33 +63,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// An affine guard along a parabola is a parabola.
     #[inline]
-    fn fall_of_parabola(
-        &mut self,
-        edge: A::Edge,
-        now: Time,
-        c: &[A::State],
-        limit: f64,
-        start: Start,
-    ) -> Option<Crossing> {
+    fn fall_of_parabola(&mut self, edge: A::Edge, now: Time, c: &[A::State], limit: f64, start: Start) -> Searched {
         let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| g(c) - constant);
-        let near = quadratic_fall([g(&c[0]), power(1), power(2)], start == Start::Spent)?;
-        if near > limit {
-            return None;
-        }
+        let powers = [g(&c[0]), power(1), power(2)];
+        let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
+            return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
+                Some(at) => Searched { fall: None, evidence: Evidence::Rounding { from: at, to: at } },
+                None => Searched::solved(None),
+            };
+        };
         if near == 0.0 {
-            return Some(Crossing::at_start(f64::MIN_POSITIVE));
+            return Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE)));
         }
         let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-        settle(
+        Searched::solved(settle(
             |s| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
             },
             near,
-        )
+        ))
     }
 
     /// The fall that the model's own formula gives, at a time at which the guard is not negative.

@@ -22,6 +22,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let mut slope = self.flow(mode, clock.now.seconds(), &x);
+        if slope.len() != x.len() {
+            let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
+            return Err(Error::new(ErrorKind::Dimension, place).noting(Some(slope.len().to_string())));
+        }
         if !slope.is_finite() {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
         }
@@ -33,8 +37,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if remaining <= 0.0 {
                 return Ok(ArcEnd::Stop { stop: Stop::Time, state: x });
             }
-            if self.memory.stats.steps >= self.options.most_steps {
-                return Ok(ArcEnd::Stop { stop: Stop::Steps { most: self.options.most_steps }, state: x });
+            if let Some(stop) = self.options.exceeded(&self.memory.stats) {
+                return Ok(ArcEnd::Stop { stop, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
             let last = h >= remaining;

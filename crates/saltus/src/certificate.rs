@@ -1,0 +1,255 @@
+//! What a run can show for itself: how each guard was searched, and where a crossing may have been missed.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use crate::automaton::Automaton;
+use crate::copies::shown;
+use crate::cross::Evidence;
+use crate::observe::{Inspection, Observer};
+use crate::time::Time;
+use crate::trajectory::{Jump, Piece};
+
+/// An observer that keeps, for each edge, how the searches of its guard came out, and every doubt.
+///
+/// A search is **excluded** (bounds leave no room for a crossing), **isolated** (no crossing in any part, or a first one that is the only one
+/// in its part) or **doubtful** (see [`Inspection::doubt`]). There is one search per step and edge, or per exact arc and edge.
+/// Doubts at times after the crossing that ended the arc are none, and those of neighbouring steps are one.
+///
+/// Of edges that carry data (`Liftoff { foot: f64 }`) the first 64 have rows of their own, the rest share one.
+///
+/// ```
+/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::{Certificate, Hybrid, Simulation};
+///
+/// let ball = Hybrid::new()
+///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81])
+///     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.8 * x[1]]);
+/// let mut certificate = Certificate::new();
+/// Simulation::of(&ball).drive("flight", vector![1.0, 0.0], 0.0..2.0, &mut certificate)?;
+///
+/// assert!(certificate.doubts().is_empty());
+/// let (edge, tally) = certificate.edges().next().unwrap();
+/// assert_eq!((edge.from, edge.to), ("flight", "flight"));
+/// assert_eq!((tally.taken, tally.doubtful), (3, 0));
+/// println!("{certificate}"); // a table
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Certificate<A: Automaton> {
+    rows: Vec<(A::Edge, Tally)>,
+    others: Tally,
+    doubts: Doubts<A>,
+}
+
+/// How the searches for an edge came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Tally {
+    /// Searches in which bounds left no room for a crossing.
+    pub excluded: u64,
+    /// Searches that halved their interval until every part was decided.
+    pub isolated: u64,
+    /// Searches that left a doubt.
+    pub doubtful: u64,
+    /// How often the edge was taken.
+    pub taken: u64,
+}
+
+/// More edges than this share one row.
+const MOST_ROWS: usize = 64;
+/// The doubts that a table lists.
+const LISTED: usize = 10;
+
+impl<A: Automaton> Certificate<A> {
+    /// Without searches yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        let others = Tally { excluded: 0, isolated: 0, doubtful: 0, taken: 0 };
+        Self { rows: Vec::new(), others, doubts: Doubts::new() }
+    }
+
+    /// The edges searched for or taken, in the order in which they were met, and what came out.
+    pub fn edges(&self) -> impl Iterator<Item = (A::Edge, Tally)> {
+        self.rows.iter().copied()
+    }
+
+    /// The sums over all edges.
+    #[must_use]
+    pub fn total(&self) -> Tally {
+        self.rows.iter().fold(self.others, |sum, (_, row)| Tally {
+            excluded: sum.excluded + row.excluded,
+            isolated: sum.isolated + row.isolated,
+            doubtful: sum.doubtful + row.doubtful,
+            taken: sum.taken + row.taken,
+        })
+    }
+
+    /// Where a crossing may have been missed, in the order of the run; empty where none was.
+    #[must_use]
+    pub fn doubts(&self) -> &[Inspection<A>] {
+        self.doubts.list()
+    }
+
+    fn row(&mut self, edge: A::Edge) -> &mut Tally {
+        let found = self.rows.iter().position(|row| row.0 == edge);
+        let place = found.unwrap_or_else(|| {
+            if self.rows.len() < MOST_ROWS {
+                self.rows.push((edge, Tally::default()));
+                self.rows.len() - 1
+            } else {
+                MOST_ROWS
+            }
+        });
+        self.rows.get_mut(place).map_or(&mut self.others, |row| &mut row.1)
+    }
+
+    fn settle(&mut self, end: Time) {
+        while let Some((edge, stands)) = self.doubts.settle_next(end) {
+            let row = self.row(edge);
+            *(if stands { &mut row.doubtful } else { &mut row.isolated }) += 1;
+        }
+    }
+}
+
+impl<A: Automaton> Default for Certificate<A> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<A: Automaton> Clone for Certificate<A> {
+    fn clone(&self) -> Self {
+        Self { rows: self.rows.clone(), others: self.others, doubts: self.doubts.clone() }
+    }
+}
+
+shown!(Certificate { rows, others, doubts });
+
+impl<A: Automaton> Observer<A> for Certificate<A> {
+    fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.settle(piece.start().after(piece.span()));
+        ControlFlow::Continue(())
+    }
+
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        self.settle(jump.time);
+        if let Some(edge) = jump.edge() {
+            self.row(edge).taken += 1;
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        match inspection.evidence {
+            Evidence::Excluded => self.row(inspection.edge).excluded += 1,
+            Evidence::Isolated => self.row(inspection.edge).isolated += 1,
+            Evidence::Rounding { .. } | Evidence::Unresolved { .. } => self.doubts.add(inspection),
+        }
+    }
+}
+
+impl<A: Automaton> fmt::Display for Certificate<A> {
+    /// A row per edge, then the doubts.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows: Vec<_> = self.rows.iter().map(|(edge, tally)| (format!("{edge:?}"), *tally)).collect();
+        if self.others != Tally::default() {
+            rows.push(("other edges".into(), self.others));
+        }
+        let width = rows.iter().map(|row| row.0.chars().count()).max().unwrap_or(0).max("edge".len());
+        writeln!(f, "{:width$}  excluded  isolated  doubtful     taken", "edge")?;
+        for (edge, Tally { excluded, isolated, doubtful, taken }) in rows {
+            writeln!(f, "{edge:width$}  {excluded:8}  {isolated:8}  {doubtful:8}  {taken:8}")?;
+        }
+        let doubts = self.doubts();
+        if doubts.is_empty() {
+            return f.write_str("No doubts: every search was decided.");
+        }
+        f.write_str("Doubts:")?;
+        for doubt in doubts.iter().take(LISTED) {
+            write!(f, "\n- {doubt}")?;
+        }
+        match doubts.len() - LISTED.min(doubts.len()) {
+            0 => Ok(()),
+            more => write!(f, "\n- and {more} more"),
+        }
+    }
+}
+
+/// The doubts of a run: first those that stand, then those of the step in progress, whose end is not known yet.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Doubts<A: Automaton> {
+    list: Vec<Inspection<A>>,
+    settled: usize,
+}
+
+impl<A: Automaton> Doubts<A> {
+    pub(crate) const fn new() -> Self {
+        Self { list: Vec::new(), settled: 0 }
+    }
+
+    pub(crate) fn list(&self) -> &[Inspection<A>] {
+        &self.list
+    }
+
+    pub(crate) fn add(&mut self, inspection: &Inspection<A>) {
+        self.list.push(*inspection);
+    }
+
+    /// The step in progress ends here, and what lies after it was not gone through.
+    #[inline]
+    pub(crate) fn settle(&mut self, end: Time) {
+        while self.settle_next(end).is_some() {}
+    }
+
+    /// Settles one doubt, of the edge returned; says whether it stands.
+    #[inline]
+    fn settle_next(&mut self, end: Time) -> Option<(A::Edge, bool)> {
+        let doubt = *self.list.get(self.settled)?;
+        let edge = doubt.edge;
+        match doubt.until(end) {
+            None => {
+                self.list.remove(self.settled);
+                Some((edge, false))
+            }
+            Some(doubt) => {
+                // The last of this edge, among as many as a step is likely to raise.
+                let (stand, _) = self.list.split_at_mut(self.settled);
+                let last = stand.iter_mut().rev().take(16).find(|last| last.edge == edge && last.mode == doubt.mode);
+                if last.is_some_and(|last| last.extended_by(&doubt)) {
+                    self.list.remove(self.settled);
+                } else {
+                    self.list[self.settled] = doubt;
+                    self.settled += 1;
+                }
+                Some((edge, true))
+            }
+        }
+    }
+}
+
+impl<A: Automaton> Clone for Doubts<A> {
+    fn clone(&self) -> Self {
+        Self { list: self.list.clone(), settled: self.settled }
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Doubts<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.list.fmt(f)
+    }
+}

@@ -1,0 +1,75 @@
+//! Where jumps accumulate: the two tanks of the textbooks, and what the rounding of coordinates makes of a limit.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
+
+use saltus::{Cause, Hybrid, Simulation, Stop};
+
+/// Inflow and leaks, marks and volumes at the start.
+type Case = (f64, [f64; 2], [f64; 2], [f64; 2]);
+
+/// Johansson, Egerstedt, Lygeros, Sastry, Systems & Control Letters 38 (1999) 141: switching accumulates at Σ(x - r)/(v₁ + v₂ - w).
+fn meets_the_limit(cases: &[Case]) {
+    for &(w, v, marks, start) in cases {
+        let limit = (start[0] + start[1] - marks[0] - marks[1]) / (v[0] + v[1] - w);
+        let stepped = || {
+            Hybrid::new()
+                .mode("first", move |_t, _x: &[f64; 2]| [w - v[0], -v[1]])
+                .mode("second", move |_t, _x| [-v[0], w - v[1]])
+                .edge("first", "second", move |_t, x| x[1] - marks[1], |_t, x| *x)
+                .edge("second", "first", move |_t, x| x[0] - marks[0], |_t, x| *x)
+        };
+        let exact = stepped()
+            .exact("first", move |_t, x| [*x, [w - v[0], -v[1]]].into())
+            .exact("second", move |_t, x| [*x, [-v[0], w - v[1]]].into())
+            .affine("first", "second")
+            .affine("second", "first");
+        for tanks in [stepped(), exact] {
+            let run = Simulation::of(&tanks).most_jumps(1000).run("first", start, 0.0..2.0 * limit).unwrap();
+            let Stop::Zeno { limit: found } = run.stop else { panic!("{}", run.stop) };
+            assert!((found - limit).abs() < 1e-12 * limit, "{found} {limit}");
+            assert!(run.trajectory.doubts().is_empty());
+            for jump in run.trajectory.jumps() {
+                assert!((0..2).all(|i| jump.before[i] >= marks[i]), "{jump:?}");
+            }
+            let tanks = tanks.beyond("first", "second", move |_t, _x| marks.map(|mark| mark + 1.0)).beyond(
+                "second",
+                "second",
+                move |_t, _x| marks.map(|mark| mark + 1.0),
+            );
+            let run = Simulation::of(&tanks).run("first", start, 0.0..limit * (1.0 + 1e-9)).unwrap();
+            assert_eq!((run.stop, run.mode), (Stop::Time, "second"));
+            assert_eq!(run.trajectory.jumps().last().map(|jump| jump.cause), Some(Cause::Zeno));
+        }
+    }
+}
+
+#[test]
+fn two_tanks() {
+    meets_the_limit(&[
+        (1.8, [1.0, 1.0], [1.0, 1.0], [2.0, 3.0]),
+        (1.5, [1.25, 1.0], [0.5, 0.25], [0.75, 4.0]),
+        (0.8, [0.6, 0.7], [0.0, 0.0], [1.0, 1.0]),
+    ]);
+}
+
+#[test]
+fn two_tanks_whose_rounding_is_coarser_than_that_of_time() {
+    meets_the_limit(&[(30.0, [20.0, 16.0], [1e3, 1e2], [1005.0, 101.0])]);
+}
+
+/// A ball on a floor that is not at zero. Flights lower than half a rounding of the height end late by the time in which it is fallen through,
+/// which gives back as much speed as the impact takes: from 5.8e-9 s on, at a height of 1 m, they no longer shrink.
+#[test]
+fn a_floor_above_zero() {
+    for floor in [1e-9, 1.0, 10.0, 1000.0] {
+        let ball = Hybrid::new().mode("flight", |_t, x: &[f64; 2]| [x[1], -9.8]).edge(
+            "flight",
+            "flight",
+            move |_t, x| x[0] - floor,
+            move |_t, x| [floor, -0.5 * x[1]],
+        );
+        let run = Simulation::of(&ball).most_jumps(1000).run("flight", [floor + 1.0, 0.0], 0.0..3.0).unwrap();
+        let Stop::Zeno { limit } = run.stop else { panic!("floor at {floor}: {}", run.stop) };
+        assert!((limit - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-6 * floor.max(1e-6).sqrt(), "{limit}");
+    }
+}
