@@ -4,7 +4,9 @@
 
 use saltus::cross::Evidence;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Certificate, Edges, Hybrid, Invertible, Jump, Reversed, Simulation, Stop, Trajectory};
+use saltus::{
+    Automaton, Certificate, Edges, Hybrid, Invertible, Jump, Polynomial, Reversed, Simulation, Stop, Trajectory,
+};
 
 fn ball() -> Hybrid<'static, Vector2<f64>> {
     Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8]).edge(

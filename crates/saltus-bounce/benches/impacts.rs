@@ -10,8 +10,11 @@ use std::ops::ControlFlow;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Hybrid, Jump, Observer, Polynomial, Simulation};
-use saltus_bounce::{Ball, Cor, Mode};
+use saltus::{Automaton, Hybrid, Jump, Observer, Polynomial, Simulation};
+use saltus_bounce::effects::{Gravity, QuadraticDrag};
+use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VerticalFlight};
+use saltus_bounce::walls::Plane;
+use saltus_bounce::{Ball, Cor, Flyer, Live, Mode, Moving, Phase, Stance};
 
 const IMPACTS: usize = 1000;
 const GRAVITY: f64 = 9.8;
@@ -24,8 +27,11 @@ fn main() {
 /// Keeps the time of the last impact.
 struct Last(f64);
 
-impl Observer<Ball> for Last {
-    fn jump(&mut self, jump: &Jump<Ball>) -> ControlFlow<()> {
+impl<A: Automaton> Observer<A> for Last {
+    fn wants_pieces(&self) -> bool {
+        false
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
         self.0 = jump.t();
         ControlFlow::Continue(())
     }
@@ -98,4 +104,113 @@ fn closures() -> Hybrid<'static, Vector2<f64>> {
         |_t, x| x[0],
         |_t, x| vector![0.0, -COR * x[1]],
     )
+}
+
+const DRAG: f64 = 0.1;
+
+/// Flight after flight from its formula.
+fn flights_by_hand(flight: &impl VerticalFlight) -> f64 {
+    let (mut t, mut start) = (0.0, black_box(vector![1.0, 0.0]));
+    for _ in 0..IMPACTS {
+        let Some(impact) = flight.impact(&start) else { return t };
+        t += impact.time;
+        start = vector![0.0, COR * impact.speed];
+    }
+    t
+}
+
+#[divan::bench]
+fn linear_drag_by_hand(bencher: Bencher) {
+    let flight = LinearDragFlight::new(GRAVITY, DRAG).unwrap();
+    bencher.counter(ItemsCount::new(IMPACTS)).bench(|| flights_by_hand(black_box(&flight)));
+}
+
+#[divan::bench]
+fn linear_drag(bencher: Bencher) {
+    let ball = Ball::of(LinearDragFlight::new(GRAVITY, DRAG).unwrap(), Cor::new(COR).unwrap());
+    let simulation = Simulation::of(&ball).most_jumps(IMPACTS);
+    bencher.counter(ItemsCount::new(IMPACTS)).bench(|| {
+        let mut last = Last(0.0);
+        simulation.drive(Mode::Flight, black_box(vector![1.0, 0.0]), 0.0..1e6, &mut last).unwrap();
+        last.0
+    });
+}
+
+#[divan::bench]
+fn quadratic_drag_by_hand(bencher: Bencher) {
+    let flight = QuadraticDragFlight::new(GRAVITY, DRAG).unwrap();
+    bencher.counter(ItemsCount::new(IMPACTS)).bench(|| flights_by_hand(black_box(&flight)));
+}
+
+/// Two jumps an impact: the apex and the floor.
+#[divan::bench]
+fn quadratic_drag(bencher: Bencher) {
+    let ball = Ball::of(QuadraticDragFlight::new(GRAVITY, DRAG).unwrap(), Cor::new(COR).unwrap());
+    let simulation = Simulation::of(&ball).most_jumps(2 * IMPACTS);
+    bencher.counter(ItemsCount::new(IMPACTS)).bench(|| {
+        let mut last = Last(0.0);
+        simulation.drive(Phase::Falling, black_box(vector![1.0, 0.0]), 0.0..1e6, &mut last).unwrap();
+        last.0
+    });
+}
+
+#[divan::bench]
+fn planar_gravity(bencher: Bencher) {
+    let floor = Plane::floor(0.0).unwrap();
+    let ball = Flyer::new(Gravity::new(GRAVITY).unwrap(), floor, Cor::new(COR).unwrap()).unwrap();
+    let simulation = Simulation::of(&ball).most_jumps(IMPACTS);
+    bencher.counter(ItemsCount::new(IMPACTS)).bench(|| {
+        let mut last = Last(0.0);
+        let start = Moving::new(black_box(vector![0.0, 1.0]), vector![1.0, 0.0]);
+        simulation.drive(Stance::FLIGHT, start, 0.0..1e6, &mut last).unwrap();
+        last.0
+    });
+}
+
+#[divan::bench]
+fn planar_drag_by_steps(bencher: Bencher) {
+    let effects = (Gravity::new(GRAVITY).unwrap(), QuadraticDrag::new(DRAG).unwrap());
+    let ball = Flyer::new(effects, Plane::floor(0.0).unwrap(), Cor::new(COR).unwrap()).unwrap();
+    let simulation = Simulation::of(&ball).most_jumps(100);
+    bencher.counter(ItemsCount::new(100_usize)).bench(|| {
+        let mut last = Last(0.0);
+        let start = Moving::new(black_box(vector![0.0, 1.0]), vector![1.0, 0.0]);
+        simulation.drive(Stance::FLIGHT, start, 0.0..1e6, &mut last).unwrap();
+        last.0
+    });
+}
+
+/// A second of sixty frames, an item being one ball and frame.
+#[divan::bench]
+fn frames_of_gravity(bencher: Bencher) {
+    let ball = Ball::new(GRAVITY, Cor::new(0.8).unwrap()).unwrap();
+    let simulation = Simulation::of(&ball);
+    bencher
+        .counter(ItemsCount::new(60_usize))
+        .with_inputs(|| Live::start(&ball, simulation, Mode::Flight, vector![1.0, 0.0], 0.0..60.0).unwrap())
+        .bench_values(|mut live| {
+            let mut height = 0.0;
+            for _ in 0..60 {
+                height += live.advance(1.0 / 60.0, |_| {}).unwrap().state[0];
+            }
+            height
+        });
+}
+
+#[divan::bench]
+fn frames_of_planar_drag(bencher: Bencher) {
+    let effects = (Gravity::new(GRAVITY).unwrap(), QuadraticDrag::new(DRAG).unwrap());
+    let ball = Flyer::new(effects, Plane::floor(0.0).unwrap(), Cor::new(0.8).unwrap()).unwrap();
+    let simulation = Simulation::of(&ball);
+    let start = Moving::new(vector![0.0, 1.0], vector![1.0, 0.0]);
+    bencher
+        .counter(ItemsCount::new(60_usize))
+        .with_inputs(|| Live::start(&ball, simulation, Stance::FLIGHT, start, 0.0..60.0).unwrap())
+        .bench_values(|mut live| {
+            let mut height = 0.0;
+            for _ in 0..60 {
+                height += live.advance(1.0 / 60.0, |_| {}).unwrap().state.position[1];
+            }
+            height
+        });
 }

@@ -78,6 +78,12 @@ impl Friction {
         })
     }
 
+    /// Coulomb's μ.
+    #[must_use]
+    pub const fn coefficient(&self) -> f64 {
+        self.coefficient
+    }
+
     /// The impact of a sphere on a wall in the plane.
     ///
     /// `normal`: unit vector out of the wall; `velocity` of the centre relative to the wall in m/s; `spin` in rad/s, positive from the

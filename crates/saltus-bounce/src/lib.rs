@@ -1,7 +1,8 @@
 //! Bouncing balls as hybrid automata.
 //!
-//! [`Ball`] is the automaton; run it with [`saltus::Simulation`]. [`Drop`] has the same ball's impacts and apexes in closed form.
-//! [`units`] reads quantities as people write them; `scene`, behind the feature of this name, whole scenes from TOML.
+//! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`] on a floor that gives, [`Line`] and
+//! [`Cloud`] are several balls; run them with [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
+//! and apexes in closed form. [`units`] reads quantities as people write them; `scene`, behind the feature of this name, whole scenes from TOML.
 
 mod ball;
 mod ballistic;
@@ -10,8 +11,10 @@ pub mod compliant;
 pub mod contact;
 pub mod effects;
 pub mod flight;
+mod flyer;
 pub mod friction;
 pub mod line;
+mod live;
 pub mod materials;
 mod parameter;
 pub mod restitution;
@@ -20,12 +23,15 @@ pub mod scene;
 mod sphere;
 mod stable;
 pub mod units;
+pub mod walls;
 
-pub use ball::{Ball, Floor, GravityError, Mode, STANDARD_GRAVITY};
+pub use ball::{Ball, Floor, GravityError, Mode, Phase, STANDARD_GRAVITY, SmoothFlight, Turn};
 pub use ballistic::Drop;
 pub use cloud::Cloud;
 pub use compliant::Compliant;
+pub use flyer::{Block, Event, Flyer, Grip, Keeps, Moving, Rolls, Stance, Turning};
 pub use line::Line;
+pub use live::{Frame, Live};
 pub use parameter::ParameterError;
 pub use restitution::{Cor, CorError, Restitution};
 pub use sphere::Sphere;

@@ -107,6 +107,12 @@ impl Bernstein {
         self.b[self.degree]
     }
 
+    /// A bound on the magnitude of the slope.
+    pub(crate) fn steepest(&self) -> f64 {
+        let most = self.coefficients().windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        most * self.degree as f64
+    }
+
     /// The value at `u` (de Casteljau).
     fn at(&self, u: f64) -> f64 {
         let mut work = self.b;

@@ -57,7 +57,7 @@ impl Contraction {
 
     fn certified(&self, resolution: f64, most: f64) -> Option<f64> {
         let known = self.count.min(MEMORY);
-        (1..=LONGEST_CYCLE).find_map(|cycle| {
+        let bound = |cycle| {
             if known < cycle + 4 {
                 return None;
             }
@@ -66,8 +66,10 @@ impl Contraction {
                 .map(|i| self.last(i) / self.last(i + cycle))
                 .fold(0.0, f64::max);
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
-            (ratio < most && last_cycle * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
-        })
+            (ratio < most && self.last(cycle - 1) * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
+        };
+        // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of one would seem to hardly contract.
+        (1..=LONGEST_CYCLE).filter_map(bound).reduce(|best, next| if next < 0.5 * best { next } else { best })
     }
 }
 

@@ -205,7 +205,8 @@ impl<L: ContactLaw> Automaton for Compliant<L> {
         let pressed = [-x[0], -x[1]];
         let time = match moment {
             Moment::LiftOff => contact.release(pressed),
-            _ => contact.turn(pressed),
+            Moment::GreatestDeformation | Moment::LeastDeformation => contact.turn(pressed),
+            Moment::FirstContact | Moment::Apex => return Fall::Unknown, // on a parabola
         };
         time.map_or(Fall::Never, Fall::After)
     }

@@ -42,6 +42,8 @@ impl Buoyancy {
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
+    const UNIFORM: bool = true;
+
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
         upwards(self.gravity.value() * self.ratio)
@@ -86,6 +88,8 @@ impl<E> AddedMass<E> {
 }
 
 impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
+    const UNIFORM: bool = E::UNIFORM;
+
     #[inline]
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
         self.effects.acceleration(motion) * self.share

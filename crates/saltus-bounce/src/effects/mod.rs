@@ -99,6 +99,9 @@ pub struct Motion<const N: usize, S = ()> {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait Effect<const N: usize, S: Spin = ()> {
+    /// Promises that the acceleration is the same everywhere and always, and that the spin stays: flights are then exact parabolas.
+    const UNIFORM: bool = false;
+
     /// The acceleration in m/s².
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N>;
 
@@ -110,6 +113,8 @@ pub trait Effect<const N: usize, S: Spin = ()> {
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
+    const UNIFORM: bool = true;
+
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
         SVector::zeros()
@@ -119,6 +124,8 @@ impl<const N: usize, S: Spin> Effect<N, S> for () {
 macro_rules! tuple_of_effects {
     ($first:ident $($other:ident)*) => {
         impl<const N: usize, S: Spin, $first: Effect<N, S>, $($other: Effect<N, S>),*> Effect<N, S> for ($first, $($other,)*) {
+            const UNIFORM: bool = $first::UNIFORM $(&& $other::UNIFORM)*;
+
             #[inline]
             fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
                 #[allow(non_snake_case)]

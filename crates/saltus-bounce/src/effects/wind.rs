@@ -43,6 +43,8 @@ impl<const N: usize, E> Wind<N, E> {
 }
 
 impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
+    const UNIFORM: bool = E::UNIFORM;
+
     #[inline]
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
         self.effects.acceleration(&self.seen(motion))

@@ -58,6 +58,11 @@ impl LinearDragFlight {
 
 impl VerticalFlight for LinearDragFlight {
     #[inline]
+    fn acceleration(&self, velocity: f64) -> f64 {
+        -self.gravity - self.drag * velocity
+    }
+
+    #[inline]
     fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64> {
         let (depth, speed) = self.fallen(s, -x[1]);
         vector![x[0] - depth, -speed]

@@ -49,6 +49,9 @@ pub struct Impact {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait VerticalFlight {
+    /// The acceleration upwards in m/s² at `velocity` upwards in m/s: the law that the other methods solve.
+    fn acceleration(&self, velocity: f64) -> f64;
+
     /// The state `[y, v]` after `s` seconds, `s` ≥ 0, from the state `x`.
     fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64>;
 

@@ -73,6 +73,11 @@ impl QuadraticDragFlight {
 }
 
 impl VerticalFlight for QuadraticDragFlight {
+    #[inline]
+    fn acceleration(&self, velocity: f64) -> f64 {
+        -self.gravity - self.drag * velocity * velocity.abs()
+    }
+
     fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64> {
         let (y, v) = (x[0], x[1]);
         if v <= 0.0 {

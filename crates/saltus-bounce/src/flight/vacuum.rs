@@ -37,6 +37,11 @@ impl VacuumFlight {
 
 impl VerticalFlight for VacuumFlight {
     #[inline]
+    fn acceleration(&self, _velocity: f64) -> f64 {
+        -self.gravity
+    }
+
+    #[inline]
     fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64> {
         let g = self.gravity;
         vector![x[0] + s * (x[1] - 0.5 * g * s), x[1] - g * s]

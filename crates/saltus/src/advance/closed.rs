@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Searched, Undefined, chebyshev};
+use crate::cross::{Searched, Start, Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
@@ -50,12 +50,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             found = earlier(found, edge, fall);
         }
-        let by_formula = |edge| automaton.falls(mode, edge, t, x) != Fall::Unknown;
         let close = match found {
             Some(found) => self.close(found, now, at, remaining),
             None => Close { span: remaining, time: clock.end, state: at(remaining) },
         };
-        self.memory.hidden = self.memory.hidden && found.is_some_and(|(edge, _)| !by_formula(edge));
+        if self.memory.hidden
+            && let Some((edge, _)) = found
+        {
+            let formula = automaton.falls(mode, edge, t, x) != Fall::Unknown;
+            self.memory.hidden = !(formula && self.start(edge, true) == Start::Spent);
+        }
         if !close.state.is_finite() {
             return Err(Error::new(
                 ErrorKind::Flow,

@@ -12,6 +12,9 @@ use crate::trajectory::horner;
 
 use super::{Advance, Found};
 
+/// So much larger states are taken that a guard's constant costs their difference no digits.
+pub(super) const LARGER: f64 = (1_u128 << 70) as f64;
+
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output.
     #[allow(clippy::too_many_arguments)]
@@ -67,7 +70,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
     #[inline]
     fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Powers> {
-        const LARGER: f64 = (1_u128 << 70) as f64;
         if c.len() > MAX_DEGREE + 1 {
             return None;
         }

@@ -11,7 +11,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, earlier};
+use super::crossing::{Close, LARGER, earlier};
 use super::{Advance, ArcEnd, Clock, Found};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -46,12 +46,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
-        // What a formula says is not spoilt by rounding.
-        let solved = |edge| {
-            (c.len() <= 3 && self.automaton.affine(edge))
-                || self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]) != Fall::Unknown
-        };
-        self.memory.hidden = self.memory.hidden && found.is_some_and(|(edge, _)| !solved(edge));
+        if self.memory.hidden
+            && let Some((edge, _)) = found
+        {
+            // From a spent root a formula counts, not where rounding has left the guard.
+            let t = clock.now.seconds();
+            let formula = (c.len() <= 3 && self.automaton.affine(edge))
+                || self.automaton.falls(mode, edge, t, &c[0]) != Fall::Unknown;
+            self.memory.hidden = !(formula && self.start(edge, true) == Start::Spent);
+        }
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
         clock.now = close.time;
         Ok(match found {
@@ -67,7 +70,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
-        let power = |k: usize| c.get(k).map_or(0.0, |c| g(c) - constant);
+        // Where the guard has a constant, of a state a power of two larger, so that the constant does not cost it digits.
+        let power = |k: usize| match c.get(k) {
+            None => 0.0,
+            Some(c) if constant == 0.0 => g(c),
+            Some(c) => {
+                let far = g(&c.with(|i| LARGER * c.get(i))) - constant;
+                if far.is_finite() { far / LARGER } else { g(c) - constant }
+            }
+        };
         let powers = [g(&c[0]), power(1), power(2)];
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {

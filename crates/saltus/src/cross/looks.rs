@@ -53,7 +53,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         }
         let steps = samples.chunk_by(|x, y| x.1 == y.1).count();
         if turns > MOST_TURNS {
-            return Ok(Look::Rounding(self.seen_through(&samples, a, b, side)));
+            return Ok(Look::Rounding(self.seen_through(&samples, a, side)));
         }
         if steps > LOOKS / 2 {
             return Ok(Look::Smooth);
@@ -78,26 +78,27 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     }
 
     /// What is left of samples when all that is as small as their rounding counts as zero.
-    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
+    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
         let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
-        let (mut side, mut hidden) = (side, true);
+        let mut side = side;
+        let mut hidden: Option<(f64, f64)> = None;
+        let mut seen = false;
         for &(s, value) in samples {
             if value.abs() <= rounding {
+                hidden = Some((hidden.map_or(s, |(from, _)| from), s));
                 continue;
             }
             let next = Side::of(value, side);
             if side == Side::Inside && next == Side::Outside {
                 return Part::Fall { a: self.flat.unwrap_or(a), b: s, near: None };
             }
-            (side, hidden) = (next, false);
+            (side, seen) = (next, true);
         }
-        if hidden {
-            self.weaken(Evidence::Rounding { from: a, to: b });
-            self.flat = Some(self.flat.unwrap_or(a));
-        } else {
-            self.flat = None;
+        if let Some((from, to)) = hidden {
+            self.weaken(Evidence::Rounding { from, to });
         }
+        self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };
         Part::None(side)
     }
 }

@@ -46,15 +46,15 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
     pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {
         let start = self.value(0.0)?;
-        if a == 0.0 && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
+        if a == 0.0 && !self.spent && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
             b = self.span * AT_START;
             if start == 0.0 {
                 return Ok(Crossing::at_start(b));
             }
         }
         let (mut above, mut below) = (self.value(a)?.max(0.0), self.value(b)?);
-        if a == 0.0 && self.base < 0.0 {
-            // Rounding leaves the guard negative at the spent root: begin where it is seen to have risen.
+        if a == 0.0 && self.spent {
+            // Rounding may leave the guard negative at the spent root and after it: begin where it is seen to have risen.
             let mut middle = 0.5 * b;
             while self.value(middle)? <= 0.0 {
                 if middle <= b * AT_START {

@@ -298,7 +298,9 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         for x in [-0.557_350_921, 0.271_828_183] {
             off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
         }
-        let margin = 8.0 * (series[7].abs() + series[8].abs()).max(off) + 16.0 * f64::EPSILON * p.scale();
+        // The nodes themselves are rounded, and the state at them likewise.
+        let jitter = p.steepest() * (b.next_up() - b) / (b - a);
+        let margin = 8.0 * ((series[7].abs() + series[8].abs()).max(off) + jitter) + 16.0 * f64::EPSILON * p.scale();
         Ok(Proxy {
             p,
             margin: if margin.is_finite() { margin } else { f64::INFINITY },

@@ -1,0 +1,120 @@
+//! Balls under quadratic drag, whose law of flight is smooth on either side of the apex: rising and falling are two modes.
+
+use nalgebra::{Vector2, vector};
+use saltus::{Automaton, Edges, Entry, Fall, Polynomial};
+
+use super::Ball;
+use crate::flight::{QuadraticDragFlight, VerticalFlight};
+use crate::restitution::Restitution;
+
+/// What a ball under quadratic drag is doing.
+///
+/// ```
+/// use saltus_bounce::{Ball, Phase};
+/// assert_eq!(Phase::of(&Ball::launched_from(0.0, 3.0)), Phase::Rising);
+/// assert_eq!(Phase::of(&Ball::dropped_from(1.0)), Phase::Falling);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// v' = -g - k v², until the apex.
+    Rising,
+    /// v' = -g + k v², until the floor.
+    Falling,
+    /// Lying on the floor.
+    Rest,
+}
+
+impl Phase {
+    /// The phase in which a flight starts from the state `x`.
+    #[must_use]
+    pub fn of(x: &Vector2<f64>) -> Self {
+        if x[1] > 0.0 { Self::Rising } else { Self::Falling }
+    }
+}
+
+/// Where a phase ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// v falls through zero.
+    Apex,
+    /// The ball meets the floor.
+    Floor,
+}
+
+impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
+    type Mode = Phase;
+    type State = Vector2<f64>;
+    type Edge = Turn;
+
+    #[inline]
+    fn flow(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+        match phase {
+            Phase::Rising | Phase::Falling => vector![x[1], self.flight.acceleration(x[1])],
+            Phase::Rest => vector![0.0, 0.0],
+        }
+    }
+
+    #[inline]
+    fn edges(&self, phase: Phase) -> Edges<Turn> {
+        match phase {
+            Phase::Rising => Edges::from([Turn::Apex]),
+            Phase::Falling => Edges::from([Turn::Floor]),
+            Phase::Rest => Edges::none(),
+        }
+    }
+
+    #[inline]
+    fn guard(&self, turn: Turn, _t: f64, x: &Vector2<f64>) -> f64 {
+        match turn {
+            Turn::Apex => x[1],
+            Turn::Floor => x[0],
+        }
+    }
+
+    #[inline]
+    fn affine(&self, _turn: Turn) -> bool {
+        true
+    }
+
+    #[inline]
+    fn reset(&self, turn: Turn, _t: f64, x: &Vector2<f64>) -> (Phase, Vector2<f64>) {
+        match turn {
+            Turn::Apex => (Phase::Falling, vector![x[0], x[1].min(0.0)]),
+            Turn::Floor => {
+                let rebound = self.rebound(x[1]);
+                (if rebound > 0.0 { Phase::Rising } else { Phase::Rest }, vector![0.0, rebound])
+            }
+        }
+    }
+
+    /// A start that is called rising and falls goes on falling.
+    fn entry(&self, turn: Turn) -> Entry {
+        match turn {
+            Turn::Apex => Entry::Fire,
+            Turn::Floor => Entry::Refuse,
+        }
+    }
+
+    #[inline]
+    fn exact(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
+        (phase == Phase::Rest).then(|| Polynomial::from([*x]))
+    }
+
+    #[inline]
+    fn flown(&self, _phase: Phase, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
+        Some(self.flight.after(s, x)) // in flight: rest is solved exactly
+    }
+
+    #[inline]
+    fn falls(&self, _phase: Phase, turn: Turn, _t: f64, x: &Vector2<f64>) -> Fall {
+        let after = match turn {
+            Turn::Apex => self.flight.apex(x[1]).map(|apex| apex.time),
+            Turn::Floor => self.flight.impact(x).map(|impact| impact.time),
+        };
+        after.map_or(Fall::Never, Fall::After)
+    }
+
+    fn beyond(&self, _phase: Phase, _t: f64, _x: &Vector2<f64>) -> Option<(Phase, Vector2<f64>)> {
+        Some((Phase::Rest, vector![0.0, 0.0]))
+    }
+}

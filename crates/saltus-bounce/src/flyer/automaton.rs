@@ -1,0 +1,190 @@
+//! The ball among walls as a hybrid automaton.
+
+use nalgebra::SVector;
+use saltus::{Automaton, Edges, Entry, ErrorKind, Polynomial};
+
+use super::contact::{forwards, none};
+use super::{Event, Flyer, Grip, Moving, Stance, Turning};
+use crate::effects::Effect;
+use crate::restitution::Restitution;
+use crate::walls::{Face, Walls};
+
+impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
+    /// x' in `stance`.
+    #[inline]
+    fn rate(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+        let (velocity, spin) = match stance {
+            Stance::Flight { .. } => {
+                let motion = x.at(t);
+                (self.effects.acceleration(&motion), self.effects.spin_rate(&motion))
+            }
+            Stance::Slide { face, .. } | Stance::Hold { face } => {
+                let touch = self.touch(face, t, x);
+                let (slip, _) = if N > 2 { self.slip(face, t, x) } else { (SVector::zeros(), touch.normal) };
+                let friction = self.friction(stance, &touch, &slip);
+                let spin = touch.spin_rate.plus(self.grip.torque(&friction, &touch.normal));
+                (touch.free + touch.normal * touch.force + friction, spin)
+            }
+            Stance::Corner { cell, faces } => {
+                let motion = x.at(t);
+                let free = self.effects.acceleration(&motion);
+                (self.within(cell, faces, t, x, free), self.effects.spin_rate(&motion))
+            }
+        };
+        Moving { position: x.velocity, velocity, spin }
+    }
+
+    /// Whether forces are constant in `stance`.
+    #[inline]
+    fn uniform(&self, stance: Stance<N>) -> bool {
+        E::UNIFORM
+            && match stance {
+                Stance::Flight { .. } | Stance::Corner { .. } => true,
+                // In space friction turns with the slip.
+                Stance::Slide { face, along } => (N <= 2 || none(&along)) && self.walls.straight(face),
+                Stance::Hold { face } => self.walls.straight(face),
+            }
+    }
+
+    /// A ride on a face that moves, without friction that depends on how it is pressed.
+    #[inline]
+    fn ridden(&self, stance: Stance<N>) -> Option<Face> {
+        match stance {
+            Stance::Hold { face } if E::UNIFORM => Some(face),
+            Stance::Slide { face, along } if E::UNIFORM && none(&along) => Some(face),
+            _ => None,
+        }
+    }
+}
+
+impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Automaton
+    for Flyer<N, S, E, W, R, G>
+{
+    type Mode = Stance<N>;
+    type State = Moving<N, S>;
+    type Edge = Event<N>;
+
+    #[inline]
+    fn flow(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+        self.rate(stance, t, x)
+    }
+
+    #[inline]
+    fn edges(&self, stance: Stance<N>) -> Edges<Event<N>> {
+        let cell = stance.cell();
+        let faces = (0..self.walls.faces(cell)).filter(|&index| !stance.touches(index));
+        let meets = faces.map(|index| Event::Meet(Face { cell, index }));
+        match stance {
+            Stance::Flight { .. } | Stance::Corner { .. } => meets.collect(),
+            Stance::Slide { face, along } => {
+                let leaves = (!self.steady(face)).then_some(Event::Leave(face));
+                let stops = (!none(&along)).then_some(Event::Stop { face, along });
+                meets.chain(leaves).chain(stops).collect()
+            }
+            Stance::Hold { face } => {
+                let moves = !self.steady(face);
+                meets.chain(moves.then_some(Event::Leave(face))).chain(moves.then_some(Event::Slip(face))).collect()
+            }
+        }
+    }
+
+    #[inline]
+    fn guard(&self, event: Event<N>, t: f64, x: &Moving<N, S>) -> f64 {
+        match event {
+            Event::Meet(face) => self.walls.margin(face, t, &x.position),
+            Event::Leave(face) => self.touch(face, t, x).force,
+            Event::Stop { face, along } => {
+                let (slip, normal) = self.slip(face, t, x);
+                forwards(&slip, &along, &normal)
+            }
+            Event::Slip(face) => self.cone(&self.touch(face, t, x)),
+            Event::Change => 1.0, // the clock takes it
+        }
+    }
+
+    #[inline]
+    fn affine(&self, event: Event<N>) -> bool {
+        match event {
+            Event::Meet(face) | Event::Stop { face, .. } => self.walls.straight(face),
+            Event::Leave(_) | Event::Slip(_) | Event::Change => false,
+        }
+    }
+
+    fn reset(&self, event: Event<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        match event {
+            Event::Meet(face) => match self.walls.leads(face, t, &x.position) {
+                Some(cell) => (Stance::Flight { cell }, *x),
+                None => self.struck(Stance::Flight { cell: face.cell }, face, t, x),
+            },
+            Event::Leave(face) => {
+                let mut x = self.on(face, t, x);
+                let (normal, speed) = self.normal(face, t, &x);
+                x.velocity += normal * (speed - x.velocity.dot(&normal));
+                (Stance::Flight { cell: face.cell }, x)
+            }
+            Event::Stop { face, along } => (self.stopped(face, &along, t, x), *x),
+            Event::Slip(face) => (self.without_slip(face, &self.touch(face, t, x)), *x),
+            Event::Change => (Stance::FLIGHT, *x),
+        }
+    }
+
+    #[inline]
+    fn take(
+        &self,
+        stance: Stance<N>,
+        event: Event<N>,
+        t: f64,
+        x: &Moving<N, S>,
+    ) -> Result<(Stance<N>, Moving<N, S>), ErrorKind> {
+        Ok(match (event, stance) {
+            (Event::Meet(face), Stance::Slide { .. } | Stance::Hold { .. } | Stance::Corner { .. })
+                if self.walls.leads(face, t, &x.position).is_none() =>
+            {
+                self.struck(stance, face, t, x)
+            }
+            (Event::Change, Stance::Slide { face, .. } | Stance::Hold { face }) => self.settled(face, t, *x),
+            (Event::Change, _) => (stance, *x),
+            _ => self.reset(event, t, x),
+        })
+    }
+
+    fn entry(&self, event: Event<N>) -> Entry {
+        match event {
+            Event::Meet(_) => Entry::Refuse,
+            Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Change => Entry::Fire,
+        }
+    }
+
+    #[inline]
+    fn exact(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Option<Polynomial<Moving<N, S>>> {
+        self.uniform(stance).then(|| {
+            let rate = self.rate(stance, t, x);
+            let half = Moving { position: rate.velocity * 0.5, velocity: SVector::zeros(), spin: S::NONE };
+            Polynomial::from([*x, rate, half])
+        })
+    }
+
+    fn flown(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>, s: f64) -> Option<Moving<N, S>> {
+        let face = self.ridden(stance)?;
+        let (moved, speed) = self.walls.carried(face, t, t + s)?;
+        let touch = self.touch(face, t, x);
+        let length = self.walls.gradient(face, t, &x.position).norm();
+        let n = touch.normal;
+        let friction = self.friction(stance, &touch, &SVector::zeros());
+        let a = touch.free - n * touch.free.dot(&n) + friction;
+        let v = x.velocity - n * x.velocity.dot(&n);
+        Some(Moving {
+            position: x.position + (v + a * (0.5 * s)) * s + n * (moved / length),
+            velocity: v + a * s + n * (speed / length),
+            spin: x.spin.plus(self.grip.torque(&friction, &n).times(s)),
+        })
+    }
+
+    fn beyond(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Option<(Stance<N>, Moving<N, S>)> {
+        Some(self.accumulated(stance, t, x))
+    }
+
+    fn scheduled(&self, _: Stance<N>, t: f64) -> Option<(f64, Event<N>)> {
+        self.walls.changes(t).map(|t| (t, Event::Change))
+    }
+}

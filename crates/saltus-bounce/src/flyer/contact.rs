@@ -1,0 +1,250 @@
+//! Forces in contact, and what follows from them.
+
+use nalgebra::SVector;
+
+use super::{Flyer, Grip, Moving, Stance, Turning};
+use crate::effects::Effect;
+use crate::restitution::Restitution;
+use crate::walls::{Face, Walls};
+
+/// A slip this much smaller than it began has ended, but for rounding and the tolerance of steps; in space it turns on the way.
+const ENDED: f64 = 1e-6;
+/// How far from a second wall, relative to the scene's size, a ball may be whose bounces have accumulated at a corner.
+const NEAR: f64 = 1e-9;
+
+/// What acts on a ball in contact.
+pub(super) struct Touch<const N: usize, S> {
+    pub(super) normal: SVector<f64, N>,
+    /// λ in m/s².
+    pub(super) force: f64,
+    /// The acceleration by the effects.
+    pub(super) free: SVector<f64, N>,
+    /// The change of spin by the effects.
+    pub(super) spin_rate: S,
+    /// The change of slip by the effects, without friction.
+    pub(super) slip_rate: SVector<f64, N>,
+}
+
+/// In two coordinates the tangent (n₁, -n₀), else zero.
+#[inline]
+fn tangent<const N: usize>(n: &SVector<f64, N>) -> SVector<f64, N> {
+    let mut tangent = SVector::zeros();
+    if N == 2 {
+        tangent[0] = n[1];
+        tangent[1] = -n[0];
+    }
+    tangent
+}
+
+/// Whether there is no slip at all.
+#[inline]
+pub(super) fn none<const N: usize>(slip: &SVector<f64, N>) -> bool {
+    slip.iter().all(|&part| part == 0.0)
+}
+
+/// How [`Stance::Slide`] writes down a slip.
+#[inline]
+fn noted<const N: usize>(slip: &SVector<f64, N>, normal: &SVector<f64, N>) -> SVector<f64, N> {
+    if N == 2 {
+        let mut along = SVector::zeros();
+        along[0] = slip.dot(&tangent(normal));
+        along
+    } else {
+        *slip
+    }
+}
+
+/// The component of `slip` along the slip that was written down, positive until it ends.
+#[inline]
+pub(super) fn forwards<const N: usize>(
+    slip: &SVector<f64, N>,
+    along: &SVector<f64, N>,
+    normal: &SVector<f64, N>,
+) -> f64 {
+    if N == 2 { slip.dot(&tangent(normal)) * along[0].signum() } else { slip.dot(along) / along.norm() }
+}
+
+impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
+    #[inline]
+    pub(super) fn touch(&self, face: Face, t: f64, x: &Moving<N, S>) -> Touch<N, S> {
+        let gradient = self.walls.gradient(face, t, &x.position);
+        let length = gradient.norm();
+        let normal = gradient / length;
+        let motion = x.at(t);
+        let free = self.effects.acceleration(&motion);
+        let spin_rate = self.effects.spin_rate(&motion);
+        let force = -(self.walls.bend(face, t, &x.position, &x.velocity) + gradient.dot(&free)) / length;
+        Touch { normal, force, free, spin_rate, slip_rate: self.grip.slip(free, spin_rate, &normal) }
+    }
+
+    /// The unit normal of `face` and its speed along it.
+    #[inline]
+    pub(super) fn normal(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, f64) {
+        let gradient = self.walls.gradient(face, t, &x.position);
+        let length = gradient.norm();
+        (gradient / length, -self.walls.rate(face, t, &x.position) / length)
+    }
+
+    /// The state with its position put on `face`.
+    #[inline]
+    pub(super) fn on(&self, face: Face, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+        let gradient = self.walls.gradient(face, t, &x.position);
+        let margin = self.walls.margin(face, t, &x.position);
+        Moving { position: x.position - gradient * (margin / gradient.norm_squared()), ..*x }
+    }
+
+    /// The slip on `face`.
+    #[inline]
+    pub(super) fn slip(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, SVector<f64, N>) {
+        let (normal, speed) = self.normal(face, t, x);
+        (self.grip.slip(x.velocity - normal * speed, x.spin, &normal), normal)
+    }
+
+    /// Friction per mass.
+    #[inline]
+    pub(super) fn friction(&self, stance: Stance<N>, touch: &Touch<N, S>, slip: &SVector<f64, N>) -> SVector<f64, N> {
+        match stance {
+            Stance::Hold { .. } => touch.slip_rate * -self.grip.share(),
+            Stance::Slide { along, .. } if !none(&along) => {
+                let direction = if N == 2 {
+                    tangent(&touch.normal) * along[0].signum()
+                } else {
+                    // Past its end a slip goes on as it was, so that a step may look there.
+                    let slip = if slip.dot(&along) > 0.0 { *slip } else { along };
+                    slip / slip.norm()
+                };
+                direction * (-self.grip.coefficient() * touch.force)
+            }
+            _ => SVector::zeros(),
+        }
+    }
+
+    /// How far friction is from giving way: μ²λ|λ| - |f|².
+    #[inline]
+    pub(super) fn cone(&self, touch: &Touch<N, S>) -> f64 {
+        let mu = self.grip.coefficient();
+        let needed = self.grip.share() * self.grip.share() * touch.slip_rate.norm_squared();
+        mu * mu * touch.force * touch.force.abs() - needed
+    }
+
+    /// A ball on `face` that does not rebound: in contact, or at once in flight if nothing presses it.
+    pub(super) fn settled(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let mut x = self.on(face, t, &x);
+        let (normal, speed) = self.normal(face, t, &x);
+        x.velocity += normal * (speed - x.velocity.dot(&normal));
+        let touch = self.touch(face, t, &x);
+        if touch.force < 0.0 {
+            return (Stance::Flight { cell: face.cell }, x);
+        }
+        if self.grip.coefficient() == 0.0 {
+            return (Stance::Slide { face, along: SVector::zeros() }, x);
+        }
+        let (slip, _) = self.slip(face, t, &x);
+        let along = noted(&slip, &normal);
+        (if none(&along) { self.without_slip(face, &touch) } else { Stance::Slide { face, along } }, x)
+    }
+
+    /// Friction holds it, or it begins to slide.
+    pub(super) fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
+        if self.cone(touch) >= 0.0 {
+            Stance::Hold { face }
+        } else {
+            Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
+        }
+    }
+
+    /// The slip has no component left along what it was.
+    pub(super) fn stopped(&self, face: Face, along: &SVector<f64, N>, t: f64, x: &Moving<N, S>) -> Stance<N> {
+        let (slip, normal) = self.slip(face, t, x);
+        if N > 2 && slip.norm() > ENDED * along.norm() {
+            return Stance::Slide { face, along: noted(&slip, &normal) };
+        }
+        self.without_slip(face, &self.touch(face, t, x))
+    }
+
+    /// An impact on `face`, from flight or from contact with other faces.
+    pub(super) fn struck(&self, from: Stance<N>, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let mut x = self.on(face, t, x);
+        let (normal, speed) = self.normal(face, t, &x);
+        let relative = x.velocity - normal * speed;
+        let after = self.grip.impact(&self.restitution, relative, x.spin, &normal);
+        (x.velocity, x.spin) = (after.velocity + normal * speed, after.spin);
+        let rebounds = self.restitution.rebound((-relative.dot(&normal)).max(0.0)) > 0.0;
+        let faces = self.walls.faces(face.cell);
+        let held = (0..faces).filter(|&index| from.touches(index) && index != face.index);
+        let stays = |index: usize, x: &Moving<N, S>| {
+            let (normal, speed) = self.normal(Face { index, ..face }, t, x);
+            (x.velocity.dot(&normal) - speed).abs() <= 8.0 * f64::EPSILON * (relative.norm() + speed.abs())
+        };
+        let mask = held.filter(|&index| stays(index, &x)).fold(0, |mask, index| mask | 1 << index);
+        match (mask, rebounds) {
+            (0, true) => (Stance::Flight { cell: face.cell }, x),
+            (0, false) => self.settled(face, t, x),
+            (mask, true) => self.among(face.cell, mask, t, x),
+            (mask, false) => self.among(face.cell, mask | 1 << face.index, t, x),
+        }
+    }
+
+    /// Bounces have accumulated: on one face, or where several meet.
+    pub(super) fn accumulated(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let cell = from.cell();
+        let distance = |index: usize| {
+            let face = Face { cell, index };
+            let length = self.walls.gradient(face, t, &x.position).norm();
+            let wall = length > 0.0 && self.walls.leads(face, t, &x.position).is_none();
+            if wall { self.walls.margin(face, t, &x.position).abs() / length } else { f64::INFINITY }
+        };
+        let free = (0..self.walls.faces(cell)).filter(|&index| !from.touches(index));
+        let Some(nearest) = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) else { return (from, *x) };
+        let size = NEAR * (1.0 + x.position.norm());
+        let meets = |index: usize| {
+            let (normal, speed) = self.normal(Face { cell, index }, t, x);
+            let stands = (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt();
+            index == nearest || from.touches(index) || distance(index) <= size && stands
+        };
+        let mask = (0..self.walls.faces(cell)).filter(|&index| meets(index)).fold(0, |mask, index| mask | 1 << index);
+        self.among(cell, mask, t, *x)
+    }
+
+    /// In contact with the faces of a mask.
+    fn among(&self, cell: usize, faces: u16, t: f64, mut x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let nearest = Face { cell, index: faces.trailing_zeros() as usize };
+        let of_mask = |index: &usize| faces >> index & 1 == 1;
+        let all = (0..self.walls.faces(cell)).filter(of_mask);
+        if faces.count_ones() == 1 || all.clone().any(|index| !self.walls.straight(Face { cell, index })) {
+            return self.settled(nearest, t, x);
+        }
+        for index in all {
+            x = self.on(Face { cell, index }, t, &x);
+        }
+        x.velocity = self.within(cell, faces, t, &x, x.velocity);
+        (Stance::Corner { cell, faces }, x)
+    }
+
+    /// The part of `v` along all the faces of a mask.
+    pub(super) fn within(
+        &self,
+        cell: usize,
+        faces: u16,
+        t: f64,
+        x: &Moving<N, S>,
+        v: SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        let mut v = v;
+        let mut directions = [SVector::<f64, N>::zeros(); N];
+        let mut count = 0;
+        for index in (0..self.walls.faces(cell)).filter(|index| faces >> index & 1 == 1) {
+            let mut n = self.walls.gradient(Face { cell, index }, t, &x.position);
+            let before = n.norm();
+            for d in &directions[..count] {
+                n -= d * n.dot(d);
+            }
+            if count < N && n.norm() > 1e-12 * before {
+                directions[count] = n / n.norm();
+                v -= directions[count] * v.dot(&directions[count]);
+                count += 1;
+            }
+        }
+        if count == N { SVector::zeros() } else { v }
+    }
+}

@@ -1,0 +1,111 @@
+//! A ball in the plane or in space, among walls: effects, walls, restitution and grip are type parameters.
+
+mod automaton;
+mod contact;
+mod grip;
+mod moving;
+mod stance;
+
+use std::marker::PhantomData;
+
+use crate::effects::Effect;
+use crate::parameter::ParameterError;
+use crate::restitution::{Cor, Restitution};
+use crate::walls::{Face, MOST_FACES, Walls};
+
+pub use grip::{Block, Grip, Keeps, Rolls};
+pub use moving::{Moving, Turning};
+pub use stance::{Event, Stance};
+
+/// A ball that flies under the effects E among the walls W, in N coordinates, the last of which points up.
+///
+/// It rebounds by the law R across a wall and by the grip G along it, relative to the wall's own motion. State: [`Moving`], position and velocity, and
+/// spin only if S is one. A ball that has come to rest on a wall is in contact with it: it slides, with friction where there is some, or holds on
+/// (it lies still, is carried by a wall that moves, or rolls). With φ the wall's margin and n its unit normal, in contact
+///
+/// ```text
+/// x'' = a + λ n + f,   λ = -(d²φ/dt² by a and the wall alone)/|∂φ/∂p|     the normal force per mass
+/// slides:   f = -μ λ along the slip     until the slip is zero, or λ falls to zero and it leaves
+/// holds:    f = -(slip's change by a) α/(1 + α)     until |f| > μ λ and it slides, or λ falls to zero and it leaves
+/// ```
+///
+/// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::UNIFORM`]) flights, and contacts with
+/// planes at rest, are exact parabolas, and rides on floors that move are known by formula: no step is taken. Else they are stepped.
+///
+/// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without friction. Quadratic drag, v|v|, is smooth away from v = 0, which
+/// a ball passes only if it is thrown straight up: for that [`Ball`](crate::Ball) has two modes. No pivoting and no rolling friction.
+///
+/// ```
+/// use nalgebra::vector;
+/// use saltus::Simulation;
+/// use saltus_bounce::effects::Gravity;
+/// use saltus_bounce::walls::Plane;
+/// use saltus_bounce::{Cor, Flyer, Moving, Stance};
+///
+/// // Dropped on a smooth slope of 30 degrees: it bounces down, then slides.
+/// let slope = Plane::incline(-std::f64::consts::FRAC_PI_6)?;
+/// let ball = Flyer::new(Gravity::new(9.81)?, slope, Cor::new(0.5)?)?;
+/// let start = Moving::new(vector![0.0, 1.0], vector![0.0, 0.0]);
+/// let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..10.0)?;
+/// assert!(matches!(run.mode, Stance::Slide { .. }));
+/// assert_eq!(run.stats.steps, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flyer<const N: usize, S, E, W, R = Cor, G = ()> {
+    effects: E,
+    walls: W,
+    restitution: R,
+    grip: G,
+    spin: PhantomData<S>,
+}
+
+impl<const N: usize, E: Effect<N>, W: Walls<N>, R: Restitution> Flyer<N, (), E, W, R> {
+    /// A ball whose spin does not matter, among smooth walls.
+    ///
+    /// # Errors
+    /// [`ParameterError`] if a cell has more than [`MOST_FACES`] faces.
+    pub fn new(effects: E, walls: W, restitution: R) -> Result<Self, ParameterError> {
+        Self::gripped(effects, walls, restitution, ())
+    }
+}
+
+impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
+    /// A ball that walls hold by `grip`: [`Rolls`] for a ball that spins, [`Block`] for a body that does not, [`Keeps`] for a fixed loss.
+    ///
+    /// # Errors
+    /// [`ParameterError`] if a cell has more than [`MOST_FACES`] faces.
+    pub fn gripped(effects: E, walls: W, restitution: R, grip: G) -> Result<Self, ParameterError> {
+        let most = (0..walls.cells()).map(|cell| walls.faces(cell)).max().unwrap_or(0);
+        if most > MOST_FACES {
+            let give = "at most 12; cut space into cells";
+            return Err(ParameterError::new("a number of faces of one cell", most as f64, give));
+        }
+        Ok(Self { effects, walls, restitution, grip, spin: PhantomData })
+    }
+
+    /// The walls.
+    #[must_use]
+    pub const fn walls(&self) -> &W {
+        &self.walls
+    }
+
+    /// The effects.
+    #[must_use]
+    pub const fn effects(&self) -> &E {
+        &self.effects
+    }
+
+    /// How a ball starts that lies on `face` at time `t` and is not to bounce: in contact if it is pressed, in flight if not; its position and the velocity
+    /// across the wall are made those of the wall.
+    #[must_use]
+    pub fn lying(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        self.settled(face, t, x)
+    }
+
+    /// Whether a contact with `face` is the same always and everywhere: forces are constant.
+    #[inline]
+    fn steady(&self, face: Face) -> bool {
+        E::UNIFORM && self.walls.straight(face)
+    }
+}
