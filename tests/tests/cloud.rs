@@ -42,7 +42,7 @@ fn a_gas_of_sixty_four() {
         let (cloud, start, end) = gas::<D>(columns, gravity, 10.0);
         let each = began.elapsed() / u32::try_from(end.jumps).unwrap();
         println!("{D} dimensions, g = {gravity}: {} impacts, {each:?} each", end.jumps);
-        assert!(end.stop == Stop::Time && end.jumps > 200);
+        assert!(end.stop == Stop::Time && end.jumps > 200, "{:?}, {} impacts", end.stop, end.jumps);
         let (before, after) = (cloud.energy(&start), cloud.energy(&end.state));
         assert!((after / before - 1.0).abs() < 1e-13, "{before} {after}");
         for (x, n) in end.state.centres.iter().zip(0..) {

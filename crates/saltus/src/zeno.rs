@@ -66,7 +66,8 @@ impl Contraction {
                 .map(|i| self.last(i) / self.last(i + cycle))
                 .fold(0.0, f64::max);
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
-            (ratio < most && self.last(cycle - 1) * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
+            let longest = (0..cycle).map(|i| self.last(i)).fold(0.0, f64::max);
+            (ratio < most && longest * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of one would seem to hardly contract.
         (1..=LONGEST_CYCLE).filter_map(bound).reduce(|best, next| if next < 0.5 * best { next } else { best })

@@ -54,11 +54,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Some(found) => self.close(found, now, at, remaining),
             None => Close { span: remaining, time: clock.end, state: at(remaining) },
         };
-        if self.memory.hidden
+        if self.memory.hidden > 0
             && let Some((edge, _)) = found
         {
             let formula = automaton.falls(mode, edge, t, x) != Fall::Unknown;
-            self.memory.hidden = !(formula && self.start(edge, true) == Start::Spent);
+            if formula && self.start(edge, true) == Start::Spent {
+                self.memory.hidden = 0;
+            }
         }
         if !close.state.is_finite() {
             return Err(Error::new(

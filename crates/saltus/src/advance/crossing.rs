@@ -111,7 +111,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
-        self.memory.hidden = root < 1e-5 * self.memory.longest_duration && self.hides(edge, t, &at(0.5 * root), &state);
+        let short = root < 1e-4 * self.memory.longest_duration && root > 64.0 * f64::EPSILON * t.abs();
+        let hidden = short && self.hides(edge, t, &at(0.5 * root), &state);
+        self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         Close { span, time, state }
     }
@@ -121,7 +123,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn hides(&mut self, edge: A::Edge, t: f64, middle: &A::State, end: &A::State) -> bool {
         self.memory.stats.guards += 2;
         let [rise, g] = [middle, end].map(|x| self.automaton.guard(edge, t, x));
-        rise < 4096.0 * self.guard_rounding(edge, t, end, g, 0.0)
+        rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0)
     }
 
     /// The guard of `edge` is not a number a time `s` after `now`.

@@ -46,14 +46,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
-        if self.memory.hidden
+        if self.memory.hidden > 0
             && let Some((edge, _)) = found
         {
             // From a spent root a formula counts, not where rounding has left the guard.
             let t = clock.now.seconds();
             let formula = (c.len() <= 3 && self.automaton.affine(edge))
                 || self.automaton.falls(mode, edge, t, &c[0]) != Fall::Unknown;
-            self.memory.hidden = !(formula && self.start(edge, true) == Start::Spent);
+            if formula && self.start(edge, true) == Start::Spent {
+                self.memory.hidden = 0;
+            }
         }
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
         clock.now = close.time;

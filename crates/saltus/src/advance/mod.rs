@@ -61,8 +61,8 @@ pub(crate) struct Memory<E> {
     slack: f64,
     last_duration: f64,
     longest_duration: f64,
-    /// Whether the last arc was so short that the rounding of a guard spoils its duration.
-    hidden: bool,
+    /// How many arcs in a row, up to the last one, were so short that the rounding of a guard spoils their duration.
+    hidden: u32,
 }
 
 impl<E: Copy + PartialEq> Memory<E> {
@@ -78,7 +78,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             slack: 0.0,
             last_duration: 0.0,
             longest_duration: 0.0,
-            hidden: false,
+            hidden: 0,
         }
     }
 
@@ -103,9 +103,9 @@ impl<E: Copy + PartialEq> Memory<E> {
         since <= 4.0 * f64::EPSILON * self.last_duration
     }
 
-    /// Whether the rounding of a guard spoils the duration of the last arc.
+    /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row, for one may be short by chance.
     pub(crate) fn hides_durations(&self) -> bool {
-        self.hidden
+        self.hidden >= 3
     }
 
     /// Whether the last jump took this very edge.
