@@ -214,9 +214,9 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             .take(mode, edge, now, &before)
             .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
         let duration = at.clock.now.since(began);
-        let at_once = at.memory.at_once(at.clock.now.since(at.instant));
+        let at_once = arc.memory.at_once(at.clock.now.since(at.instant));
         // The same edge taken again at once changes nothing: the limit is here.
-        let stands = duration == 0.0 && at.memory.just_took(edge) && to == mode && same(&x, &after);
+        let stands = duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
             if at_once {
                 at.cascade += 1;
@@ -234,15 +234,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Some(Stop::Terminal { edge }));
             }
         }
-        let memory = &mut at.memory;
-        let t = at.clock.now.seconds();
-        Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory }.jumped(
-            mode,
-            &x,
-            edge,
-            (!at_once).then_some(duration),
-            t,
-        );
+        arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
         // x is x⁺.
         if !at_once {
             at.contraction.push(duration);
@@ -260,7 +252,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             Some(Stop::Jumps { most: at.jumps })
         } else if at.cascade >= options.longest_cascade {
             // Collisions that go on at one time: what lies beyond them is the model's to say.
-            if automaton.beyond(at.mode, t, &at.state).is_some() {
+            if automaton.beyond(at.mode, now, &at.state).is_some() {
                 return self.at_limit(0.0, observer);
             }
             Some(Stop::Cascade { edge })

@@ -3,10 +3,9 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Searched, Start, Undefined, chebyshev};
+use crate::cross::{Searched, Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
-use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -35,46 +34,43 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let at = |s: f64| automaton.flown(mode, t, x, s).unwrap_or_else(|| x.with(|_| f64::NAN));
         let remaining = clock.end.since(now);
         let mut found: Found<A> = None;
+        let mut by_formula = false;
         for edge in automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
-            let Searched { fall, evidence } = match automaton.falls(mode, edge, t, x) {
+            let formula = automaton.falls(mode, edge, t, x);
+            let Searched { fall, evidence } = match formula {
                 Fall::Unknown => {
                     let natural = size(x) / size(&self.flow(mode, t, x));
                     let natural = if natural.is_finite() { natural } else { 0.0 };
                     self.fall_in_windows(edge, now, natural, at, limit, start)
                         .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
                 }
-                formula => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
+                _ => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
             };
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             found = earlier(found, edge, fall);
-        }
-        let close = match found {
-            Some(found) => self.close(found, now, at, remaining),
-            None => Close { span: remaining, time: clock.end, state: at(remaining) },
-        };
-        if self.memory.hidden > 0
-            && let Some((edge, _)) = found
-        {
-            let formula = automaton.falls(mode, edge, t, x) != Fall::Unknown;
-            if formula && self.start(edge, true) == Start::Spent {
-                self.memory.hidden = 0;
+            if found.is_some_and(|(first, _)| first == edge) {
+                by_formula = formula != Fall::Unknown;
             }
         }
+        let close = match found {
+            Some(found) => self.close(found, now, at, remaining, by_formula),
+            None => Close { span: remaining, time: clock.end, state: at(remaining) },
+        };
         if !close.state.is_finite() {
             return Err(Error::new(
                 ErrorKind::Flow,
                 Place::new(close.time.seconds(), mode, None::<A::Edge>, &close.state),
             ));
         }
-        let told = observer.wants_pieces() && interpolated(mode, now, close.span, at, observer).is_break();
+        let told = if observer.wants_pieces() {
+            interpolated(mode, now, close.span, at, observer)
+        } else {
+            ControlFlow::Continue(())
+        };
         clock.now = close.time;
-        Ok(match found {
-            _ if told => ArcEnd::Stop { stop: Stop::Observer, state: close.state },
-            Some((edge, _)) => ArcEnd::Crossing { edge, before: close.state },
-            None => ArcEnd::Stop { stop: Stop::Time, state: close.state },
-        })
+        Ok(ArcEnd::after(found, told, close.state))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::trajectory::horner;
 use super::{Advance, Found};
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
-pub(super) const LARGER: f64 = (1_u128 << 70) as f64;
+const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output.
@@ -66,8 +66,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// An affine guard along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
-    ///
-    /// The differences are taken of the states a power of two larger, so that the guard's constant does not cost them digits.
     #[inline]
     fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Powers> {
         if c.len() > MAX_DEGREE + 1 {
@@ -81,16 +79,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         p[0] = start;
         let mut power = stretch;
         for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
-            let far = self.automaton.guard(edge, t, &c.with(|i| LARGER * c.get(i))) - constant;
-            let difference = if far.is_finite() { far / LARGER } else { self.automaton.guard(edge, t, c) - constant };
-            *p = difference * power;
+            *p = less_constant(|x| self.automaton.guard(edge, t, x), constant, c) * power;
             power *= stretch;
         }
         Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + start.abs()) })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
-    /// the guard there.
+    /// the guard there. The time of a crossing `by_formula` from a spent root is not spoilt by where rounding has left the guard before.
     #[inline(always)] // an exact solution has the scale 1, by which nothing need then be divided
     pub(super) fn close(
         &mut self,
@@ -98,6 +94,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         now: Time,
         at: impl Fn(f64) -> A::State,
         remaining: f64,
+        by_formula: bool,
     ) -> Close<A::State> {
         let Crossing { inside, outside, root, rest } = crossing;
         let span = inside.min(remaining);
@@ -112,7 +109,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
         let short = root < 1e-4 * self.memory.longest_duration && root > 64.0 * f64::EPSILON * t.abs();
-        let hidden = short && self.hides(edge, t, &at(0.5 * root), &state);
+        let relative = by_formula && self.memory.spent_as(edge).is_some();
+        let hidden = short && !relative && self.hides(edge, t, &at(0.5 * root), &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         Close { span, time, state }
@@ -130,6 +128,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn undefined(&self, mode: A::Mode, edge: A::Edge, now: Time, s: f64, x: &A::State) -> Error {
         Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), x))
     }
+}
+
+/// What an affine guard of this `constant` adds to it for the state `x`: taken of a state a power of two larger, so that the constant does not
+/// cost it digits.
+#[inline]
+pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
+    if constant == 0.0 {
+        return guard(x);
+    }
+    let far = guard(&x.with(|i| LARGER * x.get(i))) - constant;
+    if far.is_finite() { far / LARGER } else { guard(x) - constant }
 }
 
 /// The end of an arc's last piece.

@@ -5,13 +5,12 @@ use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, s
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
 use crate::poly::{quadratic_fall, quadratic_touch};
-use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, LARGER, earlier};
+use super::crossing::{Close, earlier, less_constant};
 use super::{Advance, ArcEnd, Clock, Found};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -27,13 +26,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let c = solution.coefficients();
         let remaining = clock.end.since(clock.now);
         let mut found: Found<A> = None;
+        let mut by_formula = false;
         for edge in self.automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
-            let Searched { fall, evidence } = match self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]) {
-                Fall::Unknown if c.len() <= 3 && self.automaton.affine(edge) => {
-                    self.fall_of_parabola(edge, clock.now, c, limit, start)
-                }
+            let formula = self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]);
+            let parabola = c.len() <= 3 && self.automaton.affine(edge);
+            let Searched { fall, evidence } = match formula {
+                Fall::Unknown if parabola => self.fall_of_parabola(edge, clock.now, c, limit, start),
                 Fall::Unknown => self
                     .fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
                     .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?,
@@ -41,29 +41,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             };
             observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
             found = earlier(found, edge, fall);
-        }
-        let close = match found {
-            Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining),
-            None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
-        };
-        if self.memory.hidden > 0
-            && let Some((edge, _)) = found
-        {
-            // From a spent root a formula counts, not where rounding has left the guard.
-            let t = clock.now.seconds();
-            let formula = (c.len() <= 3 && self.automaton.affine(edge))
-                || self.automaton.falls(mode, edge, t, &c[0]) != Fall::Unknown;
-            if formula && self.start(edge, true) == Start::Spent {
-                self.memory.hidden = 0;
+            if found.is_some_and(|(first, _)| first == edge) {
+                by_formula = parabola || formula != Fall::Unknown;
             }
         }
+        let close = match found {
+            Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining, by_formula),
+            None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
+        };
         let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
         clock.now = close.time;
-        Ok(match found {
-            _ if told.is_break() => ArcEnd::Stop { stop: Stop::Observer, state: close.state },
-            Some((edge, _)) => ArcEnd::Crossing { edge, before: close.state },
-            None => ArcEnd::Stop { stop: Stop::Time, state: close.state },
-        })
+        Ok(ArcEnd::after(found, told, close.state))
     }
 
     /// An affine guard along a parabola is a parabola.
@@ -72,15 +60,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
-        // Where the guard has a constant, of a state a power of two larger, so that the constant does not cost it digits.
-        let power = |k: usize| match c.get(k) {
-            None => 0.0,
-            Some(c) if constant == 0.0 => g(c),
-            Some(c) => {
-                let far = g(&c.with(|i| LARGER * c.get(i))) - constant;
-                if far.is_finite() { far / LARGER } else { g(c) - constant }
-            }
-        };
+        let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
         let powers = [g(&c[0]), power(1), power(2)];
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {

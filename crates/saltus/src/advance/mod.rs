@@ -6,6 +6,8 @@ mod enter;
 mod exact;
 mod stepped;
 
+use std::ops::ControlFlow;
+
 use crate::automaton::Automaton;
 use crate::control::Controller;
 use crate::cross::{Crossing, Start};
@@ -30,6 +32,18 @@ pub(crate) enum ArcEnd<A: Automaton> {
     Crossing { edge: A::Edge, before: A::State },
     /// The run ends here.
     Stop { stop: Stop<A::Edge>, state: A::State },
+}
+
+impl<A: Automaton> ArcEnd<A> {
+    /// At `state`, after a piece to whose end this was found and of which the observer was told.
+    #[inline]
+    fn after(found: Found<A>, told: ControlFlow<()>, state: A::State) -> Self {
+        match found {
+            _ if told.is_break() => Self::Stop { stop: Stop::Observer, state },
+            Some((edge, _)) => Self::Crossing { edge, before: state },
+            None => Self::Stop { stop: Stop::Time, state },
+        }
+    }
 }
 
 /// The edge just taken, whose root is spent, and how far from zero its guard is there for rounding alone.

@@ -1,5 +1,7 @@
 //! An arc whose flow is stepped.
 
+use std::ops::ControlFlow;
+
 use crate::automaton::Automaton;
 use crate::control::first_step;
 use crate::cross::Crossing;
@@ -67,15 +69,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Some((found, dense, scale)) => (*found, dense.as_ref(), *scale),
                 None => (rough, c, h),
             };
-            let close = self.close(found, clock.now, |s| horner(c, s / scale), remaining);
-            let told =
-                close.span > 0.0 && observer.piece(mode, &Piece::new(clock.now, close.span, scale, c)).is_break();
-            clock.now = close.time;
-            return Ok(if told {
-                ArcEnd::Stop { stop: Stop::Observer, state: close.state }
+            let close = self.close(found, clock.now, |s| horner(c, s / scale), remaining, false);
+            let told = if close.span > 0.0 {
+                observer.piece(mode, &Piece::new(clock.now, close.span, scale, c))
             } else {
-                ArcEnd::Crossing { edge: found.0, before: close.state }
-            });
+                ControlFlow::Continue(())
+            };
+            clock.now = close.time;
+            return Ok(ArcEnd::after(Some(found), told, close.state));
         }
     }
 
