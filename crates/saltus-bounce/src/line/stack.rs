@@ -15,30 +15,46 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
     /// impacts happen at that time, and their speeds shrink geometrically to nothing: they are followed down to rounding.
     pub(super) fn struck(&self, Contact(contact): Contact, lying: Lying, x: &Row<N>) -> (Lying, Row<N>) {
         let mut after = self.closed(contact, x);
-        if !(self.floor && self.gravity > 0.0) {
-            return (lying, after);
-        }
         let greatest = self.greatest(x);
+        let rounding = ROUNDING * greatest;
+        if !(self.floor && self.gravity > 0.0) {
+            return self.in_touch(lying, 1, rounding, after);
+        }
         let lying = Lying { fastest: lying.fastest.max(greatest), ..lying };
-        if greatest <= f64::EPSILON * lying.fastest {
-            // What is left of the motion is too short for time to tell.
-            return self.merged(lying, &[true; N], &after);
+        let still = self.still(f64::EPSILON * lying.fastest, &after);
+        if still > lying.balls {
+            return self.merged(lying, &std::array::from_fn(|i| i < still), &after);
         }
         let standing = after.gaps.iter().take_while(|&&gap| gap == 0.0).count();
         if contact >= standing {
-            return (lying, after);
+            return self.in_touch(lying, standing.max(1), rounding, after);
         }
-        let rounding = ROUNDING * greatest;
-        let mut lost = true;
+        let mut lying = Lying { balls: 0, ..lying };
         for _ in 0..MOST * N {
-            let Some(next) = (0..standing).find(|&i| approach(i, &after) > rounding) else {
-                lost = false;
-                break;
-            };
-            after = self.closed(next, &after);
+            if let Some(next) = (0..standing).find(|&i| approach(i, &after) > rounding) {
+                after = self.closed(next, &after);
+                continue;
+            }
+            // Balls that are made one may be approached by the next one, now faster than that.
+            (lying, after) = self.in_touch(lying, 0, rounding, after);
+            if (0..standing).all(|i| approach(i, &after) <= 0.0) {
+                return (lying, after);
+            }
         }
-        let closed = std::array::from_fn(|i| i < standing && (lost || -approach(i, &after) <= rounding));
-        self.merged(Lying { balls: 0, ..lying }, &closed, &after)
+        self.merged(lying, &std::array::from_fn(|i| i < standing), &after)
+    }
+
+    /// Balls that touch, from contact `first` on, and whose relative speed is rounding move as one: left alone they would hand that rounding
+    /// to and fro for ever, before a neighbour's impact is seen.
+    fn in_touch(&self, lying: Lying, first: usize, rounding: f64, x: Row<N>) -> (Lying, Row<N>) {
+        let slow = |i: usize| i >= first && x.gaps[i] == 0.0 && approach(i, &x).abs() <= rounding;
+        self.merged(lying, &std::array::from_fn(slow), &x)
+    }
+
+    /// How many balls from the floor up would not arrive at it faster than at the `speed` that is rounding, if nothing were in their way.
+    fn still(&self, speed: f64, x: &Row<N>) -> usize {
+        let fast = |(v, y): (f64, f64)| v * v + 2.0 * self.gravity * y > speed * speed;
+        x.velocities.into_iter().zip(x.positions()).position(fast).unwrap_or(N)
     }
 
     /// The greatest speed at which a ball would arrive at the floor if nothing were in its way.
