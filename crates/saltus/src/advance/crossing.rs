@@ -32,11 +32,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let start = self.start(edge, first);
             let affine = self.automaton.affine(edge);
-            let powers = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
-            if start != Start::Spent && powers.as_ref().is_some_and(Powers::stay_above) {
+            if affine && start != Start::Spent && self.stays_above(edge, now, c, limit / scale) {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence: Evidence::Excluded });
                 continue;
             }
+            let powers = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
             let p = powers.as_ref().and_then(Powers::bernstein);
             let bend = if p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
@@ -54,6 +54,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             found = earlier(found, edge, fall);
         }
         Ok(found)
+    }
+
+    /// Whether an affine guard can have no fall along a polynomial over `0..=stretch` times its scale for the size of its powers alone: by far the
+    /// cheapest thing to see, with room for the digits that the guard's constant costs.
+    #[inline]
+    fn stays_above(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> bool {
+        self.memory.stats.guards += c.len() as u64 + 1;
+        let t = now.seconds();
+        let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
+        let start = self.automaton.guard(edge, t, &c[0]);
+        let (mut most, mut power) = (0.0, stretch);
+        for c in &c[1..] {
+            most += (self.automaton.guard(edge, t, c) - constant).abs() * power;
+            power *= stretch;
+        }
+        let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
+        start > most + rounding && rounding < f64::INFINITY
     }
 
     /// How far the guard bends along a polynomial: by its powers from the second on.
@@ -175,13 +192,6 @@ struct Powers {
 }
 
 impl Powers {
-    /// Whether no fall is possible for the size of the powers alone, which is far cheaper to see than by their Bernstein form.
-    #[inline]
-    fn stay_above(&self) -> bool {
-        let most: f64 = self.p[1..self.len].iter().map(|p| p.abs()).sum();
-        self.p[0] > (1.0 + 16.0 * f64::EPSILON) * most + self.rounding && most.is_finite()
-    }
-
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(&self.p[..self.len])?;

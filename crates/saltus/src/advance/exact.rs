@@ -1,7 +1,7 @@
 //! An arc whose flow is solved exactly.
 
 use crate::automaton::{Automaton, Fall, Polynomial};
-use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, settle};
+use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
 use crate::poly::{quadratic_fall, quadratic_touch};
@@ -134,7 +134,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 first_fall(|s| guard(from + s), to - from, start).map_err(|Undefined(s)| Undefined(from + s))?;
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
-                let fall = if from == 0.0 { Some(crossing) } else { settle(&mut guard, from + crossing.root) };
+                let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
                 return Ok(Searched { fall, evidence });
             }
             if to >= limit || !to.is_finite() {
@@ -144,6 +144,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             window *= 2.0;
             start = Start::Resumed;
         }
+    }
+}
+
+/// A crossing found `from` after the start of the guard's clock.
+fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> Option<Crossing> {
+    let [inside, outside, root] = [crossing.inside, crossing.outside, crossing.root].map(|s| from + s);
+    if inside < outside && guard(inside) >= 0.0 && guard(outside) < 0.0 {
+        let (inside, outside) = narrowed(guard, inside, outside);
+        Some(Crossing { inside, outside, root: root.clamp(inside, outside), rest: 0.0 })
+    } else {
+        settle(guard, root)
     }
 }
 

@@ -13,25 +13,31 @@ pub(crate) const NODES: [f64; 9] = [
     1.0,
 ];
 
-/// `T_k` at node j is cos(jk pi / 8), itself a node up to the order.
-fn value(k: usize, j: usize) -> f64 {
-    // Node j has the angle (8 - j) pi / 8; fold the multiple of pi / 8 back into 0..=8.
-    let turn = (k * (8 - j)) % 16;
-    let fold = if turn > 8 { 16 - turn } else { turn };
-    NODES[8 - fold]
+/// Row k: what each node adds to the coefficient of `T_k`.
+const WEIGHTS: [[f64; 9]; 9] = weights();
+
+const fn weights() -> [[f64; 9]; 9] {
+    let mut rows = [[0.0; 9]; 9];
+    let mut k = 0;
+    while k < 9 {
+        let mut j = 0;
+        while j < 9 {
+            // T_k at node j, whose angle is (8 - j) π / 8, is cos(k (8 - j) π / 8): a node itself, once its angle is folded back into 0..=π.
+            let turn = (k * (8 - j)) % 16;
+            let fold = if turn > 8 { 16 - turn } else { turn };
+            let whole = if k == 0 || k == 8 { 8.0 } else { 4.0 };
+            let end = if j == 0 || j == 8 { 0.5 } else { 1.0 };
+            rows[k][j] = end * NODES[8 - fold] / whole;
+            j += 1;
+        }
+        k += 1;
+    }
+    rows
 }
 
 /// The coefficients of `T_0` to `T_8` of the interpolant.
 pub(crate) fn series(values: &[f64; 9]) -> [f64; 9] {
-    std::array::from_fn(|k| {
-        let sum: f64 = (0..9)
-            .map(|j| {
-                let end = if j == 0 || j == 8 { 0.5 } else { 1.0 };
-                end * values[j] * value(k, j)
-            })
-            .sum();
-        if k == 0 || k == 8 { sum / 8.0 } else { sum / 4.0 }
-    })
+    WEIGHTS.map(|row| row.iter().zip(values).map(|(weight, value)| weight * value).sum())
 }
 
 /// Clenshaw's sum of the series at `x`.

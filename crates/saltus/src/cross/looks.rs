@@ -5,6 +5,8 @@ use super::{Evidence, Undefined};
 
 /// How many samples are taken of a guard that seems to be nothing but rounding.
 const LOOKS: usize = 128;
+/// So many samples are taken of each step at least: with fewer, halves that are rounded to even could hide every other one.
+const PER_STEP: usize = 4;
 /// If they change direction no more often than this, they are not rounding and their signs count.
 const MOST_TURNS: usize = 8;
 
@@ -55,7 +57,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         if turns > MOST_TURNS {
             return Ok(Look::Rounding(self.seen_through(&samples, a, side)));
         }
-        if steps > LOOKS / 2 {
+        if steps > LOOKS / PER_STEP {
             return Ok(Look::Smooth);
         }
         let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };

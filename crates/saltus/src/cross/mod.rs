@@ -7,7 +7,7 @@ mod search;
 
 use crate::poly::{Bernstein, Shape};
 
-pub(crate) use refine::settle;
+pub(crate) use refine::{narrowed, settle};
 use search::Search;
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.

@@ -34,11 +34,17 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
             step *= 2.0;
         }
     }
+    let (a, b) = narrowed(guard, a, b);
+    Some(Crossing { inside: a, outside: b, root: near, rest: 0.0 })
+}
+
+/// Neighbouring numbers within `a..b` between which the guard falls, not negative at `a` and negative at `b`.
+pub(crate) fn narrowed(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> (f64, f64) {
     while a.next_up() < b {
         let middle = 0.5 * (a + b);
         if guard(middle) >= 0.0 { a = middle } else { b = middle }
     }
-    Some(Crossing { inside: a, outside: b, root: near, rest: 0.0 })
+    (a, b)
 }
 
 impl<G: FnMut(f64) -> f64> Search<G> {

@@ -130,9 +130,21 @@ impl<G: FnMut(f64) -> f64> Search<G> {
                 (self.spent, self.base) = (true, value);
                 Side::Wall
             }
-            Start::Resumed if value == 0.0 && (self.guard)(-self.span * ROUNDING) < 0.0 => Side::Outside,
+            Start::Resumed if value == 0.0 => self.side_before(),
             Start::Open | Start::Resumed => Side::of(value, Side::Wall),
         })
+    }
+
+    /// On which side the guard was shortly before it became zero at the start: at the last time that differs from it.
+    fn side_before(&mut self) -> Side {
+        let mut back = self.span * ROUNDING;
+        while back < self.span {
+            match Side::of((self.guard)(-back), Side::Wall) {
+                Side::Wall => back *= 2.0,
+                side => return side,
+            }
+        }
+        Side::Wall
     }
 
     pub(super) fn weaken(&mut self, evidence: Evidence) {
@@ -152,13 +164,18 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             self.weaken(Evidence::Unresolved { from: a, to: b });
             return self.by_sign(a, b, side);
         }
-        let proxy = match known {
-            Some(p) => Ok(Proxy { p: *p, margin: whole, start: p.start(), end: p.end() }),
-            None => self.proxy(a, b),
-        };
-        let Ok(Proxy { p, mut margin, start, end }) = proxy else {
+        let proxy = if let Some(p) = known {
+            Proxy { p: *p, margin: whole, start: p.start(), end: p.end() }
+        } else if let Ok(samples) = self.sampled(a, b) {
+            if side == Side::Inside && samples.stay_above() {
+                self.flat = None;
+                return Ok(Part::None(Side::Inside));
+            }
+            samples.proxy()
+        } else {
             return self.halved(stretch, f64::INFINITY, side);
         };
+        let Proxy { p, mut margin, start, end } = proxy;
         let leaving = side == Side::Wall && a == 0.0;
         if leaving && known.is_some() {
             margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
@@ -241,7 +258,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter times, and so not rounding.
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {
-            let shorter = self.proxy(0.0, part * b)?.p.without_root_at_start().start();
+            let shorter = self.sampled(0.0, part * b)?.proxy().p.without_root_at_start().start();
             if (shorter - part * change).abs() > 0.2 * part * change.abs() {
                 return Ok(false);
             }
@@ -278,8 +295,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         Ok(if side == Side::Inside && end == Side::Outside { Part::Fall { a, b, near: None } } else { Part::None(end) })
     }
 
-    /// The interpolant at the Chebyshev points of `[a, b]`, and how far the guard may be from it.
-    fn proxy(&mut self, a: f64, b: f64) -> Result<Proxy, Undefined> {
+    /// The guard at the Chebyshev points of `[a, b]` and at two checks between them.
+    fn sampled(&mut self, a: f64, b: f64) -> Result<Samples, Undefined> {
         let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
         let mut values = [0.0; 9];
         for (value, x) in values.iter_mut().zip(chebyshev::NODES) {
@@ -293,20 +310,45 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             *value = self.value(s)?;
         }
         let series = chebyshev::series(&values);
-        let p = Bernstein::new(&chebyshev::bernstein(&series));
         let mut off = 0.0_f64;
         for x in [-0.557_350_921, 0.271_828_183] {
             off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
         }
+        let off = (series[7].abs() + series[8].abs()).max(off);
         // The nodes themselves are rounded, and the state at them likewise.
-        let jitter = p.steepest() * (b.next_up() - b) / (b - a);
-        let margin = 8.0 * ((series[7].abs() + series[8].abs()).max(off) + jitter) + 16.0 * f64::EPSILON * p.scale();
-        Ok(Proxy {
-            p,
-            margin: if margin.is_finite() { margin } else { f64::INFINITY },
-            start: values[0],
-            end: values[8],
-        })
+        Ok(Samples { series, off, spacing: (b.next_up() - b) / (b - a), start: values[0], end: values[8] })
+    }
+}
+
+/// A guard seen at the Chebyshev points of an interval.
+struct Samples {
+    series: [f64; 9],
+    /// How far the guard is from its interpolant, as far as seen.
+    off: f64,
+    /// The spacing of numbers, as a part of the interval.
+    spacing: f64,
+    /// The guard at both ends.
+    start: f64,
+    end: f64,
+}
+
+impl Samples {
+    /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
+    fn stay_above(&self) -> bool {
+        let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);
+        for (k, c) in self.series.iter().enumerate().skip(1) {
+            most += c.abs();
+            steepest += 2.0 * square * c.abs();
+            square += (2 * k + 1) as f64;
+        }
+        let scale = self.series[0].abs() + most;
+        self.series[0] > most + 8.0 * (self.off + steepest * self.spacing) + 16.0 * f64::EPSILON * scale
+    }
+
+    fn proxy(&self) -> Proxy {
+        let p = Bernstein::new(&chebyshev::bernstein(&self.series));
+        let margin = 8.0 * (self.off + p.steepest() * self.spacing) + 16.0 * f64::EPSILON * p.scale();
+        Proxy { p, margin: if margin.is_finite() { margin } else { f64::INFINITY }, start: self.start, end: self.end }
     }
 }
 

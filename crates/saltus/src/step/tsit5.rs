@@ -88,9 +88,9 @@ impl Stepper for Tsit5 {
     ) -> [S; 5] {
         let last = last(trial);
         let c1 = x.with(|i| h * trial.stages[0].get(i));
-        let higher = D.map(|d| x.with(|i| h * weighted(&d, all(trial, &last), i)));
-        let [c3, c4] = higher;
-        [*x, c1, closing(x, &trial.end, &c1, &higher), c3, c4]
+        let higher = |d: &[f64; 6]| x.with(|i| h * weighted(d, all(trial, &last), i));
+        let (c3, c4) = (higher(&D[0]), higher(&D[1]));
+        [*x, c1, closing(x, &trial.end, &c1, &[c3, c4]), c3, c4]
     }
 }
 
