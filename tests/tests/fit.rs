@@ -16,12 +16,17 @@ fn root() -> PathBuf {
 
 /// The table of other people's, or `None` where it is not to be had.
 fn borrowed(name: &str, options: &ReadOptions) -> Option<Table> {
-    let path = root().join("../shared/data").join(name);
-    if !path.exists() {
+    pooled(&[name], options)
+}
+
+/// Several tables of other people's as one.
+fn pooled(names: &[&str], options: &ReadOptions) -> Option<Table> {
+    let paths: Vec<PathBuf> = names.iter().map(|name| root().join("../shared/data").join(name)).collect();
+    if let Some(path) = paths.iter().find(|path| !path.exists()) {
         eprintln!("skipped: {} is not here", path.display());
         return None;
     }
-    match Table::read(&path, options) {
+    match Table::read_all(&paths, options) {
         Ok(table) => Some(table),
         Err(error) => panic!("{error}"),
     }
@@ -110,9 +115,55 @@ fn a_tennis_ball_s_intervals_from_five_heights() {
 
 #[test]
 fn a_drop_without_a_bounce_is_refused() {
-    let options = ReadOptions::default().height_unit("m").time_unit("s");
-    let Some(table) = borrowed("tracker_drop/black_ball.txt", &options) else { return };
+    let Some(table) = borrowed("tracker_drop/black_ball.txt", &ReadOptions::default()) else { return };
     let report = Fit::new().run(&table).expect("a report");
     assert_eq!(report.verdict(), Verdict::Refused);
     assert!(report.reason().contains("no bounce"), "{}", report.reason());
+}
+
+#[test]
+fn a_telephone_s_workbooks_as_they_are() {
+    let names = [1, 2, 3, 4, 5].map(|n| format!("phyphox_golf_tennis/tennis/Lancio {n}, tennis, 65.xls"));
+    let Some(table) = pooled(&names.each_ref().map(String::as_str), &ReadOptions::default()) else { return };
+    assert_eq!(table.trials().len(), 5);
+    matches(&Fit::new().run(&table).expect("a report"), 0.7610, 0.0012);
+}
+
+#[test]
+fn launches_side_by_side_in_sheets_named_by_their_height() {
+    let names = ["phyphox_golf_tennis/CR_method2.xlsx", "phyphox_golf_tennis/data_golfball.xlsx"];
+    let Some(table) = pooled(&names, &ReadOptions::default()) else { return };
+    assert_eq!(table.trials().len(), 20);
+    matches(&Fit::new().run(&table).expect("a report"), 0.8960, 0.0010);
+    // The same launches as somebody copied them into one table.
+    let long = borrowed("phyphox_golf_tennis/events_long.csv", &ReadOptions::default().filter("ball", "golf"));
+    let contacts = |table: &Table| table.trials().iter().map(|t| t.readings().len()).sum::<usize>();
+    assert_eq!(Some(contacts(&table)), long.as_ref().map(contacts));
+}
+
+/// The lowest and the highest sample of a series, in metres, and how long it lasts.
+fn extent(table: &Table, trial: usize) -> (f64, f64, f64) {
+    let readings = table.trials()[trial].readings();
+    let heights = || readings.iter().filter_map(|r| r.height);
+    let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+    (low, high, readings.last().and_then(|r| r.time).expect("a time"))
+}
+
+#[test]
+fn tracks_of_pixels_are_turned_the_right_way_up() {
+    let options = ReadOptions::default().fps(200.0);
+    let Some(marble) = borrowed("marble_200fps/HT-2-M.csv", &options) else { return };
+    assert_eq!((marble.trials().len(), marble.trials()[0].readings().len()), (1, 198));
+    let (low, high, end) = extent(&marble, 0);
+    assert!(low == 0.0 && (203.0..206.0).contains(&high) && (end - 0.99).abs() < 1e-9, "{low} {high} {end}");
+    assert!(marble.notes().iter().any(|note| note.contains("hardly moves: track 2")), "{:?}", marble.notes());
+
+    let options = ReadOptions::default().fps(100.0).scale(1.371 / 911.0);
+    let names = [5, 6, 7, 8, 9].map(|n| format!("tabletennis_100fps/tracked-{n}.txt"));
+    let Some(table) = pooled(&names.each_ref().map(String::as_str), &options) else { return };
+    assert_eq!(table.trials().len(), 5);
+    for trial in 0..5 {
+        let (low, high, _) = extent(&table, trial);
+        assert!(low == 0.0 && (0.3..3.0).contains(&high), "{trial}: {low} {high}");
+    }
 }

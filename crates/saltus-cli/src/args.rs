@@ -28,6 +28,9 @@ const LAYOUTS: &str = "Layouts of tables, for example:
   bounce,height_cm           one height per bounce, 0 for the drop
   bounce,time (s)            one time per contact
   trial,bounce,time_ms       several trials
+  time_s,height_m            a series from a film or a motion sensor
+Read as they are: what Tracker, ImageJ, Vernier's and phyphox' programs write, workbooks (.xlsx, .xls),
+zipped CSV, and tracks of bare pixels with --fps. The report says what was recognised.
 Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30'
 in the table, from the scatter, or are assumed; the report says which.";
 
@@ -53,13 +56,14 @@ pub(crate) enum Command {
 
 /// Estimate the coefficient of restitution (COR) from a table of bounces.
 ///
-/// The table is CSV with a header: rebound heights, contact times, or both. Units stand in the header; commas, semicolons or tabs
-/// separate the cells.
+/// A table holds rebound heights, contact times, both, or a series of heights in time: as CSV with a header, a workbook, or what a
+/// tracking program or a telephone writes. Units stand in the header.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
-    /// The table; `-` for standard input.
-    pub(crate) table: PathBuf,
+    /// The tables, whose trials are fitted together; `-` for standard input.
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) tables: Vec<PathBuf>,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -78,15 +82,36 @@ pub(crate) struct Fit {
     /// Gravity, such as `9.81m/s^2`; used only where heights meet times.
     #[arg(long, value_name = "ACCELERATION", value_parser = positive(Quantity::Acceleration))]
     pub(crate) gravity: Option<f64>,
-    /// The unit of heights where the header names none, such as `cm`.
-    #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Length))]
+    /// The unit of heights where the header names none, such as `cm`, or `px` for pixels.
+    #[arg(long, value_name = "UNIT", value_parser = height_unit)]
     pub(crate) height_unit: Option<String>,
     /// The unit of times where the header names none, such as `ms`.
     #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Time))]
     pub(crate) time_unit: Option<String>,
-    /// The column to fit, where several hold readings of the same thing.
+    /// The column or the track to fit, where several hold readings of the same thing.
     #[arg(long, value_name = "NAME")]
     pub(crate) column: Option<String>,
+    /// The sheet of a workbook, or the file of a zip archive, to read; without it, every one that holds a table.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) sheet: Option<String>,
+    /// Names for the columns, in place of those in the file, such as `bounce,height_cm`; `-` leaves a column aside.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) header: Option<Vec<String>>,
+    /// How many frames were filmed in a second, where the table counts frames.
+    #[arg(long, value_name = "NUMBER", value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// How large one pixel is, such as `1.5mm`, or `1.371m/911` for a length that spans 911 pixels.
+    #[arg(long, value_name = "LENGTH", value_parser = scale)]
+    pub(crate) scale: Option<f64>,
+    /// What the height scale reads at the floor, in its own unit.
+    #[arg(long, value_name = "NUMBER", value_parser = finite, allow_hyphen_values = true)]
+    pub(crate) zero: Option<f64>,
+    /// The height scale counts downwards, as in pictures; without it, a series tells by the way it falls.
+    #[arg(long)]
+    pub(crate) y_down: bool,
+    /// The height scale counts upwards.
+    #[arg(long, conflicts_with = "y_down")]
+    pub(crate) y_up: bool,
     /// Keep only the rows in which this column has this value; may be repeated.
     #[arg(long = "filter", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filters: Vec<(String, String)>,
@@ -180,6 +205,27 @@ fn unit(quantity: Quantity) -> impl Fn(&str) -> Result<String, String> + Clone +
             Err(format!("'{text}' is not a unit of {quantity}: use one of {}", known.join(", ")))
         }
     }
+}
+
+fn height_unit(text: &str) -> Result<String, String> {
+    if text == "px" { Ok(text.to_owned()) } else { unit(Quantity::Length)(text) }
+}
+
+/// A length per pixel: `1.5mm`, or a length and the pixels it spans, `1.371m/911` or `1.371 m = 911 px`.
+fn scale(text: &str) -> Result<f64, String> {
+    let (length, pixels) = text.split_once(['/', '=']).unwrap_or((text, "1"));
+    let pixels = pixels.trim().trim_end_matches("px").trim_end();
+    let pixels = if pixels.is_empty() { Ok(1.0) } else { pixels.parse::<f64>() };
+    match (positive(Quantity::Length)(length.trim())?, pixels) {
+        (length, Ok(pixels)) if pixels > 0.0 && (length / pixels).is_normal() => Ok(length / pixels),
+        _ => Err(format!(
+            "'{text}' is not a scale: write 1.5mm for one pixel, or 1.371m/911 for a length and its pixels"
+        )),
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| format!("'{text}' is not a number"))
 }
 
 fn cor(text: &str) -> Result<Cor, String> {

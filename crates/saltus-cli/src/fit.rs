@@ -14,6 +14,7 @@ use crate::output::{check_picture, say, write};
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     let table = read(args)?;
+    say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     let report = fit(args).run(&table).map_err(Error::new)?;
     let text = match args.format {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
@@ -34,6 +35,19 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
 }
 
 fn read(args: &args::Fit) -> Result<Table, Error> {
+    let options = options(args);
+    if args.tables == [Path::new("-")] {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
+        Table::parse("standard input", &bytes, &options).map_err(Error::new)
+    } else if args.tables.iter().any(|table| table == Path::new("-")) {
+        Err(Error::new("standard input, '-', cannot be read together with other tables"))
+    } else {
+        Table::read_all(&args.tables, &options).map_err(Error::new)
+    }
+}
+
+fn options(args: &args::Fit) -> ReadOptions {
     let mut options = ReadOptions::default();
     if let Some(unit) = &args.height_unit {
         options = options.height_unit(unit);
@@ -44,16 +58,28 @@ fn read(args: &args::Fit) -> Result<Table, Error> {
     if let Some(column) = &args.column {
         options = options.column(column);
     }
+    if let Some(sheet) = &args.sheet {
+        options = options.sheet(sheet);
+    }
+    if let Some(header) = &args.header {
+        options = options.header(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    if let Some(fps) = args.fps {
+        options = options.fps(fps);
+    }
+    if let Some(scale) = args.scale {
+        options = options.scale(scale);
+    }
+    if let Some(zero) = args.zero {
+        options = options.zero(zero);
+    }
+    if args.y_down || args.y_up {
+        options = options.y_down(args.y_down);
+    }
     for (column, value) in &args.filters {
         options = options.filter(column, value);
     }
-    if args.table == Path::new("-") {
-        let mut bytes = Vec::new();
-        std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
-        Table::parse("standard input", &bytes, &options).map_err(Error::new)
-    } else {
-        Table::read(&args.table, &options).map_err(Error::new)
-    }
+    options
 }
 
 fn fit(args: &args::Fit) -> Fit {

@@ -168,6 +168,41 @@ fn heights_that_rise() {
     assert!(!json["warnings"].as_array().unwrap().is_empty());
 }
 
+/// What a file was taken for is said in one line, and nothing is said to a quiet command.
+#[test]
+fn what_was_recognised_is_said() {
+    let (_folder, path) = table("height (cm)\n100\n64\n41\n");
+    let output = run(&["fit", &path]);
+    let said = text(&output.stderr);
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(said.contains("3 rows, 1 trial; read as heights 'height (cm)' in order"), "{said}");
+    assert_eq!(text(&run(&["-q", "fit", &path]).stderr), "");
+}
+
+/// Two files are one experiment; a track of pixels is read once its frame rate is known.
+#[test]
+fn several_files_and_bare_pixels() {
+    let (_a, first) = table("bounce,height_cm\n0,100\n1,64\n2,41\n");
+    let (_b, second) = table("bounce;height_mm\n0;1000\n1;650\n2;420\n");
+    let json: Value = serde_json::from_str(&done(&["fit", &first, &second, "--format", "json"])).unwrap();
+    assert_eq!(json["trials"], 2);
+    let (_c, pixels) = table("7;100;\n7;103;\n7;109;\n7;118;\n");
+    let message = refused(&["fit", &pixels]);
+    assert!(message.contains(":1:1: the table has no header") && message.contains("--fps 100"), "{message}");
+    let scaled = ["fit", &pixels, "--fps", "50", "--scale", "1.371m/911px", "--y-down", "--format", "json"];
+    assert_eq!(serde_json::from_str::<Value>(&done(&scaled)).unwrap()["trials"], 1);
+    for (arguments, part) in [
+        (&["--scale", "2"][..], "give a unit of length"),
+        (&["--scale", "1m/0"], "is not a scale"),
+        (&["--zero", "low"], "is not a number"),
+        (&["--y-up", "--y-down"], "cannot be used with"),
+        (&["--sheet", "All"], "this file has no sheets"),
+    ] {
+        let message = refused(&[&["fit", pixels.as_str()], arguments].concat());
+        assert!(message.contains(part), "{arguments:?}: no '{part}' in:\n{message}");
+    }
+}
+
 #[test]
 fn a_table_from_standard_input() {
     let mut child = saltus().args(["fit", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();

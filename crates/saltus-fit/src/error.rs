@@ -35,6 +35,22 @@ pub(crate) struct Place {
     pub(crate) column: usize,
     pub(crate) width: usize,
     pub(crate) text: String,
+    /// In a workbook, the sheet and the number of the cell in its row.
+    pub(crate) cell: Option<(String, usize)>,
+}
+
+impl Place {
+    /// The cell as a spreadsheet names it, such as `B3`.
+    fn address(&self, index: usize) -> String {
+        let mut letters = Vec::new();
+        let mut rest = index + 1;
+        while rest > 0 {
+            rest -= 1;
+            letters.push(char::from(b'A' + u8::try_from(rest % 26).unwrap_or_default()));
+            rest /= 26;
+        }
+        format!("{}{}", letters.iter().rev().collect::<String>(), self.line)
+    }
 }
 
 impl TableError {
@@ -52,16 +68,16 @@ impl TableError {
         self
     }
 
-    /// The line the problem is in, counted from 1; `None` when it is the file as a whole.
+    /// The line the problem is in (the row, in a workbook), counted from 1; `None` when it is the file as a whole.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
         self.place.as_ref().map(|place| place.line)
     }
 
-    /// The column the problem starts at, in characters counted from 1; `None` when it is the file as a whole.
+    /// The column the problem starts at, in characters (in a workbook, cells) counted from 1; `None` when it is the file as a whole.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
-        self.place.as_ref().map(|place| place.column)
+        self.place.as_ref().map(|place| place.cell.as_ref().map_or(place.column, |(_, index)| index + 1))
     }
 }
 
@@ -72,7 +88,10 @@ impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.name)?;
         if let Some(place) = &self.place {
-            write!(f, ":{}:{}", place.line, place.column)?;
+            match &place.cell {
+                Some((sheet, index)) => write!(f, ", sheet '{sheet}', cell {}", place.address(*index))?,
+                None => write!(f, ":{}:{}", place.line, place.column)?,
+            }
         }
         write!(f, ": {}", self.message)?;
         if let Some(place) = &self.place {

@@ -1,12 +1,23 @@
 //! Tables of measured bounces: releases, contacts and apexes, by trial, in SI units.
 
 mod check;
+mod export;
 mod header;
 mod layout;
+mod options;
 mod order;
+mod pool;
 mod read;
+mod samples;
+mod sheet;
+mod text;
+mod units;
+mod workbook;
 
+use std::io::Read;
 use std::path::Path;
+
+pub use options::ReadOptions;
 
 use crate::error::TableError;
 
@@ -73,54 +84,6 @@ impl Trial {
     }
 }
 
-/// How to read a table where the table itself does not say.
-///
-/// ```
-/// use saltus_fit::{ReadOptions, Table};
-///
-/// let options = ReadOptions::default().height_unit("cm");
-/// let table = Table::parse("drop.csv", b"bounce,height\n0,100\n1,64\n2,41\n", &options)?;
-/// assert_eq!(table.trials()[0].readings()[1].height, Some(0.64));
-/// # Ok::<(), saltus_fit::TableError>(())
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct ReadOptions {
-    pub(crate) height_unit: Option<String>,
-    pub(crate) time_unit: Option<String>,
-    pub(crate) column: Option<String>,
-    pub(crate) filters: Vec<(String, String)>,
-}
-
-impl ReadOptions {
-    /// The unit of heights (`m`, `cm`, `mm`, `in`, ...), used for columns whose header names none.
-    #[must_use]
-    pub fn height_unit(mut self, unit: &str) -> Self {
-        self.height_unit = Some(unit.to_owned());
-        self
-    }
-
-    /// The unit of times (`s`, `ms`, ...), used for columns whose header names none.
-    #[must_use]
-    pub fn time_unit(mut self, unit: &str) -> Self {
-        self.time_unit = Some(unit.to_owned());
-        self
-    }
-
-    /// The column to take where several hold readings of the same thing; without it the first is taken.
-    #[must_use]
-    pub fn column(mut self, name: &str) -> Self {
-        self.column = Some(name.to_owned());
-        self
-    }
-
-    /// Keeps only the rows whose cell in the column `name` reads `value`; may be given several times.
-    #[must_use]
-    pub fn filter(mut self, name: &str, value: &str) -> Self {
-        self.filters.push((name.to_owned(), value.to_owned()));
-        self
-    }
-}
-
 /// A table of measured bounces, read and checked.
 ///
 /// ```
@@ -141,15 +104,21 @@ pub struct Table {
     pub(crate) warnings: Vec<String>,
     pub(crate) metadata: Metadata,
     pub(crate) zero_rebounds: usize,
+    pub(crate) rows: usize,
 }
 
-/// What the table's comments state, in SI units.
+/// A file larger than this holds no table of bounces, bytes.
+const LARGEST: u64 = 1 << 30;
+
+/// What the table's comments and options state, in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Metadata {
     pub(crate) frame_rate: Option<f64>,
     pub(crate) gravity: Option<f64>,
     pub(crate) sigma_height: Option<f64>,
     pub(crate) sigma_time: Option<f64>,
+    /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.
+    pub(crate) pixels: bool,
 }
 
 impl Table {
@@ -158,35 +127,55 @@ impl Table {
     /// # Errors
     /// [`TableError`] when the file cannot be opened, or for any reason of [`Table::parse`].
     pub fn read(path: &Path, options: &ReadOptions) -> Result<Self, TableError> {
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
-        let shown = path.display().to_string();
-        if path.is_dir() {
-            return Err(TableError::new(&shown, "this is a directory").help("name a file, such as a table in CSV"));
+        Self::read_all(&[path], options)
+    }
+
+    /// Reads several files into one table: every file adds its trials.
+    ///
+    /// ```no_run
+    /// use saltus_fit::{ReadOptions, Table};
+    ///
+    /// let table = Table::read_all(&["launch-1.xls", "launch-2.xls"], &ReadOptions::default())?;
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Table::read`], for the first file that has one; when the files state different gravity; and for no file at all.
+    pub fn read_all(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, TableError> {
+        let mut parts = Vec::with_capacity(paths.len());
+        for path in paths.iter().map(AsRef::as_ref) {
+            let shown = path.display().to_string();
+            let name = path.file_name().map_or_else(|| shown.clone(), |n| n.to_string_lossy().into_owned());
+            let table = read::table(&shown, &bytes(path, &shown)?, options)?;
+            parts.push((name.clone(), Self { name, ..table }));
         }
-        let bytes = std::fs::read(path).map_err(|error| {
-            let (message, help) = match error.kind() {
-                std::io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the name and the folder"),
-                _ => (format!("the file cannot be read: {error}"), "check that you may read it"),
-            };
-            TableError::new(&shown, message).help(help)
-        })?;
-        let mut table = Self::parse(&shown, &bytes, options)?;
-        table.name = name;
-        Ok(table)
+        if parts.is_empty() {
+            return Err(TableError::new("no file", "there is nothing to read").help("name a file"));
+        }
+        let more = if parts.len() > 1 { format!(" and {} more", parts.len() - 1) } else { String::new() };
+        let name = format!("{}{more}", parts[0].0);
+        Ok(pool::join(&name, parts)?.checked())
     }
 
     /// Reads a table from bytes; `name` stands in messages.
     ///
-    /// Understood are CSV with commas, and with semicolons or tabs (then also with decimal commas), in UTF-8, with a
-    /// header line, `#` comments and blank lines. `docs/fitting.md` shows every layout.
+    /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's and phyphox' programs export;
+    /// bare numbers, if the options say what they are), workbooks (`.xlsx`, `.xls`) and zip archives of CSV. `docs/fitting.md`
+    /// shows every layout.
     ///
     /// # Errors
     /// [`TableError`], with line and column, for a cell that is not a finite number, a height below the floor, a column
     /// that is not known or has no unit, times that run backwards, readings given twice; and for an empty file.
     pub fn parse(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, TableError> {
-        let mut table = read::table(name, bytes, options)?;
-        check::table(&mut table);
-        Ok(table)
+        Ok(read::table(name, bytes, options)?.checked())
+    }
+
+    /// Once all trials are together: what must not be counted is taken out, what was read is said.
+    fn checked(mut self) -> Self {
+        let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        self.notes.insert(0, format!("{}, {}", plural(self.rows, "row"), plural(self.trials.len(), "trial")));
+        check::table(&mut self);
+        self
     }
 
     /// One trial from the heights of its apexes in metres: the height of release first, then each rebound.
@@ -281,4 +270,23 @@ impl Table {
     pub fn gravity(&self) -> Option<f64> {
         self.metadata.gravity
     }
+}
+
+fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, TableError> {
+    if path.is_dir() {
+        return Err(TableError::new(shown, "this is a directory").help("name files in it, such as tables in CSV"));
+    }
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
+    read.map_err(|error| {
+        let (message, help) = match error.kind() {
+            std::io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the name and the folder"),
+            _ => (format!("the file cannot be read: {error}"), "check that you may read it"),
+        };
+        TableError::new(shown, message).help(help)
+    })?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(TableError::new(shown, "the file is larger than a gigabyte").help("give the table by itself"));
+    }
+    Ok(bytes)
 }

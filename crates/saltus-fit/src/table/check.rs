@@ -5,6 +5,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::{Event, Table, Trial};
 
+/// Where balls are dropped from, in metres.
+const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
+
 /// A copied trial must have at least this many readings: two rebounds to the same centimetre are no copy.
 const COPY: usize = 3;
 
@@ -12,6 +15,18 @@ const COPY: usize = 3;
 pub(super) fn table(table: &mut Table) {
     zeros(table);
     copies(table);
+    if !table.metadata.pixels {
+        size(table);
+    }
+}
+
+/// Heights nobody drops a ball from are a unit gone wrong.
+fn size(table: &mut Table) {
+    let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height.map(|h| (h, r.line)));
+    let Some((highest, line)) = heights().max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    if highest > 0.0 && !USUAL.contains(&highest) {
+        table.warnings.push(format!("the highest reading is {highest} m, in line {line}: is that the right unit?"));
+    }
 }
 
 fn zeros(table: &mut Table) {

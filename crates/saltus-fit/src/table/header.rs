@@ -3,7 +3,8 @@
 use saltus_bounce::units::Quantity;
 
 use super::ReadOptions;
-use super::read::{Sheet, shown};
+use super::sheet::{Sheet, shown};
+use super::units::{self, Unit, is_unit};
 use crate::error::TableError;
 
 /// What a column holds.
@@ -35,29 +36,35 @@ pub(super) enum Kind {
     HeightAt(usize),
     /// The time of contact `n`, a row being a trial.
     TimeAt(usize),
+    /// A count of frames; it becomes a time, or is ignored.
+    Frame,
     /// Harmless text.
     Ignored,
 }
 
-/// A column: its kind, its name, and one unit in SI.
+/// A column: its kind, its name, its unit, and which way from where it counts.
 #[derive(Clone, Debug)]
 pub(super) struct Column {
     pub(super) kind: Kind,
     pub(super) name: String,
-    unit: Unit,
-}
-
-/// A unit as a factor, or, where that is exact, as a divisor: 30 cm is 30 / 100 m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Unit {
-    times: f64,
-    over: f64,
+    pub(super) unit: Unit,
+    zero: f64,
+    sign: f64,
 }
 
 impl Column {
-    /// A number of this column in SI units.
+    /// A number of this column in SI units, heights counted upwards from the zero that was given.
     pub(super) fn si(&self, value: f64) -> f64 {
-        value * self.unit.times / self.unit.over
+        self.sign * self.unit.si(value - self.zero)
+    }
+
+    /// Whether the column holds times, or the heights of something.
+    pub(super) fn is_time(&self) -> bool {
+        matches!(self.kind, Kind::Time | Kind::Interval | Kind::TimeAt(_) | Kind::Trial(Quantity::Time))
+    }
+
+    fn is_height(&self) -> bool {
+        matches!(self.kind, Kind::Height | Kind::HeightAt(_) | Kind::DropHeight | Kind::Trial(Quantity::Length))
     }
 }
 
@@ -66,8 +73,8 @@ impl Column {
 pub(super) struct Columns {
     pub(super) columns: Vec<Column>,
     pub(super) notes: Vec<String>,
-    /// The sheet has no header: its one column starts in the first line.
-    pub(super) headerless: bool,
+    /// Heights are in pixels that nobody has given a scale for.
+    pub(super) pixels: bool,
 }
 
 const KNOWN: [&str; 11] = [
@@ -86,11 +93,44 @@ const KNOWN: [&str; 11] = [
 
 const ERROR: &[&str] = &["error", "err", "sigma", "uncertainty", "unc", "sd", "std", "stdev", "se"];
 const INTERVAL: &[&str] = &["interval", "intervals", "dt", "delta", "duration", "gap", "period"];
-const TIME: &[&str] = &["time", "times", "t", "timestamp", "clock"];
-const HEIGHT: &[&str] = &["height", "heights", "h", "y", "z", "altitude", "rebound", "apex", "peak"];
+const TIME: &[&str] = &["time", "times", "t", "timestamp", "clock", "zeit", "temps", "tiempo", "tempo"];
+const HEIGHT: &[&str] = &[
+    "height",
+    "heights",
+    "h",
+    "y",
+    "z",
+    "altitude",
+    "rebound",
+    "apex",
+    "peak",
+    "position",
+    "distance",
+    "displacement",
+    "elevation",
+    "höhe",
+    "hauteur",
+    "altura",
+    "altezza",
+];
+const AVERAGE: &[&str] = &["average", "mean", "avg", "moyenne", "mittelwert", "media"];
+const FRAME: &[&str] = &["frame", "frames", "slice"];
 const RELEASE: &[&str] = &["drop", "release", "initial", "start", "released", "dropped"];
-const TRIAL: &[&str] =
-    &["trial", "run", "drop", "launch", "throw", "series", "repeat", "repetition", "rep", "set", "experiment", "test"];
+const TRIAL: &[&str] = &[
+    "trial",
+    "run",
+    "drop",
+    "launch",
+    "throw",
+    "series",
+    "track",
+    "repeat",
+    "repetition",
+    "rep",
+    "set",
+    "experiment",
+    "test",
+];
 const BOUNCE: &[&str] = &["bounce", "bounces", "n", "number", "no", "contact", "impact", "index", "hit", "k", "i"];
 const EVENT: &[&str] = &["event", "events", "what", "phase"];
 const SETTING: &[&str] = &["ball", "surface", "material", "floor", "object", "temperature", "condition"];
@@ -117,23 +157,33 @@ const IGNORED: &[&str] = &[
     "velocity",
     "speed",
     "acceleration",
+    "energy",
+    "force",
+    "step",
+    "flag",
+    "pixelx",
+    "pixely",
 ];
 
 impl Columns {
-    /// Recognises the columns of a sheet.
-    pub(super) fn of(sheet: &Sheet<'_>, options: &ReadOptions) -> Result<Self, TableError> {
-        let mut found = Self { columns: Vec::new(), notes: Vec::new(), headerless: false };
-        if sheet.header.iter().all(|cell| is_number(cell, sheet.decimal_comma()) || cell.is_empty()) {
-            return headerless(sheet, options);
-        }
-        for (index, cell) in sheet.header.iter().enumerate() {
+    /// Recognises the columns of a sheet; `fps` is the frame rate, where one is known.
+    pub(super) fn of(sheet: &Sheet<'_>, options: &ReadOptions, fps: Option<f64>) -> Result<Self, TableError> {
+        let mut found = Self { columns: Vec::new(), notes: Vec::new(), pixels: false };
+        for (index, cell) in sheet.block.header.iter().enumerate() {
             found.columns.push(column(sheet, options, index, cell)?);
         }
+        found.drop_trials();
+        found.frames(sheet, fps)?;
         // With h1, h2 ... beside it, h0 is one of the apexes and a row is a trial.
         if found.columns.iter().any(|c| matches!(c.kind, Kind::HeightAt(_))) {
             for column in found.columns.iter_mut().filter(|c| c.kind == Kind::DropHeight) {
                 column.kind = Kind::HeightAt(0);
             }
+        }
+        found.stopwatches();
+        for column in found.columns.iter_mut().filter(|c| c.is_height()) {
+            column.zero = options.zero.unwrap_or(0.0);
+            column.sign = if options.down == Some(true) { -1.0 } else { 1.0 };
         }
         let ignored: Vec<&str> = found
             .columns
@@ -147,11 +197,13 @@ impl Columns {
         for kind in [Kind::Time, Kind::Height, Kind::Interval] {
             found.choose(sheet, options, &kind)?;
         }
-        if let Some(name) = &options.column
+        found.pixels = found.columns.iter().any(|c| c.is_height() && c.unit.pixels);
+        if let Some(name) = options.column.as_ref().filter(|_| !sheet.block.chosen)
             && !found.columns.iter().any(|c| c.name.eq_ignore_ascii_case(name))
         {
-            return Err(TableError::new(sheet.name, format!("there is no column '{name}' to choose"))
-                .help(format!("the table has {}", sheet.header.join(", "))));
+            return Err(sheet
+                .error(format!("there is no column '{name}' to choose"))
+                .help(format!("the table has {}", sheet.block.header.join(", "))));
         }
         for kind in [Kind::Event, Kind::Bounce, Kind::DropHeight, Kind::SigmaTime, Kind::SigmaHeight] {
             if let Some(second) = found.all(&kind).nth(1) {
@@ -162,6 +214,52 @@ impl Columns {
             }
         }
         Ok(found)
+    }
+
+    /// A count of frames is a time, if nothing else is and the frame rate is known.
+    fn frames(&mut self, sheet: &Sheet<'_>, fps: Option<f64>) -> Result<(), TableError> {
+        let Some(index) = self.one(&Kind::Frame) else { return Ok(()) };
+        self.columns[index].kind = Kind::Ignored;
+        if self.columns.iter().any(Column::is_time) {
+            return Ok(());
+        }
+        let fps = fps.ok_or_else(|| {
+            let name = &sheet.block.header[index];
+            sheet
+                .header_error(index, format!("the column '{name}' counts frames: how many were filmed in a second?"))
+                .help("give the frame rate of the camera, such as --fps 100")
+        })?;
+        (self.columns[index].kind, self.columns[index].unit) = (Kind::Time, Unit::frame(fps));
+        Ok(())
+    }
+
+    /// In `drop,trial 1 (cm),trial 2 (cm)` the drop is a height as the trials are, not their number.
+    fn drop_trials(&mut self) {
+        let trial = self.columns.iter().find(|c| c.kind == Kind::Trial(Quantity::Length));
+        let Some(unit) = trial.map(|trial| trial.unit) else { return };
+        let is_drop = |c: &Column| c.kind == Kind::Group && words(&c.name).0 == ["drop"];
+        if let Some(drop) = self.columns.iter_mut().find(|c| is_drop(c)) {
+            (drop.kind, drop.unit) = (Kind::DropHeight, unit);
+        }
+    }
+
+    /// What belongs to stopwatches: `H,T0,T1,T2`, and the heights that phyphox computes from the times.
+    fn stopwatches(&mut self) {
+        if !self.columns.iter().any(|c| matches!(c.kind, Kind::TimeAt(_))) {
+            return;
+        }
+        let computed = self.columns.iter().any(|c| c.name.to_lowercase().starts_with("energy"));
+        let heights = self.columns.iter().any(|c| matches!(c.kind, Kind::HeightAt(_)));
+        for column in &mut self.columns {
+            match column.kind {
+                Kind::HeightAt(_) if computed => column.kind = Kind::Ignored,
+                Kind::Height if !heights => column.kind = Kind::DropHeight,
+                _ => {}
+            }
+        }
+        if computed && heights {
+            self.notes.push("heights were left aside: phyphox computes them from the times".to_owned());
+        }
     }
 
     /// The indices of all columns of a kind.
@@ -204,39 +302,11 @@ impl Columns {
     }
 }
 
-fn is_number(cell: &str, decimal_comma: bool) -> bool {
-    let plain = if decimal_comma { cell.replace(',', ".") } else { cell.to_owned() };
-    plain.parse::<f64>().is_ok()
-}
-
-/// A list of bare numbers: fit to read only if the options say what they are.
-fn headerless(sheet: &Sheet<'_>, options: &ReadOptions) -> Result<Columns, TableError> {
-    let error = |message: &str, help: &str| Err(sheet.header_error(0, message).help(help));
-    if sheet.header.len() > 1 {
-        return error(
-            "the table has no header: its first line is numbers",
-            "name the columns in the first line, such as 'bounce,height_cm' or 'time_s,height_m'",
-        );
-    }
-    let (kind, quantity, unit) = match (&options.height_unit, &options.time_unit) {
-        (Some(unit), None) => (Kind::Height, Quantity::Length, unit),
-        (None, Some(unit)) => (Kind::Time, Quantity::Time, unit),
-        _ => {
-            return error(
-                "the list has no header: are these heights or times, and in which unit?",
-                "put a name above it, such as 'height_cm' or 'time_s', or give either --height-unit cm or --time-unit s",
-            );
-        }
-    };
-    let unit = option_unit(sheet, quantity, unit)?;
-    let column = Column { kind, name: "the list".to_owned(), unit };
-    Ok(Columns { columns: vec![column], notes: Vec::new(), headerless: true })
-}
-
 /// Splits a header cell into lower-case words and, if there is one, the text in brackets at its end.
 fn words(cell: &str) -> (Vec<String>, Option<String>) {
     // Data loggers put the run before the name: 'Latest: Time (s)'.
-    let cell = cell.rsplit_once(": ").map_or(cell, |(_, name)| name).to_lowercase();
+    let name = cell.split(['(', '[']).next().unwrap_or_default();
+    let cell = cell[name.rfind(':').map_or(0, |colon| colon + 1)..].to_lowercase();
     let (name, bracket) = match (cell.rfind(['(', '[']), cell.trim_end().ends_with([')', ']'])) {
         (Some(open), true) => {
             let inside = cell[open + 1..].trim_end().trim_end_matches([')', ']']).trim().to_owned();
@@ -248,20 +318,34 @@ fn words(cell: &str) -> (Vec<String>, Option<String>) {
     (words, bracket)
 }
 
+/// Whether a name is that of one of several trials, such as `trial 2 (cm)`.
+fn is_trial(cell: &str) -> bool {
+    let (words, _) = words(cell);
+    words.first().is_some_and(|word| TRIAL.contains(&word.as_str()))
+        && words.get(1).is_some_and(|n| n.parse::<usize>().is_ok())
+}
+
 fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) -> Result<Column, TableError> {
     let (words, bracket) = words(cell);
-    let unit_of = |quantity: Quantity| unit(sheet, options, index, cell, quantity, &words, bracket.as_deref());
-    let one = Unit { times: 1.0, over: 1.0 };
-    let make = |kind, unit| Ok(Column { kind, name: cell.to_owned(), unit });
+    let unit_of = |quantity: Quantity| units::unit(sheet, options, index, quantity, &words, bracket.as_deref());
+    let one = Unit::ONE;
+    let make = |kind, unit| Ok(Column { kind, name: cell.to_owned(), unit, zero: 0.0, sign: 1.0 });
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
-    let is_unit = |quantity: Quantity| bracket.iter().chain(words.iter().skip(1)).any(|w| quantity.scale(w).is_some());
+    let is_unit = |quantity: Quantity| bracket.iter().chain(words.iter().skip(1)).any(|w| is_unit(quantity, w));
     let Some(first) = words.first().map(String::as_str) else {
         return if cell.is_empty() { make(Kind::Ignored, one) } else { Err(unknown(sheet, index, cell)) };
     };
     let numbered = words.get(1).and_then(|n| n.parse::<usize>().ok());
     let joined = first.get(1..).and_then(|n| n.parse::<usize>().ok());
 
-    if IGNORED.contains(&first) {
+    let beside_trials = || sheet.block.header.iter().any(|cell| is_trial(cell));
+    if AVERAGE.contains(&first) && beside_trials() {
+        return make(Kind::Ignored, one);
+    }
+    if FRAME.contains(&first) && words.len() < 3 {
+        return make(Kind::Frame, one);
+    }
+    if IGNORED.contains(&first) || words.iter().any(|word| word == "x") {
         return make(Kind::Ignored, one);
     }
     if has(ERROR) {
@@ -278,7 +362,7 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
         (Some("t"), Some(n)) => return make(Kind::TimeAt(n), unit_of(Quantity::Time)?),
         _ => {}
     }
-    if let (Some(n), true) = (numbered, BOUNCE.contains(&first) || first == "rebound" || first == "apex") {
+    if let (Some(n), true) = (numbered, BOUNCE.contains(&first) || HEIGHT.contains(&first)) {
         return if is_unit(Quantity::Time) {
             make(Kind::TimeAt(n), unit_of(Quantity::Time)?)
         } else {
@@ -326,79 +410,6 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
     Err(unknown(sheet, index, cell))
 }
 
-/// The unit of a column: that of its header, else that of the options, else an error.
-fn unit(
-    sheet: &Sheet<'_>,
-    options: &ReadOptions,
-    index: usize,
-    cell: &str,
-    quantity: Quantity,
-    words: &[String],
-    bracket: Option<&str>,
-) -> Result<Unit, TableError> {
-    let (given, option) = match quantity {
-        Quantity::Time => (&options.time_unit, "--time-unit s"),
-        _ => (&options.height_unit, "--height-unit cm"),
-    };
-    let in_words = || {
-        let mut known = words.iter().skip(1).filter(|word| quantity.scale(word).is_some());
-        let first = known.next();
-        // In 'height in cm' the inch is a preposition.
-        if first.is_some_and(|word| word == "in") { known.next().or(first) } else { first }
-    };
-    if let Some(scale) = bracket.and_then(|inside| quantity.scale(inside)) {
-        return Ok(Unit::of(scale));
-    }
-    if let Some(scale) = in_words().and_then(|word| quantity.scale(word)) {
-        return Ok(Unit::of(scale));
-    }
-    let names: Vec<&str> = quantity.units().iter().map(|(name, _)| *name).collect();
-    let other = bracket.into_iter().chain(words.iter().skip(1).map(String::as_str)).find(|word| {
-        [Quantity::Time, Quantity::Length, Quantity::Speed].iter().any(|q| q.scale(word).is_some()) || *word == "kg"
-    });
-    if let Some(wrong) = other.or(bracket.filter(|_| given.is_none())) {
-        return Err(sheet
-            .header_error(
-                index,
-                format!("'{}' in '{}' is not a unit of {}", shown(wrong), shown(cell), thing(quantity)),
-            )
-            .help(format!("use one of {}", names.join(", "))));
-    }
-    match given {
-        Some(unit) => option_unit(sheet, quantity, unit),
-        None => {
-            let stem = words.first().map_or("height", String::as_str);
-            let example = if quantity == Quantity::Time { format!("{stem}_s") } else { format!("{stem}_cm") };
-            Err(sheet
-                .header_error(index, format!("the column '{}' has no unit", shown(cell)))
-                .help(format!("name it '{example}', or give {option}")))
-        }
-    }
-}
-
-fn thing(quantity: Quantity) -> &'static str {
-    if quantity == Quantity::Time { "time" } else { "length" }
-}
-
-fn option_unit(sheet: &Sheet<'_>, quantity: Quantity, unit: &str) -> Result<Unit, TableError> {
-    quantity.scale(unit.trim()).map(Unit::of).ok_or_else(|| {
-        let names: Vec<&str> = quantity.units().iter().map(|(name, _)| *name).collect();
-        TableError::new(sheet.name, format!("the unit given, '{unit}', is not a unit of {}", thing(quantity)))
-            .help(format!("use one of {}", names.join(", ")))
-    })
-}
-
-impl Unit {
-    fn of(scale: f64) -> Self {
-        let inverse = (1.0 / scale).round();
-        if scale < 1.0 && (inverse * scale - 1.0).abs() < f64::EPSILON {
-            Self { times: 1.0, over: inverse }
-        } else {
-            Self { times: scale, over: 1.0 }
-        }
-    }
-}
-
 fn unknown(sheet: &Sheet<'_>, index: usize, cell: &str) -> TableError {
     let (words, _) = words(cell);
     let lower: String = words.first().map(|w| w.chars().take(64).collect()).unwrap_or_default();
@@ -412,9 +423,10 @@ fn unknown(sheet: &Sheet<'_>, index: usize, cell: &str) -> TableError {
         Some((distance, known)) if distance <= 2.max(lower.chars().count() / 3) => format!("did you mean '{known}'? "),
         _ => String::new(),
     };
-    sheet
-        .header_error(index, format!("the column '{}' is not known", shown(cell)))
-        .help(format!("{hint}known are {} and the like; a column of remarks may be named 'note'", KNOWN.join(", ")))
+    sheet.header_error(index, format!("the column '{}' is not known", shown(cell))).help(format!(
+        "{hint}known are {} and the like; other names may be given by --header, '-' for a column to leave aside",
+        KNOWN.join(", ")
+    ))
 }
 
 /// The number of single-character edits between two words (Levenshtein's distance).

@@ -1,17 +1,21 @@
 //! From rows to trials: which layout the table has, and what each row then means.
 
+mod wide;
+
 use std::collections::HashMap;
 
 use saltus_bounce::units::Quantity;
 
 use super::header::{Columns, Kind};
 use super::order::{in_order, renumbered, summed};
-use super::read::{Row, Sheet, shown};
-use super::{Event, ReadOptions, Reading, Table, Trial};
+use super::samples::{self, Missing};
+use super::sheet::{Row, Sheet, shown};
+use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 
 /// The layouts, each with the columns it needs.
-enum Layout {
+#[derive(Clone, Copy)]
+pub(super) enum Layout {
     /// `event,time_s,height_cm`: what happened, row by row.
     Events { event: usize },
     /// `bounce,height_cm` or `bounce,time_s`: numbered readings.
@@ -22,12 +26,14 @@ enum Layout {
     Pairs,
     /// `bounce,trial 1,trial 2`: trials side by side.
     TrialColumns { number: Option<usize> },
+    /// `drop_cm,trial 1 (cm),trial 2 (cm)`: a row is a height of release, and how high each drop from there rebounds.
+    DropTrials,
     /// `trial,h0_cm,h1_cm,h2_cm`: bounces side by side, a row being a trial.
     BounceColumns,
     /// `trial,bounce,interval_s`: times between contacts.
     Intervals { number: Option<usize> },
-    /// `time_s,height_cm`: a series of heights in time.
-    Samples,
+    /// `time_s,height_cm`: a series of heights in time; or heights only, a frame apart.
+    Samples { frame: Option<f64> },
 }
 
 /// Everything a row needs to become readings.
@@ -50,10 +56,17 @@ struct Reader<'a> {
     key: String,
     kept: usize,
     skipped: usize,
+    missing: Missing,
 }
 
 /// Reads the rows of `sheet` into trials.
-pub(super) fn table(sheet: &Sheet<'_>, columns: &Columns, options: &ReadOptions) -> Result<Table, TableError> {
+pub(super) fn table(
+    sheet: &Sheet<'_>,
+    columns: &Columns,
+    layout: Layout,
+    options: &ReadOptions,
+    metadata: Metadata,
+) -> Result<Table, TableError> {
     let one = |kind| columns.one(&kind);
     let filters = filters(sheet, options)?;
     let mut settings: Vec<usize> = columns.all(&Kind::Setting).chain(columns.one(&Kind::DropHeight)).collect();
@@ -62,7 +75,7 @@ pub(super) fn table(sheet: &Sheet<'_>, columns: &Columns, options: &ReadOptions)
     groups.sort_unstable();
     let mut reader = Reader {
         columns,
-        layout: layout(sheet, columns)?,
+        layout,
         time: one(Kind::Time),
         height: one(Kind::Height),
         interval: one(Kind::Interval),
@@ -78,15 +91,17 @@ pub(super) fn table(sheet: &Sheet<'_>, columns: &Columns, options: &ReadOptions)
         key: String::new(),
         kept: 0,
         skipped: 0,
+        missing: Missing::default(),
     };
-    sheet.each_row(|row| reader.row(row), columns.headerless)?;
+    sheet.each_row(|row| reader.row(row))?;
     if reader.kept == 0 {
         let error = if reader.skipped > 0 {
             let wanted: Vec<String> = options.filters.iter().map(|(n, v)| format!("{n} = {v}")).collect();
-            TableError::new(sheet.name, format!("no row has {}", wanted.join(" and ")))
+            sheet
+                .error(format!("no row has {}", wanted.join(" and ")))
                 .help("check the value; without a filter every row is read")
         } else {
-            TableError::new(sheet.name, "the table has a header and no rows").help("add the readings below the header")
+            sheet.error("the table has a header and no rows").help("add the readings below the header")
         };
         return Err(error);
     }
@@ -95,8 +110,8 @@ pub(super) fn table(sheet: &Sheet<'_>, columns: &Columns, options: &ReadOptions)
     if reader.skipped > 0 {
         notes.push(format!("{} rows kept and {} left out by the filter", reader.kept, reader.skipped));
     }
-    let mut table = Table { notes, ..Table::default() };
-    let Reader { trials, layout, kept, .. } = reader;
+    let mut table = Table { notes, metadata, ..Table::default() };
+    let Reader { trials, layout, kept, missing, .. } = reader;
     table.trials = match layout {
         Layout::Numbered { number } => renumbered(sheet, trials, number, &mut table.repairs)?,
         _ => trials,
@@ -104,31 +119,41 @@ pub(super) fn table(sheet: &Sheet<'_>, columns: &Columns, options: &ReadOptions)
     if matches!(layout, Layout::Intervals { .. }) {
         table.trials = table.trials.into_iter().map(|trial| summed(sheet, trial)).collect::<Result<_, _>>()?;
     }
+    if let Layout::Samples { .. } = layout {
+        missing.say(&mut table.repairs);
+        samples::series(sheet, columns, options, &mut table)?;
+    }
     for trial in &mut table.trials {
         in_order(sheet, columns, trial, matches!(layout, Layout::Listed))?;
     }
-    let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
-    table.notes.insert(0, format!("read as {what}: {}, {}", plural(kept, "row"), plural(table.trials.len(), "trial")));
+    table.notes.insert(0, format!("read as {what}"));
+    table.rows = kept;
     Ok(table)
 }
 
 /// The columns filters name.
 fn filters(sheet: &Sheet<'_>, options: &ReadOptions) -> Result<Vec<(usize, String)>, TableError> {
     let find = |(name, value): &(String, String)| {
-        let index = sheet.header.iter().position(|cell| cell.eq_ignore_ascii_case(name.trim()));
+        let index = sheet.block.header.iter().position(|cell| cell.eq_ignore_ascii_case(name.trim()));
         index.map(|index| (index, value.trim().to_owned())).ok_or_else(|| {
-            TableError::new(sheet.name, format!("there is no column '{name}' to filter by"))
-                .help(format!("the table has {}", sheet.header.join(", ")))
+            sheet
+                .error(format!("there is no column '{name}' to filter by"))
+                .help(format!("the table has {}", sheet.block.header.join(", ")))
         })
     };
     options.filters.iter().map(find).collect()
 }
 
-fn layout(sheet: &Sheet<'_>, columns: &Columns) -> Result<Layout, TableError> {
+/// The layout of a sheet, by its columns.
+pub(super) fn layout(sheet: &Sheet<'_>, columns: &Columns, fps: Option<f64>) -> Result<Layout, TableError> {
     let one = |kind| columns.one(&kind);
     let number = one(Kind::Bounce);
     let (time, height) = (one(Kind::Time), one(Kind::Height));
-    if columns.columns.iter().any(|c| matches!(c.kind, Kind::Trial(_))) {
+    let trials = |quantity| columns.columns.iter().any(|c| c.kind == Kind::Trial(quantity));
+    if trials(Quantity::Length) && one(Kind::DropHeight).is_some() && number.or(one(Kind::Event)).is_none() {
+        return Ok(Layout::DropTrials);
+    }
+    if trials(Quantity::Length) || trials(Quantity::Time) {
         return Ok(Layout::TrialColumns { number: number.or(one(Kind::Event)) });
     }
     if columns.columns.iter().any(|c| matches!(c.kind, Kind::HeightAt(_) | Kind::TimeAt(_))) {
@@ -137,24 +162,23 @@ fn layout(sheet: &Sheet<'_>, columns: &Columns) -> Result<Layout, TableError> {
     if one(Kind::Interval).is_some() && time.is_none() {
         return Ok(Layout::Intervals { number: number.or(one(Kind::Event)) });
     }
+    if sheet.block.frames && height.is_some() {
+        return Ok(Layout::Samples { frame: fps.map(|fps| 1.0 / fps) });
+    }
     if time.is_none() && height.is_none() {
-        return Err(TableError::new(sheet.name, "no column holds heights or times")
-            .help("name one, such as 'height_cm' or 'time_s'"));
+        return Err(sheet.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"));
     }
     if let Some(event) = one(Kind::Event) {
         let mut counted = false;
-        sheet.each_row(
-            |row| {
-                counted |= row.cell(event).parse::<f64>().is_ok();
-                Ok(())
-            },
-            columns.headerless,
-        )?;
+        sheet.each_row(|row| {
+            counted |= row.cell(event).parse::<f64>().is_ok();
+            Ok(())
+        })?;
         return Ok(if counted { Layout::Numbered { number: event } } else { Layout::Events { event } });
     }
     Ok(match (number, time, height) {
         (Some(number), _, _) => Layout::Numbered { number },
-        (None, Some(_), Some(_)) => Layout::Samples,
+        (None, Some(_), Some(_)) => Layout::Samples { frame: None },
         (None, None, Some(_)) if one(Kind::DropHeight).is_some() => Layout::Pairs,
         _ => Layout::Listed,
     })
@@ -170,7 +194,8 @@ impl Reader<'_> {
         match self.layout {
             Layout::TrialColumns { number } => return self.trial_columns(row, number),
             Layout::BounceColumns => return self.bounce_columns(row),
-            Layout::Pairs => return self.pair(row),
+            Layout::Pairs => return self.pair(row, self.height.unwrap_or(0)),
+            Layout::DropTrials => return self.drop_trials(row),
             _ => {}
         }
         let trial = self.trial(row)?;
@@ -239,11 +264,18 @@ impl Reader<'_> {
                     self.trials[trial].readings.push(Reading { time: Some(value), ..reading(Event::Contact, bounce) });
                 }
             }
-            Layout::Samples => {
-                let (time, height) = (self.value(row, self.time)?, self.value(row, self.height)?);
+            Layout::Samples { frame } => {
+                let time = match frame {
+                    #[allow(clippy::cast_precision_loss)] // no film has 2^53 frames
+                    Some(frame) => Some((self.kept - 1) as f64 * frame),
+                    None => self.measured(row, self.time)?,
+                };
+                let height = self.measured(row, self.height)?;
                 if time.is_some() && height.is_some() {
                     let n = self.trials[trial].readings.len();
                     self.trials[trial].readings.push(Reading { time, height, ..reading(Event::Sample, n) });
+                } else {
+                    self.missing.count(row.line);
                 }
             }
             _ => {
@@ -307,8 +339,19 @@ impl Reader<'_> {
         Ok(self.trials.len() - 1)
     }
 
+    /// A reading of a series; where the ball was not found, programs write words for "not a number".
+    fn measured(&self, row: &Row<'_>, index: Option<usize>) -> Result<Option<f64>, TableError> {
+        let lost = index.is_some_and(|n| row.cell(n).parse().is_ok_and(|number: f64| !number.is_finite()));
+        if lost { Ok(None) } else { self.value(row, index) }
+    }
+
     fn value(&self, row: &Row<'_>, index: Option<usize>) -> Result<Option<f64>, TableError> {
         let Some(index) = index else { return Ok(None) };
+        if self.columns.columns[index].is_time()
+            && let Some(seconds) = row.clock(index)
+        {
+            return Ok(Some(seconds));
+        }
         Ok(row.number(index)?.map(|number| self.columns.columns[index].si(number)))
     }
 
@@ -319,9 +362,10 @@ impl Reader<'_> {
     fn height(&self, row: &Row<'_>, index: Option<usize>) -> Result<Option<f64>, TableError> {
         let height = self.value(row, index)?;
         match (height, index) {
-            (Some(height), Some(index)) if height < 0.0 => Err(row
-                .error(index, "a height below the floor")
-                .help("count heights upwards from the floor: turn the sign, or subtract the height of the floor")),
+            (Some(height), Some(index)) if height < 0.0 => Err(row.error(index, "a height below the floor").help(
+                "heights count upwards from the floor: give what the scale reads there, such as --zero 2.5, \
+                     and --y-down if it counts downwards",
+            )),
             _ => Ok(height),
         }
     }
@@ -349,68 +393,6 @@ impl Reader<'_> {
         }
     }
 
-    fn pair(&mut self, row: &Row<'_>) -> Result<(), TableError> {
-        let index = self.height.unwrap_or(0);
-        let height = self.height(row, Some(index))?.ok_or_else(|| empty(row, index))?;
-        let label = format!("{}, line {}", self.label(row), row.line);
-        let sigma_height = self.sigma(row, self.sigma_height)?;
-        let trial = self.push_trial(row, label)?;
-        let reading = Reading { height: Some(height), sigma_height, ..Reading::new(Event::Apex, 1, row.line) };
-        self.trials[trial].readings.push(reading);
-        Ok(())
-    }
-
-    fn trial_columns(&mut self, row: &Row<'_>, number: Option<usize>) -> Result<(), TableError> {
-        let columns = self.columns;
-        for (index, column) in columns.columns.iter().enumerate() {
-            let Kind::Trial(quantity) = &column.kind else { continue };
-            let trial = match self.index.get(&column.name) {
-                Some(&trial) => trial,
-                None => {
-                    let trial = self.push_trial(row, column.name.clone())?;
-                    self.index.insert(column.name.clone(), trial);
-                    trial
-                }
-            };
-            let bounce = number.map_or(Ok(self.kept - 1), |n| bounce_number(row, n))?;
-            let reading = if *quantity == Quantity::Time {
-                let Some(time) = self.value(row, Some(index))? else { continue };
-                Reading { time: Some(time), ..Reading::new(Event::Contact, bounce + 1, row.line) }
-            } else {
-                let Some(height) = self.height(row, Some(index))? else { continue };
-                let event = if bounce == 0 { Event::Release } else { Event::Apex };
-                Reading { height: Some(height), ..Reading::new(event, bounce, row.line) }
-            };
-            self.trials[trial].readings.push(reading);
-        }
-        Ok(())
-    }
-
-    fn bounce_columns(&mut self, row: &Row<'_>) -> Result<(), TableError> {
-        let label = if self.groups.is_empty() { format!("line {}", row.line) } else { self.label(row) };
-        let trial = self.push_trial(row, label)?;
-        let columns = self.columns;
-        let first =
-            columns.columns.iter().filter_map(|c| if let Kind::TimeAt(n) = c.kind { Some(n) } else { None }).min();
-        for (index, column) in columns.columns.iter().enumerate() {
-            let reading = match column.kind {
-                Kind::HeightAt(n) => {
-                    let Some(height) = self.height(row, Some(index))? else { continue };
-                    let event = if n == 0 { Event::Release } else { Event::Apex };
-                    Reading { height: Some(height), ..Reading::new(event, n, row.line) }
-                }
-                Kind::TimeAt(n) => {
-                    let Some(time) = self.value(row, Some(index))? else { continue };
-                    let bounce = if first == Some(0) { n + 1 } else { n };
-                    Reading { time: Some(time), ..Reading::new(Event::Contact, bounce, row.line) }
-                }
-                _ => continue,
-            };
-            self.trials[trial].readings.push(reading);
-        }
-        Ok(())
-    }
-
     /// One line on what was recognised.
     fn describe(&self) -> String {
         let name = |index: Option<usize>| index.map_or("", |n| self.columns.columns[n].name.as_str());
@@ -428,10 +410,14 @@ impl Reader<'_> {
             }
             Layout::Listed => format!("contact times '{}' in order", name(self.time)),
             Layout::Pairs => "drop heights and rebounds, one drop a row".to_owned(),
+            Layout::DropTrials => "drop heights, and rebounds in one column per trial".to_owned(),
             Layout::TrialColumns { .. } => "one column per trial".to_owned(),
             Layout::BounceColumns => "one trial a row, one bounce a column".to_owned(),
             Layout::Intervals { .. } => format!("times between contacts '{}'", name(self.interval)),
-            Layout::Samples => "a series of heights in time".to_owned(),
+            Layout::Samples { frame: None } => {
+                format!("a series of heights '{}' in time '{}'", name(self.height), name(self.time))
+            }
+            Layout::Samples { .. } => format!("a series of heights '{}', a frame apart", name(self.height)),
         }
     }
 }

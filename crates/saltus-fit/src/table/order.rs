@@ -1,7 +1,7 @@
 //! The order of readings: trials told apart by restarting numbers, clocks that ascend, intervals summed to times.
 
 use super::header::{Columns, Kind};
-use super::read::Sheet;
+use super::sheet::Sheet;
 use super::{Event, Reading, Trial};
 use crate::error::TableError;
 

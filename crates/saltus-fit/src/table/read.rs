@@ -1,356 +1,187 @@
-//! From bytes to rows: encoding, delimiter, comments, header, and the place of every cell for messages.
+//! From the bytes of a file to a table: what kind of file, which tables in it, their trials together.
 
-use csv::{ReaderBuilder, StringRecord};
 use saltus_bounce::units::Quantity;
 
+use super::export::{self, Recognised};
 use super::header::Columns;
-use super::layout;
-use super::{Metadata, ReadOptions, Table};
-use crate::error::{Place, TableError};
+use super::layout::{self, Layout};
+use super::sheet::{Grid, Sheet};
+use super::text::text;
+use super::workbook::{self, Content, Part};
+use super::{Event, Metadata, ReadOptions, Reading, Table, pool};
+use crate::error::TableError;
+
+/// A track that moves less than this part of what the liveliest does is not the ball.
+const MOVES: f64 = 0.5;
 
 /// Reads `bytes` into a table that is not yet checked.
 pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
-    let text = text(name, bytes)?;
-    // Old Macintosh files end their lines with a lone carriage return.
-    let replaced = (text.contains('\r') && !text.contains('\n')).then(|| text.replace('\r', "\n"));
-    let text = replaced.as_deref().unwrap_or(text);
-    let sheet = Sheet::open(name, text)?;
-    let metadata = sheet.metadata()?;
-    let columns = Columns::of(&sheet, options)?;
-    let mut table = layout::table(&sheet, &columns, options)?;
+    let mut table = match workbook::parts(name, bytes) {
+        Some(parts) => sheets(name, parts?, options)?,
+        None if options.sheet.is_some() => {
+            return Err(TableError::new(name, "this file has no sheets: it is a text").help("leave out --sheet"));
+        }
+        None => {
+            let found = text(name, bytes)?;
+            let mut table = recognise(&Grid::open(name, None, &found.text)?, options)?.read(options)?;
+            table.notes.extend(found.encoding.map(|encoding| format!("the text is encoded as {encoding}")));
+            table
+        }
+    };
     table.name = name.to_owned();
-    table.metadata = metadata;
     Ok(table)
 }
 
-/// The bytes as text, or the reason why they are none.
-fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, TableError> {
-    let error = |message: &str| TableError::new(name, message);
-    let as_csv = "save the table as CSV (UTF-8) and try again";
-    if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(&[0xD0, 0xCF, 0x11, 0xE0]) {
-        return Err(error("this is a spreadsheet workbook, not a text table").help(as_csv));
-    }
-    if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
-        return Err(error("this text is encoded as UTF-16").help("save the table as CSV in UTF-8 and try again"));
-    }
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let control = |b: &u8| b.is_ascii_control() && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0C | 0x1A);
-    if bytes.iter().any(control) {
-        return Err(error("this is not a text file: it contains control characters").help(as_csv));
-    }
-    std::str::from_utf8(bytes).map_err(|problem| {
-        let start = problem.valid_up_to();
-        let before = &bytes[..start];
-        let line_start = before.iter().rposition(|&b| b == b'\n').map_or(0, |n| n + 1);
-        let line_end = bytes[start..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| start + n);
-        let place = Place {
-            line: before.iter().filter(|&&b| b == b'\n').count() as u64 + 1,
-            column: String::from_utf8_lossy(&bytes[line_start..start]).chars().count() + 1,
-            width: 1,
-            text: String::from_utf8_lossy(&bytes[line_start..line_end]).into_owned(),
-        };
-        error("a byte here is not UTF-8 text").at(place).help(as_csv)
-    })
+/// The tables of one text, recognised but not yet read.
+struct Tables<'a> {
+    what: Option<&'static str>,
+    tracks: bool,
+    metadata: Metadata,
+    tables: Vec<(Sheet<'a>, Columns, Layout)>,
 }
 
-/// The text of a table with its delimiter and header found.
-pub(super) struct Sheet<'a> {
-    pub(super) name: &'a str,
-    text: &'a str,
-    delimiter: u8,
-    /// The cells of the header line, trimmed.
-    pub(super) header: Vec<String>,
-    header_start: (usize, u64),
+fn recognise<'a>(grid: &'a Grid<'a>, options: &ReadOptions) -> Result<Tables<'a>, TableError> {
+    let mut metadata = grid.metadata()?;
+    metadata.frame_rate = options.fps.or(metadata.frame_rate);
+    let Recognised { what, blocks, tracks } = export::blocks(grid, options, metadata.frame_rate)?;
+    let mut tables = Vec::with_capacity(blocks.len());
+    for block in blocks {
+        let sheet = Sheet { grid, block };
+        let columns = Columns::of(&sheet, options, metadata.frame_rate)?;
+        let layout = layout::layout(&sheet, &columns, metadata.frame_rate)?;
+        metadata.pixels |= columns.pixels;
+        if columns.pixels && !matches!(layout, Layout::Samples { .. }) {
+            return Err(sheet
+                .error("these heights are in pixels, and nothing says how large one is")
+                .help("give --scale, such as --scale 1.5mm for one pixel; only a series can be fitted without"));
+        }
+        tables.push((sheet, columns, layout));
+    }
+    Ok(Tables { what, tracks, metadata, tables })
 }
 
-/// One record with the place it starts at.
-pub(super) struct Row<'a> {
-    sheet: &'a Sheet<'a>,
-    record: &'a StringRecord,
-    start: usize,
-    /// The line of the file, counted from 1.
-    pub(super) line: u64,
-}
-
-impl<'a> Sheet<'a> {
-    fn open(name: &'a str, text: &'a str) -> Result<Self, TableError> {
-        let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
-        let Some(first) = first else {
-            let what = if text.trim().is_empty() { "the file is empty" } else { "the file holds comments only" };
-            return Err(
-                TableError::new(name, what).help("the first line names the columns, such as 'bounce,height_cm'")
-            );
-        };
-        let delimiter = delimiter(first);
-        let mut sheet = Sheet { name, text, delimiter, header: Vec::new(), header_start: (0, 1) };
-        let mut header = None;
-        sheet.each_record(|row| {
-            header = Some((row.record.iter().map(str::to_owned).collect(), (row.start, row.line)));
-            Ok(false)
-        })?;
-        if let Some((cells, start)) = header {
-            sheet.header = cells;
-            sheet.header_start = start;
+impl Tables<'_> {
+    fn read(self, options: &ReadOptions) -> Result<Table, TableError> {
+        let name = self.tables.first().map_or("", |(sheet, ..)| sheet.grid.name).to_owned();
+        let mut parts = Vec::new();
+        for (sheet, columns, layout) in &self.tables {
+            let table = layout::table(sheet, columns, *layout, options, self.metadata)?;
+            parts.push((sheet.block.label.clone(), table));
         }
-        Ok(sheet)
-    }
-
-    /// Whether a comma may stand for the decimal point.
-    pub(super) fn decimal_comma(&self) -> bool {
-        self.delimiter != b','
-    }
-
-    /// Calls `visit` for every row below the header that is not blank.
-    pub(super) fn each_row(
-        &self,
-        mut visit: impl FnMut(&Row<'_>) -> Result<(), TableError>,
-        with_header: bool,
-    ) -> Result<(), TableError> {
-        let mut header_is_due = !with_header;
-        self.each_record(|row| {
-            if header_is_due {
-                header_is_due = false;
-            } else {
-                row.refuse_extra_cells()?;
-                visit(row)?;
-            }
-            Ok(true)
-        })
-    }
-
-    /// Calls `visit` for every record that holds anything, until it answers `false`.
-    fn each_record(&self, mut visit: impl FnMut(&Row<'_>) -> Result<bool, TableError>) -> Result<(), TableError> {
-        let mut reader = ReaderBuilder::new()
-            .delimiter(self.delimiter)
-            .comment(Some(b'#'))
-            .flexible(true)
-            .has_headers(false)
-            .trim(csv::Trim::All)
-            .from_reader(self.text.as_bytes());
-        let mut record = StringRecord::new();
-        loop {
-            let more = reader
-                .read_record(&mut record)
-                .map_err(|error| TableError::new(self.name, format!("this is not a table: {error}")))?;
-            if !more {
-                return Ok(());
-            }
-            let (start, line) = record.position().map_or((0, 1), |p| self.record_start(p.byte(), p.line()));
-            let row = Row { sheet: self, record: &record, start, line };
-            if record.iter().any(|cell| !cell.is_empty()) && !visit(&row)? {
-                return Ok(());
-            }
+        let still = if self.tracks { leave_still(&mut parts) } else { Vec::new() };
+        let mut table = pool::join(&name, parts)?;
+        if !still.is_empty() {
+            table.notes.push(format!("left aside, as it hardly moves: {} (choose with --column)", still.join(", ")));
         }
-    }
-
-    /// The reader's position precedes the blank lines and comments it skips: go past them.
-    fn record_start(&self, byte: u64, mut line: u64) -> (usize, u64) {
-        let bytes = self.text.as_bytes();
-        let mut at = usize::try_from(byte).unwrap_or(usize::MAX).min(bytes.len());
-        while let Some(&byte) = bytes.get(at) {
-            match byte {
-                b'\n' => line += 1,
-                b'\r' => {}
-                b'#' => at = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| at + n - 1),
-                _ => break,
-            }
-            at += 1;
+        if let Some(what) = self.what {
+            table.notes.insert(0, format!("recognised as {what}"));
         }
-        (at, line)
-    }
-
-    /// Where cell `index` of the record that starts at `start` in line `line` stands.
-    fn place(&self, start: usize, line: u64, index: usize) -> Place {
-        let (mut cell, mut quoted, mut line) = (0, false, line);
-        let (mut line_start, mut from, mut to) = (start, start, self.text.len());
-        for (at, byte) in self.text.bytes().enumerate().skip(start) {
-            match byte {
-                b'"' => quoted = !quoted,
-                b'\n' | b'\r' if !quoted => {
-                    to = at;
-                    break;
-                }
-                b'\n' if cell < index => (line, line_start) = (line + 1, at + 1),
-                byte if byte == self.delimiter && !quoted => {
-                    if cell == index {
-                        to = at;
-                        break;
-                    }
-                    cell += 1;
-                    from = at + 1;
-                }
-                _ => {}
-            }
-        }
-        if cell < index {
-            from = to;
-        }
-        let raw = self.text.get(from..to).unwrap_or("");
-        let inner = raw.trim();
-        let from = from + (raw.len() - raw.trim_start().len());
-        let line_end = self.text[line_start..].find(['\n', '\r']).map_or(self.text.len(), |n| line_start + n);
-        let before = self.text.get(line_start..from.max(line_start)).unwrap_or("");
-        Place {
-            line,
-            column: before.chars().count() + 1,
-            width: inner.lines().next().map_or(0, |l| l.chars().count()).max(1),
-            text: self.text.get(line_start..line_end).unwrap_or("").to_owned(),
-        }
-    }
-
-    /// An error at header cell `index`.
-    pub(super) fn header_error(&self, index: usize, message: impl Into<String>) -> TableError {
-        let (start, line) = self.header_start;
-        TableError::new(self.name, message).at(self.place(start, line, index))
-    }
-
-    /// An error at cell `index` of the line `line`.
-    pub(super) fn line_error(&self, line: u64, index: usize, message: impl Into<String>) -> TableError {
-        let before = usize::try_from(line.saturating_sub(1)).unwrap_or(usize::MAX);
-        let start: usize = self.text.split_inclusive('\n').take(before).map(str::len).sum();
-        TableError::new(self.name, message).at(self.place(start, line, index))
-    }
-
-    /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`, `# sigma time: 5 ms`.
-    fn metadata(&self) -> Result<Metadata, TableError> {
-        let mut found = Metadata::default();
-        if !self.text.contains('#') {
-            return Ok(found);
-        }
-        for (n, line) in self.text.lines().enumerate() {
-            let Some((key, value)) = line.strip_prefix('#').and_then(|comment| comment.split_once(':')) else {
-                continue;
-            };
-            let value = value.trim();
-            let error = |message: String| {
-                let column = line.len() - line.trim_end().len();
-                let start = line.len() - column - value.len();
-                TableError::new(self.name, message).at(Place {
-                    line: n as u64 + 1,
-                    column: line[..start].chars().count() + 1,
-                    width: value.chars().count().max(1),
-                    text: line.to_owned(),
-                })
-            };
-            let key = key.to_lowercase().replace(['_', '-'], " ");
-            let (slot, quantity) = match key.split_whitespace().collect::<Vec<_>>().join(" ").as_str() {
-                "frame rate" | "framerate" | "fps" => {
-                    found.frame_rate = Some(frame_rate(value).ok_or_else(|| {
-                        error(format!("'{value}' is not a frame rate")).help("write it as '# frame rate: 30'")
-                    })?);
-                    continue;
-                }
-                "gravity" | "g" => (&mut found.gravity, Quantity::Acceleration),
-                "sigma height" | "height error" => (&mut found.sigma_height, Quantity::Length),
-                "sigma time" | "time error" => (&mut found.sigma_time, Quantity::Time),
-                _ => continue,
-            };
-            let si = quantity.parse(value).map_err(|problem| error(problem.to_string()))?;
-            if si <= 0.0 {
-                return Err(error(format!("'{value}' is not above zero")).help("correct the comment or take it out"));
-            }
-            *slot = Some(si);
-        }
-        Ok(found)
+        Ok(table)
     }
 }
 
-fn frame_rate(text: &str) -> Option<f64> {
-    let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
-    let unit = text[end..].trim().to_lowercase();
-    let known = ["", "fps", "hz", "1/s", "/s", "frames/s", "frames per second"].contains(&unit.as_str());
-    text[..end].parse().ok().filter(|rate: &f64| known && rate.is_finite() && *rate > 0.0)
-}
-
-/// The delimiter of the header line: a tab if there is one, else a semicolon, else a comma.
-fn delimiter(line: &str) -> u8 {
-    let mut quoted = false;
-    let mut found = b',';
-    for byte in line.bytes() {
-        match byte {
-            b'"' => quoted = !quoted,
-            b'\t' if !quoted => return b'\t',
-            b';' if !quoted => found = b';',
-            _ => {}
+/// Takes out the tracks of things that stand still while the ball moves.
+fn leave_still(parts: &mut Vec<(String, Table)>) -> Vec<String> {
+    let travel = |table: &Table| {
+        let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height);
+        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+    };
+    let most = parts.iter().map(|(_, table)| travel(table)).fold(0.0, f64::max);
+    let mut still = Vec::new();
+    parts.retain(|(label, table)| {
+        let moves = travel(table) >= MOVES * most;
+        if !moves {
+            still.push(label.clone());
         }
-    }
-    found
+        moves
+    });
+    still
 }
 
-/// A cell as a message quotes it: cut short, on one line.
-pub(super) fn shown(cell: &str) -> String {
-    let mut short: String = cell.chars().take(40).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if cell.chars().nth(40).is_some() {
-        short.push('…');
-    }
-    short
-}
-
-impl Row<'_> {
-    /// The trimmed text of a cell; a cell beyond the end of the row is empty.
-    pub(super) fn cell(&self, index: usize) -> &str {
-        self.record.get(index).unwrap_or("")
-    }
-
-    /// An error at the cell `index`.
-    pub(super) fn error(&self, index: usize, message: impl Into<String>) -> TableError {
-        TableError::new(self.sheet.name, message).at(self.sheet.place(self.start, self.line, index))
-    }
-
-    fn refuse_extra_cells(&self) -> Result<(), TableError> {
-        let width = self.sheet.header.len();
-        if self.record.len() <= width {
-            return Ok(());
-        }
-        match (width..self.record.len()).find(|&n| !self.cell(n).is_empty()) {
-            None => Ok(()),
-            Some(extra) => {
-                let help = if self.sheet.decimal_comma() {
-                    "give every column a name in the header"
-                } else {
-                    "give every column a name in the header; if the comma is a decimal comma, separate cells by semicolons"
-                };
-                let (cells, names) =
-                    (self.record.len(), if width == 1 { "1 column" } else { &format!("{width} columns") });
-                Err(self.error(extra, format!("this row has {cells} cells, but the header names {names}")).help(help))
+/// The sheets of a workbook or the files of an archive that hold tables.
+fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, TableError> {
+    let known: Vec<String> = parts.iter().map(|part| part.name.trim().to_owned()).collect();
+    let wanted = |part: &Part| match &options.sheet {
+        Some(sheet) => part.name.trim().eq_ignore_ascii_case(sheet.trim()) || stem(&part.name) == sheet.trim(),
+        // phyphox' stopwatches write the same events three times; only here are they all.
+        None => !known.iter().any(|n| stem(n) == "All") || stem(&part.name) == "All",
+    };
+    let mut found = Vec::new();
+    let (mut aside, mut first) = (Vec::new(), None);
+    for part in parts.into_iter().filter(wanted) {
+        match sheet(name, &part, options)? {
+            Ok(table) => found.push((part.name.trim().to_owned(), table)),
+            Err(problem) => {
+                aside.push(part.name.trim().to_owned());
+                first = first.or(Some(problem));
             }
         }
     }
-
-    /// The number in a cell, `None` if it is empty.
-    pub(super) fn number(&self, index: usize) -> Result<Option<f64>, TableError> {
-        let cell = self.cell(index);
-        if let Ok(value) = cell.parse::<f64>()
-            && value.is_finite()
-        {
-            return Ok(Some(value));
-        }
-        if matches!(cell, "" | "-" | "--" | "–" | "NA" | "n/a" | "N/A") {
-            return Ok(None);
-        }
-        let wrong = |message: String, help: &str| Err(self.error(index, message).help(help));
-        let shown = shown(cell);
-        let plain = "write a plain number; the unit belongs in the header";
-        let value: Result<f64, _> = if cell.contains(',') {
-            if !self.sheet.decimal_comma() {
-                return wrong(
-                    format!("'{shown}' has a comma in a table separated by commas"),
-                    "write a decimal point, or separate the cells by semicolons",
-                );
-            }
-            if cell.contains('.') || cell.matches(',').count() > 1 {
-                return wrong(format!("'{shown}' is not a number"), "write no separators of thousands");
-            }
-            cell.replace(',', ".").replace('−', "-").parse()
-        } else if cell.contains('−') {
-            cell.replace('−', "-").parse()
-        } else {
-            cell.parse()
-        };
-        match value {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
-            Ok(_) => wrong(format!("'{shown}' is not a finite number"), "take the row out, or leave the cell empty"),
-            Err(_) => wrong(format!("'{shown}' is not a number"), plain),
+    if found.is_empty() {
+        let none = || TableError::new(name, "there is no such sheet, or none at all");
+        return Err(first.unwrap_or_else(|| none().help(format!("the file has {}", known.join(", ")))));
+    }
+    let several = found.len() > 1;
+    let mut drops = false;
+    for (label, table) in &mut found {
+        drops |= drop_height(label, table);
+        for trial in table.trials.iter_mut().filter(|_| several) {
+            trial.setting = [label.as_str(), &trial.setting]
+                .iter()
+                .filter(|s| !s.is_empty())
+                .copied()
+                .collect::<Vec<_>>()
+                .join(", ");
         }
     }
+    let read = found.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>().join(", ");
+    let mut table = pool::join(name, found)?;
+    let what = if drops { " (each name the height of release)" } else { "" };
+    table.notes.insert(0, format!("sheets read: {read}{what}"));
+    if !aside.is_empty() {
+        table.notes.insert(1, format!("sheets left aside, for they hold no table of bounces: {}", aside.join(", ")));
+    }
+    Ok(table)
+}
+
+/// One sheet: a table; the reason why it is none; or an error in a table that is one.
+fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table, TableError>, TableError> {
+    let inner = format!("{name}/{}", part.name);
+    let decoded;
+    let (name, tab, content) = match &part.content {
+        Content::Cells(cells) => (name, Some(part.name.as_str()), cells.as_str()),
+        Content::Bytes(bytes) => match text(&inner, bytes) {
+            Ok(found) => {
+                decoded = found;
+                (inner.as_str(), None, &*decoded.text)
+            }
+            Err(problem) => return Ok(Err(problem)),
+        },
+    };
+    let grid = match Grid::open(name, tab, content) {
+        Ok(grid) => grid,
+        Err(problem) => return Ok(Err(problem)),
+    };
+    match recognise(&grid, options) {
+        Ok(tables) => tables.read(options).map(Ok),
+        Err(problem) => Ok(Err(problem)),
+    }
+}
+
+/// `All.csv` without folder and ending.
+fn stem(name: &str) -> &str {
+    let file = name.trim().rsplit('/').next().unwrap_or_default();
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
+
+/// A sheet named `80 cm` holds drops from there.
+fn drop_height(label: &str, table: &mut Table) -> bool {
+    let Some(height) = Quantity::Length.parse(label).ok().filter(|h| *h > 0.0) else { return false };
+    for trial in &mut table.trials {
+        let line = trial.readings.first().map_or(1, |r| r.line);
+        if trial.readings.iter().all(|r| r.event == Event::Contact || r.event == Event::Apex) {
+            trial.readings.insert(0, Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
+        }
+    }
+    true
 }

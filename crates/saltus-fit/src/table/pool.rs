@@ -1,0 +1,61 @@
+//! Several tables as one: the runs of a file, the sheets of a workbook, the files of an experiment.
+
+use super::{Metadata, Table, Trial};
+use crate::error::TableError;
+
+/// Joins tables, each with what tells it from the others, into one of all their trials.
+pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, TableError> {
+    if parts.len() == 1 {
+        return Ok(parts.into_iter().next().map(|(_, table)| table).unwrap_or_default());
+    }
+    let mut pooled = Table { name: name.to_owned(), ..Table::default() };
+    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
+    for (n, (label, part)) in parts.into_iter().enumerate() {
+        pooled.metadata = if n == 0 { part.metadata } else { agreed(name, &pooled.metadata, &part.metadata)? };
+        for note in part.notes {
+            match notes.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, of)) => of.push(label.clone()),
+                None => notes.push((note, vec![label.clone()])),
+            }
+        }
+        let of = |line: String| format!("{label}: {line}");
+        pooled.repairs.extend(part.repairs.into_iter().map(of));
+        pooled.warnings.extend(part.warnings.into_iter().map(of));
+        pooled.rows += part.rows;
+        pooled.zero_rebounds += part.zero_rebounds;
+        pooled.trials.extend(part.trials.into_iter().map(|trial| Trial {
+            label: if trial.label.is_empty() { label.clone() } else { format!("{label}, {}", trial.label) },
+            ..trial
+        }));
+    }
+    // What is said of every part alike is said once.
+    pooled.notes.extend(notes.into_iter().map(|(note, of)| match of.as_slice() {
+        [one] => format!("{one}: {note}"),
+        [first, .., last] => format!("{first} to {last} ({} of them): {note}", of.len()),
+        [] => note,
+    }));
+    Ok(pooled)
+}
+
+/// What two tables state together. Gravity is one; of reading errors the larger one holds for both.
+fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError> {
+    if let (Some(one), Some(other)) = (a.gravity, b.gravity)
+        && (one - other).abs() > 1e-9 * one.abs()
+    {
+        return Err(TableError::new(name, format!("the tables state different gravity: {one} and {other} m/s²"))
+            .help("fit them one by one, or correct the comments '# gravity:'"));
+    }
+    if a.pixels != b.pixels {
+        return Err(TableError::new(name, "some of the tables are in pixels, others are not")
+            .help("give --scale, such as --scale 1.5mm for one pixel, or fit them one by one"));
+    }
+    let larger = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::max);
+    let smaller = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::min);
+    Ok(Metadata {
+        frame_rate: smaller(a.frame_rate, b.frame_rate),
+        gravity: a.gravity.or(b.gravity),
+        sigma_height: larger(a.sigma_height, b.sigma_height),
+        sigma_time: larger(a.sigma_time, b.sigma_time),
+        pixels: a.pixels,
+    })
+}

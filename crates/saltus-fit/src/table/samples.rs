@@ -1,0 +1,205 @@
+//! A series of heights in time: its order, its gaps and repeats, and which way is up.
+
+use super::header::Columns;
+use super::sheet::Sheet;
+use super::{ReadOptions, Reading, Table, Trial};
+use crate::error::TableError;
+use crate::statistics::median;
+
+/// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
+const RECORDING: usize = 5;
+/// Rows this far apart are compared to tell which way the ball falls.
+const STRIDE: usize = 2;
+/// The part of the bends of a series that must agree before it is said to fall either way.
+const AGREE: f64 = 0.65;
+
+/// Rows without a position: how many, and the first.
+#[derive(Default)]
+pub(super) struct Missing {
+    count: usize,
+    first: u64,
+}
+
+impl Missing {
+    pub(super) fn count(&mut self, line: u64) {
+        if self.count == 0 {
+            self.first = line;
+        }
+        self.count += 1;
+    }
+
+    pub(super) fn say(&self, repairs: &mut Vec<String>) {
+        match self.count {
+            0 => {}
+            1 => repairs.push(format!("line {}: no position here, left out", self.first)),
+            n => repairs.push(format!("{n} lines from {} on hold no position and were left out", self.first)),
+        }
+    }
+}
+
+/// Puts the samples of a table in order and the right way up.
+pub(super) fn series(
+    sheet: &Sheet<'_>,
+    columns: &Columns,
+    options: &ReadOptions,
+    table: &mut Table,
+) -> Result<(), TableError> {
+    let trials = std::mem::take(&mut table.trials);
+    for trial in trials {
+        for part in recordings(trial, &mut table.notes) {
+            table.trials.push(ordered(sheet, columns, part, &mut table.repairs)?);
+        }
+    }
+    table.trials.retain(|trial| !trial.readings.is_empty());
+    if table.trials.is_empty() {
+        return Err(sheet
+            .error("no row holds both a time and a height")
+            .help("check the columns, or name them by --header"));
+    }
+    orient(columns, options, table);
+    if !columns.pixels {
+        falls(table);
+    }
+    Ok(())
+}
+
+/// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says so too.
+fn falls(table: &mut Table) {
+    let mut found: Vec<f64> = table.trials.iter().flat_map(|trial| accelerations(&trial.readings)).collect();
+    let gravity = table.metadata.gravity.unwrap_or(9.81);
+    let Some(median) = median(&mut found).filter(|_| found.len() >= 8) else { return };
+    if (0.7 * gravity..1.4 * gravity).contains(&median) {
+        return;
+    }
+    let rate = (gravity / median).sqrt();
+    let rate = match table.metadata.frame_rate {
+        Some(fps) => format!("{:.0} frames a second would be right", fps * rate),
+        None => format!("a clock {:.2} times as slow would be right", 1.0 / rate),
+    };
+    table.warnings.push(format!(
+        "the ball falls with {median:.2} m/s² where {gravity:.2} are due: is the unit of heights, the scale or the frame rate \
+         wrong? ({rate})"
+    ));
+}
+
+/// The downward accelerations where a series moves and bends downwards, from second differences.
+fn accelerations(readings: &[Reading]) -> Vec<f64> {
+    let points: Vec<(f64, f64)> = readings.iter().filter_map(|r| Some((r.time?, r.height?))).collect();
+    let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.1), h.max(p.1)));
+    let moves = 0.02 * (high - low);
+    let bend = |w: &[(f64, f64)]| {
+        let (a, b, c) = (w[0], w[STRIDE], w[2 * STRIDE]);
+        let slopes = ((b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0));
+        let acceleration = 2.0 * (slopes.0 - slopes.1) / (c.0 - a.0);
+        ((b.1 - a.1).abs().max((c.1 - b.1).abs()) > moves && acceleration > 0.0).then_some(acceleration)
+    };
+    points.windows(2 * STRIDE + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
+}
+
+/// Recordings one below the other, told apart by a clock that starts again.
+fn recordings(trial: Trial, notes: &mut Vec<String>) -> Vec<Trial> {
+    let restarts = |pair: &[Reading]| pair[1].time < pair[0].time;
+    let starts: Vec<usize> =
+        trial.readings.windows(2).enumerate().filter(|(_, pair)| restarts(pair)).map(|(n, _)| n + 1).collect();
+    let ends = starts.iter().copied().chain([trial.readings.len()]);
+    let shortest = std::iter::once(0).chain(starts.iter().copied()).zip(ends).map(|(a, b)| b - a).min().unwrap_or(0);
+    if starts.is_empty() || shortest < RECORDING {
+        return vec![trial];
+    }
+    notes.push(format!("the clock starts again {} times: read as {} recordings", starts.len(), starts.len() + 1));
+    let mut parts: Vec<Trial> = Vec::new();
+    for (n, reading) in trial.readings.into_iter().enumerate() {
+        if n == 0 || starts.binary_search(&n).is_ok() {
+            let run = format!("recording {}", parts.len() + 1);
+            let label = if trial.label.is_empty() { run } else { format!("{}, {run}", trial.label) };
+            parts.push(Trial { label, setting: trial.setting.clone(), readings: Vec::new() });
+        }
+        if let Some(part) = parts.last_mut() {
+            part.readings.push(reading);
+        }
+    }
+    parts
+}
+
+/// Sorts by time; a sample given twice alike counts once, one given twice otherwise is an error.
+fn ordered(
+    sheet: &Sheet<'_>,
+    columns: &Columns,
+    mut trial: Trial,
+    repairs: &mut Vec<String>,
+) -> Result<Trial, TableError> {
+    let by_time = |a: &Reading, b: &Reading| a.time.partial_cmp(&b.time).unwrap_or(std::cmp::Ordering::Equal);
+    trial.readings.sort_by(|a, b| by_time(a, b).then(a.line.cmp(&b.line)));
+    if let Some(pair) = trial.readings.windows(2).find(|p| p[0].time == p[1].time && p[0].height != p[1].height) {
+        let column = columns.one(&super::header::Kind::Time).unwrap_or(0);
+        let message = format!("this time stands in line {} too, with another height", pair[0].line);
+        return Err(sheet
+            .line_error(pair[1].line, column, message)
+            .help("correct one of the two; tell recordings apart by a column 'trial'"));
+    }
+    let before = trial.readings.len();
+    trial.readings.dedup_by(|b, a| a.time == b.time && a.height == b.height);
+    let repeated = before - trial.readings.len();
+    if repeated > 0 {
+        let s = if repeated == 1 { "sample is" } else { "samples are" };
+        repairs.push(format!("{repeated} {s} given twice alike, counted once"));
+    }
+    for (n, reading) in trial.readings.iter_mut().enumerate() {
+        reading.bounce = n;
+    }
+    Ok(trial)
+}
+
+/// Turns a series that falls upwards; heights of a picture are then counted from its lowest.
+fn orient(columns: &Columns, options: &ReadOptions, table: &mut Table) {
+    let (mut up, mut down) = (0, 0);
+    for trial in &table.trials {
+        let (a, b) = bends(&trial.readings);
+        (up, down) = (up + a, down + b);
+    }
+    #[allow(clippy::cast_precision_loss)] // counts of rows
+    let agree = |part: usize| part >= 3 && part as f64 >= AGREE * (up + down) as f64;
+    let turned = match options.down {
+        Some(_) => {
+            // The option is heeded, but a ball that then falls upwards is worth a word.
+            if agree(down) {
+                let what = "read this way up the ball falls upwards: is it --y-down or --y-up?";
+                table.warnings.push(what.to_owned());
+            }
+            false
+        }
+        None => agree(down) || (columns.pixels && !agree(up)),
+    };
+    if turned {
+        let why = if agree(down) { "the ball falls that way" } else { "as in pictures" };
+        table.notes.push(format!("heights count downwards: {why} (--y-up if not)"));
+        each_height(table, |h| -h);
+    }
+    // Where nobody says what the scale reads at the floor, pictures and scales upside down are counted from the lowest reading.
+    let floor = table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height).fold(f64::INFINITY, f64::min);
+    if options.zero.is_none() && (turned || options.down == Some(true) || columns.pixels) && floor.is_finite() {
+        each_height(table, |h| h - floor);
+    }
+}
+
+fn each_height(table: &mut Table, change: impl Fn(f64) -> f64) {
+    for reading in table.trials.iter_mut().flat_map(|t| &mut t.readings) {
+        reading.height = reading.height.map(&change);
+    }
+}
+
+/// How often a series bends downwards, as flights do, and upwards; only where the ball moves.
+fn bends(readings: &[Reading]) -> (usize, usize) {
+    let heights: Vec<f64> = readings.iter().filter_map(|r| r.height).collect();
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &y| (l.min(y), h.max(y)));
+    let moves = 0.02 * (high - low);
+    let (mut up, mut down) = (0, 0);
+    for w in heights.windows(2 * STRIDE + 1) {
+        let (a, b, c) = (w[0], w[STRIDE], w[2 * STRIDE]);
+        if (b - a).abs().max((c - b).abs()) > moves {
+            up += usize::from(a + c < 2.0 * b);
+            down += usize::from(a + c > 2.0 * b);
+        }
+    }
+    (up, down)
+}

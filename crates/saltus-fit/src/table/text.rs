@@ -1,0 +1,57 @@
+//! From bytes to text: UTF-8, UTF-16, Latin-1, and every way to end a line.
+
+use std::borrow::Cow;
+
+use crate::error::TableError;
+
+/// The text of a file and, where it is not UTF-8, the name of its encoding.
+pub(super) struct Text<'a> {
+    pub(super) text: Cow<'a, str>,
+    pub(super) encoding: Option<&'static str>,
+}
+
+/// The bytes as text, or the reason why they are none.
+pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableError> {
+    let (text, encoding) = decoded(bytes);
+    let control = |c: char| c.is_ascii_control() && !matches!(c, '\t' | '\n' | '\r' | '\x0C' | '\x1A');
+    if text.contains(control) {
+        return Err(TableError::new(name, "this is not a text file: it contains control characters")
+            .help("give a table as text or as a workbook (.xlsx, .xls), or save it as CSV and try again"));
+    }
+    // Old Macintosh files end their lines with a lone carriage return.
+    let old = text.contains('\r') && !text.contains('\n');
+    let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
+    Ok(Text { text, encoding })
+}
+
+fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {
+    if let Some(little) = utf16(bytes) {
+        let bytes = bytes.strip_prefix(&[0xFF, 0xFE]).or(bytes.strip_prefix(&[0xFE, 0xFF])).unwrap_or(bytes);
+        let unit = |pair: &[u8]| match *pair {
+            [a, b] if little => u16::from_le_bytes([a, b]),
+            [a, b] => u16::from_be_bytes([a, b]),
+            // Half a character at the end.
+            _ => 0xFFFD,
+        };
+        let characters = char::decode_utf16(bytes.chunks(2).map(unit));
+        let text = characters.map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        return (Cow::Owned(text), Some("UTF-16"));
+    }
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => (Cow::Borrowed(text), None),
+        // What is no UTF-8 was written by a program that knew one byte a character: Latin-1, near enough.
+        Err(_) => (Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()), Some("Latin-1")),
+    }
+}
+
+/// Whether this is UTF-16, and then whether its low byte comes first: by its mark, or by the zeros between Latin letters.
+fn utf16(bytes: &[u8]) -> Option<bool> {
+    match bytes {
+        [0xFF, 0xFE, ..] => Some(true),
+        [0xFE, 0xFF, ..] => Some(false),
+        [a, 0, b, 0, ..] if *a != 0 && *b != 0 => Some(true),
+        [0, a, 0, b, ..] if *a != 0 && *b != 0 => Some(false),
+        _ => None,
+    }
+}
