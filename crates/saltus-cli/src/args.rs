@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, CommandFactory, Parser, Subcommand, ValueEnum};
 use saltus_bounce::Cor;
+use saltus_bounce::scene::Kind;
 use saltus_bounce::units::Quantity;
 
 use crate::error::Error;
@@ -38,6 +39,7 @@ in the table, from the scatter, or are assumed; the report says which.";
 pub(crate) enum Command {
     Fit(Fit),
     Simulate(Simulate),
+    Explain(Explain),
     /// Write a shell's completions to standard output.
     ///
     /// For bash: saltus completions bash > ~/.local/share/bash-completion/completions/saltus
@@ -159,9 +161,62 @@ pub(crate) struct Simulate {
     /// Write the motion to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw height against time as SVG.
+    /// Draw the motion as SVG; `-o FILE.svg` does so too, and writes nothing else.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
+    /// What is drawn; without it what the scene says, or else height.
+    #[arg(long, value_enum)]
+    pub(crate) kind: Option<PictureKind>,
+}
+
+/// Say how a scene would be run, and why.
+///
+/// Which effects act and which are left out, how many coordinates are carried, how each mode is advanced (an exact arc, a closed form, an explicit or
+/// a stiff stepper), and which edges are watched.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Explain {
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// How to write it.
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ReportFormat,
+}
+
+/// What is drawn of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PictureKind {
+    /// Height against time.
+    Height,
+    /// Velocity against time.
+    Velocity,
+    /// Energies against time.
+    Energy,
+    /// Velocity against height.
+    Phase,
+    /// The path in space.
+    Path,
+    /// Apex heights, bounce by bounce.
+    Ladder,
+    /// Force against deformation, of a contact that takes time.
+    Hysteresis,
+    /// The ball at equal times.
+    Ghost,
+}
+
+impl PictureKind {
+    /// The same as scenes name it.
+    pub(crate) const fn kind(self) -> Kind {
+        match self {
+            Self::Height => Kind::Height,
+            Self::Velocity => Kind::Velocity,
+            Self::Energy => Kind::Energy,
+            Self::Phase => Kind::Phase,
+            Self::Path => Kind::Path,
+            Self::Ladder => Kind::Ladder,
+            Self::Hysteresis => Kind::Hysteresis,
+            Self::Ghost => Kind::Ghost,
+        }
+    }
 }
 
 /// How a report is written.
@@ -170,7 +225,7 @@ pub(crate) enum ReportFormat {
     /// For people.
     #[default]
     Text,
-    /// For programs; see docs/fitting.md.
+    /// For programs; see docs/fitting.md and docs/simulating.md.
     Json,
 }
 

@@ -2,10 +2,11 @@
 
 mod args;
 mod error;
+mod explain;
 mod fit;
 mod motion;
 mod output;
-mod plan;
+mod picture;
 mod simulate;
 
 use std::process::ExitCode;
@@ -23,6 +24,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
     match &args.command {
         args::Command::Fit(fit) => fit::run(fit, args.quiet),
         args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
+        args::Command::Explain(explain) => explain::run(explain),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
         args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),
         args::Command::Man => output::stdout(&args::man()?),

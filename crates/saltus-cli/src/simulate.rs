@@ -1,73 +1,106 @@
 //! `saltus simulate`: a scene or a drop in, a motion out.
 
 use std::io::Read;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use saltus::{Jump, Observer, Run, Simulation, Stop};
-use saltus_bounce::scene::Scene;
-use saltus_bounce::{Ball, Floor, Mode};
-use saltus_plot::{Arc, Background, HeightTime};
+use saltus_bounce::effects::Gravity;
+use saltus_bounce::scene::plan::{End, Plan, Record};
+use saltus_bounce::scene::{Law, Scene};
 
 use crate::args::{self, MotionFormat};
 use crate::error::Error;
 use crate::motion::Motion;
 use crate::output::{check_picture, say, write};
-use crate::plan::{Plan, plan};
-
-/// The most arcs that are worth drawing one by one beyond the end of a picture's resolution.
-const SHOWN_AFTER_REST: f64 = 0.05;
-/// After how many jumps a run stops that says nothing of it.
-const MOST_JUMPS: u32 = 10_000;
+use crate::picture;
 
 pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error> {
-    check_picture(args.plot.as_deref())?;
-    let format = format(args)?;
-    let plan = made(args)?;
-    if let Some(note) = &plan.note {
-        say(quiet, note);
+    let (format, drawn) = outputs(args)?;
+    check_picture(drawn)?;
+    let scene = made(args)?;
+    if let Some(note) = note(&scene) {
+        say(quiet, &note);
     }
-    let ball = Ball::new(plan.gravity, plan.cor).map_err(Error::new)?;
-    let start = Ball::launched_from(plan.height, plan.velocity);
-    let most = args.most_jumps.or(plan.most_jumps).unwrap_or(MOST_JUMPS);
-    let simulation = Simulation::of(&ball).most_jumps(most as usize);
-    let end = match args.until.or(plan.until) {
-        Some(end) => end,
-        None => rest(&simulation, start)? * (1.0 + SHOWN_AFTER_REST),
-    };
-    let run = simulation.run(Mode::Flight, start, 0.0..end).map_err(Error::new)?;
-    if let Stop::Jumps { most } = run.stop {
-        let t = run.trajectory.end().seconds();
-        say(quiet, &format!("stopped after {most} jumps, at {t:.6} s: --most-jumps allows more, --until ends by time"));
+    let plan = planned(&scene, args.scene.as_deref())?;
+    let model = plan.explain().model;
+    let record = limited(plan, args.until, args.most_jumps, scene.run.until)?;
+    ended(&record, quiet);
+    if drawn.is_some() {
+        let kind = args.kind.map_or(scene.picture.kind, args::PictureKind::kind);
+        write(drawn, picture::svg(&scene, &record, kind)?.as_bytes())?;
     }
-    let motion = Motion { plan: &plan, every: args.every, fps: args.fps, run: &run };
+    let motion = Motion { scene: &scene, model, every: args.every, fps: args.fps, record: &record };
     let text = match format {
-        MotionFormat::Text => motion.text(),
-        MotionFormat::Csv => motion.csv(),
-        MotionFormat::Json => motion.json()?,
+        None => return Ok(ExitCode::SUCCESS),
+        Some(MotionFormat::Text) => motion.text(),
+        Some(MotionFormat::Csv) => motion.csv()?,
+        Some(MotionFormat::Json) => motion.json()?,
     };
-    if let Some(path) = &args.plot {
-        write(Some(path), picture(&plan, &run).svg().map_err(Error::new)?.as_bytes())?;
-    }
-    write(args.output.as_deref(), text.as_bytes())?;
+    let to = args.output.as_deref().filter(|path| !is_svg(path));
+    write(to, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }
 
+/// The plan of a scene; what cannot be run is said with the file's name.
+pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error> {
+    scene.plan().map_err(|error| match path {
+        Some(path) if path != Path::new("-") => Error::new(format!("{}: {error}", path.display())),
+        _ => Error::new(error),
+    })
+}
+
+/// Runs a plan; what the command line says goes before what the scene says.
+fn limited(plan: Plan, until: Option<f64>, most_jumps: Option<u32>, of_scene: Option<f64>) -> Result<Record, Error> {
+    let plan = match until.or(of_scene) {
+        Some(until) => plan.until(until),
+        None => plan,
+    };
+    let plan = match most_jumps {
+        Some(most) => plan.most_jumps(most),
+        None => plan,
+    };
+    plan.run().map_err(Error::new)
+}
+
+/// Says why a run ended, if that is not what was asked for.
+fn ended(record: &Record, quiet: bool) {
+    let t = record.until();
+    let doubts = record.doubts();
+    if let Some(first) = doubts.first() {
+        let more = match doubts.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more like it)"),
+        };
+        say(quiet, &format!("a jump may have been missed: {first}{more}"));
+    }
+    match record.end() {
+        End::Time => {}
+        End::Jumps { most } => {
+            say(
+                quiet,
+                &format!("stopped after {most} jumps, at {t:.6} s: --most-jumps allows more, --until ends by time"),
+            );
+        }
+        end => say(quiet, &format!("stopped at {t:.6} s: {end}")),
+    }
+}
+
 /// What is asked for, by a scene or by options.
-fn made(args: &args::Simulate) -> Result<Plan, Error> {
+fn made(args: &args::Simulate) -> Result<Scene, Error> {
     match (&args.scene, args.drop, args.cor) {
-        (Some(path), _, _) => plan(&scene(path)?),
-        (None, Some(height), Some(cor)) if height >= 0.0 => Ok(Plan {
-            gravity: args.gravity,
-            cor,
-            height,
-            velocity: args.velocity,
-            until: None,
-            most_jumps: None,
-            title: None,
-            note: None,
-        }),
+        (Some(path), _, _) => scene(path),
+        (None, Some(height), Some(cor)) if height >= 0.0 => {
+            Gravity::new(args.gravity).map_err(Error::new)?;
+            // The options are a small scene; a limit on jumps ends it where nothing else does.
+            let most = args.most_jumps.unwrap_or(10_000);
+            let toml = format!(
+                "gravity = {:?}\nrestitution = {:?}\nball = {{ height = {height:?}, velocity = {:?} }}\nrun = {{ most_jumps = {most} }}\n",
+                args.gravity,
+                cor.value(),
+                args.velocity
+            );
+            Scene::parse("options", toml.as_bytes()).map_err(Error::new)
+        }
         (None, Some(_), Some(_)) => {
             Err(Error::new("the ball would start below the floor: give --drop a height of zero or more"))
         }
@@ -77,7 +110,7 @@ fn made(args: &args::Simulate) -> Result<Plan, Error> {
     }
 }
 
-fn scene(path: &Path) -> Result<Scene, Error> {
+pub(crate) fn scene(path: &Path) -> Result<Scene, Error> {
     if path == Path::new("-") {
         let mut toml = Vec::new();
         let most = Scene::LARGEST as u64 + 1;
@@ -88,57 +121,43 @@ fn scene(path: &Path) -> Result<Scene, Error> {
     }
 }
 
-fn format(args: &args::Simulate) -> Result<MotionFormat, Error> {
-    let extension = args.output.as_ref().and_then(|path| path.extension()).map(|e| e.to_string_lossy().to_lowercase());
-    match (args.format, extension.as_deref()) {
-        (Some(format), _) => Ok(format),
-        (None, None | Some("txt")) => Ok(MotionFormat::Text),
-        (None, Some("csv")) => Ok(MotionFormat::Csv),
-        (None, Some("json")) => Ok(MotionFormat::Json),
-        (None, Some(other)) => Err(Error::new(format!(
-            "no format goes by the extension '.{other}': use .csv, .json or .txt, or say --format"
-        ))),
-    }
+fn is_svg(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
 }
 
-/// When the ball comes to rest, or makes its last jump that is allowed.
-fn rest(simulation: &Simulation<'_, Ball>, start: saltus::nalgebra::Vector2<f64>) -> Result<f64, Error> {
-    /// Ends the run at rest.
-    struct AtRest;
-    impl Observer<Ball> for AtRest {
-        fn jump(&mut self, jump: &Jump<Ball>) -> ControlFlow<()> {
-            if jump.to == Mode::Rest { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// The format of the motion, if it is to be written, and where the picture goes.
+fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>), Error> {
+    let output = args.output.as_deref();
+    if let Some(path) = output.filter(|path| is_svg(path)) {
+        if args.plot.is_some() {
+            return Err(Error::new("the picture is to go to two files: give either --plot or -o with a name in .svg"));
         }
+        return Ok((args.format, Some(path)));
     }
-    let ending = simulation.drive(Mode::Flight, start, 0.0..f64::INFINITY, &mut AtRest).map_err(Error::new)?;
-    let t = ending.time.seconds();
-    if t.is_finite() {
-        Ok(t)
-    } else {
-        Err(Error::new("without gravity the ball may never land: say --until when to stop"))
-    }
-}
-
-fn picture(plan: &Plan, run: &Run<Ball>) -> HeightTime {
-    let trajectory = &run.trajectory;
-    let arcs = (0..trajectory.arcs().len()).flat_map(|index| {
-        trajectory.pieces(index).map(|piece| {
-            let heights = piece.coefficients().iter().map(|c| c[0]).collect();
-            Arc::new(piece.start().seconds(), piece.span(), heights)
-        })
-    });
-    let contacts = trajectory.jumps().iter().filter(|jump| jump.edge() == Some(Floor)).map(Jump::t);
-    let rest = trajectory.jumps().iter().find(|jump| jump.to == Mode::Rest).map(Jump::t);
-    let caption = match rest {
-        Some(t) => format!("COR {}, gravity {} m/s²; at rest from {t:.3} s", plan.cor, plan.gravity),
-        None => format!("COR {}, gravity {} m/s²", plan.cor, plan.gravity),
+    let extension = output.and_then(Path::extension).map(|e| e.to_string_lossy().to_lowercase());
+    let format = match (args.format, extension.as_deref()) {
+        (Some(format), _) => format,
+        (None, None | Some("txt")) => MotionFormat::Text,
+        (None, Some("csv")) => MotionFormat::Csv,
+        (None, Some("json")) => MotionFormat::Json,
+        (None, Some(other)) => {
+            return Err(Error::new(format!(
+                "no format goes by the extension '.{other}': use .csv, .json, .txt or .svg, or say --format"
+            )));
+        }
     };
-    let title = plan.title.clone().unwrap_or_else(|| {
-        if plan.velocity == 0.0 {
-            format!("A ball dropped from {} m", plan.height)
-        } else {
-            format!("A ball thrown from {} m at {} m/s", plan.height, plan.velocity)
-        }
-    });
-    HeightTime::new(&title).caption(&caption).motion("", arcs).contacts(contacts).background(Background::Adaptive)
+    Ok((Some(format), args.plot.as_deref()))
+}
+
+/// A range is said to be one, with its source, where a run takes one number of it.
+fn note(scene: &Scene) -> Option<String> {
+    let law = scene.law(0, 0)?;
+    let [low, high] = law.range(0.0);
+    let cor = law.constant()?;
+    let taken = format!("this run takes {:.4}; `restitution = {{ pick = 0 }}` to `1` takes another", cor.value());
+    match law {
+        Law::Preset { preset, .. } => Some(format!("{preset}: {taken}")),
+        Law::Range { .. } => Some(format!("COR between {low} and {high}: {taken}")),
+        _ => None,
+    }
 }

@@ -310,8 +310,86 @@ fn scenes_that_cannot_be_run() {
     assert!(refused(&["simulate", root().to_str().unwrap()]).contains("cannot read"));
     assert!(refused(&["simulate"]).contains("give a scene file, or both --drop and --cor"));
     assert!(refused(&["simulate", &path, "--drop", "1m"]).contains("cannot be used with"));
-    let stairs = root().join("examples/scenes/stairs.toml");
-    assert!(refused(&["simulate", stairs.to_str().unwrap()]).contains("cannot be simulated yet"));
+    let (_folder, path) = scene(
+        "restitution = 0.8\nball = { radius = 1, mass = 1, height = 1 }\nfriction = 0.1\ncontact = { law = 'rigid' }\n[[floor]]\nkind = 'stairs'\ntread = 1\nrise = 1\n[[floor]]\nkind = 'stairs'\ntread = 1\nrise = 1\n[run]\nuntil = 1\n",
+    );
+    let message = refused(&["simulate", &path]);
+    assert!(message.contains(&format!("{path}: [[floor]] number 2: there are stairs already")), "{message}");
+}
+
+/// Each example scene is drawn; where its picture stands beside it, that is the one.
+#[test]
+fn example_scenes_are_drawn() {
+    let folder = TempDir::new().unwrap();
+    let mut count = 0;
+    for entry in fs::read_dir(root().join("examples/scenes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let svg = folder.path().join("picture.svg");
+        done(&["-q", "simulate", path.to_str().unwrap(), "-o", svg.to_str().unwrap()]);
+        let picture = fs::read_to_string(&svg).unwrap();
+        assert!(picture.len() < 100_000, "{}: {} bytes", path.display(), picture.len());
+        let kept = path.with_extension("svg");
+        if kept.exists() || std::env::var_os("SALTUS_BLESS").is_some() {
+            golden(&kept, &picture);
+        }
+        count += 1;
+    }
+    assert!(count >= 14);
+}
+
+/// Each kind of picture, of a scene that has it; refused in words where there is nothing to draw.
+#[test]
+fn kinds_of_pictures() {
+    let squash = root().join("examples/scenes/squash.toml");
+    for kind in ["height", "velocity", "energy", "phase", "ladder", "ghost"] {
+        let folder = TempDir::new().unwrap();
+        let svg = folder.path().join("picture.svg");
+        done(&["simulate", squash.to_str().unwrap(), "--kind", kind, "-o", svg.to_str().unwrap()]);
+        assert!(fs::read_to_string(&svg).unwrap().starts_with("<svg"));
+    }
+    for (kind, part) in [("path", "only moves up and down"), ("hysteresis", "needs a contact that takes time")] {
+        assert!(refused(&["simulate", squash.to_str().unwrap(), "--kind", kind, "-o", "never.svg"]).contains(part));
+    }
+}
+
+#[test]
+fn a_scene_is_explained() {
+    let squash = root().join("examples/scenes/squash.toml");
+    let text = done(&["explain", squash.to_str().unwrap()]);
+    for part in ["coordinates  2: height above the floor, velocity up", "flight: exact arc", "effects out  linear drag"]
+    {
+        assert!(text.contains(part), "no '{part}' in:\n{text}");
+    }
+    let topspin = root().join("examples/scenes/topspin.toml");
+    let json: Value = serde_json::from_str(&done(&["explain", topspin.to_str().unwrap(), "--format", "json"])).unwrap();
+    assert_eq!((&json["schema"], &json["model"]), (&Value::from(1), &Value::from("flyer")));
+    assert_eq!(json["coordinates"].as_array().unwrap().len(), 5);
+    assert_eq!(json["modes"][0]["advance"], "explicit stepper Dop853");
+}
+
+/// What is wrong in a scene is said with its place, and nothing panics.
+#[test]
+fn bad_scenes() {
+    let noise = "\u{1}x".repeat(5_000_000);
+    for (toml, parts) in [
+        ("restitution = 0.8\nball = { height = '1 m', mass = '-1 kg' }\n", &[":2:", "mass"][..]),
+        ("restitution = 1.2\nball = { height = '1 m' }\n", &[":1:15", "1.2 is not a coefficient"]),
+        ("restitution = 0.8\nball = { height = '-1 cm' }\n", &[":2:", "below the floor"]),
+        ("restitution = 0.8\nball = { height = '1 s' }\n", &[":2:19", "length"]),
+        ("restitution = nan\nball = { height = 1 }\n", &[":1:15", "finite"]),
+        ("", &["empty"]),
+        (&noise, &["larger than 1 MiB"]),
+    ] {
+        let (_folder, path) = scene(toml);
+        let message = refused(&["simulate", &path]);
+        for part in parts {
+            assert!(message.contains(part), "no '{part}' in:\n{message}");
+        }
+        assert_eq!(refused(&["explain", &path]), message);
+    }
 }
 
 #[test]

@@ -14,13 +14,20 @@ pub(crate) struct Axis {
     /// Ticks lie in this part only.
     ticked: (f64, f64),
     step: f64,
+    /// Whether the values are powers of ten.
+    decades: bool,
 }
 
 impl Axis {
     /// An axis from `low` to `high` with at most `most` ticks, all inside `ticked`.
     pub(crate) fn new(low: f64, high: f64, ticked: (f64, f64), most: usize) -> Self {
         let span = ticked.1 - ticked.0;
-        Self { low, high, ticked, step: nice(span / most.max(1) as f64) }
+        Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false }
+    }
+
+    /// An axis of powers of ten from 10^`low` to 10^`high`.
+    pub(crate) fn decades(low: f64, high: f64) -> Self {
+        Self { low, high, ticked: (low, high), step: ((high - low) / 8.0).ceil().max(1.0), decades: true }
     }
 
     /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px between them on `length` px.
@@ -45,6 +52,16 @@ impl Axis {
         let first = (self.ticked.0 / self.step - slack).ceil();
         let last = (self.ticked.1 / self.step + slack).floor();
         let mut ticks = Vec::new();
+        if self.decades && self.high - self.low < 3.5 {
+            let (from, to) = (self.low.floor(), self.high);
+            let within = |t: &f64| (self.low..=self.high).contains(t);
+            let mut decade = from;
+            while decade <= to {
+                ticks.extend([1.0_f64, 2.0, 5.0].map(|times| decade + times.log10()).iter().copied().filter(within));
+                decade += 1.0;
+            }
+            return ticks;
+        }
         let mut index = first;
         // The bound only matters when the step is too small to move a huge index.
         while index <= last && ticks.len() < 64 {
@@ -56,6 +73,10 @@ impl Axis {
 
     /// The number as it is written beside its tick: no more decimals than the step needs.
     pub(crate) fn text(&self, value: f64) -> String {
+        if self.decades {
+            let decimals = (-value.floor()).clamp(0.0, 12.0) as usize;
+            return typeset(&format!("{:.decimals$}", 10f64.powf(value)));
+        }
         let decimals = (-(self.step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
         let plain = format!("{value:.decimals$}");
         typeset(&plain)

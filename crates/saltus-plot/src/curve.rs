@@ -40,7 +40,7 @@ pub(crate) fn value(c: &[f64], s: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, &c| sum * s + c)
 }
 
-fn derivative(c: &[f64]) -> Vec<f64> {
+pub(crate) fn derivative(c: &[f64]) -> Vec<f64> {
     c.iter().zip(0u32..).skip(1).map(|(&c, k)| c * f64::from(k)).collect()
 }
 
@@ -50,7 +50,7 @@ fn trimmed(c: &[f64]) -> &[f64] {
 }
 
 /// The polynomial in s of Σ cₖ (s + shift)ᵏ.
-fn shifted(c: &[f64], shift: f64) -> Vec<f64> {
+pub(crate) fn shifted(c: &[f64], shift: f64) -> Vec<f64> {
     let mut c = c.to_vec();
     for first in 0..c.len() {
         for k in (first..c.len().saturating_sub(1)).rev() {

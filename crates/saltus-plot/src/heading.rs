@@ -13,7 +13,7 @@ use crate::theme::{CAPITAL, Dash, Ink, Type, room, words, wrapped};
 
 /// What a legend entry shows before its words.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Sign {
+pub(crate) enum Sign {
     Line(Ink, Dash),
     Spot(Mark),
     Contact,
@@ -70,15 +70,6 @@ pub(crate) struct Heading {
 
 impl Heading {
     pub(crate) fn new(picture: &HeightTime, ty: Type, page: f64) -> Self {
-        let inside = page - 2.0 * ty.margin();
-        let title = wrapped(&picture.title, ty.title(), true, inside);
-        let captions = picture.captions.iter().flat_map(|c| wrapped(c, ty.base, false, inside)).collect();
-        let mut heading = Self { ty, title, captions, entries: Vec::new(), rows: 0 };
-        heading.legend(picture, inside);
-        heading
-    }
-
-    fn legend(&mut self, picture: &HeightTime, page: f64) {
         let mut wanted: Vec<(Sign, String)> = Vec::new();
         for (i, motion) in picture.motions.iter().enumerate() {
             if !motion.label.is_empty() {
@@ -91,6 +82,26 @@ impl Heading {
         }
         let model = wanted.len();
         wanted.extend(measured(picture));
+        Self::divided(&picture.title, &picture.captions, (wanted, model), ty, page)
+    }
+
+    /// With a title, lines under it, and the signs and words of a legend.
+    pub(crate) fn of(title: &str, captions: &[String], legend: Vec<(Sign, String)>, ty: Type, page: f64) -> Self {
+        let all = legend.len();
+        Self::divided(title, captions, (legend, all), ty, page)
+    }
+
+    fn divided(title: &str, captions: &[String], legend: (Vec<(Sign, String)>, usize), ty: Type, page: f64) -> Self {
+        let inside = page - 2.0 * ty.margin();
+        let title = wrapped(title, ty.title(), true, inside);
+        let captions = captions.iter().flat_map(|c| wrapped(c, ty.base, false, inside)).collect();
+        let mut heading = Self { ty, title, captions, entries: Vec::new(), rows: 0 };
+        heading.legend(legend, inside);
+        heading
+    }
+
+    /// Signs and words; the first `model` of them are of the model, the others of measurements.
+    fn legend(&mut self, (wanted, model): (Vec<(Sign, String)>, usize), page: f64) {
         let ty = self.ty;
         let full: f64 =
             wanted.iter().map(|(sign, text)| sign.lead(ty) + room(text, ty.base, false) + sign.gap(ty)).sum();

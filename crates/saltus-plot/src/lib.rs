@@ -20,12 +20,16 @@
 //! # Ok::<(), saltus_plot::PlotError>(())
 //! ```
 //!
+//! A [`Chart`] shows any two quantities against each other: velocity or energy against time, phase portraits, paths to scale, loops.
+//!
 //! # Limits
 //!
 //! The floor is at height zero. Letters are measured with the widths of Helvetica; a much wider face may let neighbouring
 //! labels come close. Arcs that together are narrower than 0.3 px are drawn as one stroke.
 
 mod axis;
+mod chart;
+mod chart_page;
 mod curve;
 mod data;
 mod error;
@@ -34,11 +38,14 @@ mod height_time;
 mod marks;
 mod page;
 mod residuals;
+mod stroke;
 mod svg;
 mod theme;
 mod unit;
 
+pub use chart::{Chart, Disc, Measure};
 pub use data::{Arc, Mark, Measured, Residual};
 pub use error::PlotError;
 pub use height_time::{Background, HeightTime};
+pub use stroke::Stroke;
 pub use unit::HeightUnit;

@@ -124,6 +124,11 @@ impl Canvas {
         self.path(Pen::new(color, Kind::Fill), data);
     }
 
+    /// The same, so that what lies below shows through.
+    pub(crate) fn glaze(&mut self, data: &str, ink: Ink, alpha: f64) {
+        self.path(Pen::new(BackendColor { alpha, rgb: ink.light() }, Kind::Fill), data);
+    }
+
     fn path(&mut self, pen: Pen, data: &str) {
         if pen.alpha == 0.0 {
             return;

@@ -92,9 +92,18 @@ impl Unit {
         }
     }
 
+    /// The unit with the prefix that reads best.
+    pub(crate) fn prefixed(symbol: &str, largest: f64, span: f64) -> Self {
+        let prefixes = [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)];
+        let fits = |&(_, size): &(&str, f64)| largest == 0.0 || largest >= 2.0 * size;
+        let (prefix, size) =
+            prefixes.into_iter().filter(|p| largest != 0.0 || p.1 == 1.0).find(fits).unwrap_or(("n", 1e-9));
+        Self::scaled(&format!("{prefix}{symbol}"), size, largest, span)
+    }
+
     /// Values beyond 10⁵ or below 10⁻² of the unit are written as so many powers of ten of it, unless the axis shows only
     /// a short stretch far from zero: there the whole number says more.
-    fn scaled(symbol: &str, size: f64, largest: f64, span: f64) -> Self {
+    pub(crate) fn scaled(symbol: &str, size: f64, largest: f64, span: f64) -> Self {
         let ratio = largest / size;
         let most = if span < 0.1 * largest { 1e9 } else { 1e5 };
         if ratio == 0.0 || !ratio.is_finite() || (1e-2..most).contains(&ratio) {

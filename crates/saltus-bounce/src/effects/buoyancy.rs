@@ -42,7 +42,10 @@ impl Buoyancy {
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
-    const UNIFORM: bool = true;
+    #[inline]
+    fn uniform(&self) -> bool {
+        true
+    }
 
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
@@ -88,7 +91,10 @@ impl<E> AddedMass<E> {
 }
 
 impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
-    const UNIFORM: bool = E::UNIFORM;
+    #[inline]
+    fn uniform(&self) -> bool {
+        self.effects.uniform()
+    }
 
     #[inline]
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {

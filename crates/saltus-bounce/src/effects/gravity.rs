@@ -81,7 +81,10 @@ impl Gravity {
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for Gravity {
-    const UNIFORM: bool = true;
+    #[inline]
+    fn uniform(&self) -> bool {
+        true
+    }
 
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {

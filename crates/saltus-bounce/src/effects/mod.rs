@@ -100,7 +100,10 @@ pub struct Motion<const N: usize, S = ()> {
 /// ```
 pub trait Effect<const N: usize, S: Spin = ()> {
     /// Promises that the acceleration is the same everywhere and always, and that the spin stays: flights are then exact parabolas.
-    const UNIFORM: bool = false;
+    #[inline]
+    fn uniform(&self) -> bool {
+        false
+    }
 
     /// The acceleration in m/s².
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N>;
@@ -113,7 +116,10 @@ pub trait Effect<const N: usize, S: Spin = ()> {
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
-    const UNIFORM: bool = true;
+    #[inline]
+    fn uniform(&self) -> bool {
+        true
+    }
 
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
@@ -121,10 +127,33 @@ impl<const N: usize, S: Spin> Effect<N, S> for () {
     }
 }
 
+/// An effect that a scene may name: none costs one comparison.
+impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Option<E> {
+    #[inline]
+    fn uniform(&self) -> bool {
+        self.as_ref().is_none_or(Effect::uniform)
+    }
+
+    #[inline]
+    fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
+        self.as_ref().map_or(SVector::zeros(), |effect| effect.acceleration(motion))
+    }
+
+    #[inline]
+    fn spin_rate(&self, motion: &Motion<N, S>) -> S {
+        self.as_ref().map_or(S::NONE, |effect| effect.spin_rate(motion))
+    }
+}
+
 macro_rules! tuple_of_effects {
     ($first:ident $($other:ident)*) => {
         impl<const N: usize, S: Spin, $first: Effect<N, S>, $($other: Effect<N, S>),*> Effect<N, S> for ($first, $($other,)*) {
-            const UNIFORM: bool = $first::UNIFORM $(&& $other::UNIFORM)*;
+            #[inline]
+            fn uniform(&self) -> bool {
+                #[allow(non_snake_case)]
+                let ($first, $($other,)*) = self;
+                $first.uniform() $(&& $other.uniform())*
+            }
 
             #[inline]
             fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {

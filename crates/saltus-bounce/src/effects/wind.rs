@@ -43,7 +43,10 @@ impl<const N: usize, E> Wind<N, E> {
 }
 
 impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
-    const UNIFORM: bool = E::UNIFORM;
+    #[inline]
+    fn uniform(&self) -> bool {
+        self.effects.uniform()
+    }
 
     #[inline]
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {

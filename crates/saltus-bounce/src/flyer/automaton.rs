@@ -37,7 +37,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// Whether forces are constant in `stance`.
     #[inline]
     fn uniform(&self, stance: Stance<N>) -> bool {
-        E::UNIFORM
+        self.effects.uniform()
             && match stance {
                 Stance::Flight { .. } | Stance::Corner { .. } => true,
                 // In space friction turns with the slip.
@@ -50,8 +50,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     #[inline]
     fn ridden(&self, stance: Stance<N>) -> Option<Face> {
         match stance {
-            Stance::Hold { face } if E::UNIFORM => Some(face),
-            Stance::Slide { face, along } if E::UNIFORM && none(&along) => Some(face),
+            Stance::Hold { face } if self.effects.uniform() => Some(face),
+            Stance::Slide { face, along } if self.effects.uniform() && none(&along) => Some(face),
             _ => None,
         }
     }
@@ -97,7 +97,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 let (slip, normal) = self.slip(face, t, x);
                 forwards(&slip, &along, &normal)
             }
-            Event::Slip(face) => self.cone(&self.touch(face, t, x)),
+            Event::Slip(face) => self.cone(face, &self.touch(face, t, x)),
             Event::Change => 1.0, // the clock takes it
         }
     }
@@ -142,7 +142,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             {
                 self.struck(stance, face, t, x)
             }
-            (Event::Change, Stance::Slide { face, .. } | Stance::Hold { face }) => self.settled(face, t, *x),
+            (Event::Change, Stance::Slide { face, .. } | Stance::Hold { face }) => self.changed(stance, face, t, x),
             (Event::Change, _) => (stance, *x),
             _ => self.reset(event, t, x),
         })

@@ -105,7 +105,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     pub(super) fn friction(&self, stance: Stance<N>, touch: &Touch<N, S>, slip: &SVector<f64, N>) -> SVector<f64, N> {
         match stance {
             Stance::Hold { .. } => touch.slip_rate * -self.grip.share(),
-            Stance::Slide { along, .. } if !none(&along) => {
+            Stance::Slide { face, along } if !none(&along) => {
                 let direction = if N == 2 {
                     tangent(&touch.normal) * along[0].signum()
                 } else {
@@ -113,7 +113,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                     let slip = if slip.dot(&along) > 0.0 { *slip } else { along };
                     slip / slip.norm()
                 };
-                direction * (-self.grip.coefficient() * touch.force)
+                direction * (-self.grip.on(face).coefficient() * touch.force)
             }
             _ => SVector::zeros(),
         }
@@ -121,8 +121,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// How far friction is from giving way: μ²λ|λ| - |f|².
     #[inline]
-    pub(super) fn cone(&self, touch: &Touch<N, S>) -> f64 {
-        let mu = self.grip.coefficient();
+    pub(super) fn cone(&self, face: Face, touch: &Touch<N, S>) -> f64 {
+        let mu = self.grip.on(face).coefficient();
         let needed = self.grip.share() * self.grip.share() * touch.slip_rate.norm_squared();
         mu * mu * touch.force * touch.force.abs() - needed
     }
@@ -136,7 +136,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         if touch.force < 0.0 {
             return (Stance::Flight { cell: face.cell }, x);
         }
-        if self.grip.coefficient() == 0.0 {
+        if self.grip.on(face).coefficient() == 0.0 {
             return (Stance::Slide { face, along: SVector::zeros() }, x);
         }
         let (slip, _) = self.slip(face, t, &x);
@@ -146,7 +146,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// Friction holds it, or it begins to slide.
     pub(super) fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
-        if self.cone(touch) >= 0.0 {
+        if self.cone(face, touch) >= 0.0 {
             Stance::Hold { face }
         } else {
             Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
@@ -167,9 +167,10 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         let mut x = self.on(face, t, x);
         let (normal, speed) = self.normal(face, t, &x);
         let relative = x.velocity - normal * speed;
-        let after = self.grip.impact(&self.restitution, relative, x.spin, &normal);
+        let law = self.restitution.on(face);
+        let after = self.grip.on(face).impact(&law, relative, x.spin, &normal);
         (x.velocity, x.spin) = (after.velocity + normal * speed, after.spin);
-        let rebounds = self.restitution.rebound((-relative.dot(&normal)).max(0.0)) > 0.0;
+        let rebounds = law.rebound((-relative.dot(&normal)).max(0.0)) > 0.0;
         let faces = self.walls.faces(face.cell);
         let held = (0..faces).filter(|&index| from.touches(index) && index != face.index);
         let stays = |index: usize, x: &Moving<N, S>| {
@@ -182,6 +183,20 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             (0, false) => self.settled(face, t, x),
             (mask, true) => self.among(face.cell, mask, t, x),
             (mask, false) => self.among(face.cell, mask | 1 << face.index, t, x),
+        }
+    }
+
+    /// The wall that carries the ball has changed its motion: if its velocity jumped, it strikes the ball or leaves it behind.
+    pub(super) fn changed(&self, from: Stance<N>, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let (normal, speed) = self.normal(face, t, x);
+        let parting = x.velocity.dot(&normal) - speed;
+        // A schedule without jumps of velocity leaves roundings.
+        if parting.abs() <= 1e-12 * (speed.abs() + x.velocity.norm()) {
+            self.settled(face, t, *x)
+        } else if parting < 0.0 {
+            self.struck(from, face, t, x)
+        } else {
+            (Stance::Flight { cell: face.cell }, *x)
         }
     }
 

@@ -7,6 +7,7 @@ use crate::friction::{Friction, Rebound};
 use crate::parameter::{ParameterError, between, not_negative};
 use crate::restitution::Restitution;
 use crate::sphere::Sphere;
+use crate::walls::Face;
 
 /// The tangential half of a law of impact, and of contact.
 ///
@@ -21,6 +22,16 @@ pub trait Grip<const N: usize, S: Turning> {
         spin: S,
         normal: &SVector<f64, N>,
     ) -> Rebound<SVector<f64, N>, S>;
+
+    /// The grip of one face, where faces differ; the default is the same for all.
+    #[inline]
+    fn on(&self, face: Face) -> impl Grip<N, S>
+    where
+        Self: Sized,
+    {
+        let _ = face;
+        self
+    }
 
     /// Coulomb's μ in contact.
     fn coefficient(&self) -> f64 {
@@ -42,6 +53,35 @@ pub trait Grip<const N: usize, S: Turning> {
     fn torque(&self, friction: &SVector<f64, N>, normal: &SVector<f64, N>) -> S {
         let _ = (friction, normal);
         S::NONE
+    }
+}
+
+impl<const N: usize, S: Turning, G: Grip<N, S>> Grip<N, S> for &G {
+    #[inline]
+    fn impact<R: Restitution>(
+        &self,
+        restitution: &R,
+        velocity: SVector<f64, N>,
+        spin: S,
+        normal: &SVector<f64, N>,
+    ) -> Rebound<SVector<f64, N>, S> {
+        (**self).impact(restitution, velocity, spin, normal)
+    }
+    #[inline]
+    fn coefficient(&self) -> f64 {
+        (**self).coefficient()
+    }
+    #[inline]
+    fn slip(&self, velocity: SVector<f64, N>, spin: S, normal: &SVector<f64, N>) -> SVector<f64, N> {
+        (**self).slip(velocity, spin, normal)
+    }
+    #[inline]
+    fn share(&self) -> f64 {
+        (**self).share()
+    }
+    #[inline]
+    fn torque(&self, friction: &SVector<f64, N>, normal: &SVector<f64, N>) -> S {
+        (**self).torque(friction, normal)
     }
 }
 

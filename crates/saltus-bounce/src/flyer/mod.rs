@@ -29,7 +29,7 @@ pub use stance::{Event, Stance};
 /// holds:    f = -(slip's change by a) α/(1 + α)     until |f| > μ λ and it slides, or λ falls to zero and it leaves
 /// ```
 ///
-/// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::UNIFORM`]) flights, and contacts with
+/// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::uniform`]) flights, and contacts with
 /// planes at rest, are exact parabolas, and rides on floors that move are known by formula: no step is taken. Else they are stepped.
 ///
 /// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without friction. Quadratic drag, v|v|, is smooth away from v = 0, which
@@ -106,6 +106,6 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// Whether a contact with `face` is the same always and everywhere: forces are constant.
     #[inline]
     fn steady(&self, face: Face) -> bool {
-        E::UNIFORM && self.walls.straight(face)
+        self.effects.uniform() && self.walls.straight(face)
     }
 }

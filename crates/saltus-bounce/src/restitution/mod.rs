@@ -10,6 +10,8 @@ mod viscoelastic;
 
 use std::fmt;
 
+use crate::walls::Face;
+
 pub use knots::{Knots, KnotsError};
 pub use linear::Linear;
 pub use plastic::Plastic;
@@ -29,6 +31,16 @@ pub use viscoelastic::Viscoelastic;
 pub trait Restitution {
     /// The speed of rebound after an impact at the speed `impact`, both in m/s and not negative.
     fn rebound(&self, impact: f64) -> f64;
+
+    /// The law of one face of the walls, where faces differ; the default is the same for all.
+    #[inline]
+    fn on(&self, face: Face) -> impl Restitution
+    where
+        Self: Sized,
+    {
+        let _ = face;
+        self
+    }
 }
 
 impl Restitution for Cor {

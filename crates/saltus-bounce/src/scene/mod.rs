@@ -11,6 +11,7 @@ mod error;
 mod file;
 mod floor;
 mod motion;
+pub mod plan;
 mod read;
 mod restitution;
 mod run;

@@ -12,7 +12,7 @@ use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{Close, earlier};
-use super::exact::{past, size};
+use super::exact::{natural, past};
 use super::{Advance, ArcEnd, Clock, Found};
 
 /// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
@@ -41,8 +41,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let formula = automaton.falls(mode, edge, t, x);
             let Searched { fall, evidence } = match formula {
                 Fall::Unknown => {
-                    let natural = size(x) / size(&self.flow(mode, t, x));
-                    let natural = if natural.is_finite() { natural } else { 0.0 };
+                    let natural = natural(&[*x, self.flow(mode, t, x)]);
                     self.fall_in_windows(edge, now, natural, at, limit, start)
                         .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
                 }

@@ -158,19 +158,19 @@ fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> 
     }
 }
 
-/// The time in which a polynomial changes by its own size.
-fn natural<S: State>(c: &[S]) -> f64 {
-    (1..c.len())
-        .flat_map(|k| (0..k).map(move |j| (j, k)))
-        .map(|(j, k)| (j, k, size(&c[j]), size(&c[k])))
-        .filter(|&(_, _, low, high)| low > 0.0 && high > 0.0)
-        .map(|(j, k, low, high)| (low / high).powf(1.0 / (k - j) as f64))
-        .fold(0.0, f64::max)
-}
-
-/// The largest magnitude of a coordinate.
-pub(super) fn size(x: &impl State) -> f64 {
-    (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max)
+/// The time in which the fastest coordinate of a polynomial changes by its own size, but no thousandth of that of the slowest one.
+pub(super) fn natural<S: State>(c: &[S]) -> f64 {
+    let of = |i: usize| {
+        (1..c.len())
+            .flat_map(|k| (0..k).map(move |j| (j, k)))
+            .map(|(j, k)| (j, k, c[j].get(i).abs(), c[k].get(i).abs()))
+            .filter(|&(_, _, low, high)| low > 0.0 && high > 0.0)
+            .map(|(j, k, low, high)| (low / high).powf(1.0 / (k - j) as f64))
+            .fold(0.0, f64::max)
+    };
+    let times = || (0..c[0].len()).map(of).filter(|&time| time > 0.0);
+    let slowest = times().fold(0.0, f64::max);
+    times().fold(slowest, f64::min).max(1e-3 * slowest)
 }
 
 /// The state at the end of a piece that may last for ever.

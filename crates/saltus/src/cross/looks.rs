@@ -83,6 +83,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
         let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let came_from = side;
         let mut side = side;
         let mut hidden: Option<(f64, f64)> = None;
         let mut seen = false;
@@ -97,7 +98,8 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             }
             (side, seen) = (next, true);
         }
-        if let Some((from, to)) = hidden {
+        // A guard that leaves the wall slowly is nothing but rounding at first, which hides nothing.
+        if let Some((from, to)) = hidden.filter(|_| came_from != Side::Wall) {
             self.weaken(Evidence::Rounding { from, to });
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };

@@ -204,6 +204,10 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             Shape::Below => Some(match side {
                 Side::Inside => Part::Fall { a: from, b, near: None },
                 Side::Outside => Part::None(Side::Outside),
+                // The samples may be too far apart to see that the guard rises first.
+                Side::Wall if leaving && self.spent && known.is_none() && self.rises_first(b)? => {
+                    return self.halved(stretch, margin, side);
+                }
                 Side::Wall if leaving => self.left(None),
                 Side::Wall => self.left(Some(order(p.start(), p.end(), a, b))),
             }),
@@ -253,6 +257,18 @@ impl<G: FnMut(f64) -> f64> Search<G> {
     /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
     pub(super) fn roughness(&self, s: f64) -> f64 {
         self.rough * (s / self.span).powi(2)
+    }
+
+    /// Whether the guard is above its spent start anywhere in a row of times that shrink towards it.
+    fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
+        let mut s = b;
+        for _ in 0..8 {
+            s *= 1.0 / 16.0;
+            if self.value(s)? - self.base > self.roughness(s) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter times, and so not rounding.

@@ -1,0 +1,328 @@
+//! One ball in one to three coordinates, among whatever floors and walls a scene has.
+
+use nalgebra::{SVector, Vector3};
+use saltus::Jump;
+
+use super::explain::Advance;
+use super::machine::{Happening, Hit, Machine, Reader, Ready};
+use super::record::{Moment, With};
+use super::surroundings::{Surroundings, surroundings};
+use super::{PlanError, failed, kind, label};
+use crate::effects::{AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind};
+use crate::friction::{Friction, Rebound};
+use crate::restitution::Restitution;
+use crate::scene::{Law, Scene};
+use crate::walls::{Face, Walls};
+use crate::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
+
+/// Whether the scene's ball needs a spin.
+pub(super) fn spins(scene: &Scene) -> bool {
+    let rubs = scene.floors.iter().any(|floor| floor.friction.coefficient() > 0.0);
+    scene.dimensions > 1 && (scene.balls[0].spin.is_some() || rubs)
+}
+
+/// Whether the only forces are those of gravity and buoyancy.
+pub(super) fn uniform(scene: &Scene) -> bool {
+    let effects = &scene.effects;
+    effects.linear.is_none() && effects.quadratic.is_none() && effects.lift.is_none() && effects.spin_decay.is_none()
+}
+
+pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
+    let spin = scene.balls[0].spin.unwrap_or_default();
+    // One model for each kind of state: which of the effects are named is asked as it runs, and where none is but gravity, flights are exact.
+    match (scene.dimensions, spins(scene)) {
+        (1, _) => smooth::<1, _>(scene, rigid(scene, air(scene)?)?),
+        (2, false) => smooth::<2, _>(scene, rigid(scene, air(scene)?)?),
+        (2, true) => rough::<2, f64, _>(scene, rigid(scene, spinning_air(scene)?)?, 0.0 - spin.y),
+        (_, false) => smooth::<3, _>(scene, rigid(scene, air(scene)?)?),
+        (_, true) => rough::<3, Vector3<f64>, _>(scene, rigid(scene, spinning_air(scene)?)?, spin),
+    }
+}
+
+/// The effects on a ball that drags air along, or on one that does not: half of no air.
+fn rigid<E>(scene: &Scene, effects: E) -> Result<AddedMass<E>, PlanError> {
+    let sphere = scene.balls[0].sphere();
+    let unit = Sphere::solid(1.0, 1.0).map_err(failed)?;
+    let density = if scene.effects.added_mass && sphere.is_some() { scene.effects.density } else { 0.0 };
+    AddedMass::new(&sphere.unwrap_or(unit), density, effects).map_err(failed)
+}
+
+fn steady(scene: &Scene) -> (Gravity, Option<Buoyancy>) {
+    (scene.gravity, scene.effects.buoyancy(&scene.balls[0], scene.gravity))
+}
+
+/// The scene's wind in N coordinates.
+fn wind<const N: usize, E>(scene: &Scene, effects: E) -> Result<Wind<N, E>, PlanError> {
+    Wind::new(position(&scene.effects.wind.unwrap_or_default()), effects).map_err(failed)
+}
+
+type Blown<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
+
+fn air<const N: usize>(scene: &Scene) -> Result<Blown<N, (Option<LinearDrag>, Option<QuadraticDrag>)>, PlanError> {
+    let (ball, effects) = (&scene.balls[0], &scene.effects);
+    let (gravity, buoyancy) = steady(scene);
+    Ok((gravity, buoyancy, wind(scene, (effects.linear_drag(ball), effects.quadratic_drag(ball)))?))
+}
+
+type Spun = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
+
+fn spinning_air<const N: usize>(scene: &Scene) -> Result<Blown<N, Spun>, PlanError> {
+    let (ball, effects) = (&scene.balls[0], &scene.effects);
+    let (gravity, buoyancy) = steady(scene);
+    let drag = (effects.linear_drag(ball), effects.quadratic_drag(ball));
+    Ok((gravity, buoyancy, wind(scene, (drag.0, drag.1, effects.magnus(ball), effects.spin_decay(ball)))?))
+}
+
+/// (x, y, up) as N coordinates.
+fn position<const N: usize>(v: &Vector3<f64>) -> SVector<f64, N> {
+    SVector::from_fn(|i, _| if i + 1 == N { v.z } else { v[i] })
+}
+
+/// N coordinates as (x, y, up).
+fn spread<const N: usize>(v: &SVector<f64, N>) -> Vector3<f64> {
+    let mut all = Vector3::zeros();
+    for i in 0..N - 1 {
+        all[i] = v[i];
+    }
+    all.z = v[N - 1];
+    all
+}
+
+fn smooth<const N: usize, E>(scene: &Scene, effects: E) -> Result<Box<dyn Machine>, PlanError>
+where
+    E: Effect<N> + Send + Sync + 'static,
+{
+    let (walls, laws, _) = faces::<N>(scene)?;
+    let start = start::<N>(scene);
+    let stance = Stance::Flight { cell: walls.cell(&start.position) };
+    let reader = Among::new(scene, false);
+    let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
+    Ok(Ready::boxed(flyer, reader, stance, start))
+}
+
+fn rough<const N: usize, S, E>(scene: &Scene, effects: E, spin: S) -> Result<Box<dyn Machine>, PlanError>
+where
+    S: Turning + Turned + Send + Sync + 'static,
+    E: Effect<N, S> + Send + Sync + 'static,
+    Rolls: Grip<N, S>,
+{
+    let (walls, laws, frictions) = faces::<N>(scene)?;
+    let ball = &scene.balls[0];
+    let radius = ball.radius.unwrap_or(1.0);
+    // Friction turns a ball by its shape and radius, whatever its mass.
+    let sphere = Sphere::with_inertia(radius, ball.mass.unwrap_or(1.0), ball.inertia).map_err(failed)?;
+    let grips = Grips {
+        any: Rolls { ball: sphere, friction: Friction::NONE },
+        each: frictions.into_iter().map(|friction| Rolls { ball: sphere, friction }).collect(),
+    };
+    let start = start::<N>(scene).spinning(spin);
+    let stance = Stance::Flight { cell: walls.cell(&start.position) };
+    let reader = Among::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
+    let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
+    Ok(Ready::boxed(flyer, reader, stance, start))
+}
+
+fn start<const N: usize>(scene: &Scene) -> Moving<N> {
+    Moving::new(position(&scene.balls[0].lowest()), position(&scene.balls[0].velocity))
+}
+
+#[allow(clippy::needless_pass_by_value)] // used as a function
+fn crowded(error: crate::ParameterError) -> PlanError {
+    PlanError::new("[[floor]]", &format!("the scene has too many walls, {error}"))
+}
+
+/// The walls of the ball, and the law and the friction of each face.
+fn faces<const N: usize>(scene: &Scene) -> Result<(Surroundings<N>, Laws, Vec<Friction>), PlanError> {
+    let walls = surroundings::<N>(scene, &scene.balls[0])?;
+    let owners: Vec<usize> = walls.all(0).map(|face| walls.owner(face)).collect();
+    let each: Vec<Law> = owners.iter().filter_map(|&owner| scene.law(0, owner).copied()).collect();
+    let frictions = owners.iter().map(|&owner| scene.floors[owner].friction).collect();
+    Ok((walls, Laws { each }, frictions))
+}
+
+/// The law of each face of a cell.
+#[derive(Clone, Debug)]
+struct Laws {
+    each: Vec<Law>,
+}
+
+impl Restitution for Laws {
+    fn rebound(&self, impact: f64) -> f64 {
+        self.each.first().map_or(0.0, |law| law.rebound(impact))
+    }
+    fn on(&self, face: Face) -> impl Restitution {
+        FaceLaw(self.each.get(face.index))
+    }
+}
+
+/// The law of one face, if there is such a face.
+struct FaceLaw<'a>(Option<&'a Law>);
+
+impl Restitution for FaceLaw<'_> {
+    fn rebound(&self, impact: f64) -> f64 {
+        self.0.map_or(0.0, |law| law.rebound(impact))
+    }
+}
+
+/// The friction of each face of a cell.
+#[derive(Clone, Debug)]
+struct Grips {
+    /// Without friction.
+    any: Rolls,
+    each: Vec<Rolls>,
+}
+
+impl<const N: usize, S: Turning> Grip<N, S> for Grips
+where
+    Rolls: Grip<N, S>,
+{
+    fn impact<R: Restitution>(
+        &self,
+        restitution: &R,
+        velocity: SVector<f64, N>,
+        spin: S,
+        normal: &SVector<f64, N>,
+    ) -> Rebound<SVector<f64, N>, S> {
+        self.any.impact(restitution, velocity, spin, normal)
+    }
+    fn on(&self, face: Face) -> impl Grip<N, S> {
+        self.each.get(face.index).unwrap_or(&self.any)
+    }
+    fn slip(&self, velocity: SVector<f64, N>, spin: S, normal: &SVector<f64, N>) -> SVector<f64, N> {
+        self.any.slip(velocity, spin, normal)
+    }
+    fn share(&self) -> f64 {
+        self.any.share()
+    }
+    fn torque(&self, friction: &SVector<f64, N>, normal: &SVector<f64, N>) -> S {
+        self.any.torque(friction, normal)
+    }
+}
+
+/// A spin as a vector (x, y, up) by the right-hand rule.
+trait Turned {
+    fn vector(&self) -> Vector3<f64>;
+}
+
+impl Turned for () {
+    fn vector(&self) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+}
+
+impl Turned for f64 {
+    fn vector(&self) -> Vector3<f64> {
+        Vector3::new(0.0, 0.0 - self, 0.0)
+    }
+}
+
+impl Turned for Vector3<f64> {
+    fn vector(&self) -> Vector3<f64> {
+        *self
+    }
+}
+
+/// Reads a ball among the floors of a scene.
+struct Among {
+    kinds: Vec<&'static str>,
+    labels: Vec<String>,
+    moves: Vec<bool>,
+    rubs: bool,
+}
+
+impl Among {
+    fn new(scene: &Scene, rubs: bool) -> Self {
+        Self {
+            kinds: scene.floors.iter().map(kind).collect(),
+            labels: (0..scene.floors.len()).map(|n| label(scene, n)).collect(),
+            moves: scene.floors.iter().map(|floor| floor.motion.is_some()).collect(),
+            rubs,
+        }
+    }
+}
+
+type Scenic<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
+
+impl<const N: usize, S, E, G> Reader<Scenic<N, S, E, G>> for Among
+where
+    S: Turning + Turned,
+    E: Effect<N, S>,
+    G: Grip<N, S>,
+{
+    type Stepper = super::method::Method;
+
+    fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
+        Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }
+    }
+    fn mode(&self, stance: Stance<N>, _: usize) -> &'static str {
+        match stance {
+            Stance::Flight { .. } => "flight",
+            Stance::Slide { .. } => "slide",
+            Stance::Hold { .. } => "hold",
+            Stance::Corner { .. } => "corner",
+        }
+    }
+    fn flies(&self, stance: Stance<N>, _: usize) -> bool {
+        matches!(stance, Stance::Flight { .. })
+    }
+    fn rests(&self, stance: Stance<N>, x: &Moving<N, S>) -> bool {
+        let still = x.velocity.norm() == 0.0 && x.spin.vector().norm() == 0.0;
+        still && !matches!(stance, Stance::Flight { .. }) && !self.moves.contains(&true)
+    }
+    fn happening(&self, model: &Scenic<N, S, E, G>, jump: &Jump<Scenic<N, S, E, G>>, event: Event<N>) -> Happening {
+        let one = |edge| Happening { balls: [Some(0), None], ..Happening::of(edge) };
+        match event {
+            Event::Meet(face) => {
+                let (t, p, walls) = (jump.t(), &jump.before.position, model.walls());
+                if walls.leads(face, t, p).is_some() {
+                    return one("passage");
+                }
+                let gradient = walls.gradient(face, t, p);
+                let length = gradient.norm();
+                let owner = walls.owner(face);
+                let hit = Hit {
+                    with: With::Floor(owner),
+                    normal: spread(&(gradient / length)),
+                    speed: -walls.rate(face, t, p) / length,
+                };
+                Happening { hit: Some(hit), ..one(self.kinds.get(owner).copied().unwrap_or("floor")) }
+            }
+            Event::Leave(_) => one("lift-off"),
+            Event::Stop { .. } => one("stop"),
+            Event::Slip(_) => one("slip"),
+            Event::Change => one("schedule"),
+        }
+    }
+    fn modes(&self, model: &Scenic<N, S, E, G>) -> Vec<Stance<N>> {
+        let walls = model.walls();
+        let mut modes = vec![Stance::FLIGHT];
+        let mut slip = SVector::zeros();
+        slip[0] = if self.rubs { 1.0 } else { 0.0 };
+        for face in walls.all(0) {
+            // Risers and passages are not lain on.
+            modes.push(Stance::Slide { face, along: slip });
+            if self.rubs {
+                modes.push(Stance::Hold { face });
+            }
+        }
+        modes
+    }
+    fn edge(&self, model: &Scenic<N, S, E, G>, event: Event<N>) -> String {
+        match event {
+            Event::Meet(face) => self.labels.get(model.walls().owner(face)).cloned().unwrap_or_default(),
+            Event::Leave(_) => "lift-off: the floor no longer presses".to_owned(),
+            Event::Stop { .. } => "stop: the slip has come to an end".to_owned(),
+            Event::Slip(_) => "slip: friction no longer holds".to_owned(),
+            Event::Change => "schedule".to_owned(),
+        }
+    }
+    fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {
+        match (stance, advance) {
+            (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",
+            (Stance::Flight { .. }, _) => "the air's force depends on the velocity, and no formula solves that",
+            (_, Advance::Exact) => "forces along a plane are constant: a parabola",
+            (_, Advance::Formula) => "the ball rides on a floor whose motion is known",
+            _ => "the force depends on where the ball is or how it moves",
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! A model with its start, ready to run, and the run read in terms of the scene.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use saltus::step::Stepper;
+use saltus::{Automaton, Cause, Jump, Observer, Run, Simulation, Stop, Trajectory};
+
+use super::explain::{Advance, ModePlan};
+use super::method::Method;
+use super::record::{Cost, End, Event, Impact, Moment, Recorded, Segment, Sides, With};
+
+/// How to run a machine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct How {
+    pub(super) until: Option<f64>,
+    pub(super) most_jumps: usize,
+    pub(super) most_evaluations: u64,
+    pub(super) method: Method,
+    pub(super) tolerance: f64,
+    /// Where a coordinate is near zero; a thousandth of the tolerance unless given.
+    pub(super) absolute: Option<f64>,
+}
+
+/// What a jump means in the scene.
+pub(super) struct Happening {
+    pub(super) edge: &'static str,
+    /// The balls that take part; none means all.
+    pub(super) balls: [Option<usize>; 2],
+    pub(super) hit: Option<Hit>,
+}
+
+impl Happening {
+    /// Something that is no impact, with ball 0 or with all.
+    pub(super) const fn of(edge: &'static str) -> Self {
+        Self { edge, balls: [None; 2], hit: None }
+    }
+}
+
+/// An impact: with what, along which normal, and how fast that itself moves along it.
+pub(super) struct Hit {
+    pub(super) with: With,
+    pub(super) normal: Vector3<f64>,
+    pub(super) speed: f64,
+}
+
+/// Reads the states, modes and jumps of a model in terms of the scene.
+pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
+    /// The stepper to compile the model for: the whole choice, or, where a formula solves every mode, one that is never asked.
+    type Stepper: Stepper + From<Method>;
+    fn balls(&self) -> usize {
+        1
+    }
+    /// What of a moment is linear in the state.
+    fn linear(&self, x: &A::State, ball: usize) -> Moment;
+    /// And what is added to it.
+    fn origin(&self, ball: usize) -> Moment {
+        let _ = ball;
+        Moment::ZERO
+    }
+    fn mode(&self, mode: A::Mode, ball: usize) -> &'static str;
+    fn flies(&self, mode: A::Mode, ball: usize) -> bool;
+    /// Whether nothing moves any more.
+    fn rests(&self, mode: A::Mode, x: &A::State) -> bool;
+    /// A jump by an edge.
+    fn happening(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> Happening;
+    /// The modes a run may enter, as far as they differ in how they are advanced.
+    fn modes(&self, model: &A) -> Vec<A::Mode>;
+    fn edge(&self, model: &A, edge: A::Edge) -> String;
+    /// Why a mode is advanced as it is.
+    fn why(&self, mode: A::Mode, advance: Advance) -> &'static str;
+    /// Contacts that take time.
+    fn contacts(&self, model: &A, run: &Trajectory<A>) -> Option<Vec<Impact>> {
+        let _ = (model, run);
+        None
+    }
+    fn hysteresis(&self, model: &A, run: &Trajectory<A>, contact: usize, count: usize) -> Vec<[f64; 2]> {
+        let _ = (model, run, contact, count);
+        Vec::new()
+    }
+}
+
+/// Anything that runs.
+pub(super) trait Machine: Send + Sync {
+    fn run(&self, how: &How) -> Result<super::Record, saltus::Error>;
+    fn modes(&self, method: Method) -> Vec<ModePlan>;
+    fn coordinates(&self) -> usize;
+}
+
+/// A model, who reads it, and where it starts.
+pub(super) struct Ready<A: Automaton, R> {
+    pub(super) automaton: Arc<A>,
+    pub(super) reader: Arc<R>,
+    pub(super) mode: A::Mode,
+    pub(super) state: A::State,
+}
+
+impl<A: Automaton, R: Reader<A>> Ready<A, R> {
+    pub(super) fn boxed(automaton: A, reader: R, mode: A::Mode, state: A::State) -> Box<dyn Machine>
+    where
+        A: Send + Sync + 'static,
+        A::Mode: Send + Sync,
+        A::State: Send + Sync,
+    {
+        Box::new(Self { automaton: Arc::new(automaton), reader: Arc::new(reader), mode, state })
+    }
+}
+
+impl<A, R: Reader<A>> Machine for Ready<A, R>
+where
+    A: Automaton + Send + Sync + 'static,
+    A::Mode: Send + Sync,
+    A::State: Send + Sync,
+{
+    fn run(&self, how: &How) -> Result<super::Record, saltus::Error> {
+        let mut simulation = Simulation::of(&*self.automaton)
+            .stepper(R::Stepper::from(how.method))
+            .tolerance(how.tolerance)
+            .most_jumps(how.most_jumps)
+            .most_evaluations(how.most_evaluations);
+        if let Some(absolute) = how.absolute {
+            simulation = simulation.absolute_tolerance(absolute);
+        }
+        let until = match how.until {
+            Some(until) => until,
+            None if self.modes(how.method).iter().all(|mode| mode.advance.is_solved()) => f64::INFINITY,
+            // Steps would go on for ever: the run is made twice, first to see when it ends.
+            None => {
+                let mut resting = Resting { reader: &*self.reader };
+                let rest = simulation.drive(self.mode, self.state, 0.0..f64::INFINITY, &mut resting)?.time.seconds();
+                rest * (1.0 + super::SHOWN_AFTER_REST)
+            }
+        };
+        let run = simulation.run(self.mode, self.state, 0.0..until)?;
+        let end = match run.stop {
+            Stop::Jumps { most } => End::Jumps { most },
+            Stop::Zeno { limit } => End::Zeno { limit },
+            Stop::Evaluations { most } => End::Evaluations { most },
+            Stop::Cascade { .. } => End::Cascade,
+            _ => End::Time,
+        };
+        let rests = end == End::Time && self.reader.rests(run.mode, &run.state);
+        let rest = rests.then(|| run.trajectory.jumps().last().map_or(0.0, Jump::t));
+        let until = run.trajectory.end().seconds();
+        let read = Read { automaton: Arc::clone(&self.automaton), reader: Arc::clone(&self.reader), run };
+        Ok(super::Record { run: Box::new(read), until, end, rest })
+    }
+
+    fn modes(&self, method: Method) -> Vec<ModePlan> {
+        let plan = |mode: A::Mode| {
+            let (automaton, reader) = (&*self.automaton, &*self.reader);
+            let advance = if automaton.exact(mode, 0.0, &self.state).is_some() {
+                Advance::Exact
+            } else if automaton.flown(mode, 0.0, &self.state, 0.0).is_some() {
+                Advance::Formula
+            } else if method.is_stiff() {
+                Advance::Stiff(method.name())
+            } else {
+                Advance::Explicit(method.name())
+            };
+            let mut edges: Vec<String> =
+                automaton.edges(mode).iter().map(|edge| reader.edge(automaton, edge)).collect();
+            edges.dedup();
+            ModePlan { name: reader.mode(mode, 0), advance, why: reader.why(mode, advance), edges }
+        };
+        self.reader.modes(&self.automaton).into_iter().map(plan).collect()
+    }
+
+    fn coordinates(&self) -> usize {
+        saltus::State::len(&self.state)
+    }
+}
+
+/// Ends a run as everything has come to rest.
+struct Resting<'a, R> {
+    reader: &'a R,
+}
+
+impl<A: Automaton, R: Reader<A>> Observer<A> for Resting<'_, R> {
+    fn wants_pieces(&self) -> bool {
+        false
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        if self.reader.rests(jump.to, &jump.after) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// A run that is read when it is asked.
+struct Read<A: Automaton, R> {
+    automaton: Arc<A>,
+    reader: Arc<R>,
+    run: Run<A>,
+}
+
+impl<A: Automaton, R: Reader<A>> Read<A, R> {
+    fn moment(&self, x: &A::State, ball: usize) -> Moment {
+        self.reader.linear(x, ball) + self.reader.origin(ball)
+    }
+
+    fn happening(&self, jump: &Jump<A>) -> Happening {
+        match jump.cause {
+            Cause::Edge(edge) => self.reader.happening(&self.automaton, jump, edge),
+            _ => Happening::of("zeno"),
+        }
+    }
+}
+
+impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
+    fn balls(&self) -> usize {
+        self.reader.balls()
+    }
+
+    fn at(&self, ball: usize, t: f64) -> Option<(&'static str, Moment)> {
+        let mode = self.run.trajectory.mode_at(t)?;
+        Some((self.reader.mode(mode, ball), self.moment(&self.run.trajectory.at(t)?, ball)))
+    }
+
+    fn before(&self, ball: usize, t: f64) -> Option<Moment> {
+        Some(self.moment(&self.run.trajectory.before(t)?, ball))
+    }
+
+    fn segments(&self, ball: usize) -> Vec<Segment> {
+        let trajectory = &self.run.trajectory;
+        let mut segments = Vec::new();
+        for (index, arc) in trajectory.arcs().iter().enumerate() {
+            let (mode, flight) = (self.reader.mode(arc.mode(), ball), self.reader.flies(arc.mode(), ball));
+            for piece in trajectory.pieces(index) {
+                let mut factor = 1.0;
+                let mut coefficients: Vec<Moment> = Vec::with_capacity(piece.coefficients().len());
+                for c in piece.coefficients() {
+                    coefficients.push(self.reader.linear(c, ball) * factor);
+                    factor /= piece.scale();
+                }
+                if let Some(first) = coefficients.first_mut() {
+                    *first = *first + self.reader.origin(ball);
+                }
+                let (start, span) = (piece.start().seconds(), piece.span());
+                segments.push(Segment { start, span, mode, flight, coefficients });
+            }
+        }
+        segments
+    }
+
+    fn events(&self) -> Vec<Event> {
+        let event = |jump: &Jump<A>| {
+            let happening = self.happening(jump);
+            let side = |ball: usize| Sides {
+                ball,
+                from: self.reader.mode(jump.from, ball),
+                before: self.moment(&jump.before, ball),
+                to: self.reader.mode(jump.to, ball),
+                after: self.moment(&jump.after, ball),
+            };
+            let sides = match happening.balls {
+                [None, None] => (0..self.balls()).map(side).collect(),
+                some => some.into_iter().flatten().map(side).collect(),
+            };
+            Event { t: jump.t(), j: jump.j, edge: happening.edge, sides }
+        };
+        self.run.trajectory.jumps().iter().map(event).collect()
+    }
+
+    fn impacts(&self) -> Vec<Impact> {
+        if let Some(contacts) = self.reader.contacts(&self.automaton, &self.run.trajectory) {
+            return contacts;
+        }
+        let impact = |jump: &Jump<A>| {
+            let happening = self.happening(jump);
+            let Hit { with, normal, speed } = happening.hit?;
+            let ball = happening.balls[0].unwrap_or(0);
+            let approach = |x: &A::State| {
+                let other = match with {
+                    With::Ball(other) => self.moment(x, other).velocity.dot(&normal),
+                    With::Floor(_) => speed,
+                };
+                other - self.moment(x, ball).velocity.dot(&normal)
+            };
+            let (before, after) = (approach(&jump.before), -approach(&jump.after));
+            // Rounding may leave a hair of the wrong sign.
+            Some(Impact {
+                t: jump.t(),
+                ball,
+                with,
+                approach: before.max(0.0),
+                rebound: Some(after.max(0.0)),
+                press: None,
+            })
+        };
+        self.run.trajectory.jumps().iter().filter_map(impact).collect()
+    }
+
+    fn hysteresis(&self, contact: usize, count: usize) -> Vec<[f64; 2]> {
+        self.reader.hysteresis(&self.automaton, &self.run.trajectory, contact, count)
+    }
+
+    fn cost(&self) -> Cost {
+        let stats = self.run.stats;
+        Cost { jumps: stats.jumps, steps: stats.steps + stats.rejected, flows: stats.flows, guards: stats.guards }
+    }
+
+    fn last(&self) -> f64 {
+        self.run.trajectory.jumps().last().map_or(0.0, Jump::t)
+    }
+
+    fn doubts(&self) -> Vec<String> {
+        self.run.trajectory.doubts().iter().map(ToString::to_string).collect()
+    }
+}

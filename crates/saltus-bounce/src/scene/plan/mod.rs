@@ -1,0 +1,369 @@
+//! From a scene to something that runs: the cheapest model that leaves nothing of the scene out.
+//!
+//! [`Scene::plan`] chooses it, [`Plan::explain`] says what was chosen and why, [`Plan::run`] runs it, and whatever the model, a [`Record`] answers for
+//! the run.
+
+mod ball;
+mod cloud;
+mod compliant;
+mod curve;
+mod explain;
+mod flyer;
+mod line;
+mod machine;
+mod method;
+mod record;
+mod surroundings;
+
+use std::fmt;
+
+pub use explain::{Advance, Effect, Explanation, ModePlan};
+pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
+
+use super::{Contact, Floor, Law, Scene, Shape};
+use machine::{How, Machine};
+use method::Method;
+
+/// After how many jumps a run ends that says nothing of it.
+const MOST_JUMPS: u32 = 10_000;
+/// After how many evaluations of flows and guards a run ends: a minute or so.
+const MOST_EVALUATIONS: u64 = 200_000_000;
+/// With how many balls on a line a scene runs, and with how many in the plane or in space.
+const MOST_BALLS: usize = 5;
+const MOST_IN_SPACE: usize = 5;
+/// The relative tolerance of steps, unless the scene gives one.
+const TOLERANCE: f64 = 1e-9;
+/// And that of contacts that take time: they last for a few steps only.
+const CONTACT_TOLERANCE: f64 = 1e-12;
+/// How much of a motion that ends by itself is kept beyond its end.
+const SHOWN_AFTER_REST: f64 = 0.05;
+
+/// The models a scene may be run by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Model {
+    /// [`Ball`](crate::Ball): up and down on a level floor.
+    Ball,
+    /// [`Flyer`](crate::Flyer): one ball among floors and walls.
+    Flyer,
+    /// [`Compliant`](crate::Compliant): up and down on a floor that gives.
+    Compliant,
+    /// [`Line`](crate::Line): several balls on a line.
+    Line,
+    /// [`Cloud`](crate::Cloud): several balls in the plane or in space.
+    Cloud,
+}
+
+impl Model {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ball => "ball",
+            Self::Flyer => "flyer",
+            Self::Compliant => "compliant",
+            Self::Line => "line",
+            Self::Cloud => "cloud",
+        }
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ball => "ball: one, up and down on a level floor",
+            Self::Flyer => "flyer: one ball among floors and walls",
+            Self::Compliant => "compliant: one ball, up and down on a level floor, with contacts that take time",
+            Self::Line => "line: several balls on a line",
+            Self::Cloud => "cloud: several smooth balls in the plane or in space",
+        })
+    }
+}
+
+/// A scene that can be run.
+///
+/// ```
+/// use saltus_bounce::scene::Scene;
+/// use saltus_bounce::scene::plan::{Advance, Model};
+/// let scene = Scene::parse("drop.toml", b"restitution = 0.8\nball = { height = '1 m' }\n")?;
+/// let plan = scene.plan()?;
+/// let explanation = plan.explain();
+/// assert_eq!((explanation.model, explanation.coordinates.len()), (Model::Ball, 2));
+/// assert!(explanation.modes.iter().all(|mode| mode.advance == Advance::Exact));
+/// let record = plan.until(1.0).run()?;
+/// assert_eq!((record.impacts().len(), record.cost().steps), (1, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Plan {
+    machine: Box<dyn Machine>,
+    how: How,
+    explanation: Explanation,
+}
+
+impl fmt::Debug for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Plan").field("how", &self.how).field("explanation", &self.explanation).finish_non_exhaustive()
+    }
+}
+
+impl Plan {
+    /// What was chosen, and why.
+    #[must_use]
+    pub const fn explain(&self) -> &Explanation {
+        &self.explanation
+    }
+
+    /// Ends the run at `t` in s, instead of when the scene says.
+    #[must_use]
+    pub const fn until(mut self, t: f64) -> Self {
+        self.how.until = Some(t);
+        self
+    }
+
+    /// Ends the run after so many jumps, instead of the scene's number.
+    #[must_use]
+    pub const fn most_jumps(mut self, count: u32) -> Self {
+        self.how.most_jumps = count as usize;
+        self
+    }
+
+    /// Ends the run after so many evaluations of flows and guards; 2 × 10⁸ unless set.
+    #[must_use]
+    pub const fn most_evaluations(mut self, count: u64) -> Self {
+        self.how.most_evaluations = count;
+        self
+    }
+
+    /// Runs from the scene's start, and records everything.
+    ///
+    /// # Errors
+    /// [`RunError`] if the engine fails, or if nothing ends the run.
+    pub fn run(&self) -> Result<Record, RunError> {
+        let mut record = self.machine.run(&self.how).map_err(|error| RunError(error.to_string()))?;
+        if self.how.until.is_none() {
+            // What lies still or rolls on needs no end: a little of it is shown.
+            let last = record.run.last();
+            if record.end == End::Time && last > 0.0 && record.until > last {
+                record.until = last * (1.0 + SHOWN_AFTER_REST);
+            } else if !record.until.is_finite() {
+                let says =
+                    "without gravity the ball may never land: say when to stop, by --until or by `until` under [run]";
+                return Err(RunError(says.to_owned()));
+            }
+        }
+        Ok(record)
+    }
+}
+
+impl Scene {
+    /// The cheapest faithful way to run the scene: an exact arc, else a closed form, else an explicit stepper, else a stiff one.
+    ///
+    /// # Errors
+    /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do instead.
+    pub fn plan(&self) -> Result<Plan, PlanError> {
+        let (model, machine, absolute) = choose(self)?;
+        let default = if model == Model::Compliant { CONTACT_TOLERANCE } else { TOLERANCE };
+        let tolerance = self.run.tolerance.unwrap_or(default);
+        let method = Method::of(self.run.stepper, tolerance);
+        let most_jumps = self.run.most_jumps.unwrap_or(MOST_JUMPS) as usize;
+        let modes = machine.modes(method);
+        let explanation = Explanation::of(self, model, machine.coordinates(), modes, tolerance);
+        let how =
+            How { until: self.run.until, most_jumps, most_evaluations: MOST_EVALUATIONS, method, tolerance, absolute };
+        Ok(Plan { machine, how, explanation })
+    }
+}
+
+type Chosen = (Model, Box<dyn Machine>, Option<f64>);
+
+fn choose(scene: &Scene) -> Result<Chosen, PlanError> {
+    if scene.balls.len() > 1 {
+        return several(scene);
+    }
+    if scene.contact != Contact::Rigid {
+        let (pressed, contact) = (pressed(scene)?, scene.contact);
+        return compliant::machine(pressed, contact).map(|(machine, absolute)| (Model::Compliant, machine, absolute));
+    }
+    if let Some((vertical, law)) = vertical(scene) {
+        return Ok((Model::Ball, ball::machine(vertical, law)?, None));
+    }
+    Ok((Model::Flyer, flyer::machine(scene)?, None))
+}
+
+/// The level floor under the balls of a vertical scene: which, and how high; `None` if there is none or it moves.
+fn ground(scene: &Scene) -> Option<(usize, f64)> {
+    let level = |(owner, floor): (usize, &Floor)| match floor.shape {
+        Shape::Level { height } if floor.motion.is_none() => Some((owner, height)),
+        _ => None,
+    };
+    let all: Option<Vec<(usize, f64)>> = scene.floors.iter().enumerate().map(level).collect();
+    all?.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Gravity less buoyancy, and the share of all forces that added mass leaves.
+fn net(scene: &Scene) -> (f64, f64) {
+    let (ball, effects) = (&scene.balls[0], &scene.effects);
+    let gravity = effects.buoyancy(ball, scene.gravity).map_or(scene.gravity.value(), |lift| lift.net_gravity());
+    let share = match ball.sphere() {
+        Some(sphere) if effects.added_mass => 1.0 / (1.0 + 0.5 * effects.density / sphere.density()),
+        _ => 1.0,
+    };
+    (gravity, share)
+}
+
+/// The scene as that of a vertical ball, if a formula solves it.
+fn vertical(scene: &Scene) -> Option<(ball::Vertical, &Law)> {
+    let (gravity, share) = net(scene);
+    if scene.dimensions > 1 || gravity < 0.0 {
+        return None;
+    }
+    let floor = ground(scene)?;
+    let (ball, effects) = (&scene.balls[0], &scene.effects);
+    let drag = match (effects.linear_drag(ball), effects.quadratic_drag(ball)) {
+        (None, None) => ball::Drag::None,
+        (Some(linear), None) => ball::Drag::Linear(linear.rate() * share),
+        (None, Some(quadratic)) => ball::Drag::Quadratic(quadratic.per_length() * share),
+        (Some(_), Some(_)) => return None,
+    };
+    let (height, velocity) = (ball.lowest().z - floor.1, ball.velocity.z);
+    let vertical = ball::Vertical { gravity: gravity * share, drag, floor, height, velocity };
+    Some((vertical, scene.law(0, floor.0)?))
+}
+
+fn pressed(scene: &Scene) -> Result<compliant::Pressed, PlanError> {
+    let refused = |says: &str| PlanError::new("[contact]", says);
+    if scene.dimensions > 1 {
+        return Err(refused(
+            "contact that takes time is simulated up and down only: leave out what moves sideways, or give a restitution",
+        ));
+    }
+    if !flyer::uniform(scene) {
+        return Err(refused(
+            "contact that takes time is simulated without drag: leave [drag] out, or give a restitution",
+        ));
+    }
+    let (gravity, share) = net(scene);
+    if gravity < 0.0 {
+        return Err(PlanError::new("buoyancy", "the ball is lighter than the air and never comes down: leave it out"));
+    }
+    let ball = &scene.balls[0];
+    let floor = ground(scene).ok_or_else(|| {
+        refused("contact that takes time needs a level floor that stands still: leave its `motion` out")
+    })?;
+    let mass = ball.mass.ok_or_else(|| refused("the ball needs a mass: give `mass = \"45 g\"` under [ball]"))?;
+    let (height, velocity) = (ball.lowest().z - floor.1, ball.velocity.z);
+    Ok(compliant::Pressed { mass: mass / share, gravity: gravity * share, floor, height, velocity })
+}
+
+fn several(scene: &Scene) -> Result<Chosen, PlanError> {
+    if scene.contact != Contact::Rigid {
+        let says = "contact that takes time is simulated for one ball: leave it out, or keep one ball";
+        return Err(PlanError::new("[contact]", says));
+    }
+    let acts = Effect::ALL.into_iter().find(|&effect| {
+        !matches!(effect, Effect::Gravity | Effect::Friction | Effect::Deformation) && scene.names(effect)
+    });
+    if let Some(effect) = acts {
+        let says = format!("{effect} is simulated for one ball: leave it out, or keep one ball");
+        return Err(PlanError::new("[[ball]]", &says));
+    }
+    let vertical = scene.dimensions == 1;
+    let rough = scene.floors.iter().position(|floor| floor.friction.coefficient() > 0.0);
+    if let Some(owner) = rough.filter(|_| !vertical) {
+        return Err(PlanError::floor(
+            owner,
+            "several balls are simulated smooth: leave `friction` out, or keep one ball",
+        ));
+    }
+    if scene.collision_friction.coefficient() > 0.0 && !vertical {
+        return Err(PlanError::new("[collisions]", "several balls are simulated smooth: leave `friction` out"));
+    }
+    if scene.balls.iter().any(|ball| ball.spin.is_some()) {
+        return Err(PlanError::new(
+            "[[ball]]",
+            "several balls are simulated smooth, where spin does nothing: leave `spin` out",
+        ));
+    }
+    if let Some(u) = line::direction(scene) {
+        let floor = if vertical { ground(scene) } else { None };
+        if vertical && floor.is_none() && !scene.floors.is_empty() {
+            return Err(PlanError::floor(
+                0,
+                "several balls over a floor that moves are not simulated: leave `motion` out",
+            ));
+        }
+        return Ok((Model::Line, line::machine(scene, u, floor)?, None));
+    }
+    Ok((Model::Cloud, cloud::machine(scene)?, None))
+}
+
+/// What sort of floor it is, in a word.
+const fn kind(floor: &Floor) -> &'static str {
+    match floor.shape {
+        Shape::Level { .. } => "floor",
+        Shape::Incline { .. } => "incline",
+        Shape::Stairs { .. } => "stairs",
+        Shape::Wall { .. } => "wall",
+        Shape::Box { .. } => "box",
+        Shape::Parabola { .. } | Shape::Sine { .. } => "curve",
+    }
+}
+
+/// What a floor is called: its name, or its kind, with its number where there are several.
+fn label(scene: &Scene, owner: usize) -> String {
+    let Some(floor) = scene.floors.get(owner) else { return "floor".to_owned() };
+    match &floor.name {
+        Some(name) => name.clone(),
+        None if scene.floors.len() > 1 => format!("{} {}", kind(floor), owner + 1),
+        None => kind(floor).to_owned(),
+    }
+}
+
+/// A law refuses a number: the reader has let it through, but the combination is out of its range.
+#[allow(clippy::needless_pass_by_value)] // used as a function
+fn failed(error: crate::ParameterError) -> PlanError {
+    PlanError::new("the scene", &error.to_string())
+}
+
+/// Why a scene cannot be run, where in it that is said, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanError {
+    place: String,
+    says: String,
+}
+
+impl PlanError {
+    fn new(place: &str, says: &str) -> Self {
+        Self { place: place.to_owned(), says: says.to_owned() }
+    }
+
+    fn floor(owner: usize, says: &str) -> Self {
+        Self::new(&format!("[[floor]] number {}", owner + 1), says)
+    }
+
+    /// The key or table that asks for it.
+    #[must_use]
+    pub fn place(&self) -> &str {
+        &self.place
+    }
+}
+
+impl fmt::Display for PlanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.says)
+    }
+}
+
+impl std::error::Error for PlanError {}
+
+/// Why a run failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunError(String);
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for RunError {}

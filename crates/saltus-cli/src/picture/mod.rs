@@ -1,0 +1,82 @@
+//! What is drawn of a run: the record in, the picture's data out.
+
+mod chart;
+mod ground;
+mod height;
+mod space;
+
+use saltus_bounce::scene::plan::Record;
+use saltus_bounce::scene::{Kind, Scene};
+use saltus_plot::Background;
+
+use crate::error::Error;
+
+/// The picture of a run as SVG.
+pub(crate) fn svg(scene: &Scene, record: &Record, kind: Kind) -> Result<String, Error> {
+    let chart = match kind {
+        Kind::Height => return height::picture(scene, record).svg().map_err(Error::new),
+        Kind::Velocity => chart::velocity(scene, record),
+        Kind::Energy => chart::energy(scene, record),
+        Kind::Phase => chart::phase(scene, record),
+        Kind::Ladder => chart::ladder(scene, record)?,
+        Kind::Hysteresis => chart::hysteresis(scene, record)?,
+        Kind::Path => space::path(scene, record)?,
+        Kind::Ghost => space::ghost(scene, record),
+    };
+    chart.caption(&caption(scene, record)).background(Background::Adaptive).svg().map_err(Error::new)
+}
+
+/// The title that the scene gives, or one made from it.
+fn title(scene: &Scene) -> String {
+    if let Some(title) = &scene.picture.title {
+        return title.clone();
+    }
+    let ball = &scene.balls[0];
+    let what = match (scene.balls.len(), ball.name.as_ref().or(ball.material.as_ref())) {
+        (1, Some(name)) => article(name),
+        (1, None) => "A ball".to_owned(),
+        (n, _) => format!("{n} balls"),
+    };
+    if scene.balls.len() > 1 {
+        return what;
+    }
+    let (height, velocity) = (ball.lowest().z, ball.velocity);
+    let speed = if scene.dimensions == 1 { velocity.z } else { velocity.norm() };
+    if speed == 0.0 {
+        format!("{what} dropped from {height} m")
+    } else {
+        format!("{what} thrown from {height} m at {} m/s", rounded(speed))
+    }
+}
+
+fn article(name: &str) -> String {
+    let vowel = name.starts_with(['a', 'e', 'i', 'o', 'u', 'A', 'E', 'I', 'O', 'U']);
+    format!("{} {name}", if vowel { "An" } else { "A" })
+}
+
+/// At most four significant digits.
+fn rounded(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
+    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// What is said under the title.
+fn caption(scene: &Scene, record: &Record) -> String {
+    let mut parts = Vec::new();
+    if let Some(cor) = scene.law(0, 0).and_then(saltus_bounce::scene::Law::constant) {
+        // Four digits say a chosen number of a range; a number that is given is said as it was.
+        let cor = cor.value();
+        parts.push(format!("COR {}", if format!("{cor}").len() > 6 { format!("{cor:.4}") } else { cor.to_string() }));
+    }
+    parts.push(format!("gravity {} m/s²", scene.gravity.value()));
+    let caption = parts.join(", ");
+    match record.rest() {
+        Some(t) => format!("{caption}; at rest from {t:.3} s"),
+        None => caption,
+    }
+}

@@ -1,0 +1,86 @@
+//! The path in space, and the ball at equal times.
+
+use saltus_bounce::scene::Scene;
+use saltus_bounce::scene::plan::{Moment, Record};
+use saltus_plot::{Chart, Disc, Measure, Stroke};
+
+use super::ground::{name, outline};
+use super::title;
+use crate::error::Error;
+
+/// How many frames a picture of equal times has, at most.
+const FRAMES: u32 = 40;
+
+/// How far the balls get, sideways and up, with their radii.
+fn reach(scene: &Scene, record: &Record) -> [[f64; 2]; 2] {
+    let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    for (n, ball) in scene.balls.iter().enumerate() {
+        let r = ball.radius.unwrap_or(0.0);
+        for segment in record.segments(n) {
+            for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let m = segment.at(part * segment.span);
+                let (x, z) = (m.position.x, m.height() + r);
+                reach[0] = [reach[0][0].min(x - r), reach[0][1].max(x + r)];
+                reach[1] = [reach[1][0].min(z - r), reach[1][1].max(z + r)];
+            }
+        }
+    }
+    reach
+}
+
+/// The paths of the centres; in space up over x and up over y.
+pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
+    if scene.dimensions == 1 {
+        return Err(Error::new(
+            "a ball that only moves up and down has no path: draw another kind, or give the scene a sideways velocity",
+        ));
+    }
+    let across = if scene.dimensions == 2 { "x" } else { "x or y" };
+    let mut chart = Chart::new(&title(scene), (across, Measure::Length), ("Height", Measure::Length)).to_scale();
+    let axes: &[(&str, usize)] = if scene.dimensions == 2 { &[("", 0)] } else { &[("over x", 0), ("over y", 1)] };
+    for ball in 0..record.balls() {
+        let r = scene.balls[ball].radius.unwrap_or(0.0);
+        for &(axis, k) in axes {
+            let label = if record.balls() > 1 { format!("{} {axis}", name(scene, ball)) } else { axis.to_owned() };
+            let strokes = record.segments(ball).into_iter().map(|segment| {
+                let part = |of: &dyn Fn(&Moment) -> f64| segment.coefficients.iter().map(of).collect::<Vec<f64>>();
+                let mut up = part(&Moment::height);
+                up[0] += r;
+                Stroke::new(segment.span, part(&|m| m.position[k]), up)
+            });
+            chart = chart.line(label.trim(), strokes);
+        }
+        let full = |m: Option<Moment>| m.map(|m| Disc { at: [m.position.x, m.height() + r], radius: r, full: false });
+        chart = chart.discs(full(record.at(ball, 0.0)).into_iter().chain(full(record.at(ball, record.until()))));
+    }
+    Ok(chart.ground(outline(scene, reach(scene, record))))
+}
+
+/// The balls at equal times, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
+pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
+    let reach = reach(scene, record);
+    let size = (reach[0][1] - reach[0][0]).max(reach[1][1] - reach[1][0]);
+    let aside = scene.dimensions == 1;
+    let mut chart = Chart::new(
+        &title(scene),
+        (if aside { "Frames, side by side" } else { "x" }, Measure::Length),
+        ("Height", Measure::Length),
+    );
+    chart = chart.to_scale();
+    let radius = |ball: usize| scene.balls[ball].radius.unwrap_or(size / 60.0);
+    let widest = (0..record.balls()).map(radius).fold(0.0, f64::max);
+    // A film strip is no wider than twice its height.
+    let step = (2.5 * widest).max(2.0 * size / f64::from(FRAMES));
+    for ball in 0..record.balls() {
+        let r = radius(ball);
+        for frame in 0..=FRAMES {
+            let t = record.until() * f64::from(frame) / f64::from(FRAMES);
+            let Some(m) = record.at(ball, t) else { continue };
+            let x = if aside { step * f64::from(frame) } else { m.position.x };
+            let full = frame == 0 || frame == FRAMES;
+            chart = chart.discs([Disc { at: [x, m.height() + r], radius: r, full }]);
+        }
+    }
+    let ends = if aside { [-step, step * f64::from(FRAMES + 1)] } else { reach[0] };
+    chart.ground(outline(scene, [ends, reach[1]]))
+}

@@ -1,0 +1,200 @@
+//! Any two quantities against each other: paths, phase portraits, energies, loops.
+
+use crate::chart_page;
+use crate::error::{PlotError, finite, magnitude};
+use crate::height_time::Background;
+use crate::stroke::Stroke;
+
+/// What an axis measures; data are given in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Measure {
+    /// In s.
+    Time,
+    /// In m.
+    Length,
+    /// In m/s.
+    Speed,
+    /// In J.
+    Energy,
+    /// In J/kg.
+    SpecificEnergy,
+    /// In N.
+    Force,
+    /// A number.
+    Count,
+}
+
+/// A disc to scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Its centre.
+    pub at: [f64; 2],
+    /// In the unit of the axes.
+    pub radius: f64,
+    /// Full ink; others are pale.
+    pub full: bool,
+}
+
+/// A picture of one quantity against another.
+///
+/// Lines are solid, dashed, dotted, dash-dotted, in that order; jumps are thin and dashed and never join two lines with a solid stroke. The same input
+/// gives the same bytes.
+///
+/// ```
+/// use saltus_plot::{Chart, Measure, Stroke};
+/// let fall = Stroke::new(0.4, vec![1.0, 0.0, -4.9], vec![0.0, -9.8]);
+/// let svg = Chart::new("A fall", ("Height", Measure::Length), ("Velocity", Measure::Speed)).line("", [fall]).svg()?;
+/// assert!(svg.contains("Height (cm)") && svg.contains("Velocity (m/s)"));
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    pub(crate) title: String,
+    pub(crate) captions: Vec<String>,
+    pub(crate) axes: [(String, Measure); 2],
+    pub(crate) lines: Vec<(String, Vec<Stroke>)>,
+    pub(crate) jumps: Vec<[[f64; 2]; 2]>,
+    pub(crate) arrows: Vec<[[f64; 2]; 2]>,
+    pub(crate) marks: Vec<[f64; 2]>,
+    pub(crate) discs: Vec<Disc>,
+    pub(crate) ground: Vec<Stroke>,
+    pub(crate) to_scale: bool,
+    pub(crate) logarithmic: bool,
+    pub(crate) background: Background,
+}
+
+impl Chart {
+    /// A picture with a title and the names and measures of its axes, across and up.
+    #[must_use]
+    pub fn new(title: &str, across: (&str, Measure), up: (&str, Measure)) -> Self {
+        Self {
+            title: title.to_owned(),
+            captions: Vec::new(),
+            axes: [across, up].map(|(name, measure)| (name.to_owned(), measure)),
+            lines: Vec::new(),
+            jumps: Vec::new(),
+            arrows: Vec::new(),
+            marks: Vec::new(),
+            discs: Vec::new(),
+            ground: Vec::new(),
+            to_scale: false,
+            logarithmic: false,
+            background: Background::None,
+        }
+    }
+
+    /// Adds a line under the title.
+    #[must_use]
+    pub fn caption(mut self, text: &str) -> Self {
+        self.captions.push(text.to_owned());
+        self
+    }
+
+    /// Adds a line; without a name it is not in the legend.
+    #[must_use]
+    pub fn line(mut self, label: &str, strokes: impl IntoIterator<Item = Stroke>) -> Self {
+        self.lines.push((label.to_owned(), strokes.into_iter().collect()));
+        self
+    }
+
+    /// Adds jumps: thin dashed lines from one point to another.
+    #[must_use]
+    pub fn jumps(mut self, jumps: impl IntoIterator<Item = [[f64; 2]; 2]>) -> Self {
+        self.jumps.extend(jumps);
+        self
+    }
+
+    /// Adds arrow heads, each at a point and towards another one.
+    #[must_use]
+    pub fn arrows(mut self, arrows: impl IntoIterator<Item = [[f64; 2]; 2]>) -> Self {
+        self.arrows.extend(arrows);
+        self
+    }
+
+    /// Adds points.
+    #[must_use]
+    pub fn marks(mut self, marks: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        self.marks.extend(marks);
+        self
+    }
+
+    /// Adds discs.
+    #[must_use]
+    pub fn discs(mut self, discs: impl IntoIterator<Item = Disc>) -> Self {
+        self.discs.extend(discs);
+        self
+    }
+
+    /// Adds floors and walls.
+    #[must_use]
+    pub fn ground(mut self, strokes: impl IntoIterator<Item = Stroke>) -> Self {
+        self.ground.extend(strokes);
+        self
+    }
+
+    /// Shows both axes to one scale.
+    #[must_use]
+    pub const fn to_scale(mut self) -> Self {
+        self.to_scale = true;
+        self
+    }
+
+    /// Shows the upward axis by powers of ten; what is not above zero is refused.
+    #[must_use]
+    pub const fn logarithmic(mut self) -> Self {
+        self.logarithmic = true;
+        self
+    }
+
+    /// What the picture lies on; nothing without it.
+    #[must_use]
+    pub const fn background(mut self, background: Background) -> Self {
+        self.background = background;
+        self
+    }
+
+    /// The picture as an SVG document.
+    ///
+    /// # Errors
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and [`PlotError::Negative`] naming the number at fault.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        chart_page::draw(self, self.reach()?)
+    }
+
+    /// Checks every number, and gathers how far the data reach.
+    fn reach(&self) -> Result<[(f64, f64); 2], PlotError> {
+        let mut reach = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+        let mut include = |k: usize, value: f64| {
+            reach[k] = (reach[k].0.min(value), reach[k].1.max(value));
+        };
+        let lines = self.lines.iter().flat_map(|(_, strokes)| strokes).chain(&self.ground);
+        for (n, stroke) in lines.enumerate() {
+            for (k, (low, high)) in stroke.check(|| format!("stroke {}", n + 1))?.into_iter().enumerate() {
+                include(k, low);
+                include(k, high);
+            }
+        }
+        let points = self.jumps.iter().flatten().chain(&self.marks);
+        for (n, point) in points.enumerate() {
+            for (k, &value) in point.iter().enumerate() {
+                include(k, finite(value, || format!("a coordinate of point {}", n + 1))?);
+            }
+        }
+        for (n, disc) in self.discs.iter().enumerate() {
+            let radius = magnitude(disc.radius, || format!("the radius of disc {}", n + 1))?;
+            for (k, &value) in disc.at.iter().enumerate() {
+                let value = finite(value, || format!("a coordinate of disc {}", n + 1))?;
+                include(k, value - radius);
+                include(k, value + radius);
+            }
+        }
+        if reach[0].0 > reach[0].1 {
+            return Err(PlotError::Empty);
+        }
+        if self.logarithmic && reach[1].0 <= 0.0 {
+            return Err(PlotError::Negative { what: "a value on the logarithmic axis".to_owned(), value: reach[1].0 });
+        }
+        Ok(reach)
+    }
+}
