@@ -25,3 +25,11 @@ pub mod reference;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/physics.md")]
 pub struct Physics;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/tutorial.md")]
+pub struct Tutorial;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/cookbook.md")]
+pub struct Cookbook;

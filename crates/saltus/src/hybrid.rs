@@ -344,8 +344,13 @@ impl<S: State> Automaton for Hybrid<'_, S> {
     type Edge = Link;
 
     fn flow(&self, mode: &'static str, t: f64, x: &S) -> S {
-        match self.find(mode).and_then(|mode| mode.flow.as_ref()) {
-            Some(flow) => flow(t, x),
+        let mode = self.find(mode);
+        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
+            return flow(t, x);
+        }
+        match mode.and_then(|mode| mode.exact.as_ref()) {
+            // The solution's slope where it starts.
+            Some(solution) => solution(t, x).coefficients().get(1).copied().unwrap_or_else(|| x.with(|_| 0.0)),
             None => x.with(|_| f64::NAN),
         }
     }

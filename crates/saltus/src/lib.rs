@@ -37,6 +37,8 @@ mod hybrid;
 mod linearize;
 mod observe;
 mod poly;
+#[cfg(feature = "num-dual")]
+pub mod return_map;
 mod reverse;
 mod simulation;
 mod state;

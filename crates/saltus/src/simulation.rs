@@ -124,7 +124,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// The longest step, in seconds. Never needed for finding crossings.
+    /// The longest step, in seconds, and the longest stretch of an exact arc that is searched at once. Needed for a guard that varies faster than the
+    /// state: a floor that vibrates under a long flight.
     #[must_use]
     pub const fn longest_step(mut self, h: f64) -> Self {
         self.options.longest_step = h;
@@ -226,6 +227,24 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     #[must_use]
     pub fn resume(&self, checkpoint: Checkpoint<A>) -> Course<'a, A, M> {
         Course::new(self.automaton, self.fitted(), self.options, checkpoint.under(&self.options))
+    }
+
+    /// The automaton.
+    #[cfg(feature = "num-dual")]
+    pub(crate) const fn automaton(&self) -> &'a A {
+        self.automaton
+    }
+
+    /// The options.
+    #[cfg(feature = "num-dual")]
+    pub(crate) const fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The same stepper, tolerances and limits for another automaton.
+    #[cfg(feature = "num-dual")]
+    pub(crate) const fn over<'b, B: Automaton>(&self, automaton: &'b B) -> Simulation<'b, B, M> {
+        Simulation { automaton, stepper: self.stepper, options: self.options }
     }
 
     /// The stepper for the tolerance asked for.

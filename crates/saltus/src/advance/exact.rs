@@ -119,7 +119,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         limit: f64,
         start: Start,
     ) -> Result<Searched, Undefined> {
-        let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) };
+        let longest = self.options.longest_step;
+        let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
         let mut start = start;
         let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
@@ -141,7 +142,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Ok(Searched { fall: None, evidence });
             }
             from = to;
-            window *= 2.0;
+            window = (2.0 * window).min(longest);
             start = Start::Resumed;
         }
     }

@@ -1,0 +1,147 @@
+//! A DC–DC buck converter under voltage control, chaotic above 32 V (J. Deane, D. Hamill, IEEE Trans. Power Electronics 5 (1990) 260).
+//!
+//! `cargo run --release --example converter`: a ramp starts afresh each period; the switch is closed while the ramp is above the amplified error.
+
+use std::error::Error;
+
+use rayon::prelude::*;
+use saltus::nalgebra::Vector3;
+use saltus::return_map::{Continuation, Kind, ReturnMap, Section};
+use saltus::{Automaton, Edges, Entry, Lift, Linearize, Number, Simulation};
+use saltus_examples::{Figure, gallery};
+
+const INDUCTANCE: f64 = 20e-3; // H
+const CAPACITY: f64 = 47e-6; // F
+const LOAD: f64 = 22.0; // Ω
+const PERIOD: f64 = 400e-6; // s
+const RAMP: (f64, f64) = (3.8, 8.2); // V, from its foot to its top
+const WANTED: f64 = 11.3; // V
+const GAIN: f64 = 8.4;
+
+/// The voltage that comes in.
+#[derive(Clone, Copy, Debug)]
+struct Buck {
+    supply: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Switch {
+    Open,
+    Closed,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Event {
+    Close,
+    Open,
+    /// The ramp falls back to its foot, and the switch opens.
+    Period,
+}
+
+/// By how much the amplified error exceeds the ramp; the state is the voltage, the current, and the time since the ramp's start.
+fn error<D: Number>([v, _, s]: [D; 3]) -> D {
+    (v - WANTED) * GAIN - s * ((RAMP.1 - RAMP.0) / PERIOD) - RAMP.0
+}
+
+impl Linearize for Buck {
+    type Parameters = [f64; 1];
+
+    fn parameters(&self) -> [f64; 1] {
+        [self.supply]
+    }
+    fn flow_over<D: Number>(&self, switch: Switch, _t: D, [v, i, _]: [D; 3], [supply]: [D; 1]) -> [D; 3] {
+        let driven = if switch == Switch::Closed { supply - v } else { -v };
+        [(i - v / LOAD) / CAPACITY, driven / INDUCTANCE, D::one()]
+    }
+    fn guard_over<D: Number>(&self, event: Event, _t: D, x: [D; 3], _: [D; 1]) -> D {
+        match event {
+            Event::Close => error(x),
+            Event::Open => -error(x),
+            Event::Period => -x[2] + PERIOD,
+        }
+    }
+    fn reset_over<D: Number>(&self, event: Event, _t: D, [v, i, s]: [D; 3], _: [D; 1]) -> [D; 3] {
+        [v, i, if event == Event::Period { D::zero() } else { s }]
+    }
+}
+
+impl Automaton for Buck {
+    type Mode = Switch;
+    type State = Vector3<f64>;
+    type Edge = Event;
+
+    fn flow(&self, switch: Switch, t: f64, x: &Vector3<f64>) -> Vector3<f64> {
+        self.flow_at(switch, t, x)
+    }
+    fn edges(&self, switch: Switch) -> Edges<Event> {
+        Edges::from([if switch == Switch::Open { Event::Close } else { Event::Open }, Event::Period])
+    }
+    fn guard(&self, event: Event, t: f64, x: &Vector3<f64>) -> f64 {
+        self.guard_at(event, t, x)
+    }
+    fn affine(&self, _: Event) -> bool {
+        true
+    }
+    /// If the ramp starts above the error, the switch closes again at once.
+    fn entry(&self, _: Event) -> Entry {
+        Entry::Fire
+    }
+    fn reset(&self, event: Event, t: f64, x: &Vector3<f64>) -> (Switch, Vector3<f64>) {
+        let to = if event == Event::Close { Switch::Closed } else { Switch::Open };
+        (to, self.reset_over(event, t, x.over(), self.parameters()).into())
+    }
+}
+
+/// Voltage and current at the start of a period.
+#[derive(Clone, Copy, Debug)]
+struct Start;
+
+impl Section<Buck, 2> for Start {
+    fn edge(&self) -> Event {
+        Event::Period
+    }
+    fn start(&self) -> (Switch, Vector3<f64>) {
+        (Switch::Open, Vector3::zeros())
+    }
+    fn place<D: Number>(&self, [v, i]: [D; 2], _: [D; 1]) -> [D; 3] {
+        [v, i, D::zero()]
+    }
+    fn read<D: Number>(&self, _t: D, [v, i, _]: [D; 3], _: [D; 1]) -> [D; 2] {
+        [v, i]
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let attractor = |&supply: &f64| -> Result<Vec<[f64; 2]>, saltus::return_map::MapError> {
+        let buck = Buck { supply };
+        let map = ReturnMap::of(Simulation::of(&buck), Start);
+        let mut q = [12.0, 0.55];
+        let mut voltages = Vec::new();
+        for period in 0..500 {
+            q = map.apply(q)?.q;
+            if period >= 300 {
+                voltages.push([supply, q[0]]);
+            }
+        }
+        Ok(voltages)
+    };
+    let supplies: Vec<f64> = (0..600).map(|k| 20.0 + 0.025 * f64::from(k)).collect();
+    let points = supplies.par_iter().map(attractor).collect::<Result<Vec<_>, _>>()?.concat();
+
+    let buck = Buck { supply: 20.0 };
+    let map = ReturnMap::of(Simulation::of(&buck).tolerance(1e-12), Start);
+    let branch = Continuation::of(&map, |supply| Buck { supply }, 0).follow([12.0, 0.55], 20.0, 35.0)?;
+    let doubling =
+        branch.bifurcations.iter().find(|found| found.kind == Kind::PeriodDoubling).ok_or("no period doubling")?;
+    let picture = Figure::new("A buck converter", "voltage in (V)", "voltage out, once a period (V)")
+        .cloud("attractor", points)
+        .line("once a period, stable or not", branch.points.iter().map(|point| [point.parameter, point.orbit.q[0]]))
+        .dots("period doubling", [[doubling.point.parameter, doubling.point.orbit.q[0]]])
+        .across(20.0, 35.0);
+    gallery("converter", &picture.svg())?;
+
+    // Published (E. Fossas, G. Olivar, IEEE Trans. Circuits and Systems I 43 (1996) 13): 24.516 V.
+    println!("the period doubles at {:.6} V: see docs/gallery/converter.svg", doubling.point.parameter);
+    assert!((doubling.point.parameter - 24.516).abs() < 1e-3);
+    Ok(())
+}

@@ -1,0 +1,160 @@
+//! A spring–mass runner: a mass in flight, on a springy leg in stance, the leg put down at a fixed angle.
+//!
+//! `cargo run --example slip` finds the stride that repeats itself. Flight has Cartesian coordinates, stance polar ones about the foot.
+
+use std::error::Error;
+
+use saltus::return_map::{ReturnMap, Section};
+use saltus::{Automaton, Coords, Edges, Lift, Linearize, Number, Simulation};
+use saltus_examples::{Figure, gallery};
+
+/// kg, N/m, m, rad, m/s².
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Runner {
+    pub(crate) mass: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) leg: f64,
+    pub(crate) angle: f64,
+    pub(crate) g: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Phase {
+    Rise,
+    Fall,
+    Stance,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Event {
+    Apex,
+    Touchdown,
+    Liftoff,
+}
+
+impl Linearize for Runner {
+    type Parameters = [f64; 2];
+
+    fn parameters(&self) -> [f64; 2] {
+        [self.stiffness, self.angle]
+    }
+    /// In flight x, y and their rates; in stance the length of the leg, its angle from the vertical, their rates, and the foot.
+    fn flow_over<D: Number>(&self, phase: Phase, _t: D, x: [D; 5], [k, _]: [D; 2]) -> [D; 5] {
+        let (zero, g) = (D::zero(), self.g);
+        if phase != Phase::Stance {
+            return [x[2], x[3], zero, D::from(-g), zero];
+        }
+        let [r, a, r1, a1, _] = x;
+        let push = k / self.mass * (-r + self.leg);
+        [r1, a1, r * a1 * a1 - a.cos() * g + push, (a.sin() * g - r1 * a1 * 2.0) / r, zero]
+    }
+    fn guard_over<D: Number>(&self, event: Event, _t: D, x: [D; 5], [_, angle]: [D; 2]) -> D {
+        match event {
+            Event::Apex => x[3],
+            Event::Touchdown => x[1] - angle.sin() * self.leg,
+            Event::Liftoff => -x[0] + self.leg,
+        }
+    }
+    fn reset_over<D: Number>(&self, event: Event, _t: D, x: [D; 5], [_, angle]: [D; 2]) -> [D; 5] {
+        match event {
+            Event::Apex => x,
+            Event::Touchdown => {
+                let (cos, sin) = (-angle.cos(), angle.sin()); // the leg points back and up from the foot
+                let along = x[2] * cos + x[3] * sin;
+                let across = (x[2] * sin - x[3] * cos) / self.leg;
+                [D::from(self.leg), angle - std::f64::consts::FRAC_PI_2, along, across, x[0] - cos * self.leg]
+            }
+            Event::Liftoff => {
+                let [r, a, r1, a1, foot] = x;
+                let (sin, cos) = a.sin_cos();
+                [foot + r * sin, r * cos, r1 * sin + r * a1 * cos, r1 * cos - r * a1 * sin, D::zero()]
+            }
+        }
+    }
+}
+
+impl Automaton for Runner {
+    type Mode = Phase;
+    type State = Coords<5>;
+    type Edge = Event;
+
+    fn flow(&self, phase: Phase, t: f64, x: &Coords<5>) -> Coords<5> {
+        self.flow_at(phase, t, x)
+    }
+    fn edges(&self, phase: Phase) -> Edges<Event> {
+        match phase {
+            Phase::Rise => Edges::from([Event::Apex]),
+            Phase::Fall => Edges::from([Event::Touchdown]),
+            Phase::Stance => Edges::from([Event::Liftoff]),
+        }
+    }
+    fn guard(&self, event: Event, t: f64, x: &Coords<5>) -> f64 {
+        self.guard_at(event, t, x)
+    }
+    fn affine(&self, _: Event) -> bool {
+        true
+    }
+    fn reset(&self, event: Event, t: f64, x: &Coords<5>) -> (Phase, Coords<5>) {
+        let after = self.reset_over(event, t, x.over(), self.parameters());
+        match (event, after) {
+            (Event::Touchdown, stance) => (Phase::Stance, stance.into()),
+            (Event::Apex, [x, y, u, v, _]) => (Phase::Fall, [x, y, u, v].into()),
+            (Event::Liftoff, [x, y, u, v, _]) => (Phase::Rise, [x, y, u, v].into()),
+        }
+    }
+}
+
+/// At the apex, with this energy (J), the height says everything: where along the road it is does not matter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Apex(pub(crate) Runner, pub(crate) f64);
+
+impl Section<Runner, 1> for Apex {
+    fn edge(&self) -> Event {
+        Event::Apex
+    }
+    fn start(&self) -> (Phase, Coords<5>) {
+        (Phase::Fall, [0.0; 4].into())
+    }
+    fn place<D: Number>(&self, [y]: [D; 1], _: [D; 2]) -> [D; 5] {
+        let Self(Runner { mass, g, .. }, energy) = *self;
+        [D::zero(), y, ((-y * (mass * g) + energy) * (2.0 / mass)).sqrt(), D::zero(), D::zero()]
+    }
+    fn read<D: Number>(&self, _t: D, x: [D; 5], _: [D; 2]) -> [D; 1] {
+        [x[1]]
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let runner = Runner { mass: 80.0, stiffness: 2e4, leg: 1.0, angle: 68.0_f64.to_radians(), g: 9.81 };
+    let map = ReturnMap::of(Simulation::of(&runner).tolerance(1e-13), Apex(runner, 1784.8));
+    let stride = map.fixed_point([0.95])?;
+
+    // Start too high, and watch it find the stride.
+    let (mode, _, start) = map.place(&[1.0]);
+    let run = Simulation::of(&runner).run(mode, start, 0.0..1.6)?;
+    let (mut path, mut legs) = (Vec::new(), Vec::new());
+    for k in 0..=800 {
+        let t = f64::from(k) * 2e-3;
+        let (Some(mode), Some(x)) = (run.trajectory.mode_at(t), run.trajectory.at(t)) else { continue };
+        let mass = if mode == Phase::Stance { [x[4] + x[0] * x[1].sin(), x[0] * x[1].cos()] } else { [x[0], x[1]] };
+        path.push(mass);
+        if mode == Phase::Stance && k % 20 == 0 {
+            legs.extend([[x[4], 0.0], mass, [f64::NAN; 2]]);
+        }
+    }
+    let picture = Figure::new("A spring–mass runner finds its stride", "way (m)", "height (m)")
+        .line("mass", path)
+        .line("leg", legs)
+        .line("apex of the stride that repeats", [[0.0, stride.q[0]], [8.0, stride.q[0]]])
+        .up(0.0, 1.3);
+    gallery("slip", &picture.svg())?;
+
+    let multiplier = stride.multipliers[0].re;
+    println!(
+        "apex {:.13} m, stride {:.13} s, multiplier {multiplier:.9}: see docs/gallery/slip.svg",
+        stride.q[0], stride.period
+    );
+    assert!((stride.q[0] - 0.940_267_144_379_607).abs() < 5e-12);
+    assert!((stride.period - 0.252_532_613_817_573).abs() < 5e-12 && (multiplier + 0.161_307_631_04).abs() < 1e-6);
+    Ok(())
+}
