@@ -117,6 +117,24 @@ pub(crate) struct Fit {
     /// Keep only the rows in which this column has this value; may be repeated.
     #[arg(long = "filter", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filters: Vec<(String, String)>,
+    /// Use every reading as it stands: look neither for missed, doubled and misread contacts nor for outliers.
+    #[arg(long)]
+    pub(crate) no_repair: bool,
+    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual.
+    #[arg(long)]
+    pub(crate) losses: bool,
+    /// Trust every height to within this, such as `5mm`, and say which CORs that allows.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    pub(crate) tolerance_height: Option<f64>,
+    /// Trust every time to within this, such as `1ms`, and say which CORs that allows.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) tolerance_time: Option<f64>,
+    /// Also find the error by drawing whole trials anew so many times; needs five trials.
+    #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) bootstrap: Option<u32>,
+    /// The seed of the draws: the same seed gives the same numbers.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "bootstrap")]
+    pub(crate) seed: u64,
     /// Exit with status 1 unless the verdict is `trusted`.
     #[arg(long)]
     pub(crate) strict: bool,

@@ -3,7 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
+use indicatif::ProgressBar;
 use saltus_fit::{Fit, Measure, Motion, ReadOptions, Report, Table, Verdict};
 use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
 
@@ -15,7 +17,7 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
-    let report = fit(args).run(&table).map_err(Error::new)?;
+    let report = watched(args, quiet, |progress| fit(args).run_with(&table, progress)).map_err(Error::new)?;
     let text = match args.format {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
@@ -82,8 +84,36 @@ fn options(args: &args::Fit) -> ReadOptions {
     options
 }
 
+/// Runs with a progress bar, if it is a bootstrap that takes longer than a second.
+fn watched<T>(args: &args::Fit, quiet: bool, run: impl FnOnce(&mut dyn FnMut(usize)) -> T) -> T {
+    let Some(rounds) = args.bootstrap.filter(|_| !quiet) else { return run(&mut |_| {}) };
+    let start = Instant::now();
+    let mut bar: Option<ProgressBar> = None;
+    let found = run(&mut |done| {
+        if bar.is_none() && start.elapsed() > Duration::from_secs(1) {
+            bar = Some(ProgressBar::new(rounds.into()));
+        }
+        if let Some(bar) = &bar {
+            bar.set_position(done as u64);
+        }
+    });
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    found
+}
+
 fn fit(args: &args::Fit) -> Fit {
-    let mut fit = Fit::new();
+    let mut fit = Fit::new().repair(!args.no_repair).losses(args.losses);
+    if let Some(within) = args.tolerance_height {
+        fit = fit.tolerance_height(within);
+    }
+    if let Some(within) = args.tolerance_time {
+        fit = fit.tolerance_time(within);
+    }
+    if let Some(rounds) = args.bootstrap {
+        fit = fit.bootstrap(rounds as usize, args.seed);
+    }
     if let Some(sigma) = args.sigma_height {
         fit = fit.sigma_height(sigma);
     }

@@ -1,16 +1,21 @@
 //! The verdict: what the fits amount to, and what speaks against them.
 
-use crate::estimate::{Estimate, Kind, OneKind, Source};
+use crate::choice::ModelChoice;
+use crate::error::FitError;
+use crate::estimate::{Estimate, Kind, OneKind, Source, Sourced};
 use crate::evidence::Evidence;
 use crate::joint::Joint;
 use crate::model::{Contacts, Heights};
 use crate::report::{Cor, Report, Verdict};
+use crate::rivals::{self, Readings};
 use crate::settings::differ;
 use crate::statistics::NORMAL;
-use crate::table::{Event, Table, Trial};
+use crate::table::{Table, Trial};
 
 /// A fit less probable than this by chance is rejected.
 pub(crate) const REJECT: f64 = 0.01;
+/// A BIC this much less decides.
+const CLEAR: f64 = 6.0;
 /// A fit more probable than this has reading errors that were stated too large.
 const TOO_GOOD: f64 = 0.999;
 
@@ -88,6 +93,43 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     }
 }
 
+/// Compares other models with that of one COR, where the readings can tell them apart, and says so where they matter.
+pub(crate) fn models(
+    report: &mut Report,
+    found: &Findings<'_>,
+    (sigma_height, sigma_time): (Sourced, Sourced),
+) -> Result<Vec<ModelChoice>, FitError> {
+    let agree = !report.agreement.as_ref().is_some_and(|a| a.p.is_some_and(|p| p < REJECT));
+    let Some(cor) = report.cor.filter(|_| agree) else { return Ok(Vec::new()) };
+    let scattering = found.times.as_ref().is_some_and(|k| k.scatter.is_some());
+    let (trials, source) = match (&found.joint, &found.heights, &found.times) {
+        (Some(joint), _, _) => (joint.model.trials.clone(), sigma_time.source),
+        (None, Some(_), None) => (Readings::heights(found.evidence, sigma_height.value), sigma_height.source),
+        // Where bounces scatter, times have errors that add up: ratios are compared instead.
+        (None, None, Some(_)) if !scattering => (Readings::times(found.evidence, sigma_time.value), sigma_time.source),
+        _ => return Ok(Vec::new()),
+    };
+    let readings = Readings { trials, gravity: report.gravity.value, scattered: source == Source::Scatter };
+    let list = rivals::compare(&readings, cor.value)?;
+    let Some(one) = list.iter().find(|m| m.chosen) else { return Ok(Vec::new()) };
+    for model in list.iter().filter(|m| !m.chosen && m.bic < CLEAR) {
+        let apart = (model.cor.value - one.cor.value).abs();
+        let differ = apart > 2.0 * model.cor.standard_error.hypot(one.cor.standard_error) && apart > 0.002;
+        if model.bic < -CLEAR || differ {
+            let how = if model.bic < -CLEAR { "better than" } else { "about as well as" };
+            report.warnings.push(format!(
+                "{} fits {how} one COR (BIC {:+.1}), with {:.3} ± {:.3}",
+                model.about, model.bic, model.cor.value, model.cor.standard_error
+            ));
+        }
+        if differ && let Some(cor) = &mut report.cor {
+            cor.low = cor.low.min(model.cor.value - NORMAL * model.cor.standard_error).max(0.0);
+            cor.high = cor.high.max(model.cor.value + NORMAL * model.cor.standard_error);
+        }
+    }
+    Ok(list)
+}
+
 fn estimates(report: &mut Report, found: &Findings<'_>) {
     let list = &mut report.estimates;
     if let Some(kind) = &found.heights {
@@ -106,7 +148,7 @@ fn estimates(report: &mut Report, found: &Findings<'_>) {
 
 /// Warns of reading errors that nobody stated.
 fn assumptions(report: &mut Report) {
-    let assumed = |s: Option<crate::Sourced>| s.is_some_and(|s| s.source == Source::Assumed);
+    let assumed = |s: Option<Sourced>| s.is_some_and(|s| s.source == Source::Assumed);
     let mut what = Vec::new();
     if assumed(report.sigma_height) {
         what.push("1 cm for heights (--sigma-height)");
@@ -266,7 +308,6 @@ fn fits(found: &Findings<'_>) -> String {
 
 /// Why there is no COR, or at most a limit.
 fn none(report: &mut Report, found: &Findings<'_>) {
-    let trials = found.table.trials();
     let dropped = found.evidence.trials.iter().find_map(|t| t.release_height.map(|h| h.0));
     if let (true, Some(height)) = (found.table.zero_rebounds > 0, dropped) {
         let high = (found.sigma_height / height).sqrt().min(1.0);
@@ -276,42 +317,14 @@ fn none(report: &mut Report, found: &Findings<'_>) {
         return;
     }
     report.verdict = Verdict::Refused;
-    report.reason = match trials.iter().find(|t| t.readings().iter().any(|r| r.event == Event::Sample)) {
-        Some(series) => series_reason(series),
-        None => {
-            let contacts = found.evidence.trials.iter().map(|t| t.moments.len()).max().unwrap_or(0);
-            let heights = found.evidence.trials.iter().map(|t| t.heights.len()).max().unwrap_or(0);
-            match (heights, contacts) {
-                (0 | 1, 0) => {
-                    "a COR needs the height before and after a bounce, and there is one height at most".to_owned()
-                }
-                (0 | 1, 1) => "a COR needs two flights to compare, and there is one contact only".to_owned(),
-                (0 | 1, 2) => {
-                    "two contacts are one flight; a COR needs three contacts, or the release height beside the two"
-                        .to_owned()
-                }
-                _ => "the readings do not determine a COR (are they all taken at the same bounce?)".to_owned(),
-            }
+    let contacts = found.evidence.trials.iter().map(|t| t.moments.len()).max().unwrap_or(0);
+    let heights = found.evidence.trials.iter().map(|t| t.heights.len()).max().unwrap_or(0);
+    report.reason = match (heights, contacts) {
+        (0 | 1, 0) => "a COR needs the height before and after a bounce, and there is one height at most".to_owned(),
+        (0 | 1, 1) => "a COR needs two flights to compare, and there is one contact only".to_owned(),
+        (0 | 1, 2) => {
+            "two contacts are one flight; a COR needs three contacts, or the release height beside the two".to_owned()
         }
+        _ => "the readings do not determine a COR (are they all taken at the same bounce?)".to_owned(),
     };
-}
-
-/// A series of heights in time: is there a bounce in it at all?
-fn series_reason(series: &Trial) -> String {
-    let heights: Vec<f64> = series.readings().iter().filter_map(|r| r.height).collect();
-    let top = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let bottom = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let noise = 0.05 * (top - bottom);
-    let lowest = heights.iter().position(|h| *h <= bottom).unwrap_or(0);
-    let rises = heights[lowest..].iter().any(|h| *h > bottom + noise);
-    let falls = heights[..lowest].iter().any(|h| *h > bottom + noise);
-    if rises && falls {
-        format!(
-            "a series of {} heights in time cannot be fitted: read off its contacts and apexes, and give those with a column \
-             'event'",
-            heights.len()
-        )
-    } else {
-        format!("there is no bounce in this series of {} heights: the ball never falls and rises again", heights.len())
-    }
 }

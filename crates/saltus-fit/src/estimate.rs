@@ -120,6 +120,8 @@ pub(crate) trait OneKind: Model + Clone {
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self;
     fn without_bound(&self) -> Self;
     fn with_trend(&self) -> Self;
+    /// Every reading with the same error, whatever its row states.
+    fn same_tolerance(self, tolerance: f64) -> Self;
     /// The least sum of squares.
     fn minimise(&self) -> Result<Fitted, Failure>;
     /// The COR and its derivative with respect to the shared unknown.
@@ -142,6 +144,11 @@ impl OneKind for Heights {
 
     fn with_trend(&self) -> Self {
         Self { trend: true, high: 20.0, ..self.clone() }
+    }
+
+    fn same_tolerance(mut self, tolerance: f64) -> Self {
+        self.trials.iter_mut().flatten().for_each(|h| h.2 = tolerance);
+        self
     }
 
     fn minimise(&self) -> Result<Fitted, Failure> {
@@ -176,6 +183,11 @@ impl OneKind for Contacts {
 
     fn with_trend(&self) -> Self {
         Self { trend: true, high: 10.0, ..self.clone() }
+    }
+
+    fn same_tolerance(mut self, tolerance: f64) -> Self {
+        self.trials.iter_mut().flatten().for_each(|m| m.sigma = tolerance);
+        self
     }
 
     fn minimise(&self) -> Result<Fitted, Failure> {

@@ -1,14 +1,8 @@
 //! What the readings of a table say, trial by trial, in the form the models ask for.
 
+use crate::mend::{Contact, mend, usual};
 use crate::model::{FlightTrial, Height, Moment};
-use crate::statistics::median;
 use crate::table::{Event, Table};
-
-/// Intervals are compared with the run before them only where there are at least this many ratios to tell the usual one.
-const RATIOS: usize = 4;
-/// A next interval this much shorter or longer than expected ends the run.
-const SHORT: f64 = 2.0 / 3.0;
-const LONG: f64 = 1.25;
 
 /// The evidence of one trial.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +25,9 @@ pub(crate) struct Evidence {
 }
 
 impl Evidence {
-    /// Sorts the readings of a table into heights and moments; `sigma_time` is the error stated for times, if any.
-    pub(crate) fn of(table: &Table, sigma_time: Option<f64>) -> Self {
+    /// Sorts the readings of a table into heights and moments, and mends the contacts if that is wanted; `sigma_time` is the error stated
+    /// for times, if any.
+    pub(crate) fn of(table: &Table, sigma_time: Option<f64>, repair: bool) -> Self {
         let mut evidence = Self::default();
         for (trial, source) in table.trials().iter().enumerate() {
             let mut found = TrialEvidence { trial, ..TrialEvidence::default() };
@@ -63,36 +58,57 @@ impl Evidence {
             }
             evidence.trials.push(found);
         }
-        evidence.keep_leading_runs(table, sigma_time);
+        if repair {
+            evidence.mend(table, sigma_time);
+        }
         evidence
     }
 
-    /// Ends each trial's contacts where an interval does not follow from the one before: a contact missed, or heard twice.
-    fn keep_leading_runs(&mut self, table: &Table, sigma_time: Option<f64>) {
-        let mut ratios: Vec<f64> = self.trials.iter().flat_map(|t| t.ratios().map(|(_, _, _, ratio)| ratio)).collect();
-        if ratios.len() < RATIOS {
-            return;
-        }
-        let Some(usual) = median(&mut ratios) else { return };
+    /// Finds contacts that were missed, heard twice or misread.
+    fn mend(&mut self, table: &Table, sigma_time: Option<f64>) {
+        let Some(ratio) = usual(self.trials.iter().flat_map(|t| t.ratios().map(|r| r.3)).collect()) else { return };
         for trial in &mut self.trials {
-            let broken = trial.ratios().find(|&(_, before, after, ratio)| {
-                let factor = ratio / usual;
-                let noise = sigma_time.map_or(0.0, |s| 4.0 * s * (2.0 + 2.0 * usual + 2.0 * usual * usual).sqrt());
-                !(SHORT..LONG).contains(&factor) && (after - usual * before).abs() > noise
-            });
-            let Some((flights, before, after, _)) = broken else { continue };
-            let was = trial.moments.len();
-            trial.moments.retain(|m| m.0 <= flights);
-            let left_out = was - trial.moments.len();
-            let label = table.trials()[trial.trial].label();
-            let of = if label.is_empty() { String::new() } else { format!("{label}: ") };
-            let cause = if after > usual * before { "a contact was missed" } else { "a contact was counted twice" };
-            let plural = if left_out == 1 { "time was" } else { "times were" };
+            let contacts: Vec<Contact> = trial
+                .moments
+                .iter()
+                .enumerate()
+                .filter(|(_, m)| !m.1)
+                .map(|(place, m)| Contact { flights: m.0, time: m.2, place })
+                .collect();
+            // Gaps that the table itself numbers, and apexes between contacts, are what they are.
+            let plain =
+                contacts.len() == trial.moments.len() && contacts.windows(2).all(|w| w[1].flights == w[0].flights + 1);
+            let (mended, repairs) = mend(&contacts, ratio, sigma_time.unwrap_or(0.0));
+            // Heights are told by the number of the contact before them: where there are any, numbers stay.
+            if !plain || repairs.is_empty() || trial.heights.iter().any(|h| h.0 > 0) {
+                continue;
+            }
+            trial.moments = mended.iter().map(|c| (c.flights, false, c.time, trial.moments[c.place].3)).collect();
+            self.repairs.extend(repairs.iter().map(|r| r.text(&named(table, trial.trial))));
+        }
+    }
+
+    /// Leaves out heights, named by trial and place.
+    pub(crate) fn drop_heights(&mut self, table: &Table, wrong: &[(usize, usize)]) {
+        for &(trial, n) in wrong.iter().rev() {
+            let found = &mut self.trials[trial];
+            let (bounce, height, _) = found.heights.remove(n);
+            let what = if bounce == 0 { "the release".to_owned() } else { format!("bounce {bounce}") };
+            let of = named(table, found.trial);
+            self.repairs
+                .push(format!("{of}the height at {what}, {height:.4} m, does not belong to the others: left out"));
+        }
+    }
+
+    /// Leaves out times, named by trial and place.
+    pub(crate) fn drop_moments(&mut self, table: &Table, wrong: &[(usize, usize)]) {
+        for &(trial, n) in wrong.iter().rev() {
+            let found = &mut self.trials[trial];
+            let (flights, _, time, _) = found.moments.remove(n);
+            let of = named(table, found.trial);
             self.repairs.push(format!(
-                "{of}contacts used up to number {}; the next comes after {after:.4} s where about {:.4} s was due \
-                 ({cause}?), and {left_out} {plural} left out",
-                flights + 1,
-                usual * before
+                "{of}the time of contact {}, {time:.4} s, does not belong to the others: left out",
+                flights + 1
             ));
         }
     }
@@ -130,6 +146,12 @@ impl Evidence {
             })
             .collect()
     }
+}
+
+/// The name of a trial before a message about it.
+pub(crate) fn named(table: &Table, trial: usize) -> String {
+    let label = table.trials().get(trial).map_or("", crate::table::Trial::label);
+    if label.is_empty() { String::new() } else { format!("{label}: ") }
 }
 
 impl TrialEvidence {

@@ -1,5 +1,6 @@
 //! From a table to a report.
 
+use crate::bootstrap;
 use crate::bounces::{self, Setting};
 use crate::diagnose::{self, Findings};
 use crate::error::FitError;
@@ -8,8 +9,11 @@ use crate::evidence::Evidence;
 use crate::joint;
 use crate::model::{Contacts, Heights};
 use crate::motion;
+use crate::outliers;
 use crate::report::Report;
+use crate::series;
 use crate::table::{Event, Reading, Table};
+use crate::tolerance;
 
 /// Gravity where nobody states it, m/s².
 const GRAVITY: f64 = 9.81;
@@ -36,6 +40,11 @@ pub struct Fit {
     sigma_height: Option<f64>,
     sigma_time: Option<f64>,
     gravity: Option<f64>,
+    no_repair: bool,
+    losses: bool,
+    tolerance_height: Option<f64>,
+    tolerance_time: Option<f64>,
+    bootstrap: Option<(usize, u64)>,
 }
 
 impl Fit {
@@ -66,6 +75,42 @@ impl Fit {
         self
     }
 
+    /// Whether contacts that were missed, counted twice or misread, and outliers, are found and mended before the fit: so it is by default.
+    /// Every repair is listed in the report.
+    #[must_use]
+    pub fn repair(mut self, wanted: bool) -> Self {
+        self.no_repair = !wanted;
+        self
+    }
+
+    /// Also gives the COR by Huber's loss, the sum of absolute residuals, and the largest residual.
+    #[must_use]
+    pub fn losses(mut self, wanted: bool) -> Self {
+        self.losses = wanted;
+        self
+    }
+
+    /// Trusts every height to within this, in metres, and asks which CORs that allows: see [`Report::allowed`].
+    #[must_use]
+    pub fn tolerance_height(mut self, metres: f64) -> Self {
+        self.tolerance_height = Some(metres);
+        self
+    }
+
+    /// Trusts every time to within this, in seconds, and asks which CORs that allows: see [`Report::allowed`].
+    #[must_use]
+    pub fn tolerance_time(mut self, seconds: f64) -> Self {
+        self.tolerance_time = Some(seconds);
+        self
+    }
+
+    /// Also draws whole trials anew so many times, from this seed, and refits: see [`Report::bootstrap`].
+    #[must_use]
+    pub fn bootstrap(mut self, rounds: usize, seed: u64) -> Self {
+        self.bootstrap = Some((rounds, seed));
+        self
+    }
+
     /// Fits the COR.
     ///
     /// A table that does not determine a COR gives a report whose verdict is [`Verdict::Refused`](crate::Verdict::Refused).
@@ -74,6 +119,14 @@ impl Fit {
     /// [`FitError::Option`] for an option that is not positive and finite; [`FitError::Solver`] if a least-squares solution does
     /// not pass its checks.
     pub fn run(&self, table: &Table) -> Result<Report, FitError> {
+        self.run_with(table, &mut |_| {})
+    }
+
+    /// The same, telling how many rounds of the bootstrap are done.
+    ///
+    /// # Errors
+    /// Those of [`Fit::run`].
+    pub fn run_with(&self, table: &Table, progress: &mut dyn FnMut(usize)) -> Result<Report, FitError> {
         self.check()?;
         let gravity = sourced(self.gravity, table.metadata.gravity)
             .unwrap_or(Sourced { value: GRAVITY, source: Source::Assumed });
@@ -83,7 +136,19 @@ impl Fit {
         let known_time = sourced(self.sigma_time, table.metadata.sigma_time)
             .or(stated_by_rows(table, |r| r.sigma_time))
             .or(frame.map(|frame| Sourced { value: frame / 12f64.sqrt(), source: Source::FrameRate }));
-        let evidence = Evidence::of(table, known_time.map(|s| s.value));
+        let mut evidence = Evidence::of(table, known_time.map(|s| s.value), !self.no_repair);
+        if !self.no_repair {
+            let error = |known: Option<Sourced>| (known.map_or(0.01, |s| s.value), known.is_some());
+            let (sigma, stated) = error(known_height);
+            let wrong = outliers::find::<Heights>(&evidence, sigma, stated)?;
+            evidence.drop_heights(table, &wrong);
+            let (sigma, stated) = error(known_time);
+            // Where bounces scatter, times have errors that add up, and none stands alone.
+            if stated {
+                let wrong = outliers::find::<Contacts>(&evidence, sigma, stated)?;
+                evidence.drop_moments(table, &wrong);
+            }
+        }
         let heights: Option<Kind<Heights>> = one_kind(&evidence, known_height)?;
         let times: Option<Kind<Contacts>> = estimate::times(&evidence, known_time)?;
         let assumed = Sourced { value: 0.01, source: Source::Assumed };
@@ -104,6 +169,16 @@ impl Fit {
         report.warnings.clone_from(&table.warnings);
         report.bounces = bounces::list(&evidence, &setting);
 
+        if heights.is_none()
+            && times.is_none()
+            && let Some(found) = series::fit(table)?
+        {
+            series::judge(&mut report, &found);
+            (report.motion, report.points, report.residuals) = found.picture();
+            report.series = found.tracks;
+            return Ok(report);
+        }
+
         let joint = joint::joint(&evidence, gravity.value, sigma_height.value, sigma_time.value)?;
         if let Some(joint) = &joint {
             let agreement = joint::agreement(joint, &evidence, gravity.value, table.metadata.frame_rate);
@@ -119,6 +194,36 @@ impl Fit {
         let findings =
             Findings { heights, times, means, joint, table, evidence: &evidence, sigma_height: sigma_height.value };
         diagnose::judge(&mut report, &findings);
+        if let Some(kind) = &findings.heights {
+            if self.losses {
+                report.estimates.extend(tolerance::losses(&evidence, kind)?);
+            }
+            if let Some(within) = self.tolerance_height {
+                report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
+            }
+        }
+        if let Some(kind) = &findings.times {
+            if self.losses {
+                report.estimates.extend(tolerance::losses(&evidence, kind)?);
+            }
+            if let Some(within) = self.tolerance_time {
+                report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
+            }
+        }
+        if let Some(draws) = self.bootstrap {
+            let setting = bootstrap::Setting {
+                gravity: gravity.value,
+                sigma_height,
+                sigma_time,
+                joint: findings.joint.is_some(),
+                times: findings.times.is_some(),
+            };
+            report.bootstrap = bootstrap::run(&evidence, &setting, draws, progress)?;
+            if report.bootstrap.is_none() {
+                report.notes.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
+            }
+        }
+        report.models = diagnose::models(&mut report, &findings, (sigma_height, sigma_time))?;
 
         let (motions, release_is_fitted) = match (&findings.joint, &findings.times, &findings.heights) {
             (Some(joint), _, _) => (motion::of_joint(joint, &evidence), false),
@@ -137,6 +242,8 @@ impl Fit {
             ("the standard error of heights", self.sigma_height),
             ("the standard error of times", self.sigma_time),
             ("gravity", self.gravity),
+            ("the tolerance of heights", self.tolerance_height),
+            ("the tolerance of times", self.tolerance_time),
         ];
         for (name, value) in options {
             if let Some(value) = value.filter(|v| !v.is_finite() || *v <= 0.0) {

@@ -6,7 +6,8 @@ use crate::bounces::Measured;
 use crate::error::FitError;
 use crate::estimate::{Estimate, identified};
 use crate::evidence::Evidence;
-use crate::model::{Flight, FlightTrial, Height};
+use crate::model::{Flight, FlightTrial};
+use crate::rivals::Readings;
 use crate::statistics::{NORMAL, chi_square_p};
 use crate::successive::{Fitted, fit};
 
@@ -76,7 +77,7 @@ pub struct TotalTime {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Hypothesis {
-    /// A fixed word: `height-zero`, `cor-per-bounce`, `clock-lag`.
+    /// A fixed word: `height-zero`, `cor-per-bounce`, `clock-lag`, `air-drag`, `cor-of-speed`, `missed-contact`.
     pub name: String,
     /// What it supposes, for people.
     pub about: String,
@@ -88,6 +89,10 @@ pub struct Hypothesis {
     pub offset_m: Option<Measured>,
     /// The reading of the clock at the release, less the one noted, in seconds.
     pub lag_s: Option<Measured>,
+    /// The drag coefficient, in 1/m.
+    pub drag: Option<Measured>,
+    /// How the COR changes with speed, per m/s.
+    pub slope: Option<Measured>,
     /// Its chi-square.
     pub chi_square: f64,
     /// Its degrees of freedom.
@@ -134,6 +139,9 @@ struct Suppose {
     offset: bool,
     lag: bool,
     per_bounce: bool,
+    drag: bool,
+    /// A COR linear in speed, with this middle speed.
+    slope: Option<f64>,
 }
 
 /// The sum of squares may have several minima: the lowest that the starts lead to.
@@ -143,15 +151,25 @@ fn run(
     suppose: Suppose,
     starts: &[f64],
 ) -> Result<Option<(Flight, Fitted)>, FitError> {
-    let mut model = Flight { trials: trials.to_vec(), gravity, cors: 1, offset: suppose.offset, lag: suppose.lag };
+    let mut model = Flight {
+        trials: trials.to_vec(),
+        gravity,
+        cors: 1,
+        offset: suppose.offset,
+        lag: suppose.lag,
+        drag: suppose.drag,
+        slope: suppose.slope,
+        ..Flight::default()
+    };
     if suppose.per_bounce {
         model.cors = model.bounces().max(1);
     }
-    let extra = usize::from(model.offset) + usize::from(model.lag);
+    let extra = usize::from(model.slope.is_some()) + usize::from(model.offset) + usize::from(model.lag);
     let mut best: Option<(Flight, Fitted)> = None;
     for &e in starts {
         let mut shared = vec![e; model.cors];
         shared.extend(vec![0.0; extra]);
+        shared.extend(suppose.drag.then_some(0.01));
         let own = model.start(e);
         let Some(found) = identified("heights and times together", fit(&model, &shared, own))? else { continue };
         if best.as_ref().is_none_or(|(_, b)| found.chi_square < b.chi_square) {
@@ -277,6 +295,7 @@ pub(crate) fn hypotheses(
     let known_clock = trials.iter().any(|t| t.release_time.is_some());
     let starts = [joint.fitted.shared[0], 0.5];
     let mut found = Vec::new();
+    let speed = joint.model.first_contact(0, &joint.fitted.shared, &joint.fitted.own[0]).0;
     let cases = [
         (
             Suppose { offset: true, ..Suppose::default() },
@@ -295,6 +314,18 @@ pub(crate) fn hypotheses(
             "clock-lag",
             "the clock was not at its noted time when the ball was let go",
             "film the release itself and count the frames from it",
+        ),
+        (
+            Suppose { drag: true, ..Suppose::default() },
+            "air-drag",
+            "air drag slows the ball",
+            "weigh the ball and measure its diameter: k = 0.28 kg/m\u{b3} x cross-section / mass, or drop a heavier one",
+        ),
+        (
+            Suppose { slope: Some(speed), ..Suppose::default() },
+            "cor-of-speed",
+            "the COR depends on the speed of impact",
+            "repeat the drop from other heights: equal speeds must give equal CORs",
         ),
     ];
     for (suppose, name, about, settle) in cases {
@@ -322,6 +353,8 @@ pub(crate) fn hypotheses(
             cors: if suppose.per_bounce { fitted.shared[..model.cors].to_vec() } else { Vec::new() },
             offset_m: suppose.offset.then(|| measured(1)),
             lag_s: suppose.lag.then(|| measured(1)),
+            drag: suppose.drag.then(|| measured(1)),
+            slope: suppose.slope.map(|v| scaled(measured(1), 1.0 / v)),
             chi_square: fitted.chi_square,
             degrees_of_freedom: fitted.freedom,
             p: chi_square_p(fitted.chi_square, fitted.freedom),
@@ -329,8 +362,53 @@ pub(crate) fn hypotheses(
             settle: settle.to_owned(),
         });
     }
+    found.extend(missed_contact(joint)?);
     found.sort_by(|a, b| b.p.unwrap_or(0.0).total_cmp(&a.p.unwrap_or(0.0)));
     Ok(found)
+}
+
+fn scaled(measured: Measured, scale: f64) -> Measured {
+    Measured { value: scale * measured.value, standard_error: scale * measured.standard_error }
+}
+
+/// Whether the readings of a single trial would agree if one contact had been overlooked, and which.
+fn missed_contact(joint: &Joint) -> Result<Option<Hypothesis>, FitError> {
+    let [trial] = joint.model.trials.as_slice() else { return Ok(None) };
+    let bounces = joint.model.bounces();
+    if bounces > 12 {
+        return Ok(None);
+    }
+    let mut best: Option<(usize, Fitted)> = None;
+    for after in 0..=bounces {
+        let mut shifted = trial.clone();
+        shifted.heights.iter_mut().filter(|h| h.0 > after).for_each(|h| h.0 += 1);
+        shifted.moments.iter_mut().filter(|m| m.flights >= after).for_each(|m| m.flights += 1);
+        let Some((_, fitted)) =
+            run(&[shifted], joint.model.gravity, Suppose::default(), &[joint.fitted.shared[0], 0.7])?
+        else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|(_, b)| fitted.chi_square < b.chi_square) {
+            best = Some((after, fitted));
+        }
+    }
+    let Some((after, fitted)) = best.filter(|(_, f)| f.freedom > 0) else { return Ok(None) };
+    let place = if after == 0 { "before the first one noted".to_owned() } else { format!("after contact {after}") };
+    Ok(Some(Hypothesis {
+        name: "missed-contact".to_owned(),
+        about: format!("a contact was overlooked {place}"),
+        cor: Some(Measured { value: fitted.shared[0], standard_error: fitted.covariance[(0, 0)].sqrt() }),
+        cors: Vec::new(),
+        offset_m: None,
+        lag_s: None,
+        drag: None,
+        slope: None,
+        chi_square: fitted.chi_square,
+        degrees_of_freedom: fitted.freedom,
+        p: chi_square_p(fitted.chi_square, fitted.freedom),
+        generous: None,
+        settle: "listen to the recording, or step through the film, around that time".to_owned(),
+    }))
 }
 
 /// Whether heights alone that show a trend would fit one COR if the zero of their scale were off.
@@ -338,14 +416,7 @@ pub(crate) fn height_zero(
     evidence: &Evidence,
     (cor, gravity, sigma): (f64, f64, f64),
 ) -> Result<Option<Hypothesis>, FitError> {
-    let one = |heights: Vec<Height>| FlightTrial {
-        release: heights.first().filter(|h| h.0 == 0).map(|h| (h.1, Some(h.2))),
-        // No reading asks for the time; a known one keeps the clock from being an unknown.
-        release_time: Some(0.0),
-        heights: heights.into_iter().filter(|h| h.0 > 0).collect(),
-        moments: Vec::new(),
-    };
-    let trials: Vec<FlightTrial> = evidence.heights(sigma).into_iter().filter(|h| h.len() > 1).map(one).collect();
+    let trials = Readings::heights(evidence, sigma);
     let suppose = Suppose { offset: true, ..Suppose::default() };
     let Some((_, fitted)) = run(&trials, gravity, suppose, &[cor])? else { return Ok(None) };
     if fitted.freedom == 0 {
@@ -360,6 +431,8 @@ pub(crate) fn height_zero(
         cors: Vec::new(),
         offset_m: Some(measured(1)),
         lag_s: None,
+        drag: None,
+        slope: None,
         chi_square: fitted.chi_square,
         degrees_of_freedom: fitted.freedom,
         p: chi_square_p(fitted.chi_square, fitted.freedom),

@@ -51,8 +51,17 @@ pub(crate) enum Failure {
     Solver(String),
 }
 
-/// Minimises ½ ‖X x − y‖² within the bounds.
+/// Minimises ½ ‖X x − y‖² within the bounds, by solver and factorisation.
 pub(crate) fn solve(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<Solution, Failure> {
+    minimum(x, y, bounds, true)
+}
+
+/// The same for a step on the way to a minimum: where the free minimum lies within the bounds it is the answer, and no solver is asked.
+pub(crate) fn step(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<DVector<f64>, Failure> {
+    minimum(x, y, bounds, false).map(|solution| solution.x)
+}
+
+fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], always: bool) -> Result<Solution, Failure> {
     let (rows, n) = x.shape();
     if y.len() != rows || bounds.len() != n {
         return Err(Failure::Malformed);
@@ -77,7 +86,8 @@ pub(crate) fn solve(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Re
         high: (0..n).map(|j| bounds[j].high * (column[j] / length)).collect(),
     };
     let free = scaled.direct(&vec![None; n]).ok_or(Failure::NotIdentified)?;
-    let (z, active) = scaled.bounded(&free)?;
+    let within = (0..n).all(|j| scaled.low[j] < free[j] && free[j] < scaled.high[j]);
+    let (z, active) = if within && !always { (free, vec![None; n]) } else { scaled.bounded(&free)? };
     let inverse = scaled.inverse(&active).ok_or(Failure::NotIdentified)?;
     let mut answer = DVector::from_fn(n, |j, _| z[j] * length / column[j]);
     for j in 0..n {

@@ -18,7 +18,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bootstrap;
 mod bounces;
+mod choice;
+mod conic;
 mod diagnose;
 mod error;
 mod estimate;
@@ -26,17 +29,25 @@ mod evidence;
 mod fit;
 mod joint;
 mod least_squares;
+mod mend;
 mod model;
 mod motion;
+mod outliers;
 mod ratios;
 mod report;
 mod residual;
+mod rivals;
+mod robust;
+mod series;
 mod settings;
 mod statistics;
 mod successive;
 mod table;
+mod tolerance;
 
+pub use bootstrap::Bootstrap;
 pub use bounces::{BounceCor, Measured};
+pub use choice::ModelChoice;
 pub use error::{FitError, TableError};
 pub use estimate::{Estimate, Source, Sourced};
 pub use fit::Fit;
@@ -44,4 +55,6 @@ pub use joint::{Agreement, Conflict, Generous, Hypothesis, ImpliedGravity, Total
 pub use motion::{Arc, Motion};
 pub use report::{Cor, Report, Verdict};
 pub use residual::{Measure, Point, Residual};
+pub use series::{Impact, Track, Variant};
 pub use table::{Event, ReadOptions, Reading, Table, Trial};
+pub use tolerance::Allowed;

@@ -1,16 +1,21 @@
 //! The report: the verdict, the COR, and everything it rests on; serialised, it is the JSON contract.
 
+mod recordings;
 mod text;
 
 use std::fmt;
 
 use serde::Serialize;
 
+use crate::bootstrap::Bootstrap;
 use crate::bounces::BounceCor;
+use crate::choice::ModelChoice;
 use crate::estimate::{Estimate, Sourced};
 use crate::joint::{Agreement, Hypothesis};
 use crate::motion::Motion;
 use crate::residual::{Point, Residual};
+use crate::series::Track;
+use crate::tolerance::Allowed;
 
 /// The number of the JSON contract: it grows when a field changes its meaning or goes, not when one is added.
 const SCHEMA: u32 = 1;
@@ -79,6 +84,10 @@ pub struct Report {
     pub(crate) bounces: Vec<BounceCor>,
     pub(crate) agreement: Option<Agreement>,
     pub(crate) hypotheses: Vec<Hypothesis>,
+    pub(crate) models: Vec<ModelChoice>,
+    pub(crate) allowed: Vec<Allowed>,
+    pub(crate) bootstrap: Option<Bootstrap>,
+    pub(crate) series: Vec<Track>,
     pub(crate) warnings: Vec<String>,
     pub(crate) repairs: Vec<String>,
     pub(crate) notes: Vec<String>,
@@ -107,6 +116,10 @@ impl Report {
             bounces: Vec::new(),
             agreement: None,
             hypotheses: Vec::new(),
+            models: Vec::new(),
+            allowed: Vec::new(),
+            bootstrap: None,
+            series: Vec::new(),
             warnings: Vec::new(),
             repairs: Vec::new(),
             notes: Vec::new(),
@@ -180,6 +193,30 @@ impl Report {
     #[must_use]
     pub fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
+    }
+
+    /// The models that were tried on the same readings, the best first.
+    #[must_use]
+    pub fn models(&self) -> &[ModelChoice] {
+        &self.models
+    }
+
+    /// The CORs that the tolerances allow, where tolerances were given.
+    #[must_use]
+    pub fn allowed(&self) -> &[Allowed] {
+        &self.allowed
+    }
+
+    /// The error by drawing whole trials anew, where that was asked for and there are five trials or more.
+    #[must_use]
+    pub fn bootstrap(&self) -> Option<&Bootstrap> {
+        self.bootstrap.as_ref()
+    }
+
+    /// The recordings of heights in time, each as a fitted motion.
+    #[must_use]
+    pub fn series(&self) -> &[Track] {
+        &self.series
     }
 
     /// What to be wary of.

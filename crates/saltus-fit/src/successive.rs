@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector2, linalg::givens::GivensRotation};
 
-use crate::least_squares::{Bounds, Failure, solve};
+use crate::least_squares::{Bounds, Failure, solve, step};
 
 const STEPS: usize = 60;
 /// A step this small, relative to the unknown, is the last.
@@ -107,7 +107,7 @@ pub(crate) fn fit(model: &impl Model, shared: &[f64], own: Vec<Vec<f64>>) -> Res
                 high: (whole[j].high - shared[j]).min(trust[j]),
             })
             .collect();
-        let step = solve(&here.x, &here.y, &within)?.x;
+        let step = step(&here.x, &here.y, &within)?;
         let own_step = own_steps(&here, step.as_slice(), &sizes)?;
         let small = |tolerance: f64| (0..shared.len()).all(|j| step[j].abs() <= tolerance * (1.0 + shared[j].abs()));
         let gain = predicted_gain(&here, &step, &sizes);

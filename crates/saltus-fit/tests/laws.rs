@@ -144,7 +144,7 @@ fn too_little_is_refused_and_says_why() {
     refused(Table::from_contacts(&[1.0]).unwrap(), "two flights");
     refused(Table::from_contacts(&[1.0, 2.0]).unwrap(), "three contacts");
     refused(parse("t (s),y (m)\n0,1\n0.1,0.95\n0.2,0.8\n0.3,0.56\n"), "no bounce");
-    refused(parse("t (s),y (m)\n0,1\n0.2,0.8\n0.45,0.01\n0.6,0.3\n0.8,0.1\n"), "cannot be fitted");
+    refused(parse("t (s),y (m)\n0,1\n0.2,0.8\n0.45,0.01\n0.6,0.3\n0.8,0.1\n"), "too few");
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn rebounds_too_low_to_read_give_an_upper_limit() {
 }
 
 #[test]
-fn missed_and_doubled_contacts_end_the_run_and_are_listed() {
+fn missed_and_doubled_contacts_are_mended_and_listed() {
     let mut text = "trial,bounce,time_s\n".to_owned();
     for trial in 0..4 {
         let mut times = contacts(0.9, 0.1 * f64::from(trial), 0.7, 9);

@@ -3,6 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::contacts::Moment;
+use super::drag::{Air, Sloped};
+use super::dual::Dual;
 use super::heights::Height;
 use crate::least_squares::Bounds;
 use crate::successive::Model;
@@ -20,19 +22,36 @@ pub(crate) struct FlightTrial {
     pub(crate) moments: Vec<Moment>,
 }
 
-/// Free flight: v is the speed at the first contact, Eₙ = e₁ … eₙ, hₙ = δ + (v Eₙ)²/2g, t of contact k = a + (2 v/g) Σⱼ₍ⱼ₌₁…ₖ₋₁₎ Eⱼ.
+/// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball comes back after leaving at e vₙ; heights
+/// are read from a zero δ. In still air hₙ = δ + (e v)²/2g and a flight lasts 2 e v/g; with drag both are those of [`Air::hop`].
 ///
-/// Shared: e (or one for each bounce), then on request the zero δ of the height scale, and a lag of the clock. Own: v unless the
-/// height of release is set, a unless the time of release is known (then a is that time plus v/g, plus the lag).
-#[derive(Clone, Debug)]
+/// Shared: e (or one for each bounce), then on request its slope with speed, the zero δ of the height scale, a lag of the clock, and drag k.
+/// Own: v₁ unless the height of release is set, a unless the time of release is known (then a is that time plus the fall, plus the lag).
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Flight {
     pub(crate) trials: Vec<FlightTrial>,
     pub(crate) gravity: f64,
     /// The number of separate CORs; with one it holds for all bounces.
     pub(crate) cors: usize,
+    /// e = e₀ + s (v/v₀ − 1), with this speed v₀.
+    pub(crate) slope: Option<f64>,
     pub(crate) offset: bool,
     pub(crate) lag: bool,
+    pub(crate) drag: bool,
+    /// The shared unknowns are known: only own ones are fitted.
+    pub(crate) pinned: Option<Vec<f64>>,
 }
+
+/// Where the shared unknowns beside the CORs stand.
+struct Places {
+    slope: Option<usize>,
+    offset: Option<usize>,
+    lag: Option<usize>,
+    drag: Option<usize>,
+}
+
+/// The least drag, in 1/m: less cannot be told from none.
+const LEAST_DRAG: f64 = 1e-7;
 
 impl Flight {
     /// Whether the speed at the first contact follows from a release height that was set.
@@ -40,10 +59,18 @@ impl Flight {
         matches!(trial.release, Some((_, None)))
     }
 
-    /// The places of the offset and of the lag among the shared unknowns.
-    fn places(&self) -> (Option<usize>, Option<usize>) {
-        let offset = self.offset.then_some(self.cors);
-        (offset, self.lag.then_some(self.cors + usize::from(self.offset)))
+    fn places(&self) -> Places {
+        let mut next = self.cors;
+        let mut place = |wanted: bool| {
+            next += usize::from(wanted);
+            wanted.then(|| next - 1)
+        };
+        Places {
+            slope: place(self.slope.is_some()),
+            offset: place(self.offset),
+            lag: place(self.lag),
+            drag: place(self.drag),
+        }
     }
 
     /// The own unknowns of a trial for a given COR: the speed from release or first height, the clock from the first moment.
@@ -78,18 +105,51 @@ impl Flight {
 
     /// The speed at the first contact and the time of it.
     pub(crate) fn first_contact(&self, block: usize, shared: &[f64], own: &[f64]) -> (f64, f64) {
+        let start = self.beginning(block, shared, own);
+        (start.speed.value, start.clock.value)
+    }
+
+    /// What the motion of a trial begins with.
+    fn beginning(&self, block: usize, shared: &[f64], own: &[f64]) -> Beginning {
         let trial = &self.trials[block];
-        let (offset, lag) = self.places();
-        let delta = offset.map_or(0.0, |n| shared[n]);
-        let (speed, rest) = match trial.release {
-            Some((height, None)) => ((2.0 * self.gravity * (height - delta).max(0.0)).sqrt(), own),
-            _ => (own[0], own.get(1..).unwrap_or(&[])),
+        let (q, all) = (own.len(), own.len() + shared.len());
+        let places = self.places();
+        let unknown = |place: Option<usize>| {
+            place.map_or_else(|| Dual::constant(0.0, all), |j| Dual::unknown(shared[j], all, q + j))
         };
+        let drag = places.drag.map(|j| q + j);
+        let air = Air { gravity: self.gravity, drag: places.drag.map_or(0.0, |j| shared[j]) };
+        let offset = unknown(places.offset);
+        let speed = match trial.release {
+            Some((height, None)) => {
+                let height = Dual::constant(height, all).minus(&offset);
+                height.through(&air.speed(height.value.max(0.0)), None, drag)
+            }
+            _ => Dual::unknown(own[0], all, 0),
+        };
+        let (fall, height) = air.fallen(speed.value);
+        let released = offset.plus(&speed.through(&height, None, drag));
         let clock = match trial.release_time {
-            Some(time) => time + speed / self.gravity + lag.map_or(0.0, |n| shared[n]),
-            None => rest.first().copied().unwrap_or(0.0),
+            Some(time) => {
+                let fall = speed.through(&fall, None, drag);
+                Dual::constant(time, all).plus(&fall).plus(&unknown(places.lag))
+            }
+            None => Dual::unknown(own[q - 1], all, q - 1),
         };
-        (speed, clock)
+        Beginning { air, drag, offset, speed, released, clock }
+    }
+
+    /// The COR of bounce `n` (from 0) at a speed.
+    fn cor(&self, n: usize, speed: &Dual, shared: &[f64], q: usize) -> Dual {
+        let which = n.min(self.cors - 1);
+        let e = Dual::unknown(shared[which], speed.by.len(), q + which);
+        match (self.slope, self.places().slope) {
+            (Some(reference), Some(j)) => {
+                let excess = Dual { value: speed.value / reference - 1.0, by: &speed.by / reference };
+                e.plus(&Dual::unknown(shared[j], speed.by.len(), q + j).times(&excess))
+            }
+            _ => e,
+        }
     }
 
     /// The largest number of contacts that any row looks back on.
@@ -99,50 +159,34 @@ impl Flight {
     }
 }
 
-/// Eⱼ and Σ Eᵢ with their derivatives with respect to the CORs, bounce by bounce.
-#[derive(Clone)]
-struct Chain<'a> {
-    cors: &'a [f64],
-    bounces: usize,
-    product: f64,
-    product_slope: Vec<f64>,
-    sum: f64,
-    sum_slope: Vec<f64>,
-}
-
-impl<'a> Chain<'a> {
-    fn new(cors: &'a [f64]) -> Self {
-        let zero = vec![0.0; cors.len()];
-        Self { cors, bounces: 0, product: 1.0, product_slope: zero.clone(), sum: 0.0, sum_slope: zero }
-    }
-
-    fn advance(&mut self, to: usize) {
-        while self.bounces < to {
-            let which = self.bounces.min(self.cors.len() - 1);
-            let e = self.cors[which];
-            for slope in &mut self.product_slope {
-                *slope *= e;
-            }
-            self.product_slope[which] += self.product;
-            self.product *= e;
-            self.sum += self.product;
-            for (sum, product) in self.sum_slope.iter_mut().zip(&self.product_slope) {
-                *sum += product;
-            }
-            self.bounces += 1;
-        }
-    }
+/// What the motion of a trial begins with: the air, the zero of the scale, the first contact and the height fallen from.
+struct Beginning {
+    air: Air,
+    drag: Option<usize>,
+    offset: Dual,
+    speed: Dual,
+    released: Dual,
+    clock: Dual,
 }
 
 impl Model for Flight {
     fn ranges(&self) -> Vec<(Bounds, f64)> {
         let mut ranges = vec![(Bounds { low: 1e-6, high: 2.0 }, 0.1); self.cors];
         let tallest = self.trials.iter().filter_map(|t| t.release.map(|r| r.0)).fold(0.1, f64::max);
+        if self.slope.is_some() {
+            ranges.push((Bounds { low: -1.0, high: 1.0 }, 0.05));
+        }
         if self.offset {
             ranges.push((Bounds { low: -tallest, high: 0.9 * tallest }, 0.05 * tallest));
         }
         if self.lag {
             ranges.push((Bounds { low: -10.0, high: 10.0 }, 0.1));
+        }
+        if self.drag {
+            ranges.push((Bounds { low: LEAST_DRAG, high: 10.0 }, 0.05));
+        }
+        if let Some(values) = &self.pinned {
+            ranges.iter_mut().zip(values).for_each(|(range, &v)| range.0 = Bounds { low: v, high: v });
         }
         ranges
     }
@@ -157,71 +201,43 @@ impl Model for Flight {
 
     fn fill(&self, block: usize, shared: &[f64], own: &[f64], rows: &mut DMatrix<f64>) {
         let trial = &self.trials[block];
-        let g = self.gravity;
-        let (offset, lag) = self.places();
-        let delta = offset.map_or(0.0, |n| shared[n]);
-        let set = Self::speed_is_set(trial);
-        let (speed, clock) = self.first_contact(block, shared, own);
-        let (q, last) = (own.len(), own.len() + shared.len());
-        let own_clock = trial.release_time.is_none().then_some(q.wrapping_sub(1));
-        // A set release height makes the speed depend on the offset: v² = 2 g (h₀ − δ).
-        let speed_by_offset = if set { -g / speed.max(1e-12) } else { 0.0 };
+        let q = own.len();
+        let start = self.beginning(block, shared, own);
         let mut i = 0;
-        let mut chain = Chain::new(&shared[..self.cors]);
-        let mut height_row = |rows: &mut DMatrix<f64>, chain: &Chain<'_>, height: f64, sigma: f64| {
-            let reach = speed * chain.product;
-            let by_speed = reach * chain.product / g;
-            if !set {
-                rows[(i, 0)] = by_speed / sigma;
+        let mut row = |predicted: &Dual, measured: f64, sigma: f64| {
+            for (j, slope) in predicted.by.iter().enumerate() {
+                rows[(i, j)] = slope / sigma;
             }
-            for (j, slope) in chain.product_slope.iter().enumerate() {
-                rows[(i, q + j)] = reach * speed * slope / g / sigma;
-            }
-            if let Some(n) = offset {
-                rows[(i, q + n)] = (1.0 + by_speed * speed_by_offset) / sigma;
-            }
-            rows[(i, last)] = (height - delta - reach * reach / (2.0 * g)) / sigma;
+            rows[(i, predicted.by.len())] = (measured - predicted.value) / sigma;
             i += 1;
         };
         if let Some((height, Some(sigma))) = trial.release {
-            height_row(rows, &chain, height, sigma);
+            row(&start.released, height, sigma);
         }
-        for &(n, height, sigma) in &trial.heights {
-            chain.advance(n);
-            height_row(rows, &chain, height, sigma);
-        }
-        let mut chain = Chain::new(&shared[..self.cors]);
-        for moment in &trial.moments {
-            chain.advance(moment.flights);
-            // The apex that follows contact k is half a flight later: v Eₖ / g.
-            let (flights, slopes): (f64, Vec<f64>) = if moment.apex {
-                let mut next = chain.clone();
-                next.advance(moment.flights + 1);
-                (chain.sum + next.sum, chain.sum_slope.iter().zip(&next.sum_slope).map(|(a, b)| a + b).collect())
-            } else {
-                (2.0 * chain.sum, chain.sum_slope.iter().map(|s| 2.0 * s).collect())
-            };
-            let mut by_speed = flights / g;
-            if trial.release_time.is_some() {
-                by_speed += 1.0 / g;
+        let through = |x: &Dual, outer: &Sloped| x.through(outer, None, start.drag);
+        let (mut heights, mut moments) = (trial.heights.iter().peekable(), trial.moments.iter().peekable());
+        let (mut speed, mut contact) = (start.speed.clone(), start.clock.clone());
+        for n in 0.. {
+            // Here the ball arrives at contact n + 1.
+            while let Some(m) = moments.next_if(|m| m.flights == n && !m.apex) {
+                row(&contact, m.time, m.sigma);
             }
-            if !set {
-                rows[(i, 0)] = by_speed / moment.sigma;
+            if heights.peek().is_none() && moments.peek().is_none() {
+                break;
             }
-            if let Some(column) = own_clock {
-                rows[(i, column)] = 1.0 / moment.sigma;
+            let departure = self.cor(n, &speed, shared, q).times(&speed);
+            let hop = start.air.hop(departure.value);
+            let top = contact.plus(&through(&departure, &hop.rise));
+            while let Some(&(_, height, sigma)) = heights.next_if(|h| h.0 <= n + 1) {
+                row(&start.offset.plus(&through(&departure, &hop.height)), height, sigma);
             }
-            for (j, slope) in slopes.iter().enumerate() {
-                rows[(i, q + j)] = speed * slope / g / moment.sigma;
+            while let Some(m) = moments.next_if(|m| m.flights == n && m.apex) {
+                row(&top, m.time, m.sigma);
             }
-            if let Some(n) = offset {
-                rows[(i, q + n)] = by_speed * speed_by_offset / moment.sigma;
-            }
-            if let (Some(n), true) = (lag, trial.release_time.is_some()) {
-                rows[(i, q + n)] = 1.0 / moment.sigma;
-            }
-            rows[(i, last)] = (moment.time - clock - speed * flights / g) / moment.sigma;
-            i += 1;
+            // A reading before its turn has no place here; readings are in order.
+            while moments.next_if(|m| m.flights < n).is_some() {}
+            contact = top.plus(&through(&departure, &hop.fall));
+            speed = through(&departure, &hop.arrival);
         }
     }
 }

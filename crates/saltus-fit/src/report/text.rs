@@ -23,6 +23,7 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "\n  COR  {}", headline(report, cor))?;
     }
     bounces(report, f)?;
+    super::recordings::write(report, f)?;
     if report.agreement.as_ref().is_some_and(rejected) {
         if let Some(agreement) = &report.agreement {
             disagreement(report, agreement, f)?;
@@ -31,6 +32,15 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     } else {
         methods(report, f)?;
         explanations(report, f)?;
+    }
+    allowed(report, f)?;
+    if let Some(b) = &report.bootstrap {
+        let digits = digits(b.standard_error);
+        writeln!(
+            f,
+            "\nBootstrap of whole trials, {} rounds, seed {}: ± {:.digits$}, 95 % from {:.digits$} to {:.digits$}",
+            b.rounds, b.seed, b.standard_error, b.low, b.high
+        )?;
     }
     section(f, "Left out or mended", &report.repairs)?;
     let mut mind = report.agreement.as_ref().filter(|a| rejected(a)).map_or_else(Vec::new, |a| caveats(report, a));
@@ -61,7 +71,7 @@ fn digits(error: f64) -> usize {
     (3..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
 }
 
-fn pair(value: f64, error: f64) -> String {
+pub(super) fn pair(value: f64, error: f64) -> String {
     let digits = digits(error);
     if error < 0.5e-9 {
         return format!("{value:.digits$} ± {error:.0e}");
@@ -112,7 +122,7 @@ fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
 
 /// The least-squares fits and how well they describe the readings.
 fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
-    let shown = |e: &&Estimate| !e.method.ends_with("mean");
+    let shown = |e: &&Estimate| !e.method.ends_with("mean") && !e.method.starts_with("series");
     if !report.estimates.iter().any(|e| shown(&e)) {
         return Ok(());
     }
@@ -123,10 +133,19 @@ fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
             "first-flight" => "drop height, first flight",
             "heights-unbounded" => "heights, COR > 1 allowed",
             "times-unbounded" => "times, COR > 1 allowed",
+            "heights-huber" => "heights, Huber",
+            "heights-absolute" => "heights, sum of |r|",
+            "heights-largest" => "heights, largest |r|",
+            "times-huber" => "times, Huber",
+            "times-absolute" => "times, sum of |r|",
+            "times-largest" => "times, largest |r|",
             other => other,
         };
         let value = match (estimate.value, estimate.standard_error) {
             (Some(value), Some(error)) => pair(value, error),
+            (Some(value), None) if estimate.about.contains("residual") || estimate.about.contains("loss") => {
+                format!("{value:.4}")
+            }
             (Some(value), None) => format!("{value:.3}, at its bound"),
             _ => "-".to_owned(),
         };
@@ -144,6 +163,34 @@ fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "{line}")?;
     }
     Ok(())
+}
+
+/// The CORs that tolerances allow.
+fn allowed(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let lines: Vec<String> = report
+        .allowed
+        .iter()
+        .map(|a| {
+            let shown = |x: f64| if a.readings == "heights" { length(x) } else { duration(x) };
+            match a.range {
+                Some((low, high)) => format!(
+                    "every one of the {} within {}: the COR is from {low:.4} to {high:.4} ({} would be enough for {:.4})",
+                    a.readings,
+                    shown(a.tolerance),
+                    shown(a.smallest),
+                    a.cor
+                ),
+                None => format!(
+                    "no single COR explains the {} to within {}; the smallest tolerance that allows one is {}, with {:.4}",
+                    a.readings,
+                    shown(a.tolerance),
+                    shown(a.smallest),
+                    a.cor
+                ),
+            }
+        })
+        .collect();
+    section(f, "At the stated precision", &lines)
 }
 
 /// A number to three digits, without decimals from 100 on.
@@ -245,6 +292,9 @@ fn short(name: &str) -> &str {
         "height-zero" => "a wrong zero of the height scale",
         "cor-per-bounce" => "a COR of its own for every bounce",
         "clock-lag" => "a late or early clock",
+        "air-drag" => "air drag",
+        "cor-of-speed" => "a COR that depends on speed",
+        "missed-contact" => "an overlooked contact",
         other => other,
     }
 }
@@ -261,6 +311,24 @@ fn explanation(hypothesis: &Hypothesis) -> String {
         }
         (None, Some(lag)) => {
             format!("The clock may be off at the release, by {:+.3} ± {:.3} s", lag.value, lag.standard_error)
+        }
+        (None, None) if hypothesis.cors.is_empty() => {
+            let mut text = capital(&hypothesis.about).replacen(" is ", " may be ", 1);
+            if let Some(drag) = hypothesis.drag {
+                text = format!(
+                    "Air drag may slow the ball: with k = {} ± {}/m",
+                    figures(drag.value),
+                    figures(drag.standard_error)
+                );
+            }
+            if let Some(slope) = hypothesis.slope {
+                text = format!(
+                    "The COR may depend on speed: by {} ± {:.3} per m/s",
+                    signed(slope.value),
+                    slope.standard_error
+                );
+            }
+            text
         }
         (None, None) => {
             let cors: Vec<String> = hypothesis.cors.iter().map(|e| format!("{e:.3}")).collect();
@@ -289,6 +357,10 @@ fn explanation(hypothesis: &Hypothesis) -> String {
     text
 }
 
+fn signed(x: f64) -> String {
+    format!("{x:+.3}")
+}
+
 fn generously(generous: &Generous) -> String {
     format!(
         ", and if the readings are only good to {} and {}, {} on {} (p {})",
@@ -309,7 +381,7 @@ fn duration(seconds: f64) -> String {
 }
 
 /// A number to two significant figures, without trailing zeros.
-fn figures(x: f64) -> String {
+pub(super) fn figures(x: f64) -> String {
     let text = match x {
         x if x >= 9.95 => format!("{x:.0}"),
         x if x >= 0.995 => format!("{x:.1}"),

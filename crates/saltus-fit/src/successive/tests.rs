@@ -64,11 +64,16 @@ fn derivatives_are_those_of_the_residuals() {
                         moment(3, true, 2.0),
                     ],
                 };
-                for cors in [1, 2, 4] {
-                    let model = Flight { trials: vec![trial.clone()], gravity: 9.8, cors, offset, lag };
+                for (cors, slope, drag) in
+                    [(1, None, false), (2, None, false), (4, None, true), (1, Some(2.0), false), (1, Some(3.0), true)]
+                {
+                    let trials = vec![trial.clone()];
+                    let model = Flight { trials, gravity: 9.8, cors, slope, offset, lag, drag, pinned: None };
                     let mut shared = vec![0.6; cors];
+                    shared.extend(slope.map(|_| -0.05));
                     shared.extend(offset.then_some(0.05));
                     shared.extend(lag.then_some(0.02));
+                    shared.extend(drag.then_some(0.15));
                     let mut own = Vec::new();
                     own.extend((!matches!(release, Some((_, None)))).then_some(4.3));
                     own.extend(release_time.is_none().then_some(0.41));

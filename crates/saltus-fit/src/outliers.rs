@@ -1,0 +1,55 @@
+//! Readings that are no readings of the ball: found by the sum of absolute residuals, which up to a third of them hardly moves.
+
+use crate::error::FitError;
+use crate::estimate::{OneKind, identified};
+use crate::evidence::Evidence;
+use crate::robust::{self, Loss};
+use crate::statistics::median;
+
+/// A reading this many standard errors from the robust fit is left out.
+const FAR: f64 = 5.0;
+/// The same where the standard error is only the scatter of the others.
+const FAR_BY_SCATTER: f64 = 8.0;
+/// With fewer readings to spare nobody can tell which are wrong; without a stated error, it takes twice as many.
+const SPARE: usize = 4;
+/// More than this part cannot be outliers: then it is the model that is wrong.
+const MOST: f64 = 0.35;
+
+/// For each trial the places of readings that do not belong to the model; empty where all do.
+///
+/// `stated` says whether the errors are known: then a reading must be far off by them, and not only by the scatter of the others.
+pub(crate) fn find<M: OneKind>(evidence: &Evidence, sigma: f64, stated: bool) -> Result<Vec<(usize, usize)>, FitError> {
+    let model = M::with_sigma(evidence, sigma);
+    if !model.usable() {
+        return Ok(Vec::new());
+    }
+    let Some(start) = identified(M::METHOD, model.minimise())? else { return Ok(Vec::new()) };
+    if start.freedom < if stated { SPARE } else { 2 * SPARE } {
+        return Ok(Vec::new());
+    }
+    // A clean table needs no second look: nothing is far off by the scatter that least squares finds.
+    let scatter = (start.chi_square / start.freedom as f64).sqrt();
+    if stated && scatter < 1.5 {
+        return Ok(Vec::new());
+    }
+    let found = identified(M::METHOD, robust::fit(&model, Loss::Absolute, &start.shared, &start.own, false));
+    let Ok(Some(Some(found))) = found else { return Ok(Vec::new()) };
+    let mut sizes: Vec<f64> = found.left.iter().flatten().map(|r| r.abs()).collect();
+    let count = sizes.len();
+    // As many residuals are zero as there are unknowns: they say nothing of the scatter.
+    sizes.sort_unstable_by(f64::total_cmp);
+    let unknowns = count - start.freedom;
+    let Some(middle) = median(&mut sizes[unknowns.min(count - 1)..]) else { return Ok(Vec::new()) };
+    let own = 1.4826 * middle;
+    let scale = if stated { own.max(1.0) } else { own.max(1e-6) };
+    let limit = if stated { FAR } else { FAR_BY_SCATTER };
+    let far = |r: &f64| r.abs() > limit * scale;
+    let wrong: Vec<(usize, usize)> = found
+        .left
+        .iter()
+        .enumerate()
+        .flat_map(|(trial, left)| left.iter().enumerate().filter(|(_, r)| far(r)).map(move |(n, _)| (trial, n)))
+        .collect();
+    let few = wrong.len() as f64 <= MOST * count as f64 && count - wrong.len() >= unknowns + 2;
+    Ok(if few { wrong } else { Vec::new() })
+}

@@ -1,0 +1,66 @@
+//! The part of the report for people that shows recordings impact by impact, and the models tried on them.
+
+use std::fmt::{self, Formatter};
+
+use super::Report;
+use super::text::{figures, pair};
+use crate::series::Track;
+
+/// More impacts than this are left to the JSON.
+const IMPACTS: usize = 12;
+/// Gravity within this part of the expected means that heights are in metres and times in seconds.
+const METRES: f64 = 0.2;
+
+/// Writes the impacts of each recording and the models.
+pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+    let several = report.series.len() > 1;
+    let impacts = || report.series.iter().flat_map(|t| t.impacts.iter().map(|i| (t.trial, i)));
+    if impacts().next().is_some() {
+        writeln!(f, "\n  impact        speed   COR")?;
+    }
+    for (trial, impact) in impacts().take(IMPACTS) {
+        let of = if several { format!("(trial {})", trial + 1) } else { String::new() };
+        let cor = pair(impact.cor.value, impact.cor.standard_error);
+        let line = format!("  {:<8}{:>11}   {cor:<16} {of}", impact.bounce, speed(report, impact.speed));
+        writeln!(f, "{}", line.trim_end())?;
+    }
+    if let more @ 1.. = impacts().count().saturating_sub(IMPACTS) {
+        writeln!(f, "  and {more} more: see --format json")?;
+    }
+    if report.models.len() > 1 {
+        writeln!(f, "\nModels, the best first (a greater BIC is worse; by six, clearly)")?;
+        for model in &report.models {
+            let chosen = if model.chosen { "   chosen" } else { "" };
+            let cor = pair(model.cor.value, model.cor.standard_error);
+            writeln!(f, "  {:<46}{cor:>16}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
+        }
+    }
+    if let [track] = report.series.as_slice() {
+        motion(report, track, f)?;
+    }
+    Ok(())
+}
+
+fn metres(report: &Report, track: &Track) -> bool {
+    (track.gravity.value / report.gravity.value - 1.0).abs() < METRES
+}
+
+fn speed(report: &Report, speed: f64) -> String {
+    match report.series.first() {
+        Some(track) if metres(report, track) => format!("{speed:.2} m/s"),
+        _ => format!("{} /s", figures(speed)),
+    }
+}
+
+/// Gravity, drag and what is left between motion and samples, for a single recording.
+fn motion(report: &Report, track: &Track, f: &mut Formatter<'_>) -> fmt::Result {
+    let unit = if metres(report, track) { "m/s\u{b2}" } else { "per s\u{b2}" };
+    let digits = if track.gravity.value < 100.0 { 2 } else { 0 };
+    let (g, error) = (track.gravity.value, track.gravity.standard_error);
+    write!(f, "\n  {} samples; gravity {g:.digits$} ± {error:.digits$} {unit}", track.samples)?;
+    if let Some(drag) = track.drag {
+        let per = if metres(report, track) { "/m" } else { " per unit of height" };
+        write!(f, "; drag k = {} ± {}{per}", figures(drag.value), figures(drag.standard_error))?;
+    }
+    writeln!(f, "; rms {} (from sample to sample {})", figures(track.rms), figures(track.noise))
+}

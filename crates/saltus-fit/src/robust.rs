@@ -1,0 +1,198 @@
+//! The same models under other losses: Huber's, the sum of absolute residuals, and the largest residual.
+//!
+//! Each step linearises the whole model and solves a conic program within a trust region (r is a whitened residual, d a step):
+//! Huber min Σ ½u² + δ t with |r − X d| ≤ u + t; absolute min Σ t with |r − X d| ≤ t; largest min ε with |r − X d| ≤ ε. A step that does not
+//! lower the loss is tried shorter.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::conic::{Outcome, Program};
+use crate::least_squares::Failure;
+use crate::successive::Model;
+
+/// 95 % efficient where errors are normal (Huber 1964).
+pub(crate) const HUBER: f64 = 1.345;
+/// A problem with more rows is left to least squares.
+pub(crate) const ROWS: usize = 3000;
+const STEPS: usize = 25;
+
+/// What is made small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Loss {
+    Huber,
+    Absolute,
+    Largest,
+}
+
+/// A fit under one of the losses.
+#[derive(Clone, Debug)]
+pub(crate) struct Robust {
+    pub(crate) shared: Vec<f64>,
+    pub(crate) own: Vec<Vec<f64>>,
+    /// The whitened residuals of each block.
+    pub(crate) left: Vec<Vec<f64>>,
+    /// The loss: for [`Loss::Largest`] the largest whitened residual.
+    pub(crate) loss: f64,
+}
+
+impl Loss {
+    fn of(self, left: &DVector<f64>) -> f64 {
+        match self {
+            Self::Absolute => left.iter().map(|r| r.abs()).sum(),
+            Self::Largest => left.amax(),
+            Self::Huber => left
+                .iter()
+                .map(|r| if r.abs() <= HUBER { 0.5 * r * r } else { HUBER * r.abs() - 0.5 * HUBER * HUBER })
+                .sum(),
+        }
+    }
+
+    /// The program of one step: unknowns d, scaled, then those of the loss.
+    fn step(self, x: &DMatrix<f64>, left: &DVector<f64>, limits: &[(f64, f64)]) -> Result<Vec<f64>, Failure> {
+        let (m, n) = x.shape();
+        let scale = left.amax().max(1e-12);
+        let norms: Vec<f64> = x.column_iter().map(|c| c.amax().max(1e-300)).collect();
+        let extra = match self {
+            Self::Absolute => m,
+            Self::Huber => 2 * m,
+            Self::Largest => 1,
+        };
+        let mut program = Program { squares: vec![0.0; n + extra], cost: vec![0.0; n + extra], rows: Vec::new() };
+        let delta = HUBER / scale;
+        for i in 0..m {
+            match self {
+                Self::Absolute => program.cost[n + i] = 1.0,
+                Self::Huber => (program.squares[n + i], program.cost[n + m + i]) = (1.0, delta),
+                Self::Largest => program.cost[n] = 1.0,
+            }
+            for sign in [1.0, -1.0] {
+                let row = (0..n).filter(|&j| x[(i, j)] != 0.0).map(|j| (j, -sign * x[(i, j)] / norms[j]));
+                let mut row: Vec<(usize, f64)> = row.collect();
+                match self {
+                    Self::Absolute => row.push((n + i, -1.0)),
+                    Self::Huber => row.extend([(n + i, -1.0), (n + m + i, -1.0)]),
+                    Self::Largest => row.push((n, -1.0)),
+                }
+                program.rows.push((row, -sign * left[i] / scale));
+            }
+            if self == Self::Huber {
+                program.rows.push((vec![(n + m + i, -1.0)], 0.0));
+            }
+        }
+        for (j, &(low, high)) in limits.iter().enumerate() {
+            let (low, high) = (low * norms[j] / scale, high * norms[j] / scale);
+            if high < 1e4 {
+                program.rows.push((vec![(j, 1.0)], high));
+            }
+            if low > -1e4 {
+                program.rows.push((vec![(j, -1.0)], -low));
+            }
+        }
+        match program.minimise()? {
+            Outcome::Minimum(z) => Ok((0..n).map(|j| z[j] * scale / norms[j]).collect()),
+            Outcome::Infeasible => Err(Failure::Malformed),
+        }
+    }
+}
+
+/// The model's rows of all blocks as one matrix in (own | shared), and the residuals.
+fn whole(
+    model: &impl Model,
+    sizes: &[(usize, usize)],
+    own: &[Vec<f64>],
+    shared: &[f64],
+) -> (DMatrix<f64>, DVector<f64>) {
+    let n = shared.len();
+    let (rows, owned) = sizes.iter().fold((0, 0), |a, s| (a.0 + s.0, a.1 + s.1));
+    let (mut x, mut left) = (DMatrix::zeros(rows, owned + n), DVector::zeros(rows));
+    let (mut row, mut column) = (0, 0);
+    for (block, &(m, q)) in sizes.iter().enumerate() {
+        let mut filled = DMatrix::zeros(m, q + n + 1);
+        model.fill(block, shared, &own[block], &mut filled);
+        x.view_mut((row, column), (m, q)).copy_from(&filled.columns(0, q));
+        x.view_mut((row, owned), (m, n)).copy_from(&filled.columns(q, n));
+        left.rows_mut(row, m).copy_from(&filled.column(q + n));
+        (row, column) = (row + m, column + q);
+    }
+    (x, left)
+}
+
+/// Minimises the loss from a start, such as the least-squares fit, or over the own unknowns only; `None` for a table with too many rows.
+pub(crate) fn fit(
+    model: &impl Model,
+    loss: Loss,
+    shared: &[f64],
+    own: &[Vec<f64>],
+    pinned: bool,
+) -> Result<Option<Robust>, Failure> {
+    // Blocks too short to say anything are left aside, as in least squares.
+    let sizes: Vec<(usize, usize)> =
+        (0..own.len()).map(|b| model.size(b)).map(|(m, q)| if m > q { (m, q) } else { (0, 0) }).collect();
+    let rows: usize = sizes.iter().map(|s| s.0).sum();
+    let unknowns = shared.len() + sizes.iter().map(|s| s.1).sum::<usize>();
+    if rows > ROWS || rows < unknowns || rows * unknowns > 300_000 {
+        return Ok(None);
+    }
+    let ranges = model.ranges();
+    let (mut shared, mut own) = (shared.to_vec(), own.to_vec());
+    let mut trust = 1.0f64;
+    let (mut x, mut left) = whole(model, &sizes, &own, &shared);
+    if left.iter().chain(x.iter()).any(|v| !v.is_finite()) {
+        return Err(Failure::Malformed);
+    }
+    for _ in 0..STEPS {
+        // Nothing is left to be lowered.
+        if left.amax() < 1e-9 {
+            break;
+        }
+        let owned = unknowns - shared.len();
+        let mut limits = vec![(f64::NEG_INFINITY, f64::INFINITY); owned];
+        limits.extend(shared.iter().zip(&ranges).map(|(v, (b, reach))| {
+            ((b.low - v).max(-trust * reach).min(0.0), (b.high - v).min(trust * reach).max(0.0))
+        }));
+        let mut step = if pinned {
+            loss.step(&x.columns(0, owned).into_owned(), &left, &limits[..owned])?
+        } else {
+            loss.step(&x, &left, &limits)?
+        };
+        step.resize(unknowns, 0.0);
+        let here = loss.of(&left);
+        let mut accepted = false;
+        let mut fraction = 1.0;
+        while fraction > 1e-3 {
+            let next: Vec<f64> = (0..shared.len())
+                .map(|j| (shared[j] + fraction * step[owned + j]).clamp(ranges[j].0.low, ranges[j].0.high))
+                .collect();
+            let mut place = 0;
+            let next_own: Vec<Vec<f64>> = own
+                .iter()
+                .zip(&sizes)
+                .map(|(o, &(_, q))| {
+                    place += q;
+                    if q == 0 { o.clone() } else { (0..q).map(|j| o[j] + fraction * step[place - q + j]).collect() }
+                })
+                .collect();
+            let (there_x, there) = whole(model, &sizes, &next_own, &next);
+            if there.iter().chain(there_x.iter()).all(|v| v.is_finite()) && loss.of(&there) <= here {
+                (shared, own, x, left) = (next, next_own, there_x, there);
+                accepted = true;
+                break;
+            }
+            fraction *= 0.5;
+        }
+        if !accepted || here - loss.of(&left) <= 1e-9 * (1e-9 + here) {
+            break;
+        }
+        if fraction < 1.0 {
+            trust *= fraction;
+        }
+    }
+    let mut rest = left.as_slice();
+    let blocks = sizes.iter().map(|&(m, _)| {
+        let (block, after) = rest.split_at(m);
+        rest = after;
+        block.to_vec()
+    });
+    let left_blocks = blocks.collect();
+    Ok(Some(Robust { shared, own, left: left_blocks, loss: loss.of(&left) }))
+}

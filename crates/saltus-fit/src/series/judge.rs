@@ -1,0 +1,129 @@
+//! What the recordings amount to, and what speaks against it.
+
+use super::{Series, Track};
+use crate::choice::ModelChoice;
+use crate::estimate::Estimate;
+use crate::model::Law;
+use crate::report::{Cor, Report, Verdict};
+
+/// So much better a BIC must be before the other model is out of the question.
+const CLEAR: f64 = 6.0;
+/// A motion that leaves this many times the noise does not follow the samples.
+const ROUGH: f64 = 6.0;
+
+/// Fills verdict, reason, COR, estimates and warnings from the series.
+pub(crate) fn judge(report: &mut Report, series: &Series) {
+    report.repairs.extend(series.repairs.iter().cloned());
+    let Some(pooled) = &series.pooled else {
+        report.verdict = Verdict::Refused;
+        report.reason = series.refused.first().map_or_else(|| "the series is empty".to_owned(), |r| r.1.clone());
+        report.warnings.extend(series.refused.iter().skip(1).map(|r| r.1.clone()));
+        return;
+    };
+    report.warnings.extend(series.refused.iter().map(|r| r.1.clone()));
+    let (law, drag) = pooled.choice;
+    let name = |drag: bool| if drag { "series-drag" } else { "series" };
+    let about = |drag: bool| {
+        let air = if drag { "with quadratic air drag" } else { "without air drag" };
+        format!("the whole motion through every sample, {air}; gravity, scale and floor are fitted")
+    };
+    let mut estimate =
+        Estimate::new(name(drag), &about(drag), pooled.cor.value, pooled.cor.standard_error, pooled.quantile);
+    estimate.trials = series.tracks.len();
+    let mut doubts = Vec::new();
+    let (mut low, mut high) = (estimate.low.unwrap_or(0.0), estimate.high.unwrap_or(1.0));
+    report.estimates.push(estimate);
+    let other = pooled.rivals.iter().find(|r| r.0.1 != drag);
+    if let Some(&(_, cor, worse)) = other {
+        let mut estimate = Estimate::new(name(!drag), &about(!drag), cor.value, cor.standard_error, pooled.quantile);
+        estimate.trials = series.tracks.len();
+        report.estimates.push(estimate);
+        if drag && worse >= CLEAR {
+            report.notes.push(format!(
+                "air drag is needed: without it the BIC is {worse:.0} worse, and the COR would come out as {:.3}",
+                cor.value
+            ));
+        }
+    }
+    for &(choice, cor, worse) in &pooled.rivals {
+        report.models.push(ModelChoice::of_series(choice, cor, worse, choice == pooled.choice));
+        let apart = (cor.value - pooled.cor.value).abs();
+        if worse < CLEAR && apart > 2.0 * cor.standard_error.hypot(pooled.cor.standard_error) && apart > 0.005 {
+            doubts.push(format!(
+                "two models fit the samples alike (BIC apart by {worse:.1}) and give a COR of {:.3} or {:.3}",
+                pooled.cor.value, cor.value
+            ));
+            low = low.min(cor.value - pooled.quantile * cor.standard_error).max(0.0);
+            high = high.max(cor.value + pooled.quantile * cor.standard_error);
+        }
+    }
+    varying(series, law, &mut doubts, (&mut low, &mut high));
+    roughness(report, series, &mut doubts);
+    gravity(report, &series.tracks);
+    let e = pooled.cor;
+    if e.value - 2.0 * e.standard_error > 1.0 {
+        doubts.push("the ball gains speed at its impacts, as if each added energy".to_owned());
+    }
+    if series.tracks.len() == 1 {
+        report.warnings.push(
+            "one recording: its error is that of the fit; another drop of the same ball may differ by more".to_owned(),
+        );
+    }
+    report.cor = Some(Cor { value: e.value, standard_error: Some(e.standard_error), low, high });
+    report.verdict = if doubts.is_empty() { Verdict::Trusted } else { Verdict::Doubtful };
+    report.reason = doubts.first().cloned().unwrap_or_else(|| match (series.tracks.len(), drag) {
+        (1, false) => "one motion fits the series".to_owned(),
+        (1, true) => "one motion with air drag fits the series".to_owned(),
+        (n, drag) => format!("one COR fits {n} series{}", if drag { ", with air drag" } else { "" }),
+    });
+    report.warnings.extend(doubts.into_iter().skip(1));
+}
+
+/// Whether the COR differs from impact to impact by more than errors and a hundredth.
+fn varying(series: &Series, law: Law, doubts: &mut Vec<String>, (low, high): (&mut f64, &mut f64)) {
+    let Some(pooled) = series.pooled.as_ref().filter(|_| law != Law::Constant) else { return };
+    let by = |a: &&crate::bounces::Measured, b: &&crate::bounces::Measured| a.value.total_cmp(&b.value);
+    let (Some(least), Some(most)) = (pooled.impacts.iter().min_by(by), pooled.impacts.iter().max_by(by)) else {
+        return;
+    };
+    let apart = most.value - least.value;
+    if apart > 0.01 && apart > 3.0 * most.standard_error.hypot(least.standard_error) {
+        doubts.push(format!(
+            "the COR is not the same at every impact: from {:.3} to {:.3} (see the impacts)",
+            least.value, most.value
+        ));
+        *low = low.min(least.value - 2.0 * least.standard_error).max(0.0);
+        *high = high.max(most.value + 2.0 * most.standard_error);
+    }
+}
+
+fn roughness(report: &mut Report, series: &Series, doubts: &mut Vec<String>) {
+    let rough = |t: &&Track| {
+        let range = t.course.apexes.iter().map(|a| a.1).fold(0.0, f64::max);
+        t.rms > ROUGH * t.noise && t.rms > 0.01 * range
+    };
+    let worst: Vec<&Track> = series.tracks.iter().filter(rough).collect();
+    if let Some(track) = worst.first() {
+        doubts.push(format!(
+            "the motion does not follow the samples: it leaves {:.2e} where they scatter by {:.2e}",
+            track.rms, track.noise
+        ));
+    }
+    let wild: usize = series.tracks.iter().map(|t| t.left_out[2]).sum();
+    let all: usize = series.tracks.iter().map(|t| t.samples).sum();
+    if wild * 20 > all {
+        report.warnings.push(format!("{wild} of {} samples are outliers: look at the tracking", wild + all));
+    }
+}
+
+/// Gravity is fitted, so it tells whether scale and clock are right; the COR depends on neither.
+fn gravity(report: &mut Report, tracks: &[Track]) {
+    let found = tracks.iter().map(|t| t.gravity.value).sum::<f64>() / tracks.len() as f64;
+    let expected = report.gravity.value;
+    if (found / expected - 1.0).abs() > 0.2 {
+        report.warnings.push(format!(
+            "the recording's gravity is {found:.3} per s² in the unit of the heights, not {expected}: heights are in pixels or in another \
+             unit, or the frame rate is another. The COR does not depend on it; speeds, drag and heights do"
+        ));
+    }
+}

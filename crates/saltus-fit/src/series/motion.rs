@@ -1,0 +1,79 @@
+//! The fitted motion of a recording for a picture: short parabolas along the flights, which with drag are none.
+
+use super::Series;
+use super::track::Course;
+use crate::model::Air;
+use crate::motion::{Arc, Motion};
+use crate::residual::{Measure, Point, Residual};
+
+/// A flight with drag is drawn as so many parabolas.
+const PIECES: usize = 12;
+/// More samples than this are thinned out for the picture.
+const DRAWN: usize = 4000;
+
+impl Course {
+    fn air(&self) -> Air {
+        Air { gravity: self.gravity, drag: self.drag }
+    }
+
+    /// The pieces of one flight from `start` to `end` about its apex.
+    fn pieces(&self, (time, height): (f64, f64), start: f64, end: f64) -> Vec<Arc> {
+        let pieces = if self.drag > 0.0 { PIECES } else { 1 };
+        let span = (end - start) / pieces as f64;
+        let at = |t: f64| {
+            let drop = self.air().drop(t - time);
+            (height - drop.value, -drop.by[0])
+        };
+        let piece = |n: usize| {
+            let from = start + span * n as f64;
+            let ((h0, v0), (h1, _)) = (at(from), at(from + span));
+            Arc { start: from, span, height: [h0, v0, (h1 - h0 - v0 * span) / (span * span)] }
+        };
+        if span > 0.0 { (0..pieces).map(piece).collect() } else { Vec::new() }
+    }
+
+    pub(crate) fn motion(&self, cor: f64) -> Motion {
+        let (first, last) = (self.samples.first().map_or(0.0, |s| s.0), self.samples.last().map_or(0.0, |s| s.0));
+        let mut flights = Vec::new();
+        for (n, &apex) in self.apexes.iter().enumerate() {
+            let start = if n == 0 { first } else { self.contacts[n - 1] };
+            let end = self.contacts.get(n).copied().unwrap_or(last);
+            flights.extend(self.pieces(apex, start, end));
+        }
+        Motion {
+            gravity: self.gravity,
+            cor,
+            release_time: None,
+            release_height: None,
+            contacts: self.contacts.clone(),
+            apexes: self.apexes.iter().skip(1).map(|a| a.1).collect(),
+            flights,
+        }
+    }
+}
+
+impl Series {
+    /// The first recording's motion, its samples and what is left of them.
+    pub(crate) fn picture(&self) -> (Option<Motion>, Vec<Point>, Vec<Residual>) {
+        let (Some(track), Some(pooled)) = (self.tracks.first(), &self.pooled) else {
+            return (None, Vec::new(), Vec::new());
+        };
+        let motion = track.course.motion(pooled.cor.value);
+        let sigma = track.rms.max(f64::MIN_POSITIVE);
+        let every = track.course.samples.len().div_ceil(DRAWN);
+        let shown = || track.course.samples.iter().enumerate().step_by(every);
+        let points = shown().map(|(n, &(time, height, _))| Point {
+            trial: track.trial,
+            label: format!("sample {}", n + 1),
+            time,
+            height,
+            sigma_time: None,
+            sigma_height: None,
+        });
+        let residuals = shown().map(|(n, &(time, height, left))| {
+            let values = (height, height - left);
+            Residual::new(track.trial, format!("sample {}", n + 1), Measure::Height, time, values, sigma)
+        });
+        (Some(motion), points.collect(), residuals.collect())
+    }
+}

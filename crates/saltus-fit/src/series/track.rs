@@ -1,0 +1,478 @@
+//! One recording: scaled, cut, fitted by every model, and told in its own units again.
+
+use super::flights::{self, Flights, NoFlights};
+use super::parabolas::{Sketch, sketch};
+use super::{Impact, Samples, Track, Variant};
+use crate::bounces::Measured;
+use crate::least_squares::Failure;
+use crate::model::{Dual, FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+use crate::statistics::median;
+use crate::successive::{Fitted, fit};
+
+/// Huber's constant: 95 % efficient for normal errors.
+const HUBER: f64 = 1.345;
+/// A sample this many standard deviations away is no sample of the ball.
+const WILD: f64 = 6.0;
+/// Starts are tried on so many samples at most.
+const COARSE: usize = 1500;
+/// Candidates of k times the range of heights to start from.
+const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
+
+/// Why a series gives no motion.
+#[derive(Clone, Debug)]
+pub(crate) enum Refusal {
+    Flights(NoFlights),
+    Fit(Failure),
+}
+
+/// How a model is named among its rivals: the law of its COR and whether it has drag.
+pub(crate) type Choice = (Law, bool);
+
+pub(super) const CHOICES: [Choice; 6] = [
+    (Law::Constant, false),
+    (Law::Linear, false),
+    (Law::Each, false),
+    (Law::Constant, true),
+    (Law::Linear, true),
+    (Law::Each, true),
+];
+
+/// How the recording was scaled: height = floor + range · y, time = first contact + unit · t, so that G is about one.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    origin: (f64, f64),
+    unit: f64,
+    range: f64,
+}
+
+/// A model fitted to a recording, in scaled units.
+#[derive(Clone, Debug)]
+struct Found {
+    choice: Choice,
+    fitted: Fitted,
+    /// The robust standard deviation of what is left.
+    sigma: f64,
+    bic: f64,
+    cor: Measured,
+}
+
+/// All models of a recording.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidates {
+    trial: usize,
+    turned: bool,
+    scale: Scale,
+    samples: Vec<Sample>,
+    wild: usize,
+    left_out: (usize, usize),
+    noise: f64,
+    sketch: Sketch,
+    found: Vec<Found>,
+    /// By how much the errors grow because neighbouring residuals are alike.
+    dependence: f64,
+}
+
+/// The fitted course of a ball, in the table's units with the floor at zero, for pictures.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Course {
+    /// Impact times, and time and height of each apex, that of the fall first.
+    pub(crate) contacts: Vec<f64>,
+    pub(crate) apexes: Vec<(f64, f64)>,
+    pub(crate) gravity: f64,
+    pub(crate) drag: f64,
+    /// Sample times, heights above the floor, and what the motion leaves of them.
+    pub(crate) samples: Vec<(f64, f64, f64)>,
+}
+
+impl Candidates {
+    /// Fits every model to one series.
+    pub(crate) fn of(trial: usize, series: &Samples) -> Result<Self, Refusal> {
+        let span = series.times.last().copied().unwrap_or(0.0) - series.times.first().copied().unwrap_or(0.0);
+        let top = series.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let range = top - series.heights.iter().copied().fold(f64::INFINITY, f64::min);
+        if !(span > 0.0 && range > 0.0 && span.is_finite() && range.is_finite()) {
+            return Err(Refusal::Flights(NoFlights::NoBounce));
+        }
+        let start = series.times[0];
+        let times: Vec<f64> = series.times.iter().map(|t| (t - start) / span).collect();
+        let heights: Vec<f64> = series.heights.iter().map(|h| (h - top) / range).collect();
+        let flights = flights::cut(&times, &heights).map_err(Refusal::Flights)?;
+        let rough = sketch(&flights)?;
+        // A unit of time in which G is one.
+        let unit = (1.0 / rough.gravity).sqrt();
+        let scale =
+            Scale { origin: (start + span * rough.contacts[0], top + range * rough.floor), unit: span * unit, range };
+        let sketch = Sketch {
+            gravity: 1.0,
+            contacts: rough.contacts.iter().map(|t| (t - rough.contacts[0]) / unit).collect(),
+            floor: 0.0,
+            speed: rough.speed * unit,
+            cors: rough.cors,
+        };
+        let (from, to) = (flights.starts[0], flights.starts[flights.starts.len() - 1]);
+        let samples: Vec<Sample> = (from..to)
+            .map(|i| Sample {
+                time: (flights.times[i] - rough.contacts[0]) / unit,
+                height: flights.heights[i] - rough.floor,
+                weight: 1.0,
+            })
+            .collect();
+        let Flights { noise, left_out, .. } = flights;
+        let mut candidates = Self {
+            trial,
+            turned: series.turned,
+            scale,
+            samples,
+            wild: 0,
+            left_out,
+            noise,
+            sketch,
+            found: Vec::new(),
+            dependence: 1.0,
+        };
+        candidates.fit_all()?;
+        for _ in 0..3 {
+            if !candidates.trim() {
+                break;
+            }
+            candidates.fit_all()?;
+        }
+        candidates.weigh();
+        Ok(candidates)
+    }
+
+    fn model<'a>(&self, samples: &'a [Sample], (law, drag): Choice) -> Trajectory<'a> {
+        let step = (samples[samples.len() - 1].time - samples[0].time) / samples.len() as f64;
+        Trajectory {
+            samples,
+            impacts: self.sketch.contacts.len(),
+            drag,
+            law,
+            speed: self.sketch.speed,
+            first: (0.0, 5.0 * step + 0.05),
+            high: 1.5,
+        }
+    }
+
+    /// Fits all models, each COR for itself first: the others start from there.
+    fn fit_all(&mut self) -> Result<(), Failure> {
+        self.found.clear();
+        for drag in [false, true] {
+            let Some(each) = self.each(drag)? else { continue };
+            let first = each.fitted.shared.len() - self.sketch.contacts.len();
+            let (head, cors) = each.fitted.shared.split_at(first);
+            let mean = cors.iter().sum::<f64>() / cors.len() as f64;
+            if cors.len() > 1 {
+                let starts = [mean, cors[0]].map(|e| [head, &[e]].concat());
+                let constant = self.best((Law::Constant, drag), &starts)?;
+                self.found.extend(constant);
+                if cors.len() > 2 {
+                    let starts = [[head, &[mean, 0.0]].concat()];
+                    let linear = self.best((Law::Linear, drag), &starts)?;
+                    self.found.extend(linear);
+                }
+                self.found.push(each);
+            } else {
+                self.found.push(Found { choice: (Law::Constant, drag), ..each });
+            }
+        }
+        if self.found.is_empty() { Err(Failure::NotIdentified) } else { Ok(()) }
+    }
+
+    /// The fit with a COR for every impact, from the parabolas' sketch.
+    fn each(&self, drag: bool) -> Result<Option<Found>, Failure> {
+        let Sketch { speed, cors, .. } = &self.sketch;
+        let starts: Vec<Vec<f64>> = if drag {
+            DRAGS.iter().map(|&k| [&[0.0, *speed, 0.0, 1.0, k], self.cors_with(k).as_slice()].concat()).collect()
+        } else {
+            vec![[&[0.0, *speed, 0.0, 1.0], cors.as_slice()].concat()]
+        };
+        self.best((Law::Each, drag), &starts)
+    }
+
+    /// The CORs that the durations of the flights mean under drag, with G = 1.
+    fn cors_with(&self, k: f64) -> Vec<f64> {
+        let mut arrival = self.sketch.speed.min(0.9 / k.sqrt());
+        let mut cors: Vec<f64> = Vec::new();
+        for (n, w) in self.sketch.contacts.windows(2).enumerate() {
+            let lasts = k.sqrt() * (w[1] - w[0]);
+            let (mut low, mut high) = (0.0f64, 20.0f64);
+            for _ in 0..60 {
+                let u = 0.5 * (low + high);
+                if u.atan() + u.asinh() < lasts { low = u } else { high = u }
+            }
+            let departure = low / k.sqrt();
+            cors.push((departure / arrival).clamp(0.01, 1.4));
+            arrival = departure / (1.0 + low * low).sqrt();
+            debug_assert_eq!(cors.len(), n + 1);
+        }
+        cors.push(cors.last().copied().or(self.sketch.cors.last().copied()).unwrap_or(0.7));
+        cors
+    }
+
+    /// The best fit of a model from several starts, robust against wild samples; `None` where it is not determined.
+    fn best(&self, choice: Choice, starts: &[Vec<f64>]) -> Result<Option<Found>, Failure> {
+        let every = self.samples.len().div_ceil(COARSE);
+        let coarse: Vec<Sample> = self.samples.iter().step_by(every).copied().collect();
+        let mut best: Option<Fitted> = None;
+        for start in starts {
+            match fit(&self.model(&coarse, choice), start, vec![Vec::new()]) {
+                Ok(found) if best.as_ref().is_none_or(|b| found.chi_square < b.chi_square) => best = Some(found),
+                Ok(_) | Err(Failure::NotIdentified | Failure::Malformed) => {}
+                Err(failure) => return Err(failure),
+            }
+        }
+        let Some(best) = best else { return Ok(None) };
+        let mut values = best.shared;
+        let mut samples = self.samples.clone();
+        let mut last = None;
+        for _ in 0..12 {
+            let fitted = match fit(&self.model(&samples, choice), &values, vec![Vec::new()]) {
+                Ok(fitted) => fitted,
+                Err(Failure::NotIdentified | Failure::Malformed) => return Ok(None),
+                Err(failure) => return Err(failure),
+            };
+            let moved = fitted.shared.iter().zip(&values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            values.clone_from(&fitted.shared);
+            let left = self.left(&values, choice);
+            let sigma = self.spread(&left);
+            for (sample, r) in samples.iter_mut().zip(&left) {
+                sample.weight = huber_weight(r / sigma).sqrt();
+            }
+            last = Some((fitted, sigma));
+            if moved < 1e-7 {
+                break;
+            }
+        }
+        let Some((fitted, sigma)) = last else { return Ok(None) };
+        // Drag that sits on its lower end is none.
+        let none = choice.1 && fitted.shared[GRAVITY + 1] <= 2.0 * LEAST_DRAG;
+        let cor = Measured { value: 0.0, standard_error: 0.0 };
+        Ok((!none).then_some(Found { choice, fitted, sigma, bic: 0.0, cor }))
+    }
+
+    /// Sample less motion.
+    fn left(&self, values: &[f64], choice: Choice) -> Vec<f64> {
+        let model = self.model(&self.samples, choice);
+        let mut rows = nalgebra::DMatrix::zeros(self.samples.len(), values.len() + 1);
+        crate::successive::Model::fill(&model, 0, values, &[], &mut rows);
+        rows.column(values.len()).iter().zip(&self.samples).map(|(r, s)| r / s.weight).collect()
+    }
+
+    /// The robust standard deviation of residuals, not below what rounding leaves.
+    fn spread(&self, left: &[f64]) -> f64 {
+        let mut sizes: Vec<f64> = left.iter().map(|r| r.abs()).collect();
+        (1.4826 * median(&mut sizes).unwrap_or(0.0)).max(1e-9)
+    }
+
+    /// Takes out samples that are not of the ball in flight: at both ends where it was held or caught, and wild ones between.
+    fn trim(&mut self) -> bool {
+        let Some(best) = self.found.iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma)) else { return false };
+        let left = self.left(&best.fitted.shared, best.choice);
+        let sigma = best.sigma.max(self.noise);
+        let out = |r: &f64| r.abs() > 4.0 * sigma;
+        let first = best.fitted.shared[TIME];
+        let before = self.samples.iter().take_while(|s| s.time < first).count();
+        let after = self.samples.len() - before;
+        // Never more than a third of the fall, or of all that follows.
+        let head = left.iter().take_while(|r| out(r)).count().min(before / 3);
+        let tail = left.iter().rev().take_while(|r| out(r)).count().min(after / 3);
+        let kept = head..self.samples.len() - tail;
+        let was = self.samples.len();
+        let wild = |i: &usize| left[*i].abs() > WILD * sigma;
+        let wild_count = kept.clone().filter(wild).count();
+        // So many cannot be outliers: the model is wrong there.
+        let drop_wild = wild_count <= kept.len() / 3;
+        self.samples =
+            kept.filter(|i| !(drop_wild && wild(i))).map(|i| Sample { weight: 1.0, ..self.samples[i] }).collect();
+        self.left_out = (self.left_out.0 + head, self.left_out.1 + tail);
+        self.wild += if drop_wild { wild_count } else { 0 };
+        self.samples.len() < was
+    }
+
+    /// BIC and the error of the COR for each model; residuals of neighbours are alike, which counts as fewer samples.
+    fn weigh(&mut self) {
+        let sigma = self.found.iter().map(|f| f.sigma).fold(f64::INFINITY, f64::min);
+        let losses: Vec<f64> = self
+            .found
+            .iter()
+            .map(|f| self.left(&f.fitted.shared, f.choice).iter().map(|r| huber_loss(r / sigma)).sum())
+            .collect();
+        let best = (0..losses.len()).min_by(|&a, &b| losses[a].total_cmp(&losses[b])).unwrap_or(0);
+        let left = self.left(&self.found[best].fitted.shared, self.found[best].choice);
+        let clip: Vec<f64> = left.iter().map(|r| r.clamp(-3.0 * sigma, 3.0 * sigma)).collect();
+        let own: f64 = clip.iter().map(|r| r * r).sum();
+        let with_next: f64 = clip.windows(2).map(|w| w[0] * w[1]).sum();
+        let alike = if own > 0.0 { (with_next / own).clamp(0.0, 0.95) } else { 0.0 };
+        self.dependence = ((1.0 + alike) / (1.0 - alike)).sqrt();
+        let n = (left.len() as f64 / self.dependence.powi(2)).max(2.0);
+        let least_loss = 1e-18 * left.len() as f64;
+        for (i, loss) in losses.into_iter().enumerate() {
+            let unknowns = self.found[i].fitted.shared.len() as f64;
+            let loss = loss.max(least_loss) / left.len() as f64;
+            self.found[i].bic = n * loss.ln() + unknowns * n.ln();
+            self.found[i].cor = self.cor(&self.found[i]);
+        }
+    }
+
+    /// The COR of a model: the mean over its impacts, each weighing by its own error.
+    fn cor(&self, found: &Found) -> Measured {
+        let impacts = self.model(&self.samples, found.choice).impacts(&found.fitted.shared);
+        let weights: Vec<f64> =
+            impacts.iter().map(|i| self.measured(found, &i.cor).standard_error.max(1e-9).powi(-2)).collect();
+        let total: f64 = weights.iter().sum();
+        let mut mean = Dual { value: 0.0, by: nalgebra::DVector::zeros(found.fitted.shared.len()) };
+        for (impact, weight) in impacts.iter().zip(&weights) {
+            mean.value += impact.cor.value * weight / total;
+            mean.by += &impact.cor.by * (weight / total);
+        }
+        self.measured(found, &mean)
+    }
+
+    /// A quantity of the model with its standard error.
+    fn measured(&self, found: &Found, x: &Dual) -> Measured {
+        let variance = (x.by.transpose() * &found.fitted.covariance * &x.by)[(0, 0)];
+        let free = self.samples.len().saturating_sub(found.fitted.shared.len()).max(1) as f64;
+        let scatter = (found.fitted.chi_square / free).max(0.0).sqrt().max(found.sigma);
+        Measured { value: x.value, standard_error: variance.max(0.0).sqrt() * scatter * self.dependence }
+    }
+
+    /// What was left out, for people.
+    pub(crate) fn repairs(&self) -> Vec<String> {
+        let mut list = Vec::new();
+        let plural = |n: usize| if n == 1 { "sample" } else { "samples" };
+        let (before, after) = self.left_out;
+        if before + after > 0 {
+            list.push(format!(
+                "{before} {} before the fall and {after} {} after the last flight left out: the ball was held, caught or lay there",
+                plural(before),
+                plural(after)
+            ));
+        }
+        if self.wild > 0 {
+            let n = self.wild;
+            list.push(format!("{n} wild {} left out, {WILD} standard deviations or more away", plural(n)));
+        }
+        list
+    }
+
+    /// The recording under the chosen model, in the table's units.
+    pub(crate) fn track(&self, choice: Choice) -> Option<Track> {
+        let single = self.sketch.contacts.len() == 1;
+        let (law, drag) = if single { (Law::Constant, choice.1) } else { choice };
+        let of = |choice: Choice| self.found.iter().find(|f| f.choice == choice);
+        let each = if single { (Law::Constant, drag) } else { (Law::Each, drag) };
+        let chosen = of((law, drag)).or_else(|| of((law, false))).or(self.found.first())?;
+        // Impact by impact, whatever the law.
+        let own = of(each).unwrap_or(chosen);
+        let Scale { origin, unit, range } = self.scale;
+        let model = self.model(&self.samples, own.choice);
+        let impacts = model.impacts(&own.fitted.shared);
+        let impacts: Vec<Impact> = impacts
+            .iter()
+            .enumerate()
+            .map(|(n, i)| Impact {
+                bounce: n + 1,
+                time: origin.0 + unit * i.time.value,
+                speed: i.arrival.value * range / unit,
+                cor: self.measured(own, &i.cor),
+            })
+            .collect();
+        let values = &chosen.fitted.shared;
+        let model = self.model(&self.samples, chosen.choice);
+        let unknown = |j: usize, scale: f64, shift: f64| {
+            let mut by = nalgebra::DVector::zeros(values.len());
+            by[j] = 1.0;
+            let m = self.measured(chosen, &Dual { value: values[j], by });
+            Measured { value: shift + scale * m.value, standard_error: scale * m.standard_error }
+        };
+        let turn = if self.turned { -1.0 } else { 1.0 };
+        let floor = unknown(FLOOR, range, origin.1);
+        let left = self.left(values, chosen.choice);
+        let rms = range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
+        let course = Course {
+            contacts: model.impacts(values).iter().map(|i| origin.0 + unit * i.time.value).collect(),
+            apexes: model
+                .apexes(values)
+                .iter()
+                .map(|(t, h)| (origin.0 + unit * t, range * (h - values[FLOOR])))
+                .collect(),
+            gravity: values[GRAVITY] * range / (unit * unit),
+            drag: model.drag_place().map_or(0.0, |j| values[j] / range),
+            samples: self
+                .samples
+                .iter()
+                .zip(&left)
+                .map(|(s, r)| (origin.0 + unit * s.time, range * (s.height - values[FLOOR]), range * r))
+                .collect(),
+        };
+        Some(Track {
+            trial: self.trial,
+            samples: self.samples.len(),
+            left_out: [self.left_out.0, self.left_out.1, self.wild],
+            impacts,
+            gravity: unknown(GRAVITY, range / (unit * unit), 0.0),
+            drag: model.drag_place().map(|j| unknown(j, 1.0 / range, 0.0)),
+            floor: Measured { value: turn * floor.value, ..floor },
+            rms,
+            noise: range * self.noise,
+            models: self.variants(),
+            course,
+        })
+    }
+
+    fn variants(&self) -> Vec<Variant> {
+        let least = self.found.iter().map(|f| f.bic).fold(f64::INFINITY, f64::min);
+        let mut list: Vec<Variant> = self
+            .found
+            .iter()
+            .map(|f| {
+                let left = self.left(&f.fitted.shared, f.choice);
+                Variant {
+                    law: name(f.choice.0),
+                    drag: f.choice.1,
+                    unknowns: f.fitted.shared.len(),
+                    rms: self.scale.range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt(),
+                    bic: f.bic - least,
+                    cor: f.cor,
+                }
+            })
+            .collect();
+        list.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+        list
+    }
+}
+
+/// The model with the least BIC over all recordings together.
+pub(crate) fn choose(candidates: &[Candidates]) -> Choice {
+    let total = |choice: &Choice| {
+        let one = |c: &Candidates| {
+            let bic = |choice: Choice| c.found.iter().find(|f| f.choice == choice).map(|f| f.bic);
+            // A single impact has one law only; drag that is not there is none.
+            bic(*choice).or(bic((Law::Constant, choice.1))).or(bic((choice.0, false))).or(bic((Law::Constant, false)))
+        };
+        candidates.iter().filter_map(one).sum::<f64>()
+    };
+    let least = CHOICES.iter().min_by(|a, b| total(a).total_cmp(&total(b)));
+    least.copied().unwrap_or((Law::Constant, false))
+}
+
+/// The word for a law.
+pub(super) fn name(law: Law) -> &'static str {
+    match law {
+        Law::Constant => "constant",
+        Law::Linear => "linear",
+        Law::Each => "each",
+    }
+}
+
+fn huber_weight(z: f64) -> f64 {
+    if z.abs() <= HUBER { 1.0 } else { HUBER / z.abs() }
+}
+
+fn huber_loss(z: f64) -> f64 {
+    if z.abs() <= HUBER { z * z } else { 2.0 * HUBER * z.abs() - HUBER * HUBER }
+}
+
+/// The unknowns' places are used by name; this one is implied by the order of the starts above.
+const _: () = assert!(TIME == 0 && SPEED == 1 && FLOOR == 2 && GRAVITY == 3);

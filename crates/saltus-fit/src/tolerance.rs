@@ -1,0 +1,92 @@
+//! The COR by other losses, and the CORs that readings allow if each is only trusted to a tolerance.
+
+use serde::Serialize;
+
+use crate::error::FitError;
+use crate::estimate::{Estimate, Kind, OneKind, identified};
+use crate::evidence::Evidence;
+use crate::robust::{self, Loss, Robust};
+
+/// Halvings of the distance to an end of the range.
+const HALVINGS: usize = 30;
+
+/// The CORs under which every reading lies within its tolerance.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Allowed {
+    /// `heights` or `times`.
+    pub readings: String,
+    /// The tolerance of a reading, in metres or seconds.
+    pub tolerance: f64,
+    /// The smallest tolerance under which one COR explains all readings.
+    pub smallest: f64,
+    /// The COR that needs only that.
+    pub cor: f64,
+    /// The lowest and highest COR that the tolerance allows; none if no single COR explains the readings at this precision.
+    pub range: Option<(f64, f64)>,
+}
+
+/// The estimates by the losses of [`Loss`], without errors: those would need a bootstrap.
+pub(crate) fn losses<M: OneKind>(evidence: &Evidence, kind: &Kind<M>) -> Result<Vec<Estimate>, FitError> {
+    let model = M::with_sigma(evidence, kind.sigma.value);
+    let mut list = Vec::new();
+    for (loss, word, about) in [
+        (Loss::Huber, "huber", "Huber's loss: outliers count less"),
+        (Loss::Absolute, "absolute", "the least sum of absolute residuals"),
+        (Loss::Largest, "largest", "the least largest residual"),
+    ] {
+        let found = robust::fit(&model, loss, &kind.fitted.shared, &kind.fitted.own, false);
+        let Some(Some(found)) = identified(M::METHOD, found)? else { continue };
+        let cor = M::cor(found.shared[0]).0;
+        let mut estimate = Estimate::new(&format!("{}-{word}", M::METHOD), about, cor, f64::NAN, f64::NAN);
+        estimate.trials = kind.estimate.trials;
+        list.push(estimate);
+    }
+    Ok(list)
+}
+
+/// The CORs under which all readings of a kind lie within the tolerance of their values; `None` where the table is too large.
+pub(crate) fn allowed<M: OneKind>(
+    evidence: &Evidence,
+    kind: &Kind<M>,
+    tolerance: f64,
+) -> Result<Option<Allowed>, FitError> {
+    let model = M::with_sigma(evidence, tolerance).same_tolerance(tolerance);
+    let run = |shared: f64, own: &[Vec<f64>], pinned: bool| {
+        identified(M::METHOD, robust::fit(&model, Loss::Largest, &[shared], own, pinned)).map(Option::flatten)
+    };
+    let Some(best) = run(kind.fitted.shared[0], &kind.fitted.own, false)? else { return Ok(None) };
+    let middle = best.shared[0];
+    let fits = |found: &Option<Robust>| found.as_ref().is_some_and(|f| f.loss <= 1.0 + 1e-7);
+    let mut range = None;
+    if best.loss <= 1.0 {
+        let bounds = model.ranges()[0].0;
+        let mut ends = [bounds.low, bounds.high];
+        for end in &mut ends {
+            if fits(&run(*end, &best.own, true)?) {
+                continue;
+            }
+            let (mut inside, mut outside) = (middle, *end);
+            let mut own = best.own.clone();
+            for _ in 0..HALVINGS {
+                let half = 0.5 * (inside + outside);
+                let found = run(half, &own, true)?;
+                if fits(&found) {
+                    inside = half;
+                    own = found.map_or(own, |f| f.own);
+                } else {
+                    outside = half;
+                }
+            }
+            *end = inside;
+        }
+        range = Some((M::cor(ends[0]).0, M::cor(ends[1]).0));
+    }
+    Ok(Some(Allowed {
+        readings: M::METHOD.to_owned(),
+        tolerance,
+        smallest: best.loss * tolerance,
+        cor: M::cor(middle).0,
+        range,
+    }))
+}
