@@ -58,7 +58,9 @@ fn wind<const N: usize, E>(scene: &Scene, effects: E) -> Result<Wind<N, E>, Plan
 
 type Blown<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
 
-fn air<const N: usize>(scene: &Scene) -> Result<Blown<N, (Option<LinearDrag>, Option<QuadraticDrag>)>, PlanError> {
+type Drags = (Option<LinearDrag>, Option<QuadraticDrag>);
+
+fn air<const N: usize>(scene: &Scene) -> Result<Blown<N, Drags>, PlanError> {
     let (ball, effects) = (&scene.balls[0], &scene.effects);
     let (gravity, buoyancy) = steady(scene);
     Ok((gravity, buoyancy, wind(scene, (effects.linear_drag(ball), effects.quadratic_drag(ball)))?))
