@@ -37,7 +37,8 @@ fn every_scene_runs() {
             let segments = record.segments(ball);
             assert!(!segments.is_empty() && segments.windows(2).all(|pair| pair[0].start <= pair[1].start));
             for k in 0..=20 {
-                let moment = record.at(ball, record.until() * f64::from(k) / 20.0).unwrap();
+                let t = (record.until() * f64::from(k) / 20.0).min(record.until());
+                let moment = record.at(ball, t).unwrap_or_else(|| panic!("no ball {ball} at {t} of\n{text}"));
                 assert!(moment.position.iter().chain(&moment.velocity).all(|x| x.is_finite()), "{text}");
             }
             assert!(record.apexes(ball).iter().all(|apex| apex.height.is_finite() && apex.t <= record.until()));
@@ -101,8 +102,61 @@ proptest! {
         toml += &format!("[floor]\n{}\n[run]\nuntil = 2\nmost_jumps = 500\n", floors[floor]);
         let record = scene(&toml).plan().unwrap().most_evaluations(2_000_000).run();
         match record {
-            Ok(record) => prop_assert!(record.until() <= 2.0 && record.at(0, record.until()).is_some()),
+            Ok(record) => {
+                prop_assert!(record.until() <= 2.0 && record.at(0, record.until()).is_some());
+                let doubts = record.doubts();
+                prop_assert!(doubts.iter().all(|doubt| !doubt.contains(['{', '(', '\n'])), "in the scene's words: {doubts:?}");
+            }
             Err(error) => prop_assert!(!error.to_string().is_empty()),
+        }
+    }
+
+    /// Several balls, contacts that take time, floors that move, scenes in space: read, planned and run within a budget, or refused with a sentence.
+    #[test]
+    fn random_scenes_of_every_kind_end(
+        e in 0.0..=1.0_f64, kind in 0..6_usize, count in 1..=5_usize, gravity in prop::option::of(0.0..30.0_f64),
+        places in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, 0.1..2.0_f64), 5), speeds in prop::collection::vec(-5.0..5.0_f64, 15),
+        masses in prop::collection::vec(-6.0..3.0_f64, 5), size in -3.0..-0.9_f64, wind in prop::option::of(-10.0..10.0_f64), steps in any::<bool>(),
+    ) {
+        let dimensions = [1, 1, 1, 2, 3, 3][kind];
+        let mut toml = String::new();
+        if kind == 1 {
+            toml += &format!("contact = {{ law = '{}', stiffness = {:?}, damping = {e:?} }}\n", ["kelvin-voigt", "hunt-crossley"][count % 2], 10_f64.powf(5.0 - 2.0 * size));
+        } else {
+            toml += &format!("restitution = {e:?}\n");
+        }
+        if let Some(gravity) = gravity {
+            toml += &format!("gravity = {gravity:?}\n");
+        }
+        if let Some(wind) = wind.filter(|_| dimensions == 3) {
+            toml += &format!("air = {{ wind = [{wind:?}, 0.0, 1.0] }}\ndrag = {{ rate = 0.5 }}\n");
+        }
+        toml += "run = { until = 2, most_jumps = 500";
+        toml += if steps { ", stepper = 'tsit5', tolerance = 1e-6 }\n" } else { " }\n" };
+        for n in 0..if kind == 1 { 1 } else { count } {
+            let ((x, y, up), v) = (places[n], &speeds[3 * n..3 * n + 3]);
+            toml += &format!("[[ball]]\nradius = {:?}\nmass = {:?}\n", 10_f64.powf(size), 10_f64.powf(masses[n]));
+            toml += &match dimensions {
+                1 => format!("height = {:?}\nvelocity = {:?}\n", up + 2.5 * f64::from(u32::try_from(n).unwrap()), v[0]),
+                2 => format!("position = [{x:?}, {up:?}]\nvelocity = [{:?}, {:?}]\n", v[0], v[1]),
+                _ => format!("position = [{x:?}, {y:?}, {up:?}]\nvelocity = [{:?}, {:?}, {:?}]\n", v[0], v[1], v[2]),
+            };
+        }
+        toml += ["", "", "[floor]\nmotion = { amplitude = 0.01, frequency = 20 }\n", "[floor]\nkind = 'box'\nsize = [3, 3]\n", "[floor]\nkind = 'box'\nsize = [3, 3, 3]\n", ""][kind];
+        let planned = match Scene::parse("random", toml.as_bytes()) {
+            Ok(scene) => scene.plan().map_err(|error| error.to_string()),
+            Err(error) => Err(error.to_string()),
+        };
+        let record = planned.and_then(|plan| plan.most_evaluations(200_000).run().map_err(|error| error.to_string()));
+        match record {
+            Ok(record) => {
+                prop_assert!(record.until() <= 2.0, "{toml}");
+                for ball in 0..record.balls() {
+                    prop_assert!(record.at(ball, record.until()).is_some_and(|moment| moment.height().is_finite()), "{toml}");
+                }
+                prop_assert!(record.doubts().iter().all(|doubt| !doubt.contains(['{', '(', '\n'])), "{:?}", record.doubts());
+            }
+            Err(error) => prop_assert!(!error.is_empty(), "{toml}"),
         }
     }
 }

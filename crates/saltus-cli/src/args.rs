@@ -195,6 +195,12 @@ pub(crate) struct Simulate {
 pub(crate) struct Explain {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
+    /// Run the scene with each effect toggled: what that changes in the first impacts and apexes, and what it costs.
+    #[arg(long)]
+    pub(crate) cost: bool,
+    /// When to stop these runs, such as `4s`; otherwise when the scene says.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
     /// How to write it.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,

@@ -6,6 +6,7 @@ use saltus_bounce::scene::plan::{Explanation, ModePlan};
 use serde::Serialize;
 
 use crate::args;
+use crate::cost::{self, Row};
 use crate::error::Error;
 use crate::output::write;
 use crate::simulate::{planned, scene};
@@ -23,6 +24,8 @@ struct Document<'a> {
     modes: Vec<Mode<'a>>,
     tolerance: Option<f64>,
     notes: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cost: Option<Vec<Row>>,
 }
 
 #[derive(Serialize)]
@@ -35,12 +38,13 @@ struct Mode<'a> {
 }
 
 pub(crate) fn run(args: &args::Explain) -> Result<ExitCode, Error> {
-    let scene = scene(&args.scene)?;
+    let scene = scene(&args.scene, args.until.map(|until| format!("until = {until:?}")))?;
     let plan = planned(&scene, Some(&args.scene))?;
     let explanation = plan.explain();
+    let cost = if args.cost { Some(cost::rows(&scene, args.until)?) } else { None };
     let text = match args.format {
-        args::ReportFormat::Text => explanation.to_string(),
-        args::ReportFormat::Json => json(explanation)?,
+        args::ReportFormat::Text => explanation.to_string() + &cost.map_or_else(String::new, |rows| cost::table(&rows)),
+        args::ReportFormat::Json => json(explanation, cost)?,
     };
     write(None, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
@@ -51,7 +55,7 @@ fn mode(mode: &ModePlan) -> Mode<'_> {
     Mode { name, advance: advance.to_string(), solved: advance.is_solved(), why, edges }
 }
 
-fn json(explanation: &Explanation) -> Result<String, Error> {
+fn json(explanation: &Explanation, cost: Option<Vec<Row>>) -> Result<String, Error> {
     let document = Document {
         schema: SCHEMA,
         model: explanation.model.name(),
@@ -61,6 +65,7 @@ fn json(explanation: &Explanation) -> Result<String, Error> {
         modes: explanation.modes.iter().map(mode).collect(),
         tolerance: explanation.tolerance,
         notes: &explanation.notes,
+        cost,
     };
     Ok(serde_json::to_string_pretty(&document).map_err(Error::new)? + "\n")
 }

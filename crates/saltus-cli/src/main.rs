@@ -1,6 +1,7 @@
 //! The command `saltus`: fit a coefficient of restitution to a table, simulate a bounce, draw it.
 
 mod args;
+mod cost;
 mod error;
 mod explain;
 mod fit;

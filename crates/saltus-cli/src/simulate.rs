@@ -1,12 +1,13 @@
 //! `saltus simulate`: a scene or a drop in, a motion out.
 
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 use std::process::ExitCode;
 
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::scene::plan::{End, Plan, Record};
-use saltus_bounce::scene::{Law, Scene};
+use saltus_bounce::scene::{Law, ReadError, Scene};
 
 use crate::args::{self, MotionFormat};
 use crate::error::Error;
@@ -88,7 +89,10 @@ fn ended(record: &Record, quiet: bool) {
 /// What is asked for, by a scene or by options.
 fn made(args: &args::Simulate) -> Result<Scene, Error> {
     match (&args.scene, args.drop, args.cor) {
-        (Some(path), _, _) => scene(path),
+        (Some(path), _, _) => {
+            let until = args.until.map(|until| format!("until = {until:?}"));
+            scene(path, until.or(args.most_jumps.map(|most| format!("most_jumps = {most}"))))
+        }
         (None, Some(height), Some(cor)) if height >= 0.0 => {
             Gravity::new(args.gravity).map_err(Error::new)?;
             // The options are a small scene; a limit on jumps ends it where nothing else does.
@@ -110,15 +114,35 @@ fn made(args: &args::Simulate) -> Result<Scene, Error> {
     }
 }
 
-pub(crate) fn scene(path: &Path) -> Result<Scene, Error> {
-    if path == Path::new("-") {
-        let mut toml = Vec::new();
-        let most = Scene::LARGEST as u64 + 1;
+/// The scene of a file or of standard input; `end` is what the command line says of its end, as a line of [run].
+pub(crate) fn scene(path: &Path, end: Option<String>) -> Result<Scene, Error> {
+    let most = Scene::LARGEST as u64 + 1;
+    let mut toml = Vec::new();
+    let name = if path == Path::new("-") {
         std::io::stdin().lock().take(most).read_to_end(&mut toml).map_err(Error::new)?;
-        Scene::parse("standard input", &toml).map_err(Error::new)
+        "standard input".into()
     } else {
-        Scene::read(path).map_err(Error::new)
-    }
+        let error = |error| Error::new(ReadError::File { path: path.to_owned(), error });
+        File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
+        path.to_string_lossy()
+    };
+    Scene::parse(&name, &toml).or_else(|error| {
+        // A scene that does not say when it ends is refused, unless the command line says so.
+        end.and_then(|end| ended_by(&toml, &end)).ok_or_else(|| Error::new(error))
+    })
+}
+
+/// The scene with one more line under [run], if it lacked nothing else.
+fn ended_by(toml: &[u8], end: &str) -> Option<Scene> {
+    let toml = std::str::from_utf8(toml).ok()?;
+    let toml = toml.strip_prefix('\u{feff}').unwrap_or(toml);
+    [
+        format!("run.{end}\n{toml}"),
+        toml.replacen("[run]", &format!("[run]\n{end}\n"), 1),
+        toml.replacen("run = {", &format!("run = {{ {end},"), 1),
+    ]
+    .iter()
+    .find_map(|toml| Scene::parse("", toml.as_bytes()).ok())
 }
 
 fn is_svg(path: &Path) -> bool {

@@ -370,6 +370,72 @@ fn a_scene_is_explained() {
     assert_eq!(json["modes"][0]["advance"], "explicit stepper Dop853");
 }
 
+/// What each effect changes and costs: exact where nothing changes, refused in words where there is nothing to toggle.
+#[test]
+fn what_effects_cost() {
+    let tennis = root().join("examples/scenes/table-tennis.toml");
+    let arguments = ["explain", tennis.to_str().unwrap(), "--cost", "--until", "4s"];
+    let json: Value = serde_json::from_str(&done(&[&arguments[..], &["--format", "json"]].concat())).unwrap();
+    let rows = json["cost"].as_array().unwrap();
+    let row = |run: &str| rows.iter().find(|row| row["run"] == run).unwrap();
+    let first = |run: &str, what: &str| row(run)[what][0].as_f64().unwrap();
+    assert_eq!(rows.len(), 11);
+    assert_eq!(row("as it is")["impacts"].as_array().unwrap().len(), 5);
+    // From 2 m in a vacuum, and later where the air holds back or carries.
+    let fall = (2.0 * 2.0 / 9.80665_f64).sqrt();
+    assert!(first("without quadratic drag", "impacts") > fall && first("as it is", "impacts") > 1.03 * fall);
+    assert!(first("without buoyancy", "impacts") < first("as it is", "impacts"));
+    assert!(first("with added mass", "apexes") != first("as it is", "apexes"));
+    assert_eq!((row("as it is")["flows"].as_u64(), row("as it is")["steps"].as_u64()), (Some(0), Some(0)));
+    assert!(row("with linear drag")["flows"].as_u64().unwrap() > 0, "no formula has both kinds of drag");
+    for row in rows.iter().filter(|row| row.get("refused").is_none()) {
+        let seconds = |key: &str| row[key].as_f64().unwrap();
+        assert!(0.0 < seconds("seconds_low") && seconds("seconds_low") <= seconds("seconds"));
+        assert!(seconds("seconds") <= seconds("seconds_high"));
+    }
+    for (run, part) in [
+        ("without gravity", "nothing comes down"),
+        ("with wind", "its speed is not known"),
+        ("with lift by spin", "does not spin"),
+        ("with friction", "only moves up and down"),
+    ] {
+        assert!(row(run)["refused"].as_str().unwrap().contains(part), "{run}");
+    }
+    let table = done(&arguments);
+    for part in ["model        ball", "as it is", "without buoyancy", "µs (", "not run: without it nothing comes down"]
+    {
+        assert!(table.contains(part), "no '{part}' in:\n{table}");
+    }
+    assert!(
+        serde_json::from_str::<Value>(&done(&["explain", tennis.to_str().unwrap(), "--format", "json"]))
+            .unwrap()
+            .get("cost")
+            .is_none()
+    );
+}
+
+/// A scene without an end is refused, unless the command line gives one, wherever its table for that stands.
+#[test]
+fn the_command_line_ends_a_scene() {
+    let endless = "restitution = 1\nball = { height = 1 }\n";
+    for run in ["", "run = { tolerance = 1e-6 }\n", "run.tolerance = 1e-6\n", "[run]\ntolerance = 1e-6\n"] {
+        let (_folder, path) = scene(&format!("{endless}{run}"));
+        assert!(refused(&["simulate", &path]).contains("nothing ends this run"));
+        let json: Value =
+            serde_json::from_str(&done(&["simulate", &path, "--until", "3s", "--format", "json"])).unwrap();
+        assert_eq!(json["stop"]["t"], 3.0);
+        assert!(run_quietly(&["simulate", &path, "--most-jumps", "4"]));
+        assert!(done(&["explain", &path, "--until", "3s"]).contains("model        ball"));
+    }
+    // It ends a run; it mends nothing else, and says of the file what it said before.
+    let (_folder, path) = scene("restitution = 1\nball = { height = 1 }\nrun = { until = -1 }\n");
+    assert_eq!(refused(&["simulate", &path, "--until", "3s"]), refused(&["simulate", &path]));
+}
+
+fn run_quietly(arguments: &[&str]) -> bool {
+    run(&[&["-q"], arguments].concat()).status.success()
+}
+
 /// What is wrong in a scene is said with its place, and nothing panics.
 #[test]
 fn bad_scenes() {

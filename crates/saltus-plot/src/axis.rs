@@ -30,6 +30,12 @@ impl Axis {
         Self { low, high, ticked: (low, high), step: ((high - low) / 8.0).ceil().max(1.0), decades: true }
     }
 
+    /// The same axis with ticks at whole numbers only.
+    pub(crate) const fn whole(mut self) -> Self {
+        self.step = self.step.max(1.0);
+        self
+    }
+
     /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px between them on `length` px.
     pub(crate) fn thinned(mut self, length: f64, gap: f64, width: impl Fn(&str) -> f64) -> Self {
         for _ in 0..12 {

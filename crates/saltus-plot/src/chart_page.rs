@@ -34,7 +34,9 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let b = ty.base;
     let foot = (0.55 + CAPITAL + 0.75 + CAPITAL) * b;
     let fixed = heading.height() + 2.1 * b + foot + 0.8 * ty.margin();
-    let units = [unit(chart.axes[0].1, reach[0]), unit(chart.axes[1].1, reach[1])];
+    // One unit for both where they are to scale: that of the longer.
+    let longer = usize::from(reach[1].1 - reach[1].0 > reach[0].1 - reach[0].0);
+    let units = [0, 1].map(|k| if chart.to_scale { longer } else { k }).map(|k| unit(chart.axes[k].1, reach[k]));
     let scaled = |k: usize| opened((reach[k].0 / units[k].size, reach[k].1 / units[k].size));
     let (mut across, mut up) =
         (scaled(0), if chart.logarithmic { decades(reach[1], units[1].size) } else { scaled(1) });
@@ -68,7 +70,9 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         across = wider(across, coarse / scale[0], false);
         up = wider(up, coarse / scale[1], true);
     }
-    let x = Axis::new(across.0, across.1, across, 12).thinned(panel, 1.6 * b, |text| width(text, b, false));
+    let x = Axis::new(across.0, across.1, across, 12);
+    let x = if chart.axes[0].1 == Measure::Count { x.whole() } else { x };
+    let x = x.thinned(panel, 1.6 * b, |text| width(text, b, false));
     let y = y_axis(up);
 
     let h = (fixed + high).ceil();
@@ -191,7 +195,7 @@ fn traces(chart: &Chart, x: Affine, y: Affine, size: f64, ty: Type) -> Vec<Trace
         let [lx, ly, ax, ay, rx, ry] = [lx, ly, ax, ay, rx, ry].map(|v| number(v, 2));
         heads.push_str(&format!("M{lx} {ly}L{ax} {ay}L{rx} {ry}"));
     }
-    traces.push(trace(heads, Ink::Series(0), ty.line(), Dash::Solid, 1.0));
+    traces.push(trace(heads, Ink::Text, ty.line(), Dash::Solid, 1.0));
     let mut dots = String::new();
     for &mark in &chart.marks {
         // A stroke of no length with round caps is a dot.
@@ -208,7 +212,7 @@ fn discs(chart: &Chart, x: Affine, y: Affine) -> Vec<(String, bool)> {
     discs.sort_by_key(|disc| disc.full);
     let circle = |disc: &crate::chart::Disc| {
         // To scale, but never too small to see.
-        let r = (disc.radius * x.scale.abs()).max(1.2);
+        let r = (disc.radius * x.scale.abs()).max(2.0);
         let (cx, cy) = (x.at(disc.at[0]), y.at(disc.at[1]));
         let [r2, x0, y0, d] = [r, cx - r, cy, 2.0 * r].map(|v| number(v, 2));
         (format!("M{x0} {y0}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z"), disc.full)

@@ -127,7 +127,8 @@ pub(crate) enum Dash {
 
 impl Dash {
     pub(crate) fn series(index: usize) -> Self {
-        [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][index % 4]
+        // After as many as there are colours, each colour comes with another dash.
+        [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][(index + index / 4) % 4]
     }
 
     /// Lengths in units of the stroke's width; with round caps each dash grows by one such width.

@@ -28,8 +28,13 @@ fn jumps(record: &Record, ball: usize, point: impl Fn(f64, &Moment) -> [f64; 2])
 }
 
 pub(super) fn velocity(scene: &Scene, record: &Record) -> Chart {
-    let mut chart = Chart::new(&title(scene), ("Time", Measure::Time), ("Velocity", Measure::Speed));
+    // Of several balls one velocity is drawn: upwards, unless none of them moves that way.
+    let level = |ball: usize| record.segments(ball).iter().all(|segment| segment.at(0.0).velocity.z == 0.0);
+    let sideways = record.balls() > 1 && (0..record.balls()).all(level);
+    let what = if sideways { "Velocity along x" } else { "Velocity" };
+    let mut chart = Chart::new(&title(scene), ("Time", Measure::Time), (what, Measure::Speed));
     let axes: &[(&str, usize)] = match (scene.dimensions, record.balls()) {
+        (_, 2..) if sideways => &[("along x", 0)],
         (1, _) | (_, 2..) => &[("up", 2)],
         (2, _) => &[("up", 2), ("along x", 0)],
         _ => &[("up", 2), ("along x", 0), ("along y", 1)],

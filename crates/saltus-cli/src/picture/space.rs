@@ -11,16 +11,18 @@ use crate::error::Error;
 /// How many frames a picture of equal times has, at most.
 const FRAMES: u32 = 40;
 
-/// How far the balls get, sideways and up, with their radii.
-fn reach(scene: &Scene, record: &Record) -> [[f64; 2]; 2] {
+/// How far the balls get, sideways along any of `axes` and up, with their radii.
+fn reach(scene: &Scene, record: &Record, axes: &[usize]) -> [[f64; 2]; 2] {
     let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for (n, ball) in scene.balls.iter().enumerate() {
         let r = ball.radius.unwrap_or(0.0);
         for segment in record.segments(n) {
             for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
                 let m = segment.at(part * segment.span);
-                let (x, z) = (m.position.x, m.height() + r);
-                reach[0] = [reach[0][0].min(x - r), reach[0][1].max(x + r)];
+                for x in axes.iter().map(|&axis| m.position[axis]) {
+                    reach[0] = [reach[0][0].min(x - r), reach[0][1].max(x + r)];
+                }
+                let z = m.height() + r;
                 reach[1] = [reach[1][0].min(z - r), reach[1][1].max(z + r)];
             }
         }
@@ -49,16 +51,17 @@ pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
                 Stroke::new(segment.span, part(&|m| m.position[k]), up)
             });
             chart = chart.line(label.trim(), strokes);
+            let disc = |m: Moment| Disc { at: [m.position[k], m.height() + r], radius: r, full: false };
+            chart = chart.discs([0.0, record.until()].into_iter().filter_map(|t| record.at(ball, t)).map(disc));
         }
-        let full = |m: Option<Moment>| m.map(|m| Disc { at: [m.position.x, m.height() + r], radius: r, full: false });
-        chart = chart.discs(full(record.at(ball, 0.0)).into_iter().chain(full(record.at(ball, record.until()))));
     }
-    Ok(chart.ground(outline(scene, reach(scene, record))))
+    let sideways: Vec<usize> = axes.iter().map(|&(_, k)| k).collect();
+    Ok(chart.ground(outline(scene, reach(scene, record, &sideways))))
 }
 
 /// The balls at equal times, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
 pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
-    let reach = reach(scene, record);
+    let reach = reach(scene, record, &[0]);
     let size = (reach[0][1] - reach[0][0]).max(reach[1][1] - reach[1][0]);
     let aside = scene.dimensions == 1;
     let mut chart = Chart::new(

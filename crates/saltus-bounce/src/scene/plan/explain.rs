@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::Model;
 use crate::effects::{LinearDrag, QuadraticDrag};
-use crate::scene::{Contact, Decay, Linear, Quadratic, Scene};
+use crate::friction::Friction;
+use crate::scene::{Ball, Contact, Decay, Linear, Quadratic, Scene};
 
 /// Something that acts on a ball, or on how it bounces, and that a scene may name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,36 +96,57 @@ impl Scene {
         }
     }
 
-    /// The scene with `effect` left out if it is in, or in with the numbers of a textbook if it is out; `None` where that makes no scene: without
-    /// gravity nothing comes down, a point without mass has no drag, and restitution does not come of nothing.
-    #[must_use]
-    pub fn toggled(&self, effect: Effect) -> Option<Self> {
-        let mut scene = self.clone();
-        let body = self.balls.iter().all(|ball| ball.sphere().is_some());
-        let spins = self.dimensions > 1 && self.balls.iter().any(|ball| ball.spin.is_some());
+    /// The scene with `effect` left out if it is in, or in with the numbers of a textbook if it is out.
+    ///
+    /// # Errors
+    /// Why that makes no scene: without gravity nothing comes down, a point without mass has no drag, and restitution does not come of nothing.
+    pub fn toggled(&self, effect: Effect) -> Result<Self, &'static str> {
         let named = self.names(effect);
+        if let Some(why) = self.untoggled(effect, named) {
+            return Err(why);
+        }
+        let mut scene = self.clone();
         let effects = &mut scene.effects;
         match effect {
-            Effect::Gravity | Effect::Deformation => return None,
-            Effect::LinearDrag if named => effects.linear = None,
-            Effect::LinearDrag if body => effects.linear = Some(Linear::Viscous),
-            Effect::QuadraticDrag if named => effects.quadratic = None,
-            Effect::QuadraticDrag if body => effects.quadratic = Some(Quadratic::Coefficient(DRAG_COEFFICIENT)),
-            Effect::Wind if named => effects.wind = None,
-            Effect::Buoyancy if named || body => effects.buoyancy = !named,
-            Effect::AddedMass if named || body => effects.added_mass = !named,
-            Effect::Lift if named => effects.lift = None,
-            Effect::Lift if body && spins => effects.lift = Some([1.0, 0.0]),
-            Effect::SpinDecay if named => effects.spin_decay = None,
-            Effect::SpinDecay if body && spins => effects.spin_decay = Some(Decay::Within(20.0)),
-            Effect::Friction if named || self.dimensions > 1 && self.balls.iter().all(|ball| ball.radius.is_some()) => {
-                let tried = crate::friction::Friction::rigid(TRIED_FRICTION).unwrap_or(crate::friction::Friction::NONE);
-                let friction = if named { crate::friction::Friction::NONE } else { tried };
+            Effect::Gravity | Effect::Deformation => {}
+            Effect::LinearDrag => effects.linear = (!named).then_some(Linear::Viscous),
+            Effect::QuadraticDrag => effects.quadratic = (!named).then_some(Quadratic::Coefficient(DRAG_COEFFICIENT)),
+            Effect::Wind => effects.wind = None,
+            Effect::Buoyancy => effects.buoyancy = !named,
+            Effect::AddedMass => effects.added_mass = !named,
+            Effect::Lift => effects.lift = (!named).then_some([1.0, 0.0]),
+            Effect::SpinDecay => effects.spin_decay = (!named).then_some(Decay::Within(20.0)),
+            Effect::Friction => {
+                let tried = Friction::rigid(TRIED_FRICTION).unwrap_or(Friction::NONE);
+                let friction = if named { Friction::NONE } else { tried };
                 scene.floors.iter_mut().for_each(|floor| floor.friction = friction);
             }
-            _ => return None,
         }
-        Some(scene)
+        Ok(scene)
+    }
+
+    /// Why an effect that is `named`, or is not, has to stay so.
+    fn untoggled(&self, effect: Effect, named: bool) -> Option<&'static str> {
+        let all = |has: fn(&Ball) -> bool| self.balls.iter().all(has);
+        let point = !all(|ball| ball.sphere().is_some());
+        let spins = self.dimensions > 1 && !all(|ball| ball.spin.is_none());
+        match effect {
+            Effect::Gravity if named => Some("without it nothing comes down"),
+            Effect::Gravity => Some("the scene says there is none"),
+            Effect::Deformation if named => Some("restitution comes of it, and the scene gives no other"),
+            Effect::Deformation => Some("its stiffness is not known: give [contact]"),
+            _ if named => None,
+            Effect::Wind => Some("its speed is not known: give `wind` under [air]"),
+            Effect::Friction if self.dimensions == 1 => Some("a ball that only moves up and down does not rub"),
+            Effect::Friction if self.floors.is_empty() => Some("there is no floor to rub on"),
+            Effect::Friction if !all(|ball| ball.radius.is_some()) => {
+                Some("it turns the ball, whose radius is not known: give `radius` under [ball]")
+            }
+            Effect::Friction => None,
+            _ if point => Some("the ball's size or mass is not known: give `radius` and `mass` under [ball]"),
+            Effect::Lift | Effect::SpinDecay if !spins => Some("the ball does not spin: give `spin` under [ball]"),
+            _ => None,
+        }
     }
 
     /// An effect of the scene with its numbers.

@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
+use saltus::cross::Evidence;
 use saltus::step::Stepper;
-use saltus::{Automaton, Cause, Jump, Observer, Run, Simulation, Stop, Trajectory};
+use saltus::{Automaton, Cause, Inspection, Jump, Observer, Run, Simulation, Stop, Trajectory};
 
 use super::explain::{Advance, ModePlan};
 use super::method::Method;
@@ -304,6 +305,18 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
     }
 
     fn doubts(&self) -> Vec<String> {
-        self.run.trajectory.doubts().iter().map(ToString::to_string).collect()
+        let said = |doubt: &Inspection<A>| {
+            let edge = self.reader.edge(&self.automaton, doubt.edge);
+            // What follows a colon says what the edge is.
+            let name = edge.split(':').next().unwrap_or(&edge);
+            let mode = self.reader.mode(doubt.mode, 0);
+            let times = doubt.doubt().unwrap_or_default();
+            let why = match doubt.evidence {
+                Evidence::Rounding { .. } => "rounding hides whether it came to that",
+                _ => "the search for it was given up",
+            };
+            format!("{name} in mode {mode}, {:.9} s to {:.9} s: {why}", times.start, times.end)
+        };
+        self.run.trajectory.doubts().iter().map(said).collect()
     }
 }
