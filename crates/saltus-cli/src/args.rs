@@ -6,6 +6,7 @@ use clap::{Args as ClapArgs, CommandFactory, Parser, Subcommand, ValueEnum};
 use saltus_bounce::Cor;
 use saltus_bounce::scene::Kind;
 use saltus_bounce::units::Quantity;
+use saltus_motion::Rate;
 
 use crate::error::Error;
 
@@ -40,6 +41,7 @@ pub(crate) enum Command {
     Fit(Fit),
     Simulate(Simulate),
     Explain(Explain),
+    Export(Export),
     /// Write a shell's completions to standard output.
     ///
     /// For bash: saltus completions bash > ~/.local/share/bash-completion/completions/saltus
@@ -204,6 +206,74 @@ pub(crate) struct Explain {
     /// How to write it.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
+}
+
+/// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
+///
+/// Every flight is one exact parabola between two contacts where the format can hold it. Hops shorter than a frame are left out. It ends in one line:
+/// how many keys, how far a contact is from a frame, how far the file is from the motion. See docs/motion.md.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Export {
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// What is written; without it, after the extension of the output file.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) to: Option<ExportFormat>,
+    /// Frames per second, such as `24`, `29.97` or `24000/1001`.
+    #[arg(long, value_name = "RATE", default_value = "24")]
+    pub(crate) fps: Rate,
+    /// Write to a file; `-` for standard output.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// The number of the frame at which the motion starts.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
+    pub(crate) first_frame: i32,
+    /// Move every contact to a whole frame, and keep gravity or the heights.
+    #[arg(long, value_enum)]
+    pub(crate) snap: Option<SnapBy>,
+    /// Draw every second frame only, and let it stand for two.
+    #[arg(long)]
+    pub(crate) on_twos: bool,
+    /// How far keys may be from the motion where more than gravity acts.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
+    pub(crate) tolerance: f64,
+    /// When to stop, such as `4s`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+}
+
+/// A format for animators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportFormat {
+    /// Keys as a table.
+    Csv,
+    /// A place for every frame as a table.
+    CsvFrames,
+    /// Keys and frames, for programs.
+    Json,
+    /// A Python script for Blender 4 and 5.
+    Blender,
+    /// A Python script for Maya.
+    Maya,
+    /// Binary glTF: frames first, exact cubics second.
+    Glb,
+    /// USD as text, a place for every frame.
+    Usd,
+    /// USD as text with splines, for USD 25.5 and later.
+    UsdSplines,
+    /// Lottie.
+    Lottie,
+    /// A moving SVG.
+    Svg,
+}
+
+/// What stays when contacts move to whole frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SnapBy {
+    /// Gravity; heights change.
+    Gravity,
+    /// Heights; each flight is slower or faster.
+    Heights,
 }
 
 /// What is drawn of a motion.

@@ -4,6 +4,7 @@ mod args;
 mod cost;
 mod error;
 mod explain;
+mod export;
 mod fit;
 mod motion;
 mod output;
@@ -26,6 +27,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Fit(fit) => fit::run(fit, args.quiet),
         args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
         args::Command::Explain(explain) => explain::run(explain),
+        args::Command::Export(export) => export::run(export, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
         args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),
         args::Command::Man => output::stdout(&args::man()?),

@@ -51,7 +51,12 @@ pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error>
 }
 
 /// Runs a plan; what the command line says goes before what the scene says.
-fn limited(plan: Plan, until: Option<f64>, most_jumps: Option<u32>, of_scene: Option<f64>) -> Result<Record, Error> {
+pub(crate) fn limited(
+    plan: Plan,
+    until: Option<f64>,
+    most_jumps: Option<u32>,
+    of_scene: Option<f64>,
+) -> Result<Record, Error> {
     let plan = match until.or(of_scene) {
         Some(until) => plan.until(until),
         None => plan,
@@ -64,7 +69,7 @@ fn limited(plan: Plan, until: Option<f64>, most_jumps: Option<u32>, of_scene: Op
 }
 
 /// Says why a run ended, if that is not what was asked for.
-fn ended(record: &Record, quiet: bool) {
+pub(crate) fn ended(record: &Record, quiet: bool) {
     let t = record.until();
     let doubts = record.doubts();
     if let Some(first) = doubts.first() {
@@ -174,7 +179,7 @@ fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>
 }
 
 /// A range is said to be one, with its source, where a run takes one number of it.
-fn note(scene: &Scene) -> Option<String> {
+pub(crate) fn note(scene: &Scene) -> Option<String> {
     let law = scene.law(0, 0)?;
     let [low, high] = law.range(0.0);
     let cor = law.constant()?;

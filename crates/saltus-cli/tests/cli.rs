@@ -558,3 +558,21 @@ fn completions_and_the_manual() {
         assert!(manual.contains(part), "{part}");
     }
 }
+
+#[test]
+fn a_scene_is_exported_for_animators_and_says_how_exactly() {
+    let scene = root().join("examples/scenes/squash.toml");
+    let scene = scene.to_str().unwrap();
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("ball.glb");
+    let output = run(&["export", scene, "--fps", "24", "--snap", "gravity", "-o", file.to_str().unwrap()]);
+    assert!(output.status.success());
+    let said = text(&output.stderr);
+    assert!(said.contains("farthest contact from a frame: 0.00 frames; worst height error: 2.13 mm"), "{said}");
+    assert_eq!(fs::read(&file).unwrap()[..4], *b"glTF");
+    let keys = done(&["--quiet", "export", scene, "--to", "csv", "--first-frame", "1"]);
+    assert!(keys.lines().nth(1).unwrap().starts_with("squash ball,1,0,0,0,1,"), "{keys}");
+    assert!(refused(&["export", scene, "--fps", "0", "--to", "csv"]).contains("'0' is not a frame rate"));
+    assert!(refused(&["export", scene, "-o", "ball.xyz"]).contains("no format goes by the extension '.xyz'"));
+    assert!(refused(&["-q", "export", scene, "-o", "no-such-folder/ball.glb"]).contains("there is no folder"));
+}

@@ -1,0 +1,204 @@
+//! Motion as keys: exact cubics between contacts, or samples on frames.
+
+use crate::motion::{Point, Stretch, Track};
+use crate::rate::Frames;
+
+/// Keys closer than this share of a frame are one: programs merge them anyhow.
+const APART: f64 = 0.01;
+/// At so many points between two keys a curve is compared with the motion.
+const COMPARED: u32 = 16;
+
+/// A place at a time, with the velocities on both sides of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// In s.
+    pub t: f64,
+    /// In m.
+    pub place: Point,
+    /// The velocity just before, in m/s.
+    pub enter: Point,
+    /// The velocity just after, in m/s.
+    pub leave: Point,
+    /// Whether a contact begins here.
+    pub contact: bool,
+}
+
+/// What happens between two keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Between {
+    /// The cubic with the places and velocities at both ends (Hermite's); a flight under gravity is one.
+    Cubic,
+    /// A straight line.
+    Line,
+    /// The first key stays.
+    Hold,
+}
+
+/// Keys, and what happens between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// In order of time, at least one.
+    pub keys: Vec<Key>,
+    /// Alike between all.
+    pub between: Between,
+}
+
+impl Curve {
+    /// The place at `t` in s; before the first key and after the last one, theirs.
+    ///
+    /// Of a cubic, with h the time between the keys and u from 0 to 1 in it:
+    /// p₀ (1 + 2u)(1 - u)² + h v₀ u (1 - u)² + p₁ u² (3 - 2u) - h v₁ u² (1 - u).
+    #[must_use]
+    pub fn at(&self, t: f64) -> Point {
+        let next = self.keys.partition_point(|key| key.t <= t);
+        match (next.checked_sub(1).and_then(|n| self.keys.get(n)), self.keys.get(next)) {
+            (Some(a), Some(b)) => between(self.between, a, b, t),
+            (Some(only), None) | (None, Some(only)) => only.place,
+            (None, None) => [0.0; 3],
+        }
+    }
+
+    /// The greatest distance between curve and motion in m: in height, and along all axes. Of a parabola and a line it is exact, else that of 16 points between
+    /// each pair of keys.
+    #[must_use]
+    pub fn error(&self, track: &Track) -> Miss {
+        let mut miss = Miss::default();
+        for pair in self.keys.windows(2) {
+            for k in 0..COMPARED {
+                let t = pair[0].t + (pair[1].t - pair[0].t) * f64::from(k) / f64::from(COMPARED);
+                let (a, b) = (between(self.between, &pair[0], &pair[1], t), track.at(t));
+                let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+                miss.height = miss.height.max(d[2].abs());
+                miss.place = miss.place.max(d.iter().map(|d| d * d).sum::<f64>().sqrt());
+            }
+        }
+        miss
+    }
+}
+
+/// How far a curve is from the motion, in m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Miss {
+    /// In height.
+    pub height: f64,
+    /// In space.
+    pub place: f64,
+}
+
+impl Miss {
+    /// The worse of two.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self { height: self.height.max(other.height), place: self.place.max(other.place) }
+    }
+}
+
+fn between(how: Between, a: &Key, b: &Key, t: f64) -> Point {
+    let h = b.t - a.t;
+    let u = if h > 0.0 { (t - a.t) / h } else { 0.0 };
+    let w = 1.0 - u;
+    std::array::from_fn(|axis| {
+        let (p, q) = (a.place[axis], b.place[axis]);
+        match how {
+            Between::Hold => p,
+            Between::Line => p + (q - p) * u,
+            Between::Cubic => {
+                let (v, z) = (h * a.leave[axis], h * b.enter[axis]);
+                p * (1.0 + 2.0 * u) * w * w + v * u * w * w + q * u * u * (3.0 - 2.0 * u) - z * u * u * w
+            }
+        }
+    })
+}
+
+fn key(stretch: &Stretch, t: f64) -> Key {
+    let slope = stretch.slope(t);
+    Key { t, place: stretch.at(t), enter: slope, leave: slope, contact: false }
+}
+
+impl Track {
+    /// The fewest cubics that stay within `tolerance` in m of the motion: one for each flight under gravity alone, and that one exact.
+    ///
+    /// Where more acts, each cubic is as long as the tolerance lets it be. Keys closer than 0.01 frame are one.
+    #[must_use]
+    pub fn keys(&self, tolerance: f64, frames: Frames) -> Curve {
+        let mut keys: Vec<Key> = Vec::new();
+        for stretch in &self.stretches {
+            let mut first = key(stretch, stretch.start());
+            first.contact = stretch.contact;
+            match keys.last_mut() {
+                // Two stretches meet in one key, with a velocity on each side.
+                Some(last) => *last = Key { enter: last.enter, ..first },
+                None => keys.push(first),
+            }
+            let end = key(stretch, stretch.end());
+            while let Some(&from) = keys.last().filter(|from| from.t < end.t) {
+                let fits = |to: f64| fits(stretch, &from, &key(stretch, to), tolerance);
+                let to = if fits(end.t) { end.t } else { longest(from.t, end.t, fits) };
+                keys.push(key(stretch, to));
+            }
+        }
+        let mut curve = Curve { keys, between: Between::Cubic };
+        part(&mut curve.keys, APART * frames.rate.frame());
+        curve
+    }
+
+    /// The motion on frames, straight from one to the next; `exact_contacts` also puts a sample where a contact begins between two frames. On twos every
+    /// second frame, held.
+    #[must_use]
+    pub fn samples(&self, frames: Frames, exact_contacts: bool) -> Curve {
+        let (step, end) = (frames.step(), self.end());
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+        let count = (end / step - 1e-6).ceil().max(0.0) as u32;
+        let sample = |t: f64| {
+            let stretch = self.stretch(t);
+            Key { t, ..key(stretch, t) }
+        };
+        let mut keys: Vec<Key> = (0..=count).map(|k| sample(f64::from(k) * step)).collect();
+        for contact in self.contacts() {
+            let nearest = (contact / step).round() * step;
+            let on_frame = (contact - nearest).abs() < APART * frames.rate.frame();
+            if on_frame {
+                let near = keys.iter_mut().find(|key| (key.t - nearest).abs() < 0.5 * step);
+                if let Some(key) = near {
+                    *key = Key { contact: true, place: self.at(contact), ..*key };
+                }
+            } else if exact_contacts && !frames.on_twos {
+                let at = keys.partition_point(|key| key.t < contact);
+                keys.insert(at, Key { contact: true, ..sample(contact) });
+            }
+        }
+        Curve { keys, between: if frames.on_twos { Between::Hold } else { Between::Line } }
+    }
+}
+
+fn fits(stretch: &Stretch, a: &Key, b: &Key, tolerance: f64) -> bool {
+    (1..COMPARED).all(|k| {
+        let t = a.t + (b.t - a.t) * f64::from(k) / f64::from(COMPARED);
+        let (p, q) = (between(Between::Cubic, a, b, t), stretch.at(t));
+        p.iter().zip(q).all(|(p, q)| (p - q).abs() <= tolerance)
+    })
+}
+
+/// The longest of the spans from `a` that fit; some progress always.
+fn longest(a: f64, b: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (a, b);
+    for _ in 0..24 {
+        let middle = 0.5 * (low + high);
+        if fits(middle) { low = middle } else { high = middle }
+    }
+    if low > a { low } else { high }
+}
+
+/// Makes keys that are closer than `apart` in s one: the place and the way out of the later, the way in of the earlier; contacts stay.
+fn part(keys: &mut Vec<Key>, apart: f64) {
+    keys.dedup_by(|later, earlier| {
+        let one = later.t - earlier.t < apart;
+        if one {
+            let kept = if later.contact && !earlier.contact { *later } else { *earlier };
+            *earlier =
+                Key { t: kept.t, place: kept.place, enter: earlier.enter, leave: later.leave, contact: kept.contact };
+        }
+        one
+    });
+}

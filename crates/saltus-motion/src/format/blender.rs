@@ -1,0 +1,149 @@
+//! A Python script for Blender: the ball, the floor, and curves whose handles make every flight an exact parabola.
+
+use serde_json::json;
+
+use super::Export;
+use crate::curve::{Between, Curve, Key};
+
+/// Handles at a third of the time between keys make Blender's curve a plain cubic in time.
+const SCRIPT: &str = r#"
+import bpy
+import json
+
+DATA = json.loads(r'''@DATA@''')
+
+
+def curves_of(item):
+    """The curves of an object's new action, before and since actions have layers."""
+    item.animation_data_create()
+    action = bpy.data.actions.new(item.name)
+    item.animation_data.action = action
+    if not hasattr(action, "slots"):
+        return action.fcurves
+    slot = action.slots.new(id_type="OBJECT", name=item.name)
+    item.animation_data.action_slot = slot
+    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+    return strip.channelbag(slot, ensure=True).fcurves
+
+
+def mesh_object(name, vertices, faces, smooth):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], faces)
+    for polygon in mesh.polygons:
+        polygon.use_smooth = smooth
+    item = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
+def sphere(name, radius, rings=16, sides=32):
+    """A sphere that stands on its origin, so that height 0 is touch."""
+    from math import cos, pi, sin
+    vertices = [(0.0, 0.0, 0.0)]
+    for ring in range(1, rings):
+        a = pi * ring / rings
+        for side in range(sides):
+            b = 2.0 * pi * side / sides
+            vertices.append((radius * sin(a) * cos(b), radius * sin(a) * sin(b), radius * (1.0 - cos(a))))
+    vertices.append((0.0, 0.0, 2.0 * radius))
+    last = len(vertices) - 1
+    faces = []
+    for side in range(sides):
+        after = (side + 1) % sides
+        faces.append((0, 1 + after, 1 + side))
+        for ring in range(rings - 2):
+            a, b = 1 + ring * sides, 1 + (ring + 1) * sides
+            faces.append((a + side, a + after, b + after, b + side))
+        top = 1 + (rings - 2) * sides
+        faces.append((top + side, top + after, last))
+    return mesh_object(name, vertices, faces, True)
+
+
+scene = bpy.context.scene
+scene.render.fps = DATA["fps"]
+scene.render.fps_base = DATA["fps_base"]
+scene.frame_start, scene.frame_end = DATA["range"]
+worst = 0.0
+for ball in DATA["balls"]:
+    item = sphere(ball["name"], ball["radius"])
+    curves = curves_of(item)
+    for axis in range(3):
+        curve = curves.new("location", index=axis)
+        keys = ball["keys"][axis]
+        curve.keyframe_points.add(len(keys))
+        for point, (frame, value, left, right) in zip(curve.keyframe_points, keys):
+            point.co = (frame, value)
+            point.interpolation = ball["interpolation"]
+            point.handle_left_type = point.handle_right_type = "FREE"
+            point.handle_left = left
+            point.handle_right = right
+        curve.update()
+        for frame, value in ball["checks"][axis]:
+            worst = max(worst, abs(curve.evaluate(frame) - value))
+for number, (vertices, faces) in enumerate(DATA["ground"]):
+    mesh_object("ground" if number == 0 else "ground %d" % number, vertices, faces, False)
+scene.frame_set(DATA["range"][0])
+print("saltus: %d balls; the curves are within %.2g m of the motion" % (len(DATA["balls"]), worst))
+if worst > 1e-5 * DATA["size"]:
+    print("saltus: that is more than single precision explains: please do not trust these curves")
+"#;
+
+pub(super) fn script(export: &Export<'_>, curves: &[Curve]) -> String {
+    let frames = export.frames;
+    let (per, seconds) = frames.rate.fraction();
+    // Whole frames per second over a base, as Blender keeps them: 24000/1001 is 24 over 1.001.
+    let nominal = f64::from(per) / f64::from(seconds);
+    let fps = nominal.ceil();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 1000
+    let whole = fps as u32;
+    let balls = export.motion.tracks.iter().zip(curves).map(|(track, curve)| {
+        let keys: Vec<Vec<_>> = (0..3).map(|axis| axis_keys(export, curve, axis)).collect();
+        let middles: Vec<f64> = curve.keys.windows(2).map(|pair| 0.5 * (pair[0].t + pair[1].t)).collect();
+        let check = |axis: usize| middles.iter().map(|&t| [frames.number(t), curve.at(t)[axis]]).collect::<Vec<_>>();
+        json!({
+            "name": track.name, "radius": track.radius, "keys": keys,
+            "interpolation": match curve.between {
+                Between::Cubic => "BEZIER",
+                Between::Line => "LINEAR",
+                Between::Hold => "CONSTANT",
+            },
+            "checks": (0..3).map(check).collect::<Vec<_>>(),
+        })
+    });
+    let [[left, right], [low, high]] = export.motion.reach();
+    let data = json!({
+        "fps": whole, "fps_base": fps / nominal, "range": export.range(), "balls": balls.collect::<Vec<_>>(),
+        "ground": ground(export), "size": (right - left).max(high - low).max(1.0),
+    });
+    // A raw string of Python ends at three quotes only, and JSON has none.
+    let data = data.to_string().replace('\'', "\\u0027");
+    let head = "# Blender 4 and 5: blender --python FILE, or the Scripting tab. Written by saltus.\n";
+    format!("{head}{}", SCRIPT.trim_start().replace("@DATA@", &data).replace("\"fps\":", "\n\"fps\":"))
+}
+
+/// Frame, value, left handle, right handle.
+fn axis_keys(export: &Export<'_>, curve: &Curve, axis: usize) -> Vec<(f64, f64, [f64; 2], [f64; 2])> {
+    let frames = export.frames;
+    let handle = |key: &Key, slope: f64, by: f64| [frames.number(key.t + by), key.place[axis] + slope * by];
+    let third = |a: Option<&Key>, b: Option<&Key>| a.zip(b).map_or(frames.rate.frame(), |(a, b)| b.t - a.t) / 3.0;
+    let keys = curve.keys.iter().enumerate().map(|(n, key)| {
+        let before = third(n.checked_sub(1).and_then(|n| curve.keys.get(n)), Some(key));
+        let after = third(Some(key), curve.keys.get(n + 1));
+        let left = handle(key, key.enter[axis], -before);
+        (frames.number(key.t), key.place[axis], left, handle(key, key.leave[axis], after))
+    });
+    keys.collect()
+}
+
+/// The vertices and the faces of a strip.
+type Strip = (Vec<[f64; 3]>, Vec<[usize; 4]>);
+
+/// Each line of the ground as a strip.
+fn ground(export: &Export<'_>) -> Vec<Strip> {
+    let depth = super::depth(export.motion);
+    let strip = |line: &Vec<[f64; 2]>| {
+        let vertices = line.iter().flat_map(|&[x, up]| [[x, -depth, up], [x, depth, up]]).collect();
+        (vertices, (1..line.len()).map(|n| [2 * n - 2, 2 * n, 2 * n + 1, 2 * n - 1]).collect())
+    };
+    export.motion.ground.iter().map(strip).collect()
+}

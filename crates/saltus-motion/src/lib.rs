@@ -1,0 +1,43 @@
+//! Bouncing motion as animation: the fewest keys that are exact, whole frames where they are wanted, and files that animators load.
+//!
+//! A [`Motion`] is data: for each ball, polynomials in time from contact to contact. [`Motion::cut`] ends the infinitely many last hops,
+//! [`Motion::snapped`] moves contacts to whole frames, and an [`Export`] writes it as any [`Format`] and says how exact that is. Metres and seconds
+//! throughout; places are (x, y, up) of the ball's lowest point, so that 0 is touch.
+//!
+//! ```
+//! use saltus_motion::{Export, Format, Frames, Motion, Piece, Snap, Stretch, Track};
+//!
+//! // One metre down, and up again half as fast.
+//! let arc = |start: f64, span: f64, height: f64, speed: f64| Stretch {
+//!     contact: start > 0.0,
+//!     flight: true,
+//!     pieces: vec![Piece { start, span, coefficients: vec![[0.0, 0.0, height], [0.0, 0.0, speed], [0.0, 0.0, -4.905]] }],
+//! };
+//! let fall = (2.0_f64 / 9.81).sqrt();
+//! let stretches = vec![arc(0.0, fall, 1.0, 0.0), arc(fall, fall, 0.0, 4.905 * fall)];
+//! let ball = Track { name: "ball".into(), radius: 0.02, stretches };
+//! let motion = Motion::new("drop", vec![ball], Vec::new())?;
+//!
+//! let frames = Frames::new("24".parse()?);
+//! let exact = Export { motion: &motion, frames, tolerance: 1e-4 }.file(Format::Csv)?;
+//! assert_eq!(exact.keys, 3);
+//! assert!(exact.miss.height < 1e-12);
+//!
+//! let snapped = motion.snapped(Snap::Gravity, frames)?;
+//! assert_eq!(snapped.off_frame(frames), 0.0);
+//! assert!((snapped.tracks[0].at(0.0)[2] - 9.81 * 11.0_f64.powi(2) / (2.0 * 24.0_f64.powi(2))).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod curve;
+mod ease;
+mod format;
+mod motion;
+mod rate;
+mod snap;
+
+pub use curve::{Between, Curve, Key, Miss};
+pub use format::{Export, ExportError, File, Format};
+pub use motion::{Motion, MotionError, Piece, Point, Stretch, Track};
+pub use rate::{Frames, Rate, RateError};
+pub use snap::Snap;
