@@ -156,7 +156,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// The slip has no component left along what it was.
     pub(super) fn stopped(&self, face: Face, along: &SVector<f64, N>, t: f64, x: &Moving<N, S>) -> Stance<N> {
         let (slip, normal) = self.slip(face, t, x);
-        if N > 2 && slip.norm() > ENDED * along.norm() {
+        let rounding = 64.0 * f64::EPSILON * x.velocity.norm();
+        if N > 2 && slip.norm() > (ENDED * along.norm()).max(rounding) {
             return Stance::Slide { face, along: noted(&slip, &normal) };
         }
         self.without_slip(face, &self.touch(face, t, x))
