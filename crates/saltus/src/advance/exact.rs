@@ -1,5 +1,7 @@
 //! An arc whose flow is solved exactly.
 
+use std::cell::LazyCell;
+
 use crate::automaton::{Automaton, Fall, Polynomial};
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
 use crate::error::Error;
@@ -27,6 +29,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let remaining = clock.end.since(clock.now);
         let mut found: Found<A> = None;
         let mut by_formula = false;
+        let natural = LazyCell::new(|| natural(c));
         for edge in self.automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
@@ -35,7 +38,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Searched { fall, evidence } = match formula {
                 Fall::Unknown if parabola => self.fall_of_parabola(edge, clock.now, c, limit, start),
                 Fall::Unknown => self
-                    .fall_in_windows(edge, clock.now, natural(c), |s| horner(c, s), limit, start)
+                    .fall_in_windows(edge, clock.now, *natural, |s| horner(c, s), limit, start)
                     .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?,
                 formula => Searched::solved(self.fall_by_formula(edge, clock.now, formula, |s| horner(c, s), limit)),
             };

@@ -1,6 +1,6 @@
 //! Auto: Tsit5 or Dop853, by the tolerance.
 
-use super::{Dop853, Stepper, Trial, Tsit5};
+use super::{Dop853, Either, Stepper, Trial, Tsit5};
 use crate::state::State;
 
 /// The default: [`Tsit5`] down to a relative tolerance of 1e-7, [`Dop853`] below.
@@ -17,55 +17,34 @@ use crate::state::State;
 /// assert_eq!(Auto::default().for_tolerance(1e-9).error_order(), 8.0);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Auto {
-    tight: bool,
-}
-
-/// The loosest relative tolerance for which Tsit5 is not the choice.
-const TIGHT: f64 = 1e-7;
-
-/// What one of two methods keeps.
-#[derive(Clone, Copy, Debug)]
-pub enum Either<L, T> {
-    /// Of [`Tsit5`].
-    Loose(L),
-    /// Of [`Dop853`].
-    Tight(T),
-}
-
-impl<S, L: AsRef<[S]>, T: AsRef<[S]>> AsRef<[S]> for Either<L, T> {
-    #[inline]
-    fn as_ref(&self) -> &[S] {
-        match self {
-            Self::Loose(dense) => dense.as_ref(),
-            Self::Tight(dense) => dense.as_ref(),
-        }
-    }
-}
+pub struct Auto(Either<Tsit5, Dop853>);
 
 impl Auto {
+    /// The loosest relative tolerance for which [`Tsit5`] is not the choice.
+    pub const TIGHT: f64 = 1e-7;
+
     /// As [`default`](Default::default), where a constant is needed.
     #[must_use]
     pub const fn new() -> Self {
-        Self { tight: false }
+        Self(Either::Loose(Tsit5))
     }
 }
 
 impl Stepper for Auto {
-    type Stages<S: State> = Either<<Tsit5 as Stepper>::Stages<S>, <Dop853 as Stepper>::Stages<S>>;
-    type Dense<S: State> = Either<<Tsit5 as Stepper>::Dense<S>, <Dop853 as Stepper>::Dense<S>>;
+    type Stages<S: State> = <Either<Tsit5, Dop853> as Stepper>::Stages<S>;
+    type Dense<S: State> = <Either<Tsit5, Dop853> as Stepper>::Dense<S>;
 
     fn for_tolerance(self, relative: f64) -> Self {
-        Self { tight: relative < TIGHT }
+        Self(if relative < Self::TIGHT { Either::Tight(Dop853) } else { Either::Loose(Tsit5) })
     }
 
     fn predictive(&self) -> bool {
-        self.tight
+        self.0.predictive()
     }
 
     #[inline]
     fn error_order(&self) -> f64 {
-        if self.tight { Dop853.error_order() } else { Tsit5.error_order() }
+        self.0.error_order()
     }
 
     #[inline]
@@ -77,20 +56,12 @@ impl Stepper for Auto {
         slope: &S,
         h: f64,
     ) -> Trial<S, Self::Stages<S>> {
-        if self.tight {
-            Dop853.trial(flow, t, x, slope, h).with_stages(Either::Tight)
-        } else {
-            Tsit5.trial(flow, t, x, slope, h).with_stages(Either::Loose)
-        }
+        self.0.trial(flow, t, x, slope, h)
     }
 
     #[inline]
     fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
-        let Trial { end, slope, stages } = *trial;
-        match stages {
-            Either::Loose(stages) => Tsit5.error(h, &Trial { end, slope, stages }, norm),
-            Either::Tight(stages) => Dop853.error(h, &Trial { end, slope, stages }, norm),
-        }
+        self.0.error(h, trial, norm)
     }
 
     #[inline]
@@ -102,10 +73,6 @@ impl Stepper for Auto {
         h: f64,
         trial: &Trial<S, Self::Stages<S>>,
     ) -> Self::Dense<S> {
-        let Trial { end, slope, stages } = *trial;
-        match stages {
-            Either::Loose(stages) => Either::Loose(Tsit5.dense(flow, t, x, h, &Trial { end, slope, stages })),
-            Either::Tight(stages) => Either::Tight(Dop853.dense(flow, t, x, h, &Trial { end, slope, stages })),
-        }
+        self.0.dense(flow, t, x, h, trial)
     }
 }

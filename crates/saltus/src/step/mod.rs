@@ -9,11 +9,13 @@
 
 mod auto;
 mod dop853;
+mod either;
 mod rodas5p;
 mod tsit5;
 
-pub use auto::{Auto, Either};
+pub use auto::Auto;
 pub use dop853::Dop853;
+pub use either::Either;
 pub use rodas5p::Rodas5P;
 pub use tsit5::Tsit5;
 
@@ -25,7 +27,7 @@ use crate::state::State;
 /// only if the trial is accepted is its [`dense`](Stepper::dense) output asked for. It remembers nothing from one step to the next.
 pub trait Stepper: Copy {
     /// What a trial hands on to its error estimate and its dense output.
-    type Stages<S: State>;
+    type Stages<S: State>: Copy;
     /// The coefficients of the dense output in powers of (t - t₀)/h, lowest first.
     type Dense<S: State>: AsRef<[S]>;
 
