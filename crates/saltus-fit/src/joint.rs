@@ -105,6 +105,27 @@ pub struct Hypothesis {
     pub settle: String,
 }
 
+impl Hypothesis {
+    /// By name, what it supposes and what settles it, with how well it fits and nothing else known.
+    fn of([name, about, settle]: [&str; 3], fitted: &Fitted) -> Self {
+        Self {
+            name: name.to_owned(),
+            about: about.to_owned(),
+            cor: None,
+            cors: Vec::new(),
+            offset_m: None,
+            lag_s: None,
+            drag: None,
+            slope: None,
+            chi_square: fitted.chi_square,
+            degrees_of_freedom: fitted.freedom,
+            p: chi_square_p(fitted.chi_square, fitted.freedom),
+            generous: None,
+            settle: settle.to_owned(),
+        }
+    }
+}
+
 /// A fit repeated with larger reading errors: twice the heights', and a whole frame (else twice the times').
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -336,8 +357,6 @@ pub(crate) fn hypotheses(
         if fitted.freedom == 0 {
             continue;
         }
-        let measured =
-            |n: usize| Measured { value: fitted.shared[n], standard_error: fitted.covariance[(n, n)].sqrt() };
         let generous = run(&loose, joint.model.gravity, suppose, &starts[..1])?.map(|(_, f)| Generous {
             sigma_height: tall * sigma_height,
             sigma_time: generous_time,
@@ -347,19 +366,14 @@ pub(crate) fn hypotheses(
             p: chi_square_p(f.chi_square, f.freedom),
         });
         found.push(Hypothesis {
-            name: name.to_owned(),
-            about: about.to_owned(),
-            cor: (!suppose.per_bounce).then(|| measured(0)),
+            cor: (!suppose.per_bounce).then(|| fitted.measured(0)),
             cors: if suppose.per_bounce { fitted.shared[..model.cors].to_vec() } else { Vec::new() },
-            offset_m: suppose.offset.then(|| measured(1)),
-            lag_s: suppose.lag.then(|| measured(1)),
-            drag: suppose.drag.then(|| measured(1)),
-            slope: suppose.slope.map(|v| scaled(measured(1), 1.0 / v)),
-            chi_square: fitted.chi_square,
-            degrees_of_freedom: fitted.freedom,
-            p: chi_square_p(fitted.chi_square, fitted.freedom),
+            offset_m: suppose.offset.then(|| fitted.measured(1)),
+            lag_s: suppose.lag.then(|| fitted.measured(1)),
+            drag: suppose.drag.then(|| fitted.measured(1)),
+            slope: suppose.slope.map(|v| scaled(fitted.measured(1), 1.0 / v)),
             generous,
-            settle: settle.to_owned(),
+            ..Hypothesis::of([name, about, settle], &fitted)
         });
     }
     found.extend(missed_contact(joint)?);
@@ -394,21 +408,10 @@ fn missed_contact(joint: &Joint) -> Result<Option<Hypothesis>, FitError> {
     }
     let Some((after, fitted)) = best.filter(|(_, f)| f.freedom > 0) else { return Ok(None) };
     let place = if after == 0 { "before the first one noted".to_owned() } else { format!("after contact {after}") };
-    Ok(Some(Hypothesis {
-        name: "missed-contact".to_owned(),
-        about: format!("a contact was overlooked {place}"),
-        cor: Some(Measured { value: fitted.shared[0], standard_error: fitted.covariance[(0, 0)].sqrt() }),
-        cors: Vec::new(),
-        offset_m: None,
-        lag_s: None,
-        drag: None,
-        slope: None,
-        chi_square: fitted.chi_square,
-        degrees_of_freedom: fitted.freedom,
-        p: chi_square_p(fitted.chi_square, fitted.freedom),
-        generous: None,
-        settle: "listen to the recording, or step through the film, around that time".to_owned(),
-    }))
+    let about = format!("a contact was overlooked {place}");
+    let settle = "listen to the recording, or step through the film, around that time";
+    let cor = Some(fitted.measured(0));
+    Ok(Some(Hypothesis { cor, ..Hypothesis::of(["missed-contact", &about, settle], &fitted) }))
 }
 
 /// Whether heights alone that show a trend would fit one COR if the zero of their scale were off.
@@ -422,23 +425,10 @@ pub(crate) fn height_zero(
     if fitted.freedom == 0 {
         return Ok(None);
     }
-    let measured = |n: usize| Measured { value: fitted.shared[n], standard_error: fitted.covariance[(n, n)].sqrt() };
-    Ok(Some(Hypothesis {
-        name: "height-zero".to_owned(),
-        about: "the zero of the height scale is off; from heights alone a COR that changes with speed looks alike"
-            .to_owned(),
-        cor: Some(measured(0)),
-        cors: Vec::new(),
-        offset_m: Some(measured(1)),
-        lag_s: None,
-        drag: None,
-        slope: None,
-        chi_square: fitted.chi_square,
-        degrees_of_freedom: fitted.freedom,
-        p: chi_square_p(fitted.chi_square, fitted.freedom),
-        generous: None,
-        settle: "lay the ball on the floor and read its height on the same scale, the same way".to_owned(),
-    }))
+    let about = "the zero of the height scale is off; from heights alone a COR that changes with speed looks alike";
+    let settle = "lay the ball on the floor and read its height on the same scale, the same way";
+    let (cor, offset_m) = (Some(fitted.measured(0)), Some(fitted.measured(1)));
+    Ok(Some(Hypothesis { cor, offset_m, ..Hypothesis::of(["height-zero", about, settle], &fitted) }))
 }
 
 /// The same trial with larger errors.

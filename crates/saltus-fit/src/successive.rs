@@ -7,6 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector2, linalg::givens::GivensRotation};
 
+use crate::bounces::Measured;
 use crate::least_squares::{Bounds, Failure, solve, step};
 
 const STEPS: usize = 60;
@@ -44,6 +45,13 @@ pub(crate) struct Fitted {
     /// For each block, with one shared unknown: its information (1/variance) on that unknown, and where the block alone would have it,
     /// less where all have it.
     pub(crate) separate: Separate,
+}
+
+impl Fitted {
+    /// The shared unknown `n` with its standard error.
+    pub(crate) fn measured(&self, n: usize) -> Measured {
+        Measured { value: self.shared[n], standard_error: self.covariance[(n, n)].sqrt() }
+    }
 }
 
 /// An upper triangle that rows are rotated into.
