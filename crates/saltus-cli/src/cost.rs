@@ -55,23 +55,20 @@ struct Measured {
 }
 
 /// The scene as it is, then with each effect toggled.
-pub(crate) fn rows(scene: &Scene, until: Option<f64>) -> Result<Vec<Row>, Error> {
-    let base = measured(scene, until).map_err(Error::new)?;
+pub(crate) fn rows(scene: &Scene) -> Result<Vec<Row>, Error> {
+    let base = measured(scene).map_err(Error::new)?;
     let mut rows = vec![Row { run: "as it is".to_owned(), came: Came::Measured(base) }];
     for effect in Effect::ALL {
         let word = if scene.names(effect) { "without" } else { "with" };
-        let came = scene.toggled(effect).map_err(str::to_owned).and_then(|toggled| measured(&toggled, until));
+        let came = scene.toggled(effect).map_err(str::to_owned).and_then(|toggled| measured(&toggled));
         let came = came.map_or_else(|refused| Came::Refused { refused }, Came::Measured);
         rows.push(Row { run: format!("{word} {effect}"), came });
     }
     Ok(rows)
 }
 
-fn measured(scene: &Scene, until: Option<f64>) -> Result<Measured, String> {
-    let mut plan = scene.plan().map_err(|error| error.to_string())?.most_evaluations(MOST_EVALUATIONS);
-    if let Some(until) = until {
-        plan = plan.until(until);
-    }
+fn measured(scene: &Scene) -> Result<Measured, String> {
+    let plan = scene.plan().map_err(|error| error.to_string())?.most_evaluations(MOST_EVALUATIONS);
     let run = || {
         let start = Instant::now();
         let record = plan.run().map_err(|error| error.to_string())?;

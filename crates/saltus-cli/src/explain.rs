@@ -9,7 +9,7 @@ use crate::args;
 use crate::cost::{self, Row};
 use crate::error::Error;
 use crate::output::write;
-use crate::simulate::{planned, scene};
+use crate::simulate::{ending, planned, scene};
 
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
@@ -38,10 +38,10 @@ struct Mode<'a> {
 }
 
 pub(crate) fn run(args: &args::Explain) -> Result<ExitCode, Error> {
-    let scene = scene(&args.scene, args.until.map(|until| format!("until = {until:?}")))?;
+    let scene = scene(&args.scene, ending(args.until, None))?;
     let plan = planned(&scene, Some(&args.scene))?;
     let explanation = plan.explain();
-    let cost = if args.cost { Some(cost::rows(&scene, args.until)?) } else { None };
+    let cost = if args.cost { Some(cost::rows(&scene)?) } else { None };
     let text = match args.format {
         args::ReportFormat::Text => explanation.to_string() + &cost.map_or_else(String::new, |rows| cost::table(&rows)),
         args::ReportFormat::Json => json(explanation, cost)?,

@@ -9,18 +9,19 @@ use saltus_motion::{Export, Format, Frames, Motion, Piece, Snap, Stretch, Track}
 
 use crate::args::{self, ExportFormat, SnapBy};
 use crate::error::Error;
+use crate::ground::{corners, name};
 use crate::output::{say, write};
-use crate::simulate::{ended, limited, note, planned, scene};
+use crate::simulate::{ended, ending, note, planned, scene};
 
 pub(crate) fn run(args: &args::Export, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
     let frames = Frames { rate: args.fps, first: args.first_frame, on_twos: args.on_twos };
-    let scene = scene(&args.scene, args.until.map(|until| format!("until = {until:?}")))?;
+    let scene = scene(&args.scene, ending(args.until, None))?;
     if let Some(note) = note(&scene) {
         say(quiet, &note);
     }
     let plan = planned(&scene, Some(&args.scene))?;
-    let record = limited(plan, args.until, None, scene.run.until)?;
+    let record = plan.run().map_err(Error::new)?;
     ended(&record, quiet);
     let whole = motion(&scene, &record, quiet)?;
     let free = whole.cut(frames.step());
@@ -136,13 +137,11 @@ fn motion(scene: &Scene, record: &Record, quiet: bool) -> Result<Motion, Error> 
                 }
             }
         }
-        let name = scene.balls.get(ball).and_then(|ball| ball.name.clone());
-        let name = name.unwrap_or_else(|| format!("ball {}", ball + 1));
         let radius = scene.balls.get(ball).and_then(|ball| ball.radius);
         if radius.is_none() {
             sizeless.push(ball);
         }
-        tracks.push(Track { name, radius: radius.unwrap_or(1.0), stretches });
+        tracks.push(Track { name: name(scene, ball), radius: radius.unwrap_or(1.0), stretches });
     }
     let reach = |tracks: Vec<Track>| Motion::new("", tracks, Vec::new()).map(|motion| (motion.reach(), motion.tracks));
     let ([_, [low, top]], mut tracks) = reach(tracks).map_err(Error::new)?;
@@ -162,39 +161,20 @@ fn motion(scene: &Scene, record: &Record, quiet: bool) -> Result<Motion, Error> 
 fn outline(floor: &Floor, [[left, right], [low, high]]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]>> {
     let more = 0.1 * (right - left).max(high - low);
     let (left, right, high) = (left - more, right + more, high + more);
-    /// Points of a curved floor, or steps of stairs, at most.
-    const MOST: u32 = 400;
     let curve = |at: &dyn Fn(f64) -> f64| {
-        let x = |k: u32| left + (right - left) * f64::from(k) / f64::from(MOST);
-        (0..=MOST).map(|k| [x(k), at(x(k))]).collect()
+        /// Points of a curved floor.
+        const POINTS: u32 = 400;
+        let x = |k: u32| left + (right - left) * f64::from(k) / f64::from(POINTS);
+        (0..=POINTS).map(|k| [x(k), at(x(k))]).collect()
     };
-    Some(match floor.shape {
-        Shape::Level { height } => vec![[left, height], [right, height]],
-        Shape::Incline { angle, height } => [left, right].map(|x| [x, height + x * angle.tan()]).to_vec(),
-        Shape::Wall { across_y: false, at, .. } => vec![[at, low], [at, high]],
-        Shape::Box { size, height, open } => {
-            let (x, top) = (0.5 * size.x, height + size.z);
-            let mut corners = vec![[-x, top], [-x, height], [x, height], [x, top]];
-            corners.extend((!open).then_some([-x, top]));
-            corners
-        }
-        Shape::Stairs { top, from, tread, rise, count } => {
-            let mut corners = vec![[left.min(from), top]];
-            let steps = (0..count.unwrap_or(MOST).min(MOST)).map(f64::from);
-            for step in steps.take_while(|step| from + tread * step <= right) {
-                let edge = from + tread * step;
-                corners.extend([[edge, top - rise * step], [edge, top - rise * (step + 1.0)]]);
-            }
-            let level = corners.last().map_or(top, |corner| corner[1]);
-            corners.push([right.max(from), level]);
-            corners
-        }
+    let outline = match floor.shape {
         Shape::Parabola { curvature, centre, height } => {
             curve(&|x| height + 0.5 * curvature * (x - centre) * (x - centre))
         }
         Shape::Sine { amplitude, wavelength, phase, height } => {
             curve(&|x| height + amplitude * (std::f64::consts::TAU * x / wavelength + phase).sin())
         }
-        _ => return None,
-    })
+        _ => corners(floor, [[left, right], [low, high]]),
+    };
+    (!outline.is_empty()).then_some(outline)
 }

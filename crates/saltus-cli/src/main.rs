@@ -6,6 +6,7 @@ mod error;
 mod explain;
 mod export;
 mod fit;
+mod ground;
 mod motion;
 mod output;
 mod picture;

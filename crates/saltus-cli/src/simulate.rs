@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::scene::plan::{End, Plan, Record};
-use saltus_bounce::scene::{Law, ReadError, Scene};
+use saltus_bounce::scene::{Law, ReadError, Run, Scene};
 
 use crate::args::{self, MotionFormat};
 use crate::error::Error;
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error>
     }
     let plan = planned(&scene, args.scene.as_deref())?;
     let model = plan.explain().model;
-    let record = limited(plan, args.until, args.most_jumps, scene.run.until)?;
+    let record = plan.run().map_err(Error::new)?;
     ended(&record, quiet);
     if drawn.is_some() {
         let kind = args.kind.map_or(scene.picture.kind, args::PictureKind::kind);
@@ -48,24 +48,6 @@ pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error>
         Some(path) if path != Path::new("-") => Error::new(format!("{}: {error}", path.display())),
         _ => Error::new(error),
     })
-}
-
-/// Runs a plan; what the command line says goes before what the scene says.
-pub(crate) fn limited(
-    plan: Plan,
-    until: Option<f64>,
-    most_jumps: Option<u32>,
-    of_scene: Option<f64>,
-) -> Result<Record, Error> {
-    let plan = match until.or(of_scene) {
-        Some(until) => plan.until(until),
-        None => plan,
-    };
-    let plan = match most_jumps {
-        Some(most) => plan.most_jumps(most),
-        None => plan,
-    };
-    plan.run().map_err(Error::new)
 }
 
 /// Says why a run ended, if that is not what was asked for.
@@ -94,21 +76,18 @@ pub(crate) fn ended(record: &Record, quiet: bool) {
 /// What is asked for, by a scene or by options.
 fn made(args: &args::Simulate) -> Result<Scene, Error> {
     match (&args.scene, args.drop, args.cor) {
-        (Some(path), _, _) => {
-            let until = args.until.map(|until| format!("until = {until:?}"));
-            scene(path, until.or(args.most_jumps.map(|most| format!("most_jumps = {most}"))))
-        }
+        (Some(path), _, _) => scene(path, ending(args.until, args.most_jumps)),
         (None, Some(height), Some(cor)) if height >= 0.0 => {
             Gravity::new(args.gravity).map_err(Error::new)?;
             // The options are a small scene; a limit on jumps ends it where nothing else does.
-            let most = args.most_jumps.unwrap_or(10_000);
+            let end = ending(args.until, args.most_jumps.or(Some(10_000)));
             let toml = format!(
-                "gravity = {:?}\nrestitution = {:?}\nball = {{ height = {height:?}, velocity = {:?} }}\nrun = {{ most_jumps = {most} }}\n",
+                "gravity = {:?}\nrestitution = {:?}\nball = {{ height = {height:?}, velocity = {:?} }}\n",
                 args.gravity,
                 cor.value(),
                 args.velocity
             );
-            Scene::parse("options", toml.as_bytes()).map_err(Error::new)
+            Scene::parse_with("options", toml.as_bytes(), end).map_err(Error::new)
         }
         (None, Some(_), Some(_)) => {
             Err(Error::new("the ball would start below the floor: give --drop a height of zero or more"))
@@ -119,8 +98,15 @@ fn made(args: &args::Simulate) -> Result<Scene, Error> {
     }
 }
 
-/// The scene of a file or of standard input; `end` is what the command line says of its end, as a line of [run].
-pub(crate) fn scene(path: &Path, end: Option<String>) -> Result<Scene, Error> {
+/// What the command line says of the run's end.
+pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
+    let mut run = Run::default();
+    (run.until, run.most_jumps) = (until, most_jumps);
+    run
+}
+
+/// The scene of a file or of standard input; what the command line says in `run` goes before what the scene says.
+pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
     let most = Scene::LARGEST as u64 + 1;
     let mut toml = Vec::new();
     let name = if path == Path::new("-") {
@@ -131,23 +117,7 @@ pub(crate) fn scene(path: &Path, end: Option<String>) -> Result<Scene, Error> {
         File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
         path.to_string_lossy()
     };
-    Scene::parse(&name, &toml).or_else(|error| {
-        // A scene that does not say when it ends is refused, unless the command line says so.
-        end.and_then(|end| ended_by(&toml, &end)).ok_or_else(|| Error::new(error))
-    })
-}
-
-/// The scene with one more line under [run], if it lacked nothing else.
-fn ended_by(toml: &[u8], end: &str) -> Option<Scene> {
-    let toml = std::str::from_utf8(toml).ok()?;
-    let toml = toml.strip_prefix('\u{feff}').unwrap_or(toml);
-    [
-        format!("run.{end}\n{toml}"),
-        toml.replacen("[run]", &format!("[run]\n{end}\n"), 1),
-        toml.replacen("run = {", &format!("run = {{ {end},"), 1),
-    ]
-    .iter()
-    .find_map(|toml| Scene::parse("", toml.as_bytes()).ok())
+    Scene::parse_with(&name, &toml, run).map_err(Error::new)
 }
 
 fn is_svg(path: &Path) -> bool {

@@ -123,8 +123,8 @@ impl JsonSchema for GravityValue {
 }
 
 impl File {
-    /// What the file says, checked.
-    pub(super) fn scene(&self) -> Result<Scene, Fault> {
+    /// What the file says, checked; what `run` says goes before it.
+    pub(super) fn scene(&self, run: super::Run) -> Result<Scene, Fault> {
         let gravity = match &self.gravity {
             Some(at) => Gravity::new(at.get().0).map_err(|error| at.fault(error))?,
             None => Gravity::EARTH,
@@ -162,7 +162,7 @@ impl File {
             contact,
             collision: None,
             collision_friction: Friction::NONE,
-            run: self.run.as_ref().map_or(Ok(super::Run::default()), |at| at.get().read())?,
+            run: run.or(self.run.as_ref().map_or(Ok(super::Run::default()), |at| at.get().read())?),
             picture: self.picture.as_ref().map(PictureTable::read).unwrap_or_default(),
             balls,
         };

@@ -90,7 +90,25 @@ impl Scene {
     /// [`SceneError`], with line, column and advice, when the text is no TOML or no scene: an unknown key, a wrong unit, a number outside its
     /// domain, settings that contradict each other, a ball inside a floor, a run without end.
     pub fn parse(name: &str, toml: &[u8]) -> Result<Self, SceneError> {
-        read::scene(name, toml)
+        Self::parse_with(name, toml, Run::default())
+    }
+
+    /// The same, where what `run` says goes before what the text says under `[run]`: so a scene that says no end can be given one.
+    ///
+    /// ```
+    /// use saltus_bounce::scene::{Run, Scene};
+    /// let endless = b"restitution = 1\nball = { height = '1 m' }\n";
+    /// assert!(Scene::parse("drop.toml", endless).is_err());
+    /// let mut run = Run::default();
+    /// run.until = Some(5.0);
+    /// assert_eq!(Scene::parse_with("drop.toml", endless, run)?.run.until, Some(5.0));
+    /// # Ok::<(), saltus_bounce::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn parse_with(name: &str, toml: &[u8], run: Run) -> Result<Self, SceneError> {
+        read::scene(name, toml, run)
     }
 
     /// Reads a scene from a file.

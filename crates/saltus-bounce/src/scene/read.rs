@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::error::{Fault, SceneError};
 use super::file::File;
-use super::{ReadError, Scene, schema};
+use super::{ReadError, Run, Scene, schema};
 
 /// UTF-8's byte-order mark.
 const MARK: &[u8] = b"\xef\xbb\xbf";
@@ -23,12 +23,12 @@ pub(super) fn from_path(path: &Path) -> Result<Scene, ReadError> {
     Scene::parse(&path.to_string_lossy(), &bytes).map_err(ReadError::Scene)
 }
 
-pub(super) fn scene(name: &str, bytes: &[u8]) -> Result<Scene, SceneError> {
+pub(super) fn scene(name: &str, bytes: &[u8], run: Run) -> Result<Scene, SceneError> {
     let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
-    inner(bytes).map_err(|fault| SceneError::new(name, bytes, fault))
+    inner(bytes, run).map_err(|fault| SceneError::new(name, bytes, fault))
 }
 
-fn inner(bytes: &[u8]) -> Result<Scene, Fault> {
+fn inner(bytes: &[u8], run: Run) -> Result<Scene, Fault> {
     if bytes.len() > Scene::LARGEST {
         return Err(Fault::new(
             0..0,
@@ -57,7 +57,7 @@ fn inner(bytes: &[u8]) -> Result<Scene, Fault> {
         let (span, message) = fault(&error);
         translate(text, span, &message)
     })?;
-    file.scene()
+    file.scene(run)
 }
 
 /// The name most like `text`, if any is like it at all.

@@ -20,6 +20,18 @@ pub struct Run {
     pub stepper: Option<Stepper>,
 }
 
+impl Run {
+    /// These settings, and those of `other` where these say nothing.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            until: self.until.or(other.until),
+            tolerance: self.tolerance.or(other.tolerance),
+            most_jumps: self.most_jumps.or(other.most_jumps),
+            stepper: self.stepper.or(other.stepper),
+        }
+    }
+}
+
 /// A way to step through a flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -5,9 +5,9 @@ use saltus_bounce::scene::plan::{Moment, Record, Segment};
 use saltus_bounce::scene::{Scene, Shape};
 use saltus_plot::{Chart, Measure, Stroke};
 
-use super::ground::name;
 use super::title;
 use crate::error::Error;
+use crate::ground::name;
 
 /// One coordinate of a segment's motion, by powers of the time since its start.
 fn part(segment: &Segment, of: impl Fn(&Moment) -> f64) -> Vec<f64> {

@@ -7,7 +7,7 @@ use saltus_plot::{Arc, Background, HeightTime};
 pub(super) fn picture(scene: &Scene, record: &Record) -> HeightTime {
     let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(scene, record));
     for ball in 0..record.balls() {
-        let label = if record.balls() > 1 { super::ground::name(scene, ball) } else { String::new() };
+        let label = if record.balls() > 1 { crate::ground::name(scene, ball) } else { String::new() };
         let arcs = record.segments(ball).into_iter().map(|segment| {
             let heights = segment.coefficients.iter().map(saltus_bounce::scene::plan::Moment::height).collect();
             Arc::new(segment.start, segment.span, heights)

@@ -1,7 +1,6 @@
 //! What is drawn of a run: the record in, the picture's data out.
 
 mod chart;
-mod ground;
 mod height;
 mod space;
 

@@ -1,12 +1,12 @@
 //! The path in space, and the ball at equal times.
 
-use saltus_bounce::scene::Scene;
 use saltus_bounce::scene::plan::{Moment, Record};
+use saltus_bounce::scene::{Floor, Scene, Shape};
 use saltus_plot::{Chart, Disc, Measure, Stroke};
 
-use super::ground::{name, outline};
 use super::title;
 use crate::error::Error;
+use crate::ground::{corners, name};
 
 /// How many frames a picture of equal times has, at most.
 const FRAMES: u32 = 40;
@@ -86,4 +86,41 @@ pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
     }
     let ends = if aside { [-step, step * f64::from(FRAMES + 1)] } else { reach[0] };
     chart.ground(outline(scene, [ends, reach[1]]))
+}
+
+/// Floors and walls as far as the balls get, `reach` sideways and up.
+fn outline(scene: &Scene, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
+    let [[left, right], [low, high]] = reach;
+    let more = 0.04 * (right - left).max(high - low);
+    let reach = [[left - more, right + more], [low, high + more]];
+    scene.floors.iter().flat_map(|floor| shape(floor, reach)).collect()
+}
+
+fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
+    let [[left, right], _] = reach;
+    match floor.shape {
+        Shape::Stairs { .. } => {
+            let mut corners = corners(floor, reach);
+            corners.retain(|corner| corner[0] >= left);
+            Stroke::polygon(&corners)
+        }
+        Shape::Parabola { curvature, centre, height } => {
+            let (d, span) = (left - centre, right - left);
+            let y = vec![height + 0.5 * curvature * d * d, curvature * d, 0.5 * curvature];
+            vec![Stroke::new(span, vec![left, 1.0], y)]
+        }
+        Shape::Sine { amplitude, wavelength, phase, height } => {
+            /// Points of a wave, or of all of them.
+            const POINTS: f64 = 24.0;
+            let step = (wavelength / POINTS).max((right - left) / 2000.0);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 2000
+            let count = ((right - left) / step).ceil() as u32;
+            let at = |k: u32| {
+                let x = left + (right - left) * f64::from(k) / f64::from(count.max(1));
+                [x, height + amplitude * (std::f64::consts::TAU * x / wavelength + phase).sin()]
+            };
+            Stroke::polygon(&(0..=count).map(at).collect::<Vec<_>>())
+        }
+        _ => Stroke::polygon(&corners(floor, reach)),
+    }
 }

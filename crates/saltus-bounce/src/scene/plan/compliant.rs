@@ -55,7 +55,7 @@ struct Deformed {
 }
 
 impl<L: ContactLaw + Send + Sync + 'static> Reader<Compliant<L>> for Deformed {
-    type Stepper = super::method::Method;
+    type Stepper = super::method::Chosen;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
         let up = |up: f64| Vector3::new(0.0, 0.0, up);

@@ -251,7 +251,7 @@ where
     E: Effect<N, S>,
     G: Grip<N, S>,
 {
-    type Stepper = super::method::Method;
+    type Stepper = super::method::Chosen;
 
     fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
         Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }

@@ -20,6 +20,8 @@ pub(super) struct How {
     pub(super) most_evaluations: u64,
     pub(super) method: Method,
     pub(super) tolerance: f64,
+    /// Whether a formula solves every mode.
+    pub(super) solved: bool,
     /// Where a coordinate is near zero; a thousandth of the tolerance unless given.
     pub(super) absolute: Option<f64>,
 }
@@ -125,7 +127,7 @@ where
         }
         let until = match how.until {
             Some(until) => until,
-            None if self.modes(how.method).iter().all(|mode| mode.advance.is_solved()) => f64::INFINITY,
+            None if how.solved => f64::INFINITY,
             // Steps would go on for ever: the run is made twice, first to see when it ends.
             None => {
                 let mut resting = Resting { reader: &*self.reader };

@@ -1,12 +1,9 @@
 //! The steppers of the engine as one, chosen as a plan is made: so that each model is compiled once.
 
 use saltus::step::{Either, Stepper as Step, Trial};
-use saltus::{Dop853, Rodas5P, State, Tsit5};
+use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
 
 use crate::scene::Stepper;
-
-/// Tolerances below this are [`Dop853`]'s, as for [`saltus::Auto`].
-const TIGHT: f64 = 1e-7;
 
 /// One of the engine's methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +12,7 @@ pub(super) struct Method(pub(super) Stepper);
 impl Method {
     /// What the scene names, or what its tolerance asks for.
     pub(super) fn of(named: Option<Stepper>, tolerance: f64) -> Self {
-        Self(named.unwrap_or(if tolerance < TIGHT { Stepper::Dop853 } else { Stepper::Tsit5 }))
+        Self(named.unwrap_or(if tolerance < Auto::TIGHT { Stepper::Dop853 } else { Stepper::Tsit5 }))
     }
 
     pub(super) const fn name(self) -> &'static str {
@@ -28,6 +25,19 @@ impl Method {
 
     pub(super) const fn is_stiff(self) -> bool {
         matches!(self.0, Stepper::Rodas5p)
+    }
+}
+
+/// Any of them: an explicit one, or the stiff one.
+pub(super) type Chosen = Either<Either<Tsit5, Dop853>, Rodas5P>;
+
+impl From<Method> for Chosen {
+    fn from(method: Method) -> Self {
+        match method.0 {
+            Stepper::Tsit5 => Self::Loose(Either::Loose(Tsit5)),
+            Stepper::Dop853 => Self::Loose(Either::Tight(Dop853)),
+            Stepper::Rodas5p => Self::Tight(Rodas5P),
+        }
     }
 }
 
@@ -56,83 +66,5 @@ impl Step for Unasked {
     }
     fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, _: &Trial<S, ()>) -> [S; 1] {
         [*x]
-    }
-}
-
-/// Of an explicit method, or of the stiff one.
-type Either3<A, B, C> = Either<Either<A, B>, C>;
-
-impl Step for Method {
-    type Stages<S: State> =
-        Either3<<Tsit5 as Step>::Stages<S>, <Dop853 as Step>::Stages<S>, <Rodas5P as Step>::Stages<S>>;
-    type Dense<S: State> = Either3<<Tsit5 as Step>::Dense<S>, <Dop853 as Step>::Dense<S>, <Rodas5P as Step>::Dense<S>>;
-
-    fn predictive(&self) -> bool {
-        match self.0 {
-            Stepper::Tsit5 => Tsit5.predictive(),
-            Stepper::Dop853 => Dop853.predictive(),
-            Stepper::Rodas5p => Rodas5P.predictive(),
-        }
-    }
-
-    fn error_order(&self) -> f64 {
-        match self.0 {
-            Stepper::Tsit5 => Tsit5.error_order(),
-            Stepper::Dop853 => Dop853.error_order(),
-            Stepper::Rodas5p => Rodas5P.error_order(),
-        }
-    }
-
-    fn trial<S: State>(
-        &self,
-        flow: &mut impl FnMut(f64, &S) -> S,
-        t: f64,
-        x: &S,
-        slope: &S,
-        h: f64,
-    ) -> Trial<S, Self::Stages<S>> {
-        match self.0 {
-            Stepper::Tsit5 => {
-                let Trial { end, slope, stages } = Tsit5.trial(flow, t, x, slope, h);
-                Trial { end, slope, stages: Either::Loose(Either::Loose(stages)) }
-            }
-            Stepper::Dop853 => {
-                let Trial { end, slope, stages } = Dop853.trial(flow, t, x, slope, h);
-                Trial { end, slope, stages: Either::Loose(Either::Tight(stages)) }
-            }
-            Stepper::Rodas5p => {
-                let Trial { end, slope, stages } = Rodas5P.trial(flow, t, x, slope, h);
-                Trial { end, slope, stages: Either::Tight(stages) }
-            }
-        }
-    }
-
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
-        let Trial { end, slope, stages } = *trial;
-        match stages {
-            Either::Loose(Either::Loose(stages)) => Tsit5.error(h, &Trial { end, slope, stages }, norm),
-            Either::Loose(Either::Tight(stages)) => Dop853.error(h, &Trial { end, slope, stages }, norm),
-            Either::Tight(stages) => Rodas5P.error(h, &Trial { end, slope, stages }, norm),
-        }
-    }
-
-    fn dense<S: State>(
-        &self,
-        flow: &mut impl FnMut(f64, &S) -> S,
-        t: f64,
-        x: &S,
-        h: f64,
-        trial: &Trial<S, Self::Stages<S>>,
-    ) -> Self::Dense<S> {
-        let Trial { end, slope, stages } = *trial;
-        match stages {
-            Either::Loose(Either::Loose(stages)) => {
-                Either::Loose(Either::Loose(Tsit5.dense(flow, t, x, h, &Trial { end, slope, stages })))
-            }
-            Either::Loose(Either::Tight(stages)) => {
-                Either::Loose(Either::Tight(Dop853.dense(flow, t, x, h, &Trial { end, slope, stages })))
-            }
-            Either::Tight(stages) => Either::Tight(Rodas5P.dense(flow, t, x, h, &Trial { end, slope, stages })),
-        }
     }
 }

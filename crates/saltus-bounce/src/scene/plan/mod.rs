@@ -167,9 +167,17 @@ impl Scene {
         let method = Method::of(self.run.stepper, tolerance);
         let most_jumps = self.run.most_jumps.unwrap_or(MOST_JUMPS) as usize;
         let modes = machine.modes(method);
+        let solved = modes.iter().all(|mode| mode.advance.is_solved());
         let explanation = Explanation::of(self, model, machine.coordinates(), modes, tolerance);
-        let how =
-            How { until: self.run.until, most_jumps, most_evaluations: MOST_EVALUATIONS, method, tolerance, absolute };
+        let how = How {
+            until: self.run.until,
+            most_jumps,
+            most_evaluations: MOST_EVALUATIONS,
+            method,
+            tolerance,
+            solved,
+            absolute,
+        };
         Ok(Plan { machine, how, explanation })
     }
 }
