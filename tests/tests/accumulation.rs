@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
+use saltus::nalgebra::{Vector2, vector};
 use saltus::{Cause, Hybrid, Simulation, Stop};
 
 /// Inflow and leaks, marks and volumes at the start.
@@ -72,4 +73,36 @@ fn a_floor_above_zero() {
         let Stop::Zeno { limit } = run.stop else { panic!("floor at {floor}: {}", run.stop) };
         assert!((limit - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-6 * floor.max(1e-6).sqrt(), "{limit}");
     }
+}
+
+/// A ball chatters on a table that shakes, in a model that knows no rest and whose reset leaves the height as it is: early and late in time the run ends at the
+/// limit, and the ball is never lost below the table.
+#[test]
+fn no_ball_is_lost_at_the_end_of_a_chatter() {
+    let mut seed = 1_u64;
+    let mut random = |low: f64, high: f64| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * ((seed >> 11) as f64 / (1_u64 << 53) as f64)
+    };
+    let mut limits = 0;
+    for late in [0.0, 1.0, 10.0, 240.0, 1e3, 1e5] {
+        for _ in 0..100 {
+            let (g, a, omega, e) = (9.81, random(0.002, 0.012), random(20.0, 60.0), random(0.2, 0.7));
+            let table = Hybrid::new()
+                .exact("flight", move |_t, x: &Vector2<f64>| [*x, vector![x[1], -g], vector![-0.5 * g, 0.0]].into())
+                .edge(
+                    "flight",
+                    "flight",
+                    move |t, x| x[0] - a * (omega * t).sin(),
+                    move |t, x| vector![x[0], a * omega * (omega * t).cos() * (1.0 + e) - e * x[1]],
+                );
+            let start = late + random(0.0, 1.0);
+            let x = vector![random(0.02, 0.12), 0.0];
+            let run = Simulation::of(&table).most_jumps(5000).run("flight", x, start..start + 5.0).unwrap();
+            let gap = run.state[0] - a * (omega * run.trajectory.end().seconds()).sin();
+            assert!(gap > -1e-4, "lost at {start}: a = {a}, omega = {omega}, e = {e}: {gap} m, {:?}", run.stop);
+            limits += usize::from(matches!(run.stop, Stop::Zeno { .. }));
+        }
+    }
+    assert!(limits > 450, "{limits} of 600");
 }

@@ -41,7 +41,7 @@ impl Automaton for Ball {
     fn flown(&self, _: bool, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
         (self.path != Path::Steps).then(|| self.flight.after(s, x))
     }
-    fn falls(&self, _: bool, apex: bool, _t: f64, x: &Vector2<f64>) -> Fall {
+    fn falls(&self, _: bool, apex: bool, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
         let after = match (self.path, apex) {
             (Path::Formula, true) => self.flight.apex(x[1]).map(|apex| apex.time),
             (Path::Formula, false) => self.flight.impact(x).map(|impact| impact.time),

@@ -121,7 +121,7 @@ pub trait Automaton {
     /// The default has it searched for.
     ///
     /// A wrong answer is believed: it breaks the guarantee that no crossing is missed.
-    fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall {
+    fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {
         let _ = (mode, edge, t, x);
         Fall::Unknown
     }
@@ -158,7 +158,7 @@ pub trait Automaton {
 
 /// When a guard falls on a solution that is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Fall {
+pub enum Fall<S> {
     /// No formula says: it is searched for.
     #[default]
     Unknown,
@@ -166,6 +166,9 @@ pub enum Fall {
     Never,
     /// After this time, in seconds.
     After(f64),
+    /// After this time, in seconds, in this state, which the guard must not find outside: the cheapest answer, for the solution need then not be evaluated
+    /// to see where it stands.
+    In(f64, S),
 }
 
 /// What to do with an edge whose guard is already negative when its mode is entered.

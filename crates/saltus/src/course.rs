@@ -208,6 +208,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Some(stop));
             }
         };
+        if std::mem::take(&mut arc.memory.spurious) {
+            at.state = before;
+            return self.at_limit(0.0, observer);
+        }
         // Here x⁻ = before, still inside the domain of the mode.
         let now = at.clock.now.seconds();
         let (to, after) = automaton

@@ -32,6 +32,7 @@ pub mod cross;
 mod distance;
 mod error;
 mod filippov;
+mod frames;
 mod hybrid;
 #[cfg(feature = "num-dual")]
 mod linearize;
@@ -45,6 +46,7 @@ mod state;
 pub mod step;
 mod time;
 mod trajectory;
+mod work;
 mod zeno;
 
 pub use nalgebra;
@@ -57,6 +59,7 @@ pub use course::{Checkpoint, Course};
 pub use distance::Closeness;
 pub use error::{Error, ErrorKind};
 pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
+pub use frames::frame_by_frame;
 pub use hybrid::{Hybrid, Link, every};
 #[cfg(feature = "num-dual")]
 pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
@@ -67,3 +70,4 @@ pub use state::{Coords, State};
 pub use step::{Auto, Dop853, Rodas5P, Tsit5};
 pub use time::Time;
 pub use trajectory::{Arc, Cause, Jump, Piece, Trajectory};
+pub use work::{Timing, WorkPoint, WorkPrecision};

@@ -113,15 +113,18 @@ impl Bernstein {
         most * self.degree as f64
     }
 
-    /// The value at `u` (de Casteljau).
-    fn at(&self, u: f64) -> f64 {
-        let mut work = self.b;
-        for level in 1..=self.degree {
-            for i in 0..=self.degree - level {
-                work[i] += u * (work[i + 1] - work[i]);
+    /// The coefficients times their binomials, for [`value`].
+    fn weighted(&self) -> [f64; MAX_DEGREE + 1] {
+        let mut weighted = self.b;
+        let mut binomial = 1.0;
+        for (k, value) in weighted.iter_mut().enumerate().take(self.degree + 1) {
+            *value *= binomial;
+            #[allow(clippy::cast_precision_loss)] // at most MAX_DEGREE
+            {
+                binomial = binomial * (self.degree - k) as f64 / (k + 1) as f64;
             }
         }
-        work[0]
+        weighted
     }
 
     /// Where it changes sign, if its signs at both ends differ: by regula falsi with Illinois' halving, to rounding.
@@ -130,9 +133,10 @@ impl Bernstein {
         if at_a == 0.0 || at_b == 0.0 || (at_a > 0.0) == (at_b > 0.0) {
             return None;
         }
+        let weighted = self.weighted();
         for _ in 0..100 {
             let u = b - at_b * (b - a) / (at_b - at_a);
-            let at_u = self.at(u);
+            let at_u = value(&weighted[..=self.degree], u);
             if at_u == 0.0 || (u - b).abs() <= f64::EPSILON * u {
                 return Some(u);
             }
@@ -178,6 +182,17 @@ impl Bernstein {
         }
         (left, Self { b: work, degree: n })
     }
+}
+
+/// The value at `u` of the polynomial of these weighted coefficients, by Horner's rule in u/(1-u) or its reciprocal, whichever is at most one
+/// (L. Schumaker, W. Volk, *Efficient evaluation of multivariate polynomials*, CAGD 3 (1986) 149).
+#[inline]
+fn value(weighted: &[f64], u: f64) -> f64 {
+    let v = 1.0 - u;
+    let (ratio, base) = if u <= 0.5 { (u / v, v) } else { (v / u, u) };
+    let horner = |sum: f64, w: &f64| sum * ratio + w;
+    let sum = if u <= 0.5 { weighted.iter().rev().fold(0.0, horner) } else { weighted.iter().fold(0.0, horner) };
+    weighted.iter().skip(1).fold(sum, |value, _| value * base)
 }
 
 /// The first fall through zero of c₀ + c₁ s + c₂ s² at s ≥ 0, with c₀ taken to be zero and its root skipped if `spent`.

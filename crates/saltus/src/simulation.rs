@@ -62,6 +62,8 @@ pub(crate) struct Options {
     pub(crate) most_evaluations: u64,
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
+    /// Whether modes that a formula solves are stepped through all the same.
+    pub(crate) stepped: bool,
 }
 
 impl Options {
@@ -91,6 +93,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             most_evaluations: u64::MAX,
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
+            stepped: false,
         };
         Self { automaton, stepper: Auto::new(), options }
     }
@@ -171,6 +174,22 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
+    /// Steps through every mode, also where a formula solves it ([`Automaton::exact`], [`Automaton::flown`]): to see what the formula saves.
+    ///
+    /// ```
+    /// use saltus::nalgebra::{Vector2, vector};
+    /// use saltus::{Hybrid, Simulation};
+    /// let rest = Hybrid::new().mode("rest", |_t, _x: &Vector2<f64>| vector![0.0, 0.0]);
+    /// let run = Simulation::of(&rest).stepped().run("rest", vector![1.0, 2.0], 0.0..3.0)?;
+    /// assert!(run.stats.steps > 0 && run.stats.exact == 0);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn stepped(mut self) -> Self {
+        self.options.stepped = true;
+        self
+    }
+
     /// Runs from `state` in `mode` over the span of time and records the whole trajectory.
     ///
     /// The end of the span may be infinite if the automaton ends or comes to rest by itself.
@@ -230,6 +249,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     }
 
     /// The automaton.
+    pub(crate) const fn relative_tolerance(&self) -> f64 {
+        self.options.tolerance.relative
+    }
+
     #[cfg(feature = "num-dual")]
     pub(crate) const fn automaton(&self) -> &'a A {
         self.automaton

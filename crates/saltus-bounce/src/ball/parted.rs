@@ -49,7 +49,9 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
     #[inline]
     fn flow(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         match phase {
-            Phase::Rising | Phase::Falling => vector![x[1], self.flight.acceleration(x[1])],
+            // Each goes on smoothly past the apex, so that a step that ends beyond it is no shorter for that.
+            Phase::Rising => vector![x[1], self.flight.one_way(x[1], true)],
+            Phase::Falling => vector![x[1], self.flight.one_way(x[1], false)],
             Phase::Rest => vector![0.0, 0.0],
         }
     }
@@ -102,16 +104,17 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
 
     #[inline]
     fn flown(&self, _phase: Phase, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        Some(self.flight.after(s, x)) // in flight: rest is solved exactly
+        // In flight: rest is solved exactly.
+        Some(if s == 0.0 { *x } else { self.flight.after(s, x) })
     }
 
     #[inline]
-    fn falls(&self, _phase: Phase, turn: Turn, _t: f64, x: &Vector2<f64>) -> Fall {
-        let after = match turn {
-            Turn::Apex => self.flight.apex(x[1]).map(|apex| apex.time),
-            Turn::Floor => self.flight.impact(x).map(|impact| impact.time),
+    fn falls(&self, _phase: Phase, turn: Turn, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
+        let arrival = match turn {
+            Turn::Apex => self.flight.apex(x[1]).map(|apex| Fall::In(apex.time, vector![x[0] + apex.rise, 0.0])),
+            Turn::Floor => self.flight.impact(x).map(|impact| Fall::In(impact.time, vector![0.0, -impact.speed])),
         };
-        after.map_or(Fall::Never, Fall::After)
+        arrival.unwrap_or(Fall::Never)
     }
 
     fn beyond(&self, _phase: Phase, _t: f64, _x: &Vector2<f64>) -> Option<(Phase, Vector2<f64>)> {

@@ -90,15 +90,16 @@ impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
 
     #[inline]
     fn flown(&self, _mode: Mode, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        Some(self.flight.after(s, x)) // in flight: rest is solved exactly
+        // In flight: rest is solved exactly.
+        Some(if s == 0.0 { *x } else { self.flight.after(s, x) })
     }
 
     #[inline]
-    fn falls(&self, _mode: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Fall {
+    fn falls(&self, _mode: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
         if self.flight.polynomial(x).is_some() {
             return Fall::Unknown; // the engine knows its way on a parabola
         }
-        self.flight.impact(x).map_or(Fall::Never, |impact| Fall::After(impact.time))
+        self.flight.impact(x).map_or(Fall::Never, |impact| Fall::In(impact.time, vector![0.0, -impact.speed]))
     }
 
     fn beyond(&self, _mode: Mode, _t: f64, _x: &Vector2<f64>) -> Option<(Mode, Vector2<f64>)> {

@@ -246,7 +246,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Automaton for Cloud<
     }
 
     #[inline]
-    fn falls(&self, (): (), touch: Touch, _t: f64, x: &Swarm<D, N>) -> Fall {
+    fn falls(&self, (): (), touch: Touch, _t: f64, x: &Swarm<D, N>) -> Fall<Swarm<D, N>> {
         self.meeting(touch, x).map_or(Fall::Never, Fall::After)
     }
 }

@@ -200,7 +200,7 @@ impl<L: ContactLaw> Automaton for Compliant<L> {
         Some(vector![-d, -u])
     }
 
-    fn falls(&self, _: Stage, moment: Moment, _t: f64, x: &Vector2<f64>) -> Fall {
+    fn falls(&self, _: Stage, moment: Moment, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
         let Some(contact) = self.linear() else { return Fall::Unknown };
         let pressed = [-x[0], -x[1]];
         let time = match moment {

@@ -105,4 +105,9 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
     fn spin_rate(&self, motion: &Motion<N, S>) -> S {
         self.effects.spin_rate(motion)
     }
+
+    #[inline]
+    fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
+        self.effects.kink(motion)
+    }
 }

@@ -113,6 +113,14 @@ pub trait Effect<const N: usize, S: Spin = ()> {
     fn spin_rate(&self, _motion: &Motion<N, S>) -> S {
         S::NONE
     }
+
+    /// Where the acceleration has a kink that flights pass through: the number that falls through zero there. `None` where it is smooth.
+    ///
+    /// A stepper keeps its order if a step ends at the kink.
+    #[inline]
+    fn kink(&self, _motion: &Motion<N, S>) -> Option<f64> {
+        None
+    }
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
@@ -143,6 +151,11 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Option<E> {
     fn spin_rate(&self, motion: &Motion<N, S>) -> S {
         self.as_ref().map_or(S::NONE, |effect| effect.spin_rate(motion))
     }
+
+    #[inline]
+    fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
+        self.as_ref()?.kink(motion)
+    }
 }
 
 macro_rules! tuple_of_effects {
@@ -167,6 +180,13 @@ macro_rules! tuple_of_effects {
                 #[allow(non_snake_case)]
                 let ($first, $($other,)*) = self;
                 $first.spin_rate(motion) $(.plus($other.spin_rate(motion)))*
+            }
+
+            #[inline]
+            fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
+                #[allow(non_snake_case)]
+                let ($first, $($other,)*) = self;
+                $first.kink(motion) $(.or_else(|| $other.kink(motion)))*
             }
         }
     };

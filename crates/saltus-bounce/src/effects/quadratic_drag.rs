@@ -70,4 +70,10 @@ impl<const N: usize, S: Spin> Effect<N, S> for QuadraticDrag {
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
         motion.velocity * (-self.per_length * motion.velocity.norm())
     }
+
+    /// v|v| is smooth wherever v is not zero, which only a ball that moves along a line passes.
+    #[inline]
+    fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
+        (N == 1).then(|| motion.velocity[0])
+    }
 }

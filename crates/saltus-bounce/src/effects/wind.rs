@@ -57,4 +57,9 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
     fn spin_rate(&self, motion: &Motion<N, S>) -> S {
         self.effects.spin_rate(&self.seen(motion))
     }
+
+    #[inline]
+    fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
+        self.effects.kink(&self.seen(motion))
+    }
 }

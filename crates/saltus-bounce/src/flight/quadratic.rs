@@ -44,6 +44,13 @@ impl QuadraticDragFlight {
         Ok(Self { gravity, drag, rate: gravity.sqrt() * drag.sqrt() })
     }
 
+    /// The acceleration with drag downwards, as on the way up, or upwards, as on the way down, whatever the sign of the velocity.
+    #[inline]
+    pub(crate) fn one_way(&self, velocity: f64, rising: bool) -> f64 {
+        let drag = self.drag * velocity * velocity;
+        -self.gravity - if rising { drag } else { -drag }
+    }
+
     /// The rise within `s` seconds from `v` upwards, at most until the apex, and the velocity then.
     fn risen(&self, s: f64, v: f64) -> (f64, f64) {
         let (g, k, z) = (self.gravity, self.drag, self.rate * s);

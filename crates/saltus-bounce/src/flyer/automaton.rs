@@ -75,7 +75,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         let faces = (0..self.walls.faces(cell)).filter(|&index| !stance.touches(index));
         let meets = faces.map(|index| Event::Meet(Face { cell, index }));
         match stance {
-            Stance::Flight { .. } | Stance::Corner { .. } => meets.collect(),
+            Stance::Flight { .. } => meets.chain(self.turns().then_some(Event::Turn)).collect(),
+            Stance::Corner { .. } => meets.collect(),
             Stance::Slide { face, along } => {
                 let leaves = (!self.steady(face)).then_some(Event::Leave(face));
                 let stops = (!none(&along)).then_some(Event::Stop { face, along });
@@ -99,6 +100,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
             Event::Slip(face) => self.cone(face, &self.touch(face, t, x)),
             Event::Change => 1.0, // the clock takes it
+            Event::Turn => self.effects.kink(&x.at(t)).unwrap_or(1.0),
         }
     }
 
@@ -106,6 +108,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     fn affine(&self, event: Event<N>) -> bool {
         match event {
             Event::Meet(face) | Event::Stop { face, .. } => self.walls.straight(face),
+            Event::Turn => true,
             Event::Leave(_) | Event::Slip(_) | Event::Change => false,
         }
     }
@@ -124,7 +127,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
             Event::Stop { face, along } => (self.stopped(face, &along, t, x), *x),
             Event::Slip(face) => (self.without_slip(face, &self.touch(face, t, x)), *x),
-            Event::Change => (Stance::FLIGHT, *x),
+            Event::Change | Event::Turn => (Stance::FLIGHT, *x),
         }
     }
 
@@ -143,7 +146,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 self.struck(stance, face, t, x)
             }
             (Event::Change, Stance::Slide { face, .. } | Stance::Hold { face }) => self.changed(stance, face, t, x),
-            (Event::Change, _) => (stance, *x),
+            (Event::Change | Event::Turn, _) => (stance, *x),
             _ => self.reset(event, t, x),
         })
     }
@@ -152,6 +155,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         match event {
             Event::Meet(_) => Entry::Refuse,
             Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Change => Entry::Fire,
+            Event::Turn => Entry::Wait,
         }
     }
 

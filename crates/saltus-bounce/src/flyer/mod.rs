@@ -8,7 +8,9 @@ mod stance;
 
 use std::marker::PhantomData;
 
-use crate::effects::Effect;
+use nalgebra::SVector;
+
+use crate::effects::{Effect, Motion};
 use crate::parameter::ParameterError;
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, MOST_FACES, Walls};
@@ -32,8 +34,10 @@ pub use stance::{Event, Stance};
 /// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::uniform`]) flights, and contacts with
 /// planes at rest, are exact parabolas, and rides on floors that move are known by formula: no step is taken. Else they are stepped.
 ///
-/// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without friction. Quadratic drag, v|v|, is smooth away from v = 0, which
-/// a ball passes only if it is thrown straight up: for that [`Ball`](crate::Ball) has two modes. No pivoting and no rolling friction.
+/// Where an effect has a kink that flights pass through ([`Effect::kink`]; quadratic drag, v|v|, has one at v = 0 in a single coordinate), a flight has a
+/// second edge, [`Event::Turn`], so that no step goes across it.
+///
+/// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without friction. No pivoting and no rolling friction.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -101,6 +105,13 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     #[must_use]
     pub fn lying(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         self.settled(face, t, x)
+    }
+
+    /// Whether flights pass through a kink of the acceleration.
+    #[inline]
+    fn turns(&self) -> bool {
+        let still = Motion { t: 0.0, position: SVector::zeros(), velocity: SVector::zeros(), spin: S::NONE };
+        self.effects.kink(&still).is_some()
     }
 
     /// Whether a contact with `face` is the same always and everywhere: forces are constant.

@@ -75,4 +75,6 @@ pub enum Event<const N: usize> {
     Slip(Face),
     /// A wall changes its motion, at a time of its schedule.
     Change,
+    /// A flight turns where its acceleration has a kink ([`Effect::kink`](crate::effects::Effect::kink)): nothing jumps, a step ends here.
+    Turn,
 }

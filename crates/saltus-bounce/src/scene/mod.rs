@@ -3,6 +3,7 @@
 //! A scene is data. It does not say how it is to be run; every number in it has been checked, every law is made. What the keys mean, with units
 //! and defaults, is in `docs/scenes.md`; [`schema`] gives it to editors.
 
+pub mod accuracy;
 mod air;
 mod ball;
 mod check;

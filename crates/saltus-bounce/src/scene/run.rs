@@ -45,6 +45,26 @@ pub enum Stepper {
     Rodas5p,
 }
 
+impl Stepper {
+    /// Its name in the literature.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tsit5 => "Tsit5",
+            Self::Dop853 => "Dop853",
+            Self::Rodas5p => "Rodas5P",
+        }
+    }
+
+    /// The one for the tightest tolerances where this one would do.
+    pub(super) const fn exact(self) -> Self {
+        match self {
+            Self::Tsit5 | Self::Dop853 => Self::Dop853,
+            Self::Rodas5p => Self::Rodas5p,
+        }
+    }
+}
+
 /// What is drawn of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Searched, Undefined, chebyshev};
+use crate::cross::{Crossing, Searched, Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::state::State;
@@ -35,6 +35,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let remaining = clock.end.since(now);
         let mut found: Found<A> = None;
         let mut by_formula = false;
+        let mut arrival: Option<Arrival<A>> = None;
         for edge in automaton.edges(mode).iter() {
             let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
             let start = self.start(edge, true);
@@ -45,17 +46,28 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     self.fall_in_windows(edge, now, natural, at, limit, start)
                         .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
                 }
-                _ => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
+                Fall::In(s, state) if self.arrives(edge, now, s, &state, limit) => {
+                    arrival = Some((edge, s, state));
+                    Searched::solved(Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 }))
+                }
+                formula => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
             };
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             found = earlier(found, edge, fall);
             if found.is_some_and(|(first, _)| first == edge) {
-                by_formula = formula != Fall::Unknown;
+                by_formula = !matches!(formula, Fall::Unknown);
             }
         }
-        let close = match found {
-            Some(found) => self.close(found, now, at, remaining, by_formula),
-            None => Close { span: remaining, time: clock.end, state: at(remaining) },
+        let close = match (found, arrival) {
+            (Some((first, crossing)), Some((edge, s, state)))
+                if edge == first && crossing.inside == s && s < remaining =>
+            {
+                self.memory.slack = 0.0;
+                (self.memory.hidden, self.memory.spurious) = (0, false);
+                Close { span: s, time: now.after(s), state }
+            }
+            (Some(found), _) => self.close(found, now, at, remaining, by_formula),
+            (None, _) => Close { span: remaining, time: clock.end, state: at(remaining) },
         };
         if !close.state.is_finite() {
             return Err(Error::new(
@@ -71,7 +83,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         clock.now = close.time;
         Ok(ArcEnd::after(found, told, close.state))
     }
+
+    /// Whether a formula's state a time `s` ahead is on its guard.
+    #[inline]
+    fn arrives(&mut self, edge: A::Edge, now: Time, s: f64, state: &A::State, limit: f64) -> bool {
+        if !(s > 0.0 && s <= limit && state.is_finite()) {
+            return false;
+        }
+        self.memory.stats.guards += 1;
+        self.automaton.guard(edge, now.after(s).seconds(), state) == 0.0
+    }
 }
+
+/// An edge, when its guard falls, and in which state.
+type Arrival<A> = (<A as Automaton>::Edge, f64, <A as Automaton>::State);
 
 /// Tells `observer` of the solution in pieces of degree eight, as long as they are as good as exact.
 fn interpolated<A: Automaton>(

@@ -125,20 +125,42 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
-        let short = root < 1e-4 * self.memory.longest_duration && root > 64.0 * f64::EPSILON * t.abs();
-        let relative = by_formula && self.memory.spent_as(edge).is_some();
-        let hidden = short && !relative && self.hides(edge, t, &at(0.5 * root), &state);
+        let short = root < 1e-4 * self.memory.longest_duration;
+        let resolved = root > 64.0 * f64::EPSILON * t.abs();
+        let again = self.memory.spent_as(edge).is_some();
+        let hidden =
+            short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
+        let doubtful = self.memory.last == Some(edge) && (hidden || short && !resolved && !by_formula);
+        self.memory.spurious = doubtful && self.rises(edge, now, root, &at);
         let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         Close { span, time, state }
     }
 
-    /// Whether on a short arc the guard rises so little, to its value at the state `middle`, that its rounding at the end shows.
+    /// Whether on a short arc from `now` to its `end` after `duration` the guard rises so little that its rounding at the end shows: what the state's
+    /// coordinates are rounded by, or what time is, where the guard moves with it.
     #[cold]
-    fn hides(&mut self, edge: A::Edge, t: f64, middle: &A::State, end: &A::State) -> bool {
+    fn hides(&mut self, edge: A::Edge, now: Time, duration: f64, middle: &A::State, end: &A::State) -> bool {
+        self.memory.stats.guards += 3;
+        let t = now.after(duration).seconds();
+        let rise = self.automaton.guard(edge, now.after(0.5 * duration).seconds(), middle);
+        let g = self.automaton.guard(edge, t, end);
+        let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
+        let by_time = moved * (t.abs().next_up() - t.abs());
+        rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0) + 64.0 * by_time
+    }
+
+    /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that rounding does not matter: such a fall, on an arc so short
+    /// that rounding shows, is the rounding's, while the state is on its way up.
+    #[cold]
+    fn rises(&mut self, edge: A::Edge, now: Time, root: f64, at: impl Fn(f64) -> A::State) -> bool {
         self.memory.stats.guards += 2;
-        let [rise, g] = [middle, end].map(|x| self.automaton.guard(edge, t, x));
-        rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0)
+        // So that the rounding of time and what the guard bends by weigh alike.
+        let (longest, t) = (self.memory.longest_duration, now.seconds().abs());
+        let far = 0.3 * longest * ((t.next_up() - t) / longest).cbrt();
+        let [before, after] =
+            [root - far, root + far].map(|s| self.automaton.guard(edge, now.after(s).seconds(), &at(s)));
+        after > before
     }
 
     /// The guard of `edge` is not a number a time `s` after `now`.

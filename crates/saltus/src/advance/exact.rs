@@ -45,7 +45,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
             found = earlier(found, edge, fall);
             if found.is_some_and(|(first, _)| first == edge) {
-                by_formula = parabola || formula != Fall::Unknown;
+                by_formula = parabola || !matches!(formula, Fall::Unknown);
             }
         }
         let close = match found {
@@ -89,11 +89,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         edge: A::Edge,
         now: Time,
-        formula: Fall,
+        formula: Fall<A::State>,
         at: impl Fn(f64) -> A::State,
         limit: f64,
     ) -> Option<Crossing> {
-        let Fall::After(s) = formula else { return None };
+        let (Fall::After(s) | Fall::In(s, _)) = formula else { return None };
         if s > limit {
             return None;
         }

@@ -67,6 +67,8 @@ pub(crate) struct Memory<E> {
     controller: Controller,
     step: Option<f64>,
     spent: Option<Spent<E>>,
+    /// The edge of the last jump.
+    last: Option<E>,
     /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
     idle: [Option<Spent<E>>; MOST_IDLE],
     idle_count: usize,
@@ -77,6 +79,8 @@ pub(crate) struct Memory<E> {
     longest_duration: f64,
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard spoils their duration.
     hidden: u32,
+    /// Whether the last crossing was the rounding of its guard, on an arc that leads away from zero: jumps have accumulated as far as can be told.
+    pub(crate) spurious: bool,
 }
 
 impl<E: Copy + PartialEq> Memory<E> {
@@ -86,6 +90,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             controller: Controller::new(stepper),
             step: first_step,
             spent: None,
+            last: None,
             idle: [None; MOST_IDLE],
             idle_count: 0,
             clock_took: None,
@@ -93,6 +98,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
+            spurious: false,
         }
     }
 
@@ -129,7 +135,7 @@ impl<E: Copy + PartialEq> Memory<E> {
 
     /// After a jump that no edge made.
     pub(crate) fn beyond(&mut self) {
-        self.spent = None;
+        (self.spent, self.last) = (None, None);
     }
 }
 
@@ -158,6 +164,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
+        self.memory.last = Some(edge);
     }
 
     /// From `x` in `mode` to the first crossing or the end of the span.
@@ -179,12 +186,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *x
         } else {
             let mut within = Clock { end: horizon, ..*clock };
-            let end = match self.automaton.exact(mode, clock.now.seconds(), x) {
-                Some(solution) => self.exact(mode, &solution, &mut within, observer),
-                None if self.automaton.flown(mode, clock.now.seconds(), x, 0.0).is_some() => {
-                    self.closed(mode, x, &mut within, observer)
-                }
-                None => self.stepped(mode, *x, &mut within, observer),
+            let t = clock.now.seconds();
+            let end = if self.options.stepped {
+                self.stepped(mode, *x, &mut within, observer)
+            } else if let Some(solution) = self.automaton.exact(mode, t, x) {
+                self.exact(mode, &solution, &mut within, observer)
+            } else if self.automaton.flown(mode, t, x, 0.0).is_some() {
+                self.closed(mode, x, &mut within, observer)
+            } else {
+                self.stepped(mode, *x, &mut within, observer)
             };
             clock.now = within.now;
             match end? {

@@ -4,16 +4,20 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::control::first_step;
-use crate::cross::Crossing;
+use crate::cross::{Crossing, Evidence};
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::Observer;
+use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
+use super::crossing::less_constant;
 use super::{Advance, ArcEnd, Clock};
+
+/// With no more coordinates than these a guard is probed in each of them.
+const MOST_PROBED: usize = 8;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn stepped(
@@ -44,18 +48,35 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
             let last = h >= remaining;
-            if unguarded && !observer.wants_pieces() {
+            let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
+            if clear && !observer.wants_pieces() {
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 (x, slope, first) = (trial.end, trial.slope, false);
                 continue;
             }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
+            if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, clock.now, &slope, c, h)
+            {
+                self.memory.stats.steps -= 1;
+                self.memory.stats.rejected += 1;
+                self.memory.step = Some(0.1 * h);
+                continue;
+            }
+            if clear {
+                let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
+                clock.now = if last { clock.end } else { clock.now.after(h) };
+                if told.is_break() {
+                    return Ok(ArcEnd::Stop { stop: Stop::Observer, state: trial.end });
+                }
+                (x, slope, first) = (trial.end, trial.slope, false);
+                continue;
+            }
             let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
             let found = self.first_crossing(mode, clock.now, c, h, limit, first, observer)?;
             let Some(rough) = found else {
-                // Where guards were looked at, the state goes on from where they were seen last.
-                let state = if unguarded { trial.end } else { horner(c, 1.0) };
+                // Guards were looked at: the state goes on from where they were seen last.
+                let state = horner(c, 1.0);
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 if told.is_break() {
@@ -133,7 +154,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         slope: &A::State,
         h: f64,
     ) -> Trial<A::State, M::Stages<A::State>> {
-        self.memory.stats.jacobians += M::JACOBIANS;
+        self.memory.stats.jacobians += self.stepper.jacobians();
         let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
@@ -161,6 +182,70 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
         self.memory.stats.flows += 1;
         self.automaton.flow(mode, t, x)
+    }
+
+    /// Whether an arc that leaves a wall by the flow returns to it at once by a dense output whose slope at its start is not the flow's: the step is too
+    /// long for a motion this slow, and would lose the state behind the wall.
+    fn contradicted(&mut self, mode: A::Mode, now: Time, slope: &A::State, c: &[A::State], h: f64) -> bool {
+        let Some(c1) = c.get(1) else { return false };
+        if (0..slope.len()).all(|i| c1.get(i) == h * slope.get(i)) {
+            return false;
+        }
+        let t = now.seconds();
+        for edge in self.automaton.edges(mode).iter() {
+            if !self.automaton.affine(edge) || self.memory.spent_as(edge).is_none() {
+                continue;
+            }
+            self.memory.stats.guards += 3;
+            let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+            let constant = guard(&slope.with(|_| 0.0));
+            let rate = h * less_constant(guard, constant, slope);
+            if rate > 0.0 && less_constant(guard, constant, c1) < 0.5 * rate {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether no guard can come to zero over a step, for how far the dense output reaches from its start at most: then it need not be known.
+    ///
+    /// Only affine guards say how far they follow the state. The answer is the same whoever observes.
+    #[inline]
+    fn clear(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        h: f64,
+        trial: &Trial<A::State, M::Stages<A::State>>,
+        observer: &mut impl Observer<A>,
+    ) -> bool {
+        if x.len() > MOST_PROBED {
+            return false;
+        }
+        let Some(reach) = self.stepper.reach(h, trial) else { return false };
+        let (edges, t) = (self.automaton.edges(mode), now.seconds());
+        for edge in edges.iter() {
+            if !self.automaton.affine(edge) {
+                return false;
+            }
+            self.memory.stats.guards += x.len() as u64 + 2;
+            let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+            let (constant, start) = (guard(&x.with(|_| 0.0)), guard(x));
+            let mut most = 0.0;
+            for k in 0..x.len() {
+                let probe = x.with(|i| if i == k { reach.get(i) } else { 0.0 });
+                most += (guard(&probe) - constant).abs();
+            }
+            let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
+            if !(start > most + rounding && rounding < f64::INFINITY) {
+                return false;
+            }
+        }
+        for edge in edges.iter() {
+            observer.inspection(&Inspection { mode, edge, start: now, span: h, evidence: Evidence::Excluded });
+        }
+        true
     }
 
     /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,

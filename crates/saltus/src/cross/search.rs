@@ -248,6 +248,10 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
+                // Too close to zero for the polynomial that is known, whose margin is that of the whole step: its own values tell more.
+                Look::Smooth if known.is_some() => {
+                    return self.part(&Stretch { margin: f64::INFINITY, known: None, ..*stretch }, side);
+                }
                 Look::Rounding(_) | Look::Smooth => {}
             }
         }

@@ -43,6 +43,13 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
     type Stages<S: State> = Either<L::Stages<S>, T::Stages<S>>;
     type Dense<S: State> = Either<L::Dense<S>, T::Dense<S>>;
 
+    fn jacobians(&self) -> u64 {
+        match self {
+            Self::Loose(method) => method.jacobians(),
+            Self::Tight(method) => method.jacobians(),
+        }
+    }
+
     fn predictive(&self) -> bool {
         match self {
             Self::Loose(method) => method.predictive(),
@@ -79,6 +86,15 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
         match stages {
             Either::Loose(stages) => L::default().error(h, &Trial { end, slope, stages }, norm),
             Either::Tight(stages) => T::default().error(h, &Trial { end, slope, stages }, norm),
+        }
+    }
+
+    #[inline]
+    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
+        let Trial { end, slope, stages } = *trial;
+        match stages {
+            Either::Loose(stages) => L::default().reach(h, &Trial { end, slope, stages }),
+            Either::Tight(stages) => T::default().reach(h, &Trial { end, slope, stages }),
         }
     }
 

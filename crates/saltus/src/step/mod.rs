@@ -32,7 +32,10 @@ pub trait Stepper: Copy {
     type Dense<S: State>: AsRef<[S]>;
 
     /// How many Jacobians a trial evaluates.
-    const JACOBIANS: u64 = 0;
+    #[inline]
+    fn jacobians(&self) -> u64 {
+        0
+    }
 
     /// Whether the next step is predicted from how error and step changed together over the last two.
     ///
@@ -66,6 +69,15 @@ pub trait Stepper: Copy {
     ///
     /// A method with one estimate returns `norm` of it; one with several combines their norms.
     fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64;
+
+    /// How far each coordinate of the dense output is from the start of the step at most; `None` where only the dense output itself can tell.
+    ///
+    /// Where that shows that no guard comes near zero, the dense output is not asked for.
+    #[inline]
+    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
+        let _ = (h, trial);
+        None
+    }
 
     /// The polynomial between the two ends of an accepted trial; summed from the highest power down at θ = 1, it is the end to rounding.
     fn dense<S: State>(

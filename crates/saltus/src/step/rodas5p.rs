@@ -115,7 +115,9 @@ impl Stepper for Rodas5P {
     type Stages<S: State> = ([S; 8], S);
     type Dense<S: State> = [S; 5];
 
-    const JACOBIANS: u64 = 1;
+    fn jacobians(&self) -> u64 {
+        1
+    }
 
     fn predictive(&self) -> bool {
         true

@@ -42,6 +42,9 @@ const D: [[f64; 6]; 2] = [
     [0.101_7, 2.490_627_285_651_253, -16.548_102_889_244_902, 47.379_521_962_819_28, -34.870_657_861_496_61, 2.5],
 ];
 
+/// The largest weights of the differences anywhere in the dense output, rounded up.
+const MOST: [f64; 6] = [0.0125, 0.4939, 1.3791, 3.2901, 2.3248, 0.0678];
+
 impl Stepper for Tsit5 {
     /// k₁, and k₂ - k₁ to k₆ - k₁.
     type Stages<S: State> = [S; 6];
@@ -75,6 +78,14 @@ impl Stepper for Tsit5 {
     fn error<S: State>(&self, h: f64, trial: &Trial<S, [S; 6]>, norm: impl Fn(&S) -> f64) -> f64 {
         let last = last(trial);
         norm(&trial.end.with(|i| h * weighted(&E, all(trial, &last), i)))
+    }
+
+    #[inline]
+    fn reach<S: State>(&self, h: f64, trial: &Trial<S, [S; 6]>) -> Option<S> {
+        let last = last(trial);
+        let differences = all(trial, &last);
+        let most = |i: usize| MOST.iter().zip(differences).map(|(most, d)| most * d.get(i).abs()).sum::<f64>();
+        Some(trial.end.with(|i| h * (trial.stages[0].get(i).abs() + most(i))))
     }
 
     #[inline]
@@ -121,6 +132,16 @@ mod tests {
         assert!(at_ends < 1e-9 && inside < 1e-8, "{at_ends:e} {inside:e}");
         let estimate = error_order(Tsit5, 1.0 / 16.0);
         assert!((Tsit5.error_order() - estimate).abs() < 0.3, "{estimate}");
+    }
+
+    #[test]
+    fn no_dense_output_reaches_farther() {
+        for (k, most) in MOST.into_iter().enumerate() {
+            let end = B[..].get(k).copied().unwrap_or(0.0);
+            let weight = |s: f64| ((D[1][k] * s + D[0][k]) * s + (end - D[0][k] - D[1][k])) * s * s;
+            let largest = (0..=100_000).map(|n| weight(f64::from(n) * 1e-5).abs()).fold(0.0, f64::max);
+            assert!((largest..largest + 1e-3).contains(&most), "{k}: {largest} {most}");
+        }
     }
 
     #[test]

@@ -293,6 +293,7 @@ where
             Event::Stop { .. } => one("stop"),
             Event::Slip(_) => one("slip"),
             Event::Change => one("schedule"),
+            Event::Turn => one("apex"),
         }
     }
     fn modes(&self, model: &Scenic<N, S, E, G>) -> Vec<Stance<N>> {
@@ -316,6 +317,7 @@ where
             Event::Stop { .. } => "stop: the slip has come to an end".to_owned(),
             Event::Slip(_) => "slip: friction no longer holds".to_owned(),
             Event::Change => "schedule".to_owned(),
+            Event::Turn => "apex: the velocity through the air falls through zero".to_owned(),
         }
     }
     fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {

@@ -22,6 +22,10 @@ pub(super) struct How {
     pub(super) tolerance: f64,
     /// Whether a formula solves every mode.
     pub(super) solved: bool,
+    /// Whether to step through it all the same.
+    pub(super) stepped: bool,
+    /// Frames per second, to run frame by frame.
+    pub(super) frames: Option<f64>,
     /// Where a coordinate is near zero; a thousandth of the tolerance unless given.
     pub(super) absolute: Option<f64>,
 }
@@ -125,6 +129,9 @@ where
         if let Some(absolute) = how.absolute {
             simulation = simulation.absolute_tolerance(absolute);
         }
+        if how.stepped {
+            simulation = simulation.stepped();
+        }
         let until = match how.until {
             Some(until) => until,
             None if how.solved => f64::INFINITY,
@@ -135,7 +142,12 @@ where
                 rest * (1.0 + super::SHOWN_AFTER_REST)
             }
         };
-        let run = simulation.run(self.mode, self.state, 0.0..until)?;
+        let run = match how.frames {
+            None => simulation.run(self.mode, self.state, 0.0..until)?,
+            Some(rate) => {
+                saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, how.most_jumps)?
+            }
+        };
         let end = match run.stop {
             Stop::Jumps { most } => End::Jumps { most },
             Stop::Zeno { limit } => End::Zeno { limit },

@@ -16,11 +16,7 @@ impl Method {
     }
 
     pub(super) const fn name(self) -> &'static str {
-        match self.0 {
-            Stepper::Tsit5 => "Tsit5",
-            Stepper::Dop853 => "Dop853",
-            Stepper::Rodas5p => "Rodas5P",
-        }
+        self.0.name()
     }
 
     pub(super) const fn is_stiff(self) -> bool {

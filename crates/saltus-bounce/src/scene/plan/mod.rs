@@ -20,7 +20,8 @@ use std::fmt;
 pub use explain::{Advance, Effect, Explanation, ModePlan};
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
-use super::{Contact, Floor, Law, Scene, Shape};
+use super::accuracy::Way;
+use super::{Contact, Floor, Law, Scene, Shape, Stepper};
 use machine::{How, Machine};
 use method::Method;
 
@@ -134,6 +135,28 @@ impl Plan {
         self
     }
 
+    /// Runs it in this way, instead of as it was planned.
+    pub(super) fn by(mut self, way: Way) -> Self {
+        match way {
+            Way::Formulas => {}
+            Way::Steps { stepper, tolerance } => {
+                (self.how.method, self.how.tolerance, self.how.stepped) = (Method(stepper), tolerance, true);
+            }
+            Way::Frames { rate } => self.how.frames = Some(rate),
+        }
+        self
+    }
+
+    /// Whether a formula solves every mode.
+    pub(super) const fn is_solved(&self) -> bool {
+        self.how.solved
+    }
+
+    /// The stepper it would use where it has to.
+    pub(super) const fn stepper(&self) -> Stepper {
+        self.how.method.0
+    }
+
     /// Runs from the scene's start, and records everything.
     ///
     /// # Errors
@@ -161,7 +184,20 @@ impl Scene {
     /// # Errors
     /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do instead.
     pub fn plan(&self) -> Result<Plan, PlanError> {
-        let (model, machine, absolute) = choose(self)?;
+        Ok(self.planned(choose(self)?))
+    }
+
+    /// The same scene by a model that steppers can step through, also where the planned one is solved by formulas; `None` if there is none.
+    pub(super) fn steppable(&self) -> Option<Plan> {
+        let plan = self.plan().ok()?;
+        match plan.explanation.model {
+            Model::Ball => Some(self.planned((Model::Flyer, flyer::machine(self).ok()?, None))),
+            Model::Flyer => Some(plan),
+            _ => (!plan.how.solved).then_some(plan),
+        }
+    }
+
+    fn planned(&self, (model, machine, absolute): Chosen) -> Plan {
         let default = if model == Model::Compliant { CONTACT_TOLERANCE } else { TOLERANCE };
         let tolerance = self.run.tolerance.unwrap_or(default);
         let method = Method::of(self.run.stepper, tolerance);
@@ -176,9 +212,11 @@ impl Scene {
             method,
             tolerance,
             solved,
+            stepped: false,
+            frames: None,
             absolute,
         };
-        Ok(Plan { machine, how, explanation })
+        Plan { machine, how, explanation }
     }
 }
 
@@ -367,6 +405,12 @@ impl std::error::Error for PlanError {}
 /// Why a run failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunError(String);
+
+impl RunError {
+    pub(super) const fn new(says: String) -> Self {
+        Self(says)
+    }
+}
 
 impl fmt::Display for RunError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -189,6 +189,12 @@ pub enum End {
 }
 
 impl End {
+    /// Whether the run came to the end that was asked for.
+    #[must_use]
+    pub const fn is_in_time(&self) -> bool {
+        matches!(self, Self::Time)
+    }
+
     /// In one word.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -362,7 +368,11 @@ impl Record {
             }
             if rising && up(segment.span) <= 0.0 {
                 let s = if up(0.0) > 0.0 { fall(up, segment.span) } else { 0.0 };
-                apexes.push(Apex { t: segment.start + s, height: segment.at(s).height() });
+                let t = segment.start + s;
+                // Rounding may let a piece that begins on an apex rise to it once more.
+                if apexes.last().is_none_or(|last: &Apex| t > last.t + 4.0 * f64::EPSILON * t) {
+                    apexes.push(Apex { t, height: segment.at(s).height() });
+                }
             }
             rising = up(segment.span) > 0.0;
         }
