@@ -31,5 +31,13 @@ pub struct Physics;
 pub struct Tutorial;
 
 #[cfg(doctest)]
+#[doc = include_str!("../../docs/study.md")]
+pub struct Study;
+
+#[cfg(doctest)]
 #[doc = include_str!("../../docs/cookbook.md")]
 pub struct Cookbook;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/accuracy.md")]
+pub struct Accuracy;

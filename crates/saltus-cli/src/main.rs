@@ -1,5 +1,6 @@
 //! The command `saltus`: fit a coefficient of restitution to a table, simulate a bounce, draw it.
 
+mod accuracy;
 mod args;
 mod cost;
 mod error;
@@ -28,6 +29,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Fit(fit) => fit::run(fit, args.quiet),
         args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
         args::Command::Explain(explain) => explain::run(explain),
+        args::Command::Accuracy(accuracy) => accuracy::run(accuracy),
         args::Command::Export(export) => export::run(export, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
         args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),

@@ -9,6 +9,7 @@ use saltus_bounce::effects::Gravity;
 use saltus_bounce::scene::plan::{End, Plan, Record};
 use saltus_bounce::scene::{Law, ReadError, Run, Scene};
 
+use crate::accuracy;
 use crate::args::{self, MotionFormat};
 use crate::error::Error;
 use crate::motion::Motion;
@@ -18,9 +19,14 @@ use crate::picture;
 pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error> {
     let (format, drawn) = outputs(args)?;
     check_picture(drawn)?;
-    let scene = made(args)?;
+    let mut scene = made(args)?;
     if let Some(note) = note(&scene) {
         say(quiet, &note);
+    }
+    if let Some(target) = args.target {
+        let (aimed, chosen) = accuracy::aimed(scene, target)?;
+        say(quiet, &chosen);
+        scene = aimed;
     }
     let plan = planned(&scene, args.scene.as_deref())?;
     let model = plan.explain().model;

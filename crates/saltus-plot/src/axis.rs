@@ -5,6 +5,10 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, KeyPointWeight, NoDefaultFormatting, Ranged, ValueFormatter};
 
 use crate::curve::Affine;
+use crate::unit::superscript;
+
+/// An axis of more powers of ten than this is labelled by their exponents.
+pub(crate) const MANY_DECADES: f64 = 5.0;
 
 /// An axis in the units it is labelled with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +83,9 @@ impl Axis {
 
     /// The number as it is written beside its tick: no more decimals than the step needs.
     pub(crate) fn text(&self, value: f64) -> String {
+        if self.decades && self.high - self.low > MANY_DECADES {
+            return format!("10{}", superscript(value.round() as i32));
+        }
         if self.decades {
             let decimals = (-value.floor()).clamp(0.0, 12.0) as usize;
             return typeset(&format!("{:.decimals$}", 10f64.powf(value)));
@@ -183,6 +190,14 @@ mod tests {
         let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
         assert_eq!(texts.len(), 6);
         assert_eq!(texts[1], "1\u{2009}000\u{2009}000.2");
+    }
+
+    #[test]
+    fn many_decades_are_labelled_by_their_exponents() {
+        let axis = Axis::decades(-12.0, -1.0);
+        let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
+        assert_eq!(texts, ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
+        assert_eq!(Axis::decades(-2.0, 1.0).text(-1.0), "0.1");
     }
 
     #[test]

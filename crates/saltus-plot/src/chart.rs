@@ -60,7 +60,8 @@ pub struct Chart {
     pub(crate) discs: Vec<Disc>,
     pub(crate) ground: Vec<Stroke>,
     pub(crate) to_scale: bool,
-    pub(crate) logarithmic: bool,
+    /// Which axes go by powers of ten, across and up.
+    pub(crate) logarithmic: [bool; 2],
     pub(crate) background: Background,
 }
 
@@ -79,7 +80,7 @@ impl Chart {
             discs: Vec::new(),
             ground: Vec::new(),
             to_scale: false,
-            logarithmic: false,
+            logarithmic: [false; 2],
             background: Background::None,
         }
     }
@@ -143,7 +144,14 @@ impl Chart {
     /// Shows the upward axis by powers of ten; what is not above zero is refused.
     #[must_use]
     pub const fn logarithmic(mut self) -> Self {
-        self.logarithmic = true;
+        self.logarithmic[1] = true;
+        self
+    }
+
+    /// Shows both axes by powers of ten; what is not above zero is refused.
+    #[must_use]
+    pub const fn both_logarithmic(mut self) -> Self {
+        self.logarithmic = [true; 2];
         self
     }
 
@@ -192,8 +200,10 @@ impl Chart {
         if reach[0].0 > reach[0].1 {
             return Err(PlotError::Empty);
         }
-        if self.logarithmic && reach[1].0 <= 0.0 {
-            return Err(PlotError::Negative { what: "a value on the logarithmic axis".to_owned(), value: reach[1].0 });
+        for (logarithmic, (low, _)) in self.logarithmic.iter().zip(reach) {
+            if *logarithmic && low <= 0.0 {
+                return Err(PlotError::Negative { what: "a value on the logarithmic axis".to_owned(), value: low });
+            }
         }
         Ok(reach)
     }

@@ -8,7 +8,7 @@ use plotters::element::EmptyElement;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, MANY_DECADES};
 use crate::chart::{Chart, Measure};
 use crate::curve::Affine;
 use crate::error::PlotError;
@@ -36,10 +36,14 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let fixed = heading.height() + 2.1 * b + foot + 0.8 * ty.margin();
     // One unit for both where they are to scale: that of the longer.
     let longer = usize::from(reach[1].1 - reach[1].0 > reach[0].1 - reach[0].0);
-    let units = [0, 1].map(|k| if chart.to_scale { longer } else { k }).map(|k| unit(chart.axes[k].1, reach[k]));
+    let units = [0, 1].map(|k| if chart.to_scale { longer } else { k }).map(|k| {
+        // Over many powers of ten no prefix fits better than none.
+        let wide = chart.logarithmic[k] && (reach[k].1 / reach[k].0).log10() > MANY_DECADES;
+        unit(chart.axes[k].1, if wide { (0.5, 5.0) } else { reach[k] })
+    });
     let scaled = |k: usize| opened((reach[k].0 / units[k].size, reach[k].1 / units[k].size));
-    let (mut across, mut up) =
-        (scaled(0), if chart.logarithmic { decades(reach[1], units[1].size) } else { scaled(1) });
+    let ranged = |k: usize| if chart.logarithmic[k] { decades(reach[k], units[k].size) } else { scaled(k) };
+    let (mut across, mut up) = (ranged(0), ranged(1));
     let mut high = PAGE.1 - fixed;
     let rough = w - 2.0 * ty.margin() - 4.0 * b;
     if chart.to_scale {
@@ -55,7 +59,7 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     (across, up) = (air(across, rough), air(up, high));
     let most = (high / (2.3 * b)).clamp(3.0, 10.0) as usize;
     let y_axis =
-        |up: (f64, f64)| if chart.logarithmic { Axis::decades(up.0, up.1) } else { Axis::new(up.0, up.1, up, most) };
+        |up: (f64, f64)| if chart.logarithmic[1] { Axis::decades(up.0, up.1) } else { Axis::new(up.0, up.1, up, most) };
     let numbers = |axis: &Axis| axis.ticks().iter().map(|&t| width(&axis.text(t), b, false)).fold(0.0, f64::max);
     let left = ty.margin() + numbers(&y_axis(up)) * 1.04 + 0.55 * b;
     let panel = w - left - ty.margin();
@@ -70,7 +74,11 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         across = wider(across, coarse / scale[0], false);
         up = wider(up, coarse / scale[1], true);
     }
-    let x = Axis::new(across.0, across.1, across, 12);
+    let x = if chart.logarithmic[0] {
+        Axis::decades(across.0, across.1)
+    } else {
+        Axis::new(across.0, across.1, across, 12)
+    };
     let x = if chart.axes[0].1 == Measure::Count { x.whole() } else { x };
     let x = x.thinned(panel, 1.6 * b, |text| width(text, b, false));
     let y = y_axis(up);
@@ -99,11 +107,11 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         .map_err(failed)?;
     mesh(&mut panel, ty, Some(&title(0)))?;
     let (x, y) = maps(&panel);
-    let y = if chart.logarithmic { y } else { y.per_unit(units[1].size) };
-    for trace in traces(chart, x.per_unit(units[0].size), y, units[1].size, ty) {
+    let [x, y] = [(x, 0), (y, 1)].map(|(map, k)| if chart.logarithmic[k] { map } else { map.per_unit(units[k].size) });
+    for trace in traces(chart, x, y, [units[0].size, units[1].size], ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
-    for (data, full) in discs(chart, x.per_unit(units[0].size), y) {
+    for (data, full) in discs(chart, x, y) {
         let mut canvas = canvas.try_borrow_mut().map_err(|e| PlotError::Drawing(e.to_string()))?;
         canvas.glaze(&data, Ink::Series(0), if full { 1.0 } else { 0.35 });
     }
@@ -152,9 +160,10 @@ fn decades((low, high): (f64, f64), size: f64) -> (f64, f64) {
 }
 
 /// Everything that is drawn with a pen, back to front.
-fn traces(chart: &Chart, x: Affine, y: Affine, size: f64, ty: Type) -> Vec<Trace> {
+fn traces(chart: &Chart, x: Affine, y: Affine, sizes: [f64; 2], ty: Type) -> Vec<Trace> {
     let trace = |data: String, ink: Ink, width: f64, dash: Dash, alpha: f64| Trace { data, ink, width, dash, alpha };
-    let place = |[a, b]: [f64; 2]| (x.at(a), y.at(if chart.logarithmic { (b / size).log10() } else { b }));
+    let placed = |k: usize, value: f64| if chart.logarithmic[k] { (value / sizes[k]).log10() } else { value };
+    let place = |[a, b]: [f64; 2]| (x.at(placed(0, a)), y.at(placed(1, b)));
     let mut traces = Vec::new();
     traces.push(trace(path(&chart.ground, x, y), Ink::Floor, 1.6 * ty.hairline(), Dash::Solid, 1.0));
     let mut jumps = String::new();
@@ -166,7 +175,7 @@ fn traces(chart: &Chart, x: Affine, y: Affine, size: f64, ty: Type) -> Vec<Trace
     }
     traces.push(trace(jumps, Ink::Muted, 0.9 * ty.hairline(), Dash::Dashed, 0.8));
     for (i, (_, strokes)) in chart.lines.iter().enumerate().rev() {
-        let data = if chart.logarithmic {
+        let data = if chart.logarithmic.contains(&true) {
             let mut data = String::new();
             for (n, stroke) in strokes.iter().enumerate() {
                 let ends = [stroke.at(0.0), stroke.at(stroke.span)].map(|(a, b)| place([a, b]));

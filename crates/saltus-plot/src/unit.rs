@@ -114,7 +114,8 @@ impl Unit {
     }
 }
 
-fn superscript(power: i32) -> String {
+/// A whole number as an exponent.
+pub(crate) fn superscript(power: i32) -> String {
     power
         .to_string()
         .chars()
