@@ -1,13 +1,12 @@
-//! Vertical balls, their flight and restitution composed by type: reference values, costs, laws.
+//! Vertical balls, their flight and restitution composed by type: costs, laws.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Jump, Polynomial, Run, Simulation, Stats, Stop};
+use saltus::{Automaton, Edges, Jump, Polynomial, Run, Simulation, Stats};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
 use saltus_bounce::restitution::{Knots, Linear, Plastic, Viscoelastic};
 use saltus_bounce::{Ball, Cor, Floor, Mode, Phase, Restitution, Turn};
-use saltus_tests::reference::Case;
 
 fn cor(e: f64) -> Cor {
     Cor::new(e).unwrap()
@@ -16,51 +15,6 @@ fn cor(e: f64) -> Cor {
 /// The jumps by which the ball meets the floor.
 fn impacts<A: Automaton>(run: &Run<A>, floor: A::Edge) -> Vec<Jump<A>> {
     run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
-}
-
-/// When the bounces are over: the last jump.
-fn rest<A: Automaton>(run: &Run<A>) -> f64 {
-    let last = run.trajectory.jumps().last().unwrap();
-    assert_eq!(last.edge(), None, "the bounces accumulate");
-    last.t()
-}
-
-#[test]
-fn quadratic_drag() {
-    for (id, end, last) in [("qdrag-moderate", 20.0, 6), ("qdrag-strong", 400.0, 4)] {
-        let case = Case::named(id);
-        let flight = QuadraticDragFlight::new(case.param("g"), case.param("k")).unwrap();
-        let ball = Ball::of(flight, cor(case.param("e")));
-        let run = Simulation::of(&ball).run(Phase::Falling, vector![case.param("h"), 0.0], 0.0..end).unwrap();
-        let impacts = impacts(&run, Turn::Floor);
-        let apex = run.trajectory.jumps().iter().find(|jump| jump.edge() == Some(Turn::Apex)).unwrap();
-        for n in [1, last] {
-            case.check(&format!("t_{n}"), impacts[n - 1].t());
-            case.check(&format!("v_pre_{n}"), impacts[n - 1].before[1]);
-        }
-        case.check("apex_1", apex.after[0]);
-        case.check("t_zeno", rest(&run));
-        assert_eq!((run.mode, run.stop, run.stats.steps), (Phase::Rest, Stop::Time, 0));
-    }
-}
-
-#[test]
-fn linear_drag() {
-    for id in ["ldrag-moderate", "ldrag-weak"] {
-        let case = Case::named(id);
-        let flight = LinearDragFlight::new(case.param("g"), case.param("c")).unwrap();
-        let ball = Ball::of(flight, cor(case.param("e")));
-        let run = Simulation::of(&ball).run(Mode::Flight, vector![case.param("h"), 0.0], 0.0..20.0).unwrap();
-        let impacts = impacts(&run, Floor);
-        for n in [1, 2, 6] {
-            case.check(&format!("t_{n}"), impacts[n - 1].t());
-        }
-        for n in [1, 6] {
-            case.check(&format!("v_pre_{n}"), impacts[n - 1].before[1]);
-        }
-        case.check("t_zeno", rest(&run));
-        assert_eq!((run.mode, run.stop, run.stats.steps), (Mode::Rest, Stop::Time, 0));
-    }
 }
 
 /// The bounces of every flight under every restitution come to rest where the flights' own formulas say, and cost no step.

@@ -1,14 +1,11 @@
-//! Several balls on a line: cascades, collapse, and a billiard that counts the digits of π.
+//! Several balls on a line: stacks that come to rest, what is kept, and mirrors.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use std::ops::ControlFlow;
-
 use proptest::prelude::*;
-use saltus::{Cause, Jump, Observer, Run, Simulation, Stop};
+use saltus::{Run, Simulation, Stop};
 use saltus_bounce::line::{Contact, Lying, Row};
 use saltus_bounce::{Cor, Drop, Line};
-use saltus_tests::reference::Case;
 
 fn cor(e: f64) -> Cor {
     Cor::new(e).unwrap()
@@ -16,151 +13,6 @@ fn cor(e: f64) -> Cor {
 
 fn run<const N: usize>(line: &Line<N>, start: Row<N>, end: f64) -> Run<Line<N>> {
     Simulation::of(line).run(Lying::NONE, start, 0.0..end).unwrap()
-}
-
-/// Balls that touch, the first of them coming in from a distance of 1 m at 1 m/s.
-fn cradle<const N: usize>(e: f64) -> Run<Line<N>> {
-    let mut start = Row { gaps: [0.0; N], velocities: [0.0; N] };
-    (start.gaps[0], start.gaps[1], start.velocities[0]) = (-1.0, 1.0, 1.0);
-    run(&Line::new([1.0; N], cor(e)).unwrap(), start, 2.0)
-}
-
-#[test]
-fn cradles() {
-    let case = Case::named("cradle-5-1");
-    let five = cradle::<5>(case.param("e"));
-    case.check("n_pair", five.trajectory.jumps().len() as f64);
-    for (i, v) in five.state.velocities.into_iter().enumerate() {
-        case.check(&format!("v_{}", i + 1), v);
-    }
-    let case = Case::named("cradle-3-e0.9");
-    let three = cradle::<3>(case.param("e"));
-    case.check("n_pair", three.trajectory.jumps().len() as f64);
-    for (i, v) in three.state.velocities.into_iter().enumerate() {
-        case.check(&format!("v_{}", i + 1), v);
-    }
-    assert!(three.trajectory.jumps().iter().all(|jump| jump.t() == 1.0));
-}
-
-#[test]
-fn stacked_gap() {
-    let case = Case::named("stacked-gap");
-    let [g, lower, upper, h, gap] = ["g", "M", "m", "h", "gap"].map(|name| case.param(name));
-    let line = Line::new([lower, upper], cor(1.0)).unwrap().with_gravity(g).unwrap().on_floor();
-    let run = run(&line, Row::at([h, h + gap], [0.0; 2]), 0.6);
-    let jumps = run.trajectory.jumps();
-    assert_eq!(jumps.len(), 2);
-    case.check("t_floor", jumps[0].t());
-    case.check("dt_contact", jumps[1].time.since(jumps[0].time));
-    let [lower, upper] = jumps[1].after.velocities;
-    case.check("v_lower", lower);
-    case.check("v_upper", upper);
-    case.check("apex_upper", jumps[1].after.positions()[1] + upper * upper / (2.0 * g));
-}
-
-#[test]
-fn chain() {
-    let case = Case::named("chain-3");
-    let line = Line::new([1.0, case.param("mu"), 1.0], cor(1.0)).unwrap();
-    let run = run(&line, Row::at([0.0, 1.0, 3.0], [1.0, 0.0, -0.5]), 10.0);
-    let jumps = run.trajectory.jumps();
-    case.check("n_collisions", jumps.len() as f64);
-    case.check("t_first", jumps[0].t());
-    case.check("t_last", jumps[jumps.len() - 1].t());
-    for (i, v) in run.state.velocities.into_iter().enumerate() {
-        case.check(&format!("v_{}", i + 1), v);
-    }
-}
-
-#[test]
-fn inelastic_collapse() {
-    let case = Case::named("inelastic-collapse");
-    let line = Line::new([1.0; 3], cor(case.param("e"))).unwrap();
-    let run = run(&line, Row::at([0.0, 1.0, 2.5], [1.0, 0.0, -1.0]), 5.0);
-    let jumps = run.trajectory.jumps();
-    let limit = jumps.iter().find(|jump| jump.cause == Cause::Zeno).unwrap();
-    case.check("t_collapse", limit.t());
-    case.check("x_collapse", limit.after.positions()[0]);
-    let close = |jump: &&Jump<Line<3>>| jump.after.gaps[1] < 1e-6 && jump.after.gaps[2] < 1e-6;
-    case.check("n_gap_1e-6", jumps.iter().find(close).unwrap().j as f64);
-    for (x, v) in run.state.positions().into_iter().zip(run.state.velocities) {
-        case.check("x_i(5)", x);
-        case.check("v_i(5)", v);
-    }
-    assert_eq!((run.state.gaps[1], run.state.gaps[2]), (0.0, 0.0));
-}
-
-/// Counts jumps; keeps the first, the last and the one at a quarter of all.
-struct Count {
-    quarter: usize,
-    seen: usize,
-    first: f64,
-    last: f64,
-    at_quarter: Option<Jump<Line<2>>>,
-}
-
-impl Observer<Line<2>> for Count {
-    fn wants_pieces(&self) -> bool {
-        false
-    }
-    fn jump(&mut self, jump: &Jump<Line<2>>) -> ControlFlow<()> {
-        self.seen += 1;
-        self.last = jump.t();
-        if self.seen == 1 {
-            self.first = self.last;
-        }
-        if self.seen == self.quarter {
-            self.at_quarter = Some(*jump);
-        }
-        ControlFlow::Continue(())
-    }
-}
-
-fn galperin(n: i32) {
-    let case = Case::named(&format!("galperin-{n}"));
-    let big = 100.0_f64.powi(n);
-    let line = Line::new([1.0, big], cor(1.0)).unwrap().on_floor();
-    let digits = (std::f64::consts::PI * 10.0_f64.powi(n)) as usize;
-    let mut count = Count { quarter: (digits / 4).max(1), seen: 0, first: 0.0, last: 0.0, at_quarter: None };
-    let simulation = Simulation::of(&line).most_jumps(100_000_000);
-    let began = std::time::Instant::now();
-    let end = simulation.drive(Lying::NONE, Row::at([1.0, 2.0], [0.0, -1.0]), 0.0..10.0, &mut count).unwrap();
-    println!("galperin-{n}: {} impacts in {:?}", count.seen, began.elapsed());
-    case.check("n_collisions", count.seen as f64);
-    case.check("t_first", count.first);
-    case.check("v_big_final", end.state.velocities[1]);
-    case.check("v_small_final", end.state.velocities[0]);
-    let quarter = count.at_quarter.unwrap();
-    case.check("v_big_quarter", quarter.after.velocities[1]);
-    case.check("v_small_quarter", quarter.after.velocities[0]);
-    case.check("t_quarter", quarter.t());
-    case.check("t_last", count.last);
-}
-
-#[test]
-fn galperin_0() {
-    galperin(0);
-}
-
-#[test]
-fn galperin_1() {
-    galperin(1);
-}
-
-#[test]
-fn galperin_3() {
-    galperin(3);
-}
-
-#[test]
-fn galperin_5() {
-    galperin(5);
-}
-
-#[test]
-#[ignore = "31415926 impacts take over five seconds: run it with --release"]
-fn galperin_7() {
-    galperin(7);
 }
 
 /// A single ball on the floor is the ball of the closed form, rest included.

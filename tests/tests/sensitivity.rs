@@ -1,4 +1,4 @@
-//! Derivatives through jumps, against closed forms, reference values and differences of runs.
+//! Derivatives through jumps, against closed forms and differences of runs.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -9,11 +9,7 @@ use models::{Bounce, Coin, Dragged, Hopper, Phase, Tossed};
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::step::{Dop853, Stepper};
-use saltus::{
-    Automaton, Coords, ErrorKind, Jump, Linearize, Run, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt,
-    saltation,
-};
-use saltus_tests::reference::Case;
+use saltus::{Coords, ErrorKind, Linearize, Run, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt, saltation};
 
 use Wrt::{Initial, Parameter};
 
@@ -26,76 +22,6 @@ fn run<'a, A: Linearize, const K: usize>(
 ) -> Run<Sensitive<'a, A, K>> {
     let simulation = Simulation::of(sensitive).stepper(stepper).tolerance(1e-13).most_steps(100_000);
     simulation.run(mode, sensitive.start(0.0, x), 0.0..end).unwrap()
-}
-
-fn impact<A: Automaton>(run: &Run<A>, n: usize) -> &Jump<A> {
-    run.trajectory.jumps().iter().filter(|jump| jump.edge().is_some()).nth(n - 1).unwrap()
-}
-
-#[test]
-fn sens_ball() {
-    let case = Case::named("sens-ball");
-    let (g, e, h) = (case.param("g"), case.param("e"), case.param("h"));
-    for exact in [true, false] {
-        let ball = Bounce { exact, ..Bounce::new(g, e) };
-        let sensitive = Sensitive::of(&ball, [Parameter(1), Parameter(0), Initial(0)]);
-        let run = run(&sensitive, Dop853, Phase::Flight, vector![h, 0.0], 5.5);
-        let tenth = impact(&run, 10);
-        case.check("t_10", tenth.t());
-        let after = sensitive.after(tenth);
-        case.check("dvpost10_de", after[0][1]);
-        let sample = run.trajectory.at(2.5).unwrap();
-        for (k, q) in ["e", "g", "h"].into_iter().enumerate() {
-            case.check(&format!("dt10_d{q}"), tenth.after.dt[k]);
-            case.check(&format!("dx(2.5)_d{q}"), sample.columns[k][0]);
-            case.check(&format!("dv(2.5)_d{q}"), sample.columns[k][1]);
-            // At an impact the height is zero whatever q.
-            assert!(sensitive.before(tenth)[k][0].abs() < 1e-13 && after[k][0].abs() < 1e-13);
-        }
-        case.check("n(2.5)", run.trajectory.jumps().iter().filter(|jump| jump.t() <= 2.5).count() as f64);
-        case.check("x(2.5)", sample.x[0]);
-    }
-}
-
-#[test]
-fn saltation_table() {
-    let case = Case::named("saltation-table");
-    let (g, a, w, e) = (case.param("g"), case.param("A"), case.param("w"), case.param("e"));
-    let ball = Bounce { amplitude: a, frequency: w, ..Bounce::new(g, e) };
-    // The orbit that returns after one period of the table.
-    let period = std::f64::consts::TAU / w;
-    let phase = (std::f64::consts::PI * g * (1.0 - e) / (a * w * w * (1.0 + e))).acos();
-    let (t, rebound) = (phase / w, 0.5 * g * period);
-    let height = a * phase.sin();
-
-    let jump = saltation(&ball, Phase::Flight, models::Floor, t, &vector![height, rebound - g * period]).unwrap();
-    for (name, place) in [("S11", (0, 0)), ("S12", (0, 1)), ("S21", (1, 0)), ("S22", (1, 1))] {
-        case.check(name, jump.state[place]);
-    }
-
-    let sensitive = Sensitive::of(&ball, [Initial(0), Initial(1)]);
-    let start = sensitive.start(t, vector![height, rebound]);
-    let run = Simulation::of(&sensitive).tolerance(1e-12).run(Phase::Flight, start, t..t + 1.5 * period).unwrap();
-    let back = impact(&run, 1);
-    assert!((back.t() - t - period).abs() < 1e-13);
-    let [first, second] = back.after.columns;
-    case.check("monodromy_trace", first[0] + second[1]);
-    case.check("monodromy_det", first[0] * second[1] - first[1] * second[0]);
-}
-
-#[test]
-fn sens_drag() {
-    let case = Case::named("sens-drag");
-    let ball = Dragged { g: case.param("g"), k: case.param("k"), e: case.param("e"), ..Dragged::default() };
-    let sensitive = Sensitive::of(&ball, [Parameter(1), Parameter(2), Initial(0), Parameter(0)]);
-    let run = run(&sensitive, Dop853, models::Way::Down, vector![case.param("h"), 0.0], 6.0);
-    let third = run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(models::Turn::Floor)).nth(2).unwrap();
-    case.check("t_3", third.t());
-    case.check("v_pre_3", third.before.x[1]);
-    for (k, q) in ["k", "e", "h", "g"].into_iter().enumerate() {
-        case.check(&format!("dt3_d{q}"), third.after.dt[k]);
-        case.check(&format!("dv3_d{q}"), sensitive.before(third)[k][1]);
-    }
 }
 
 /// D1: a state after an event, by the time of the event; and the time of an event, by the height.

@@ -2,7 +2,7 @@
 
 use saltus::cross::{Start, first_fall};
 use saltus::nalgebra::{Vector2, Vector4, vector};
-use saltus::{Automaton, Edges, Entry, ErrorKind, Hybrid, Simulation, Stop};
+use saltus::{Automaton, Edges, Entry, ErrorKind, Hybrid, Reversed, Simulation, Stop};
 
 use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, of_time, throw};
 
@@ -85,6 +85,40 @@ impl Automaton for Balls {
         let mut after = *x;
         (after[2 * edge], after[2 * edge + 1]) = (0.0, -0.5 * x[2 * edge + 1]);
         ((), after)
+    }
+}
+
+/// Backwards, guards a hair apart come in the wrong order, and a start exactly on one raises; here 2e-8, then 1e-8, then 0.
+#[test]
+fn backwards_through_three_guards_close_together() {
+    let levels = [("a", "b", 0.0), ("b", "c", 1e-8), ("c", "d", 2e-8)];
+    for exact in [true, false] {
+        let clock = levels.into_iter().fold(Hybrid::new().mode("d", |_t, _x: &f64| 1.0), |clock, (from, to, level)| {
+            clock.mode(from, |_t, _x| 1.0).edge(from, to, move |_t, x| level - x, |_t, x| *x).inverse(
+                from,
+                to,
+                move |_t, x| x - level,
+                |_t, x| *x,
+            )
+        });
+        let line = |_t: f64, x: &f64| [*x, 1.0].into();
+        let clock = if exact {
+            ["a", "b", "c", "d"].into_iter().fold(clock, |clock, mode| clock.exact(mode, line))
+        } else {
+            clock
+        };
+        let back = |start: f64| {
+            let run = Simulation::of(&Reversed::of(&clock)).run("d", start, Reversed::span(start, -1.0)).unwrap();
+            assert_eq!((run.mode, run.stop), ("a", Stop::Time));
+            run.trajectory.jumps().iter().map(|jump| -jump.t()).collect::<Vec<_>>()
+        };
+        for start in [1.0, 2e-8] {
+            let t = back(start);
+            assert!(
+                t.len() == 3 && t.iter().zip([2e-8, 1e-8, 0.0]).all(|(t, at)| (t - at).abs() < 1e-15),
+                "{start}: {t:?}"
+            );
+        }
     }
 }
 

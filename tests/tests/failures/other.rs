@@ -2,7 +2,7 @@
 
 use saltus::nalgebra::vector;
 use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
-use saltus::{Hybrid, Simulation};
+use saltus::{Hybrid, Simulation, Stats, every};
 
 use super::{Flight, G, PATHS, ball};
 
@@ -42,4 +42,24 @@ fn runs_side_by_side_are_the_runs_alone() {
         });
         assert_eq!(alone, beside, "{path:?}");
     }
+}
+
+/// A method of many steps begins again at order one after each jump; one of a single step has nothing to forget, and keeps the size of its step.
+#[test]
+fn a_stiff_run_restarts_cheaply() {
+    // x' = -10⁴ (x - cos t), with a jump each 0.1 s that changes nothing, and one that kicks x away by 1.
+    let run = |kick: Option<f64>| -> Stats {
+        let automaton = Hybrid::new().mode("run", |t: f64, x: &f64| -1e4 * (x - t.cos()));
+        let automaton = match kick {
+            Some(kick) => automaton.scheduled("run", "run", every(0.1), move |_t, x| x + kick),
+            None => automaton,
+        };
+        let run = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-6).run("run", 1.0, 0.0..10.05).unwrap();
+        assert_eq!(run.stats.jumps, if kick.is_some() { 100 } else { 0 });
+        run.stats
+    };
+    let [smooth, still, kicked] = [run(None), run(Some(0.0)), run(Some(1.0))];
+    assert!(still.steps <= smooth.steps + 100, "{smooth:?} {still:?}");
+    // What is paid for is the decay of the kick.
+    assert!(kicked.steps <= smooth.steps + 2500 && kicked.rejected <= 700, "{smooth:?} {kicked:?}");
 }
