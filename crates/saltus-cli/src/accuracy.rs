@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::args;
 use crate::error::Error;
 use crate::output::{check_picture, write};
+use crate::row::{Came, Row, Seconds};
 use crate::simulate::{ending, scene};
 
 /// The number of the JSON contract.
@@ -281,10 +282,10 @@ struct Document {
     schema: u32,
     reference: String,
     reference_error: Errors,
-    trials: Vec<Row>,
+    trials: Vec<Row<Measured>>,
     target: Aim,
     recommended: Option<Recommended>,
-    effects: Vec<Row>,
+    effects: Vec<Row<Measured>>,
 }
 
 #[derive(Serialize)]
@@ -316,30 +317,13 @@ struct Errors {
 }
 
 #[derive(Serialize)]
-struct Row {
-    run: String,
+struct Measured {
+    error: Errors,
+    steps: u64,
+    flows: u64,
+    guards: u64,
     #[serde(flatten)]
-    came: Came,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Came {
-    Measured {
-        error: Errors,
-        steps: u64,
-        flows: u64,
-        guards: u64,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        seconds: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        seconds_low: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        seconds_high: Option<f64>,
-    },
-    Refused {
-        refused: String,
-    },
+    seconds: Option<Seconds>,
 }
 
 /// What breaks off is infinitely far, for which JSON has no number.
@@ -354,18 +338,16 @@ fn errors(difference: &Difference) -> Errors {
     }
 }
 
-fn row(run: String, outcome: &Result<Outcome, String>) -> Row {
+fn row(run: String, outcome: &Result<Outcome, String>) -> Row<Measured> {
     let came = match outcome {
         Err(refused) => Came::Refused { refused: refused.clone() },
-        Ok(outcome) => Came::Measured {
+        Ok(outcome) => Came::Measured(Measured {
             error: errors(&outcome.difference),
             steps: outcome.cost.steps,
             flows: outcome.cost.flows,
             guards: outcome.cost.guards,
-            seconds: outcome.timing.map(|timing| timing.median),
-            seconds_low: outcome.timing.map(|timing| timing.least),
-            seconds_high: outcome.timing.map(|timing| timing.greatest),
-        },
+            seconds: outcome.timing.map(Seconds::from),
+        }),
     };
     Row { run, came }
 }

@@ -1,13 +1,14 @@
 //! What each effect of a scene changes, and what it costs.
 
 use std::fmt::Write;
-use std::time::Instant;
 
+use saltus::Timing;
 use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{Effect, Record};
+use saltus_bounce::scene::plan::Effect;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::row::{Came, Row, Seconds};
 
 /// How many impacts and apexes are compared.
 const FIRST: usize = 5;
@@ -17,36 +18,14 @@ const PATIENCE: f64 = 1.0;
 /// How many evaluations of flows and guards a run may take: a few seconds.
 const MOST_EVALUATIONS: u64 = 20_000_000;
 
-/// The scene as it is, or with one effect toggled.
 #[derive(Serialize)]
-pub(crate) struct Row {
-    /// "as it is", "without wind", "with buoyancy".
-    run: String,
-    /// What came of it.
-    #[serde(flatten)]
-    came: Came,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Came {
-    Measured(Measured),
-    /// Why there is no such run.
-    Refused {
-        refused: String,
-    },
-}
-
-#[derive(Serialize)]
-struct Measured {
+pub(crate) struct Measured {
     /// The first impact times in s.
     impacts: Vec<f64>,
     /// The first apex heights of the first ball in m.
     apexes: Vec<f64>,
-    /// The median of the wall-clock times of the run in s, the least and the greatest.
-    seconds: f64,
-    seconds_low: f64,
-    seconds_high: f64,
+    #[serde(flatten)]
+    seconds: Seconds,
     steps: u64,
     flows: u64,
     guards: u64,
@@ -55,7 +34,7 @@ struct Measured {
 }
 
 /// The scene as it is, then with each effect toggled.
-pub(crate) fn rows(scene: &Scene) -> Result<Vec<Row>, Error> {
+pub(crate) fn rows(scene: &Scene) -> Result<Vec<Row<Measured>>, Error> {
     let base = measured(scene).map_err(Error::new)?;
     let mut rows = vec![Row { run: "as it is".to_owned(), came: Came::Measured(base) }];
     for effect in Effect::ALL {
@@ -69,24 +48,13 @@ pub(crate) fn rows(scene: &Scene) -> Result<Vec<Row>, Error> {
 
 fn measured(scene: &Scene) -> Result<Measured, String> {
     let plan = scene.plan().map_err(|error| error.to_string())?.most_evaluations(MOST_EVALUATIONS);
-    let run = || {
-        let start = Instant::now();
-        let record = plan.run().map_err(|error| error.to_string())?;
-        Ok::<(f64, Record), String>((start.elapsed().as_secs_f64(), record))
-    };
-    let (first, record) = run()?;
-    let mut times = vec![first];
-    while times.len() < REPEATS && times.iter().sum::<f64>() < PATIENCE {
-        times.push(run()?.0);
-    }
-    times.sort_by(f64::total_cmp);
+    let record = plan.run().map_err(|error| error.to_string())?;
+    let timing = Timing::repeated(REPEATS, PATIENCE, || plan.run());
     let cost = record.cost();
     Ok(Measured {
         impacts: record.impacts().iter().take(FIRST).map(|impact| impact.t).collect(),
         apexes: record.apexes(0).iter().take(FIRST).map(|apex| apex.height).collect(),
-        seconds: times[times.len() / 2],
-        seconds_low: times[0],
-        seconds_high: times[times.len() - 1],
+        seconds: timing.into(),
         steps: cost.steps,
         flows: cost.flows,
         guards: cost.guards,
@@ -95,7 +63,7 @@ fn measured(scene: &Scene) -> Result<Measured, String> {
 }
 
 /// The rows as a table: the first as it is, of the others how far they move each impact and each apex.
-pub(crate) fn table(rows: &[Row]) -> String {
+pub(crate) fn table(rows: &[Row<Measured>]) -> String {
     let mut text = format!(
         "\nWhat each effect changes and costs: of the other runs, how much later the first {FIRST} impacts and how much higher the first {FIRST} apexes are.\nTime is the median of up to {REPEATS} runs (least to greatest).\n"
     );
@@ -111,7 +79,7 @@ pub(crate) fn table(rows: &[Row]) -> String {
                 continue;
             }
         };
-        let times = [came.seconds, came.seconds_low, came.seconds_high].map(|s| format!("{:.1}", 1e6 * s));
+        let times = came.seconds.all().map(|s| format!("{:.1}", 1e6 * s));
         let [median, low, high] = times;
         let took = format!("{median} µs ({low} to {high})");
         let _ = write!(text, "\n{:<32} {took:<36} {} flows, {} guards", row.run, came.flows, came.guards);

@@ -6,9 +6,10 @@ use saltus_bounce::scene::plan::{Explanation, ModePlan};
 use serde::Serialize;
 
 use crate::args;
-use crate::cost::{self, Row};
+use crate::cost::{self, Measured};
 use crate::error::Error;
 use crate::output::write;
+use crate::row::Row;
 use crate::simulate::{ending, planned, scene};
 
 /// The number of the JSON contract.
@@ -25,7 +26,7 @@ struct Document<'a> {
     tolerance: Option<f64>,
     notes: &'a [String],
     #[serde(skip_serializing_if = "Option::is_none")]
-    cost: Option<Vec<Row>>,
+    cost: Option<Vec<Row<Measured>>>,
 }
 
 #[derive(Serialize)]
@@ -55,7 +56,7 @@ fn mode(mode: &ModePlan) -> Mode<'_> {
     Mode { name, advance: advance.to_string(), solved: advance.is_solved(), why, edges }
 }
 
-fn json(explanation: &Explanation, cost: Option<Vec<Row>>) -> Result<String, Error> {
+fn json(explanation: &Explanation, cost: Option<Vec<Row<Measured>>>) -> Result<String, Error> {
     let document = Document {
         schema: SCHEMA,
         model: explanation.model.name(),

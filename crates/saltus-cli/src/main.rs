@@ -11,6 +11,7 @@ mod ground;
 mod motion;
 mod output;
 mod picture;
+mod row;
 mod simulate;
 
 use std::process::ExitCode;

@@ -66,7 +66,8 @@ pub fn frame_by_frame<A: Automaton>(
             break;
         }
         let (mode, x) = (run.mode, run.state);
-        let held = inside(automaton, mode, now.seconds(), &x, &mut run.stats);
+        // One that waits was negative before the frame; any other is taken as soon as it is.
+        let may = held(automaton, mode, now.seconds(), &x, &mut run.stats, |entry| entry != Entry::Wait);
         let (slope, end) = kutta(automaton, mode, now.seconds(), &x, h);
         run.stats.flows += 4;
         run.stats.steps += 1;
@@ -76,7 +77,7 @@ pub fn frame_by_frame<A: Automaton>(
         run.trajectory.push_piece(&Piece::new(now, h, h, &between(&x, &slope, &end, h)));
         now = next;
         run.state = end;
-        run.stop = jumps(automaton, held, now, &mut run)?;
+        run.stop = jumps(automaton, may, now, &mut run)?;
         if run.stop == Stop::Time && run.stats.jumps >= most_jumps {
             run.stop = Stop::Jumps { most: most_jumps };
         }
@@ -88,14 +89,19 @@ pub fn frame_by_frame<A: Automaton>(
     Ok(run)
 }
 
-/// Which edges of a mode, by their places, have guards that are not negative.
-fn inside<A: Automaton>(automaton: &A, mode: A::Mode, t: f64, x: &A::State, stats: &mut Stats) -> u64 {
-    let edges = automaton.edges(mode);
+/// Which edges of a mode, by their places, may be taken once their guards are negative: those whose guards are not so yet, and those with such an `entry`.
+fn held<A: Automaton>(
+    automaton: &A,
+    mode: A::Mode,
+    t: f64,
+    x: &A::State,
+    stats: &mut Stats,
+    entry: impl Fn(Entry) -> bool,
+) -> u64 {
     let mut held = 0;
-    for (i, edge) in edges.iter().enumerate().take(64) {
+    for (i, edge) in automaton.edges(mode).iter().enumerate().take(64) {
         stats.guards += 1;
-        // One that waits was negative before the frame; any other is taken as soon as it is.
-        if automaton.guard(edge, t, x) >= 0.0 || automaton.entry(edge) != Entry::Wait {
+        if automaton.guard(edge, t, x) >= 0.0 || entry(automaton.entry(edge)) {
             held |= 1 << i;
         }
     }
@@ -103,7 +109,7 @@ fn inside<A: Automaton>(automaton: &A, mode: A::Mode, t: f64, x: &A::State, stat
 }
 
 /// Takes the edges that a frame has crossed, one after the other, in the order in which the mode lists them.
-fn jumps<A: Automaton>(automaton: &A, mut held: u64, now: Time, run: &mut Run<A>) -> Result<Stop<A::Edge>, Error> {
+fn jumps<A: Automaton>(automaton: &A, mut may: u64, now: Time, run: &mut Run<A>) -> Result<Stop<A::Edge>, Error> {
     let t = now.seconds();
     for _ in 0..MOST_AT_ONCE {
         let (mode, x) = (run.mode, run.state);
@@ -114,7 +120,7 @@ fn jumps<A: Automaton>(automaton: &A, mut held: u64, now: Time, run: &mut Run<A>
             if g.is_nan() {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), &x)));
             }
-            if g < 0.0 && held >> i & 1 == 1 {
+            if g < 0.0 && may >> i & 1 == 1 {
                 crossed = Some(edge);
                 break;
             }
@@ -132,13 +138,8 @@ fn jumps<A: Automaton>(automaton: &A, mut held: u64, now: Time, run: &mut Run<A>
         if automaton.terminal(edge) {
             return Ok(Stop::Terminal { edge });
         }
-        held = inside(automaton, to, t, &after, &mut run.stats);
         // What a reset leaves negative is not crossed again before the next frame.
-        for (i, edge) in automaton.edges(to).iter().enumerate().take(64) {
-            if automaton.guard(edge, t, &after) < 0.0 && automaton.entry(edge) != Entry::Fire {
-                held &= !(1 << i);
-            }
-        }
+        may = held(automaton, to, t, &after, &mut run.stats, |entry| entry == Entry::Fire);
     }
     Ok(Stop::Time)
 }

@@ -35,10 +35,16 @@ pub struct Timing {
 impl Timing {
     /// Runs it up to 25 times, or for a twentieth of a second; once at least.
     #[must_use]
-    pub fn of<T>(mut run: impl FnMut() -> T) -> Self {
+    pub fn of<T>(run: impl FnMut() -> T) -> Self {
+        Self::repeated(REPEATS, PATIENCE, run)
+    }
+
+    /// Runs it up to `most` times, or for `patience` seconds; once at least.
+    #[must_use]
+    pub fn repeated<T>(most: usize, patience: f64, mut run: impl FnMut() -> T) -> Self {
         let began = Instant::now();
-        let mut seconds = Vec::with_capacity(REPEATS);
-        while seconds.is_empty() || (seconds.len() < REPEATS && began.elapsed().as_secs_f64() < PATIENCE) {
+        let mut seconds = Vec::new();
+        while seconds.is_empty() || (seconds.len() < most && began.elapsed().as_secs_f64() < patience) {
             let start = Instant::now();
             std::hint::black_box(run());
             seconds.push(start.elapsed().as_secs_f64());

@@ -48,7 +48,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 }
                 Fall::In(s, state) if self.arrives(edge, now, s, &state, limit) => {
                     arrival = Some((edge, s, state));
-                    Searched::solved(Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 }))
+                    Searched::solved(Some(Crossing::after(s)))
                 }
                 formula => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
             };

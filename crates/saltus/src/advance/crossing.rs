@@ -69,8 +69,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             most += (self.automaton.guard(edge, t, c) - constant).abs() * power;
             power *= stretch;
         }
-        let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
-        start > most + rounding && rounding < f64::INFINITY
+        exceeds(start, most, constant)
     }
 
     /// How far the guard bends along a polynomial: by its powers from the second on.
@@ -167,6 +166,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn undefined(&self, mode: A::Mode, edge: A::Edge, now: Time, s: f64, x: &A::State) -> Error {
         Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), x))
     }
+}
+
+/// Whether a guard that is `start` where it is known stays above zero when it changes by `most`, with room for the digits that its `constant` costs.
+#[inline]
+pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
+    let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
+    start > most + rounding && rounding < f64::INFINITY
 }
 
 /// What an affine guard of this `constant` adds to it for the state `x`: taken of a state a power of two larger, so that the constant does not

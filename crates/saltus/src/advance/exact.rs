@@ -105,11 +105,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *count += 1;
             automaton.guard(edge, now.after(s).seconds(), &at(s))
         };
-        if guard(s) >= 0.0 {
-            Some(Crossing { inside: s, outside: s.next_up(), root: s, rest: 0.0 })
-        } else {
-            settle(guard, s)
-        }
+        if guard(s) >= 0.0 { Some(Crossing::after(s)) } else { settle(guard, s) }
     }
 
     /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.

@@ -13,7 +13,7 @@ use crate::step::{Stepper, Trial};
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::less_constant;
+use super::crossing::{exceeds, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -63,20 +63,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.step = Some(0.1 * h);
                 continue;
             }
-            if clear {
-                let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
-                clock.now = if last { clock.end } else { clock.now.after(h) };
-                if told.is_break() {
-                    return Ok(ArcEnd::Stop { stop: Stop::Observer, state: trial.end });
-                }
-                (x, slope, first) = (trial.end, trial.slope, false);
-                continue;
-            }
             let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
-            let found = self.first_crossing(mode, clock.now, c, h, limit, first, observer)?;
+            let found = if clear { None } else { self.first_crossing(mode, clock.now, c, h, limit, first, observer)? };
             let Some(rough) = found else {
-                // Guards were looked at: the state goes on from where they were seen last.
-                let state = horner(c, 1.0);
+                // Where guards were looked at, the state goes on from where they were seen last.
+                let state = if clear { trial.end } else { horner(c, 1.0) };
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 if told.is_break() {
@@ -237,8 +228,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let probe = x.with(|i| if i == k { reach.get(i) } else { 0.0 });
                 most += (guard(&probe) - constant).abs();
             }
-            let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
-            if !(start > most + rounding && rounding < f64::INFINITY) {
+            if !exceeds(start, most, constant) {
                 return false;
             }
         }

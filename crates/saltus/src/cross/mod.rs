@@ -28,6 +28,11 @@ impl Crossing {
     pub(crate) const fn at_start(outside: f64) -> Self {
         Self { inside: 0.0, outside, root: 0.0, rest: 0.0 }
     }
+
+    /// A crossing just after a time that is known.
+    pub(crate) const fn after(root: f64) -> Self {
+        Self { inside: root, outside: root.next_up(), root, rest: 0.0 }
+    }
 }
 
 /// What the guard does at the start of the interval searched.

@@ -6,7 +6,7 @@ use super::{Crossing, Undefined};
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
     // Where rounding hides the guard's sign all around, the root that is known decides: a ball does not fall through a floor at height one.
-    let known = Crossing { inside: near, outside: near.next_up(), root: near, rest: 0.0 };
+    let known = Crossing::after(near);
     let mut step = near.next_up() - near;
     let (mut a, mut b) = (near, near);
     if guard(near) >= 0.0 {
