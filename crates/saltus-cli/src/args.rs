@@ -44,6 +44,7 @@ pub(crate) enum Command {
     Explain(Explain),
     Accuracy(Accuracy),
     Export(Export),
+    Sweep(crate::sweep::Sweep),
     /// Write a shell's completions to standard output.
     ///
     /// For bash: saltus completions bash > ~/.local/share/bash-completion/completions/saltus
@@ -365,7 +366,7 @@ fn quantity(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone 
     move |text| quantity.parse(text).map_err(|error| error.to_string())
 }
 
-fn positive(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+pub(crate) fn positive(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| match quantity.parse(text) {
         Ok(value) if value > 0.0 => Ok(value),
         Ok(_) => Err(format!("'{text}' is not above zero")),

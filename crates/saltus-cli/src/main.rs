@@ -13,6 +13,7 @@ mod output;
 mod picture;
 mod row;
 mod simulate;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -32,6 +33,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Explain(explain) => explain::run(explain),
         args::Command::Accuracy(accuracy) => accuracy::run(accuracy),
         args::Command::Export(export) => export::run(export, args.quiet),
+        args::Command::Sweep(sweep) => sweep::run(sweep, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
         args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),
         args::Command::Man => output::stdout(&args::man()?),

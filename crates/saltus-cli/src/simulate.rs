@@ -113,17 +113,21 @@ pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
 
 /// The scene of a file or of standard input; what the command line says in `run` goes before what the scene says.
 pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
+    let (name, toml) = read(path)?;
+    Scene::parse_with(&name, &toml, run).map_err(Error::new)
+}
+
+/// The text of a scene, from a file or from standard input, and its name.
+pub(crate) fn read(path: &Path) -> Result<(String, Vec<u8>), Error> {
     let most = Scene::LARGEST as u64 + 1;
     let mut toml = Vec::new();
-    let name = if path == Path::new("-") {
+    if path == Path::new("-") {
         std::io::stdin().lock().take(most).read_to_end(&mut toml).map_err(Error::new)?;
-        "standard input".into()
-    } else {
-        let error = |error| Error::new(ReadError::File { path: path.to_owned(), error });
-        File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
-        path.to_string_lossy()
-    };
-    Scene::parse_with(&name, &toml, run).map_err(Error::new)
+        return Ok(("standard input".to_owned(), toml));
+    }
+    let error = |error| Error::new(ReadError::File { path: path.to_owned(), error });
+    File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
+    Ok((path.to_string_lossy().into_owned(), toml))
 }
 
 fn is_svg(path: &Path) -> bool {

@@ -18,6 +18,7 @@ mod restitution;
 mod run;
 mod schema;
 mod space;
+mod template;
 mod value;
 
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub use motion::Motion;
 pub use restitution::Law;
 pub use run::{Kind, Picture, Run, Stepper};
 pub use schema::schema;
+pub use template::Template;
 
 use crate::effects::Gravity;
 use crate::friction::Friction;

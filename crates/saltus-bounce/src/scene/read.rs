@@ -6,6 +6,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
+use toml::Spanned;
+use toml::de::DeTable;
 
 use super::error::{Fault, SceneError};
 use super::file::File;
@@ -24,11 +26,21 @@ pub(super) fn from_path(path: &Path) -> Result<Scene, ReadError> {
 }
 
 pub(super) fn scene(name: &str, bytes: &[u8], run: Run) -> Result<Scene, SceneError> {
-    let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
-    inner(bytes, run).map_err(|fault| SceneError::new(name, bytes, fault))
+    let bytes = unmarked(bytes);
+    let inner = || {
+        let text = text(bytes)?;
+        made(text, table(text)?, run)
+    };
+    inner().map_err(|fault| SceneError::new(name, bytes, fault))
 }
 
-fn inner(bytes: &[u8], run: Run) -> Result<Scene, Fault> {
+/// What follows the byte-order mark.
+pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(MARK).unwrap_or(bytes)
+}
+
+/// The bytes as text of a size that is read.
+pub(super) fn text(bytes: &[u8]) -> Result<&str, Fault> {
     if bytes.len() > Scene::LARGEST {
         return Err(Fault::new(
             0..0,
@@ -48,13 +60,26 @@ fn inner(bytes: &[u8], run: Run) -> Result<Scene, Fault> {
             "the file is empty: write at least `restitution = 0.8`, [ball] and `height = \"1 m\"`",
         ));
     }
-    let fault = |error: &toml::de::Error| (error.span().unwrap_or(0..0), error.message().trim().replace('\n', ", "));
-    let table = toml::de::DeTable::parse(text).map_err(|error| {
-        let (span, message) = fault(&error);
+    Ok(text)
+}
+
+/// Where and what the TOML reader says.
+fn said(error: &toml::de::Error) -> (Range<usize>, String) {
+    (error.span().unwrap_or(0..0), error.message().trim().replace('\n', ", "))
+}
+
+/// The text as TOML.
+pub(super) fn table(text: &str) -> Result<Spanned<DeTable<'_>>, Fault> {
+    DeTable::parse(text).map_err(|error| {
+        let (span, message) = said(&error);
         syntax(text, span, &message)
-    })?;
+    })
+}
+
+/// The scene in a table that was read from `text`.
+pub(super) fn made(text: &str, table: Spanned<DeTable<'_>>, run: Run) -> Result<Scene, Fault> {
     let file = File::deserialize(toml::de::Deserializer::from(table)).map_err(|error| {
-        let (span, message) = fault(&error);
+        let (span, message) = said(&error);
         translate(text, span, &message)
     })?;
     file.scene(run)

@@ -1,5 +1,6 @@
 //! What a scene file may say, and what is said to one that may not.
 
+use super::plan::Outcome;
 use super::*;
 
 fn message(toml: &str) -> String {
@@ -177,4 +178,46 @@ fn a_mark_and_windows_line_ends_change_nothing() {
     let error = Scene::parse("s.toml", wrong.as_bytes()).unwrap_err();
     assert_eq!((error.line(), error.column()), (3, 10));
     assert!(!error.to_string().contains('\r'));
+}
+
+#[test]
+fn what_rests_from_the_start_is_shown_at_rest() {
+    for more in ["", "drag = { per_length = 0.1 }\n", "drag = { per_length = 0.1, rate = 0.1 }\n"] {
+        let toml = format!(
+            "restitution = 0.5\nball = {{ height = '1 m', radius = '2 cm' }}\nfloor = {{ height = '1 m' }}\n{more}"
+        );
+        let record = Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+        assert_eq!((record.rest(), record.until(), record.impacts().len()), (Some(0.0), 1.0, 0), "{more}");
+        assert_eq!(record.at(0, 1.0).map(|moment| moment.height()), Some(1.0), "{more}");
+    }
+}
+
+/// What is watched for is what a record would show, times and apexes to the bit, in every example and where nothing says when to stop.
+#[test]
+fn an_outcome_is_what_the_record_shows() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        for until in [None, Some(0.7)] {
+            let run = Run { until, ..Run::default() };
+            let plan = Scene::parse_with("s.toml", &std::fs::read(&path).unwrap(), run).unwrap().plan().unwrap();
+            let (record, outcome) = (plan.run().unwrap(), plan.outcome().unwrap());
+            let shown = Outcome::of(&record);
+            // The state at the end is the engine's own, not read off the last piece.
+            for (ball, shown) in outcome.balls.iter().zip(&shown.balls) {
+                let difference =
+                    [ball.position - shown.position, ball.velocity - shown.velocity, ball.spin - shown.spin];
+                assert!(difference.iter().all(|d| d.norm() < 1e-12), "{ball:?} {shown:?}");
+            }
+            let shown = Outcome { cost: outcome.cost, balls: outcome.balls.clone(), ..shown };
+            assert_eq!(outcome, shown, "{} until {until:?}", path.display());
+            assert_eq!(outcome.cost.jumps, record.cost().jumps, "{}", path.display());
+            seen += usize::from(outcome.impacts > 0 && outcome.first_apex.is_some());
+        }
+    }
+    assert!(seen >= 15, "{seen}");
 }

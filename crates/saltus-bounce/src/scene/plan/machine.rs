@@ -6,11 +6,13 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use saltus::cross::Evidence;
 use saltus::step::Stepper;
-use saltus::{Automaton, Cause, Inspection, Jump, Observer, Run, Simulation, Stop, Trajectory};
+use saltus::{Automaton, Cause, Inspection, Jump, Observer, Piece, Run, Simulation, Trajectory};
 
+use super::RunError;
 use super::explain::{Advance, ModePlan};
 use super::method::Method;
-use super::record::{Cost, End, Event, Impact, Moment, Recorded, Segment, Sides, With};
+use super::outcome::{Outcome, Watch};
+use super::record::{Cost, End, Event, Impact, Moment, Record, Recorded, Segment, Sides, With};
 
 /// How to run a machine.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +30,33 @@ pub(super) struct How {
     pub(super) frames: Option<f64>,
     /// Where a coordinate is near zero; a thousandth of the tolerance unless given.
     pub(super) absolute: Option<f64>,
+}
+
+/// How much of a motion that ends by itself is kept beyond its end.
+const SHOWN_AFTER_REST: f64 = 0.05;
+/// How much of one that is at rest from the start, in s.
+const SHOWN_AT_REST: f64 = 1.0;
+
+/// Until when to show a motion that ends by itself at `last`.
+fn shown(last: f64) -> f64 {
+    if last > 0.0 { last * (1.0 + SHOWN_AFTER_REST) } else { SHOWN_AT_REST }
+}
+
+impl How {
+    /// Until when a run that reached `until` is shown: what lies still or rolls on beyond the `last` jump needs no end, and a little of it is shown.
+    fn shown(&self, end: End, until: f64, last: f64, rest: Option<f64>) -> Result<f64, RunError> {
+        if self.until.is_some() {
+            Ok(until)
+        } else if end == End::Time && until > last && (last > 0.0 || rest.is_some()) {
+            Ok(shown(last))
+        } else if until.is_finite() {
+            Ok(until)
+        } else {
+            let says =
+                "without gravity the ball may never land: say when to stop, by --until or by `until` under [run]";
+            Err(RunError::new(says.to_owned()))
+        }
+    }
 }
 
 /// What a jump means in the scene.
@@ -90,7 +119,8 @@ pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
 
 /// Anything that runs.
 pub(super) trait Machine: Send + Sync {
-    fn run(&self, how: &How) -> Result<super::Record, saltus::Error>;
+    fn run(&self, how: &How) -> Result<Record, RunError>;
+    fn outcome(&self, how: &How) -> Result<Outcome, RunError>;
     fn modes(&self, method: Method) -> Vec<ModePlan>;
     fn coordinates(&self) -> usize;
 }
@@ -114,52 +144,73 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
     }
 }
 
+impl<A: Automaton, R: Reader<A>> Ready<A, R> {
+    fn simulation(&self, how: &How) -> Simulation<'_, A, R::Stepper> {
+        let simulation = Simulation::of(&*self.automaton)
+            .stepper(R::Stepper::from(how.method))
+            .tolerance(how.tolerance)
+            .most_jumps(how.most_jumps)
+            .most_evaluations(how.most_evaluations);
+        let simulation = match how.absolute {
+            Some(absolute) => simulation.absolute_tolerance(absolute),
+            None => simulation,
+        };
+        if how.stepped { simulation.stepped() } else { simulation }
+    }
+
+    /// Until when to run.
+    fn until(&self, how: &How, simulation: &Simulation<'_, A, R::Stepper>) -> Result<f64, saltus::Error> {
+        match how.until {
+            Some(until) => Ok(until),
+            None if how.solved => Ok(f64::INFINITY),
+            // Steps would go on for ever: the run is made twice, first to see when it ends.
+            None => {
+                let mut resting = Resting { reader: &*self.reader };
+                let ending = simulation.drive(self.mode, self.state, 0.0..f64::INFINITY, &mut resting)?;
+                Ok(shown(ending.time.seconds()))
+            }
+        }
+    }
+}
+
 impl<A, R: Reader<A>> Machine for Ready<A, R>
 where
     A: Automaton + Send + Sync + 'static,
     A::Mode: Send + Sync,
     A::State: Send + Sync,
 {
-    fn run(&self, how: &How) -> Result<super::Record, saltus::Error> {
-        let mut simulation = Simulation::of(&*self.automaton)
-            .stepper(R::Stepper::from(how.method))
-            .tolerance(how.tolerance)
-            .most_jumps(how.most_jumps)
-            .most_evaluations(how.most_evaluations);
-        if let Some(absolute) = how.absolute {
-            simulation = simulation.absolute_tolerance(absolute);
-        }
-        if how.stepped {
-            simulation = simulation.stepped();
-        }
-        let until = match how.until {
-            Some(until) => until,
-            None if how.solved => f64::INFINITY,
-            // Steps would go on for ever: the run is made twice, first to see when it ends.
-            None => {
-                let mut resting = Resting { reader: &*self.reader };
-                let rest = simulation.drive(self.mode, self.state, 0.0..f64::INFINITY, &mut resting)?.time.seconds();
-                rest * (1.0 + super::SHOWN_AFTER_REST)
-            }
-        };
+    fn run(&self, how: &How) -> Result<Record, RunError> {
+        let simulation = self.simulation(how);
+        let until = self.until(how, &simulation)?;
         let run = match how.frames {
-            None => simulation.run(self.mode, self.state, 0.0..until)?,
+            None => simulation.run(self.mode, self.state, 0.0..until).map_err(|failed| failed.error)?,
             Some(rate) => {
                 saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, how.most_jumps)?
             }
         };
-        let end = match run.stop {
-            Stop::Jumps { most } => End::Jumps { most },
-            Stop::Zeno { limit } => End::Zeno { limit },
-            Stop::Evaluations { most } => End::Evaluations { most },
-            Stop::Cascade { .. } => End::Cascade,
-            _ => End::Time,
-        };
-        let rests = end == End::Time && self.reader.rests(run.mode, &run.state);
-        let rest = rests.then(|| run.trajectory.jumps().last().map_or(0.0, Jump::t));
-        let until = run.trajectory.end().seconds();
+        let end = End::of(&run.stop);
+        let last = run.trajectory.jumps().last().map_or(0.0, Jump::t);
+        let rest = (end == End::Time && self.reader.rests(run.mode, &run.state)).then_some(last);
+        let until = how.shown(end, run.trajectory.end().seconds(), last, rest)?;
         let read = Read { automaton: Arc::clone(&self.automaton), reader: Arc::clone(&self.reader), run };
-        Ok(super::Record { run: Box::new(read), until, end, rest })
+        Ok(Record { run: Box::new(read), until, end, rest })
+    }
+
+    fn outcome(&self, how: &How) -> Result<Outcome, RunError> {
+        let simulation = self.simulation(how);
+        let until = self.until(how, &simulation)?;
+        let mut watch = Watch::new(&*self.automaton, &*self.reader);
+        let ending = simulation.drive(self.mode, self.state, 0.0..until, &mut watch)?;
+        let (end, last) = (End::of(&ending.stop), watch.last_jump());
+        let rest = (end == End::Time && self.reader.rests(ending.mode, &ending.state)).then_some(last);
+        let until = how.shown(end, ending.time.seconds(), last, rest)?;
+        let state = if until < ending.time.seconds() {
+            let (t, mode, state) = watch.left.unwrap_or((0.0, self.mode, self.state));
+            simulation.drive(mode, state, t..until, &mut ())?.state
+        } else {
+            ending.state
+        };
+        Ok(watch.outcome(&ending, end, until, &state, rest))
     }
 
     fn modes(&self, method: Method) -> Vec<ModePlan> {
@@ -201,6 +252,62 @@ impl<A: Automaton, R: Reader<A>> Observer<A> for Resting<'_, R> {
     }
 }
 
+/// A ball in a state.
+pub(super) fn moment<A: Automaton>(reader: &impl Reader<A>, x: &A::State, ball: usize) -> Moment {
+    reader.linear(x, ball) + reader.origin(ball)
+}
+
+/// A ball along a piece.
+pub(super) fn segment<A: Automaton>(
+    reader: &impl Reader<A>,
+    mode: A::Mode,
+    piece: &Piece<'_, A::State>,
+    ball: usize,
+) -> Segment {
+    let mut factor = 1.0;
+    let mut coefficients: Vec<Moment> = Vec::with_capacity(piece.coefficients().len());
+    for c in piece.coefficients() {
+        coefficients.push(reader.linear(c, ball) * factor);
+        factor /= piece.scale();
+    }
+    if let Some(first) = coefficients.first_mut() {
+        *first = *first + reader.origin(ball);
+    }
+    let (start, span) = (piece.start().seconds(), piece.span());
+    Segment { start, span, mode: reader.mode(mode, ball), flight: reader.flies(mode, ball), coefficients }
+}
+
+fn happening<A: Automaton>(model: &A, reader: &impl Reader<A>, jump: &Jump<A>) -> Happening {
+    match jump.cause {
+        Cause::Edge(edge) => reader.happening(model, jump, edge),
+        _ => Happening::of("zeno"),
+    }
+}
+
+/// The impact that a jump is; `None` if it is none.
+pub(super) fn impact<A: Automaton>(model: &A, reader: &impl Reader<A>, jump: &Jump<A>) -> Option<Impact> {
+    let happening = happening(model, reader, jump);
+    let Hit { with, normal, speed } = happening.hit?;
+    let ball = happening.balls[0].unwrap_or(0);
+    let approach = |x: &A::State| {
+        let other = match with {
+            With::Ball(other) => moment(reader, x, other).velocity.dot(&normal),
+            With::Floor(_) => speed,
+        };
+        other - moment(reader, x, ball).velocity.dot(&normal)
+    };
+    let (before, after) = (approach(&jump.before), -approach(&jump.after));
+    // What comes to lie where it starts hits nothing. Rounding may leave a hair of the wrong sign.
+    (before > 0.0 || after > 0.0).then(|| Impact {
+        t: jump.t(),
+        ball,
+        with,
+        approach: before.max(0.0),
+        rebound: Some(after.max(0.0)),
+        press: None,
+    })
+}
+
 /// A run that is read when it is asked.
 struct Read<A: Automaton, R> {
     automaton: Arc<A>,
@@ -210,14 +317,7 @@ struct Read<A: Automaton, R> {
 
 impl<A: Automaton, R: Reader<A>> Read<A, R> {
     fn moment(&self, x: &A::State, ball: usize) -> Moment {
-        self.reader.linear(x, ball) + self.reader.origin(ball)
-    }
-
-    fn happening(&self, jump: &Jump<A>) -> Happening {
-        match jump.cause {
-            Cause::Edge(edge) => self.reader.happening(&self.automaton, jump, edge),
-            _ => Happening::of("zeno"),
-        }
+        moment(&*self.reader, x, ball)
     }
 }
 
@@ -239,27 +339,14 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
         let trajectory = &self.run.trajectory;
         let mut segments = Vec::new();
         for (index, arc) in trajectory.arcs().iter().enumerate() {
-            let (mode, flight) = (self.reader.mode(arc.mode(), ball), self.reader.flies(arc.mode(), ball));
-            for piece in trajectory.pieces(index) {
-                let mut factor = 1.0;
-                let mut coefficients: Vec<Moment> = Vec::with_capacity(piece.coefficients().len());
-                for c in piece.coefficients() {
-                    coefficients.push(self.reader.linear(c, ball) * factor);
-                    factor /= piece.scale();
-                }
-                if let Some(first) = coefficients.first_mut() {
-                    *first = *first + self.reader.origin(ball);
-                }
-                let (start, span) = (piece.start().seconds(), piece.span());
-                segments.push(Segment { start, span, mode, flight, coefficients });
-            }
+            segments.extend(trajectory.pieces(index).map(|piece| segment(&*self.reader, arc.mode(), &piece, ball)));
         }
         segments
     }
 
     fn events(&self) -> Vec<Event> {
         let event = |jump: &Jump<A>| {
-            let happening = self.happening(jump);
+            let happening = happening(&*self.automaton, &*self.reader, jump);
             let side = |ball: usize| Sides {
                 ball,
                 from: self.reader.mode(jump.from, ball),
@@ -280,29 +367,8 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
         if let Some(contacts) = self.reader.contacts(&self.automaton, &self.run.trajectory) {
             return contacts;
         }
-        let impact = |jump: &Jump<A>| {
-            let happening = self.happening(jump);
-            let Hit { with, normal, speed } = happening.hit?;
-            let ball = happening.balls[0].unwrap_or(0);
-            let approach = |x: &A::State| {
-                let other = match with {
-                    With::Ball(other) => self.moment(x, other).velocity.dot(&normal),
-                    With::Floor(_) => speed,
-                };
-                other - self.moment(x, ball).velocity.dot(&normal)
-            };
-            let (before, after) = (approach(&jump.before), -approach(&jump.after));
-            // Rounding may leave a hair of the wrong sign.
-            Some(Impact {
-                t: jump.t(),
-                ball,
-                with,
-                approach: before.max(0.0),
-                rebound: Some(after.max(0.0)),
-                press: None,
-            })
-        };
-        self.run.trajectory.jumps().iter().filter_map(impact).collect()
+        let jumps = self.run.trajectory.jumps().iter();
+        jumps.filter_map(|jump| impact(&*self.automaton, &*self.reader, jump)).collect()
     }
 
     fn hysteresis(&self, contact: usize, count: usize) -> Vec<[f64; 2]> {
@@ -310,12 +376,7 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
     }
 
     fn cost(&self) -> Cost {
-        let stats = self.run.stats;
-        Cost { jumps: stats.jumps, steps: stats.steps + stats.rejected, flows: stats.flows, guards: stats.guards }
-    }
-
-    fn last(&self) -> f64 {
-        self.run.trajectory.jumps().last().map_or(0.0, Jump::t)
+        self.run.stats.into()
     }
 
     fn doubts(&self) -> Vec<String> {

@@ -12,12 +12,14 @@ mod flyer;
 mod line;
 mod machine;
 mod method;
+mod outcome;
 mod record;
 mod surroundings;
 
 use std::fmt;
 
 pub use explain::{Advance, Effect, Explanation, ModePlan};
+pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
 use super::accuracy::Way;
@@ -36,9 +38,6 @@ const MOST_IN_SPACE: usize = 5;
 const TOLERANCE: f64 = 1e-9;
 /// And that of contacts that take time: they last for a few steps only.
 const CONTACT_TOLERANCE: f64 = 1e-12;
-/// How much of a motion that ends by itself is kept beyond its end.
-const SHOWN_AFTER_REST: f64 = 0.05;
-
 /// The models a scene may be run by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -162,19 +161,19 @@ impl Plan {
     /// # Errors
     /// [`RunError`] if the engine fails, or if nothing ends the run.
     pub fn run(&self) -> Result<Record, RunError> {
-        let mut record = self.machine.run(&self.how).map_err(|error| RunError(error.to_string()))?;
-        if self.how.until.is_none() {
-            // What lies still or rolls on needs no end: a little of it is shown.
-            let last = record.run.last();
-            if record.end == End::Time && last > 0.0 && record.until > last {
-                record.until = last * (1.0 + SHOWN_AFTER_REST);
-            } else if !record.until.is_finite() {
-                let says =
-                    "without gravity the ball may never land: say when to stop, by --until or by `until` under [run]";
-                return Err(RunError(says.to_owned()));
-            }
+        self.machine.run(&self.how)
+    }
+
+    /// Runs from the scene's start, and keeps what came of it only: many times faster than [`run`](Self::run) where a formula solves the motion.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn outcome(&self) -> Result<Outcome, RunError> {
+        match self.explanation.model {
+            // What a contact that takes time comes to is seen along it only.
+            Model::Compliant => Ok(Outcome::of(&self.run()?)),
+            _ => self.machine.outcome(&self.how),
         }
-        Ok(record)
     }
 }
 
@@ -409,6 +408,12 @@ pub struct RunError(String);
 impl RunError {
     pub(super) const fn new(says: String) -> Self {
         Self(says)
+    }
+}
+
+impl From<saltus::Error> for RunError {
+    fn from(error: saltus::Error) -> Self {
+        Self(error.to_string())
     }
 }
 

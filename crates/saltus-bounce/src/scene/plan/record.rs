@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::{Add, Mul};
 
 use nalgebra::Vector3;
+use saltus::Stop;
 
 /// A ball at a moment. Vectors are (x, y, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,6 +190,16 @@ pub enum End {
 }
 
 impl End {
+    pub(super) fn of<E>(stop: &Stop<E>) -> Self {
+        match *stop {
+            Stop::Jumps { most } => Self::Jumps { most },
+            Stop::Zeno { limit } => Self::Zeno { limit },
+            Stop::Evaluations { most } => Self::Evaluations { most },
+            Stop::Cascade { .. } => Self::Cascade,
+            _ => Self::Time,
+        }
+    }
+
     /// Whether the run came to the end that was asked for.
     #[must_use]
     pub const fn is_in_time(&self) -> bool {
@@ -239,6 +250,12 @@ pub struct Cost {
     pub guards: u64,
 }
 
+impl From<saltus::Stats> for Cost {
+    fn from(stats: saltus::Stats) -> Self {
+        Self { jumps: stats.jumps, steps: stats.steps + stats.rejected, flows: stats.flows, guards: stats.guards }
+    }
+}
+
 /// A recorded run of one model, whichever it is.
 pub(super) trait Recorded {
     fn balls(&self) -> usize;
@@ -249,8 +266,6 @@ pub(super) trait Recorded {
     fn impacts(&self) -> Vec<Impact>;
     fn hysteresis(&self, contact: usize, count: usize) -> Vec<[f64; 2]>;
     fn cost(&self) -> Cost;
-    /// When the last jump was.
-    fn last(&self) -> f64;
     fn doubts(&self) -> Vec<String>;
 }
 
@@ -355,28 +370,8 @@ impl Record {
     /// The tops of the flights of a ball, in order; a start at rest is none.
     #[must_use]
     pub fn apexes(&self, ball: usize) -> Vec<Apex> {
-        let mut apexes = Vec::new();
-        let mut rising = false;
-        for segment in self.segments(ball) {
-            if !segment.flight {
-                rising = false;
-                continue;
-            }
-            let up = |s: f64| segment.at(s).velocity.z;
-            if up(0.0) > 0.0 {
-                rising = true;
-            }
-            if rising && up(segment.span) <= 0.0 {
-                let s = if up(0.0) > 0.0 { fall(up, segment.span) } else { 0.0 };
-                let t = segment.start + s;
-                // Rounding may let a piece that begins on an apex rise to it once more.
-                if apexes.last().is_none_or(|last: &Apex| t > last.t + 4.0 * f64::EPSILON * t) {
-                    apexes.push(Apex { t, height: segment.at(s).height() });
-                }
-            }
-            rising = up(segment.span) > 0.0;
-        }
-        apexes
+        let mut tops = Tops::default();
+        self.segments(ball).iter().filter_map(|segment| tops.next(segment)).collect()
     }
 
     /// The force in N over the deformation in m through one contact that takes time, counted from 0, `count` points for each of its stages; empty
@@ -396,6 +391,35 @@ impl Record {
     #[must_use]
     pub fn cost(&self) -> Cost {
         self.run.cost()
+    }
+}
+
+/// Finds apexes in segments that are given in order.
+#[derive(Debug, Default)]
+pub(super) struct Tops {
+    rising: bool,
+    last: Option<f64>,
+}
+
+impl Tops {
+    /// The apex in the segment, if there is one.
+    pub(super) fn next(&mut self, segment: &Segment) -> Option<Apex> {
+        if !segment.flight {
+            self.rising = false;
+            return None;
+        }
+        let up = |s: f64| segment.at(s).velocity.z;
+        let (before, after) = (up(0.0), up(segment.span));
+        let turns = (self.rising || before > 0.0) && after <= 0.0;
+        self.rising = after > 0.0;
+        let s = if turns && before > 0.0 { fall(up, segment.span) } else { 0.0 };
+        let t = segment.start + s;
+        // Rounding may let a piece that begins on an apex rise to it once more.
+        if !turns || self.last.is_some_and(|last| t <= last + 4.0 * f64::EPSILON * t) {
+            return None;
+        }
+        self.last = Some(t);
+        Some(Apex { t, height: segment.at(s).height() })
     }
 }
 

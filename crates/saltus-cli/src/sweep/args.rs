@@ -1,0 +1,75 @@
+//! What can be asked of a sweep.
+
+use std::path::PathBuf;
+
+use clap::{Args as ClapArgs, ValueEnum};
+use saltus_bounce::units::Quantity;
+
+use super::row::Column;
+use super::vary::Variation;
+use crate::args::positive;
+
+/// What may stand behind --vary.
+const VARIATIONS: &str = "Variations, for example:
+  --vary restitution=0.5:0.9:41        41 numbers from 0.5 to 0.9
+  --vary ball.height=1m:10m:100        a hundred heights
+  --vary drag.per_length=1e-3:1:31:log 31 numbers, each by the same factor above the last
+  --vary gravity=earth,moon,mars       a list
+  --vary floor.0.friction=0,0.2,0.4    of the first of several floors
+Several make a grid, in which the first changes slowest; with --random N each of N runs draws from all.";
+
+/// Run a scene many times with other values, and write a table with a row for each run.
+///
+/// A key is the path of a value in the scene file, as in `ball.height`, whether the file says it or not. Runs go on all cores; the table is the
+/// same to the byte on any number of them. A sweep that was broken off is gone on with by --resume. See docs/sweeping.md.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = VARIATIONS)]
+pub(crate) struct Sweep {
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
+    #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
+    pub(crate) variations: Vec<Variation>,
+    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all; COUNT does not matter then.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
+    pub(crate) random: Option<u64>,
+    /// The seed of the draws: the same seed gives the same values.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "random")]
+    pub(crate) seed: u64,
+    /// The results to write, behind the values; without it, all that the scene has.
+    #[arg(long, value_enum, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) columns: Option<Vec<Column>>,
+    /// Write to a file; `-` for standard output.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// How to write it; without it, after the extension of the output file, or else as CSV.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<RowFormat>,
+    /// Go on with a file that the same sweep has begun.
+    #[arg(long, requires = "output", conflicts_with = "force")]
+    pub(crate) resume: bool,
+    /// Start anew, also where the file exists.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// On how many threads to run; as many as there are cores unless given.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// When to stop each run, such as `4s`; otherwise when the scene says.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+    /// After how many jumps to stop each run; 10000 unless given here or in the scene.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) most_jumps: Option<u32>,
+}
+
+/// More runs than anyone waits for.
+pub(super) const MOST_RUNS: u64 = 1_000_000_000_000;
+
+/// How the rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RowFormat {
+    /// For a spreadsheet.
+    Csv,
+    /// For programs: an object of JSON in each line.
+    Jsonl,
+}
