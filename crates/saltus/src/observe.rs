@@ -193,7 +193,7 @@ impl<A: Automaton> Observer<A> for () {
     }
 }
 
-impl<A: Automaton, O: Observer<A>> Observer<A> for &mut O {
+impl<A: Automaton, O: Observer<A> + ?Sized> Observer<A> for &mut O {
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         (**self).piece(mode, piece)
     }

@@ -281,8 +281,19 @@ impl<A: Automaton> Clone for Trajectory<A> {
 shown!(Trajectory { arcs, jumps, doubts, .. });
 
 impl<A: Automaton> Trajectory<A> {
-    /// Empty, from `state` in `mode` at `start`.
-    pub(crate) fn starting(mode: A::Mode, state: A::State, start: Time) -> Self {
+    /// Empty, from `state` in `mode` at `start`: for [`Simulation::drive`](crate::Simulation::drive), where others observe beside it.
+    ///
+    /// ```
+    /// use saltus::{Certificate, Hybrid, Simulation, Time, Trajectory};
+    /// let clock = Hybrid::new().mode("tick", |_t, _x: &f64| -1.0).edge("tick", "tick", |_t, x| *x, |_t, _x| 1.0);
+    /// let (mut trajectory, mut certificate) = (Trajectory::starting("tick", 1.0, Time::new(0.0)), Certificate::new());
+    /// let end = Simulation::of(&clock).drive("tick", 1.0, 0.0..2.5, &mut (&mut trajectory, &mut certificate))?;
+    /// trajectory.finish(end.time);
+    /// assert_eq!((trajectory.jumps().len(), trajectory.at(2.5)), (2, Some(0.5)));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn starting(mode: A::Mode, state: A::State, start: Time) -> Self {
         let arc = Arc { mode, start, state, j: 0, first_piece: 0 };
         Self {
             arcs: vec![arc],
@@ -316,7 +327,7 @@ impl<A: Automaton> Trajectory<A> {
     }
 
     /// The run ended at this moment, which the end of its last piece may miss by a rounding.
-    pub(crate) fn finish(&mut self, end: Time) {
+    pub fn finish(&mut self, end: Time) {
         self.end = end;
         self.doubts.settle(end);
     }
