@@ -18,7 +18,7 @@ use super::{Run, Scene, read};
 /// ```
 /// use saltus_bounce::scene::{Run, Template};
 /// let template = Template::parse("drop.toml", b"restitution = 0.8\nball = { height = '1 m' }\n", &["ball.height"])?;
-/// for (height, metres) in [("'20 cm'", 0.2), ("'3 ft'", 0.9144)] {
+/// for (height, metres) in [("'20 cm'", 0.2), ("'3 m'", 3.0)] {
 ///     assert_eq!(template.scene(&[height], Run::default())?.balls[0].lowest().z, metres);
 /// }
 /// let error = template.scene(&["'3 s'"], Run::default()).unwrap_err();

@@ -15,6 +15,9 @@ use crate::scene::{Law, Scene};
 use crate::walls::{Face, Walls};
 use crate::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
 
+/// How deep in a wall a ball may start for the rounding of its place, for each metre from the origin.
+const ROUNDING: f64 = 1e-12;
+
 /// Whether the scene's ball needs a spin.
 pub(super) fn spins(scene: &Scene) -> bool {
     let rubs = scene.floors.iter().any(|floor| floor.friction.coefficient() > 0.0);
@@ -96,7 +99,7 @@ where
 {
     let (walls, laws, _) = faces::<N>(scene)?;
     let start = start::<N>(scene);
-    let stance = Stance::Flight { cell: walls.cell(&start.position) };
+    let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let reader = Among::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
     Ok(Ready::boxed(flyer, reader, stance, start))
@@ -118,7 +121,7 @@ where
         each: frictions.into_iter().map(|friction| Rolls { ball: sphere, friction }).collect(),
     };
     let start = start::<N>(scene).spinning(spin);
-    let stance = Stance::Flight { cell: walls.cell(&start.position) };
+    let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let reader = Among::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
     Ok(Ready::boxed(flyer, reader, stance, start))
@@ -140,6 +143,19 @@ fn faces<const N: usize>(scene: &Scene) -> Result<(Surroundings<N>, Laws, Vec<Fr
     let each: Vec<Law> = owners.iter().filter_map(|&owner| scene.law(0, owner).copied()).collect();
     let frictions = owners.iter().map(|&owner| scene.floors[owner].friction).collect();
     Ok((walls, Laws { each }, frictions))
+}
+
+/// The cell in which a ball starts at `p`, if it is clear of all walls: a curve may be met by the side of a ball whose lowest point is above it.
+fn clear<const N: usize>(walls: &Surroundings<N>, p: &SVector<f64, N>) -> Result<usize, PlanError> {
+    let cell = walls.cell(p);
+    for face in walls.all(cell) {
+        let inside = -walls.margin(face, 0.0, p);
+        if inside > ROUNDING * (1.0 + p.norm()) {
+            let says = format!("the ball starts inside it, {inside:.3e} m deep: start it higher or farther away");
+            return Err(PlanError::floor(walls.owner(face), &says));
+        }
+    }
+    Ok(cell)
 }
 
 /// The law of each face of a cell.

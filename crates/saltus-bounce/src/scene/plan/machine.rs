@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use saltus::cross::Evidence;
 use saltus::step::Stepper;
-use saltus::{Automaton, Cause, Inspection, Jump, Observer, Piece, Run, Simulation, Trajectory};
+use saltus::{Automaton, Cause, Ending, Inspection, Jump, Observer, Piece, Run, Simulation, Time, Trajectory};
 
 use super::RunError;
 use super::explain::{Advance, ModePlan};
@@ -158,6 +158,16 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
         if how.stepped { simulation.stepped() } else { simulation }
     }
 
+    /// Runs from the start until `until`. Whoever observes, the engine is compiled once for a model.
+    fn drive(
+        &self,
+        simulation: &Simulation<'_, A, R::Stepper>,
+        until: f64,
+        mut observer: &mut dyn Observer<A>,
+    ) -> Result<Ending<A>, saltus::Error> {
+        simulation.drive(self.mode, self.state, 0.0..until, &mut observer)
+    }
+
     /// Until when to run.
     fn until(&self, how: &How, simulation: &Simulation<'_, A, R::Stepper>) -> Result<f64, saltus::Error> {
         match how.until {
@@ -166,7 +176,7 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
             // Steps would go on for ever: the run is made twice, first to see when it ends.
             None => {
                 let mut resting = Resting { reader: &*self.reader };
-                let ending = simulation.drive(self.mode, self.state, 0.0..f64::INFINITY, &mut resting)?;
+                let ending = self.drive(simulation, f64::INFINITY, &mut resting)?;
                 Ok(shown(ending.time.seconds()))
             }
         }
@@ -183,7 +193,12 @@ where
         let simulation = self.simulation(how);
         let until = self.until(how, &simulation)?;
         let run = match how.frames {
-            None => simulation.run(self.mode, self.state, 0.0..until).map_err(|failed| failed.error)?,
+            None => {
+                let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
+                let Ending { stop, stats, time, mode, state, .. } = self.drive(&simulation, until, &mut trajectory)?;
+                trajectory.finish(time);
+                Run { trajectory, stop, stats, mode, state }
+            }
             Some(rate) => {
                 saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, how.most_jumps)?
             }
@@ -200,13 +215,14 @@ where
         let simulation = self.simulation(how);
         let until = self.until(how, &simulation)?;
         let mut watch = Watch::new(&*self.automaton, &*self.reader);
-        let ending = simulation.drive(self.mode, self.state, 0.0..until, &mut watch)?;
+        let ending = self.drive(&simulation, until, &mut watch)?;
         let (end, last) = (End::of(&ending.stop), watch.last_jump());
         let rest = (end == End::Time && self.reader.rests(ending.mode, &ending.state)).then_some(last);
         let until = how.shown(end, ending.time.seconds(), last, rest)?;
         let state = if until < ending.time.seconds() {
             let (t, mode, state) = watch.left.unwrap_or((0.0, self.mode, self.state));
-            simulation.drive(mode, state, t..until, &mut ())?.state
+            let mut nothing: &mut dyn Observer<A> = &mut ();
+            simulation.drive(mode, state, t..until, &mut nothing)?.state
         } else {
             ending.state
         };
