@@ -14,13 +14,21 @@ pub struct Piece {
     pub span: f64,
     /// cₖ in m/sᵏ.
     pub coefficients: Vec<Point>,
+    /// The spin in rad/s, a polynomial likewise, right-handed about (x, y, up); empty for a ball that does not turn.
+    pub spin: Vec<Point>,
 }
 
 impl Piece {
     /// The place `s` seconds after the start.
     #[must_use]
     pub fn at(&self, s: f64) -> Point {
-        self.coefficients.iter().rev().fold([0.0; 3], |sum, c| std::array::from_fn(|axis| sum[axis] * s + c[axis]))
+        value(&self.coefficients, s)
+    }
+
+    /// The spin in rad/s `s` seconds after the start.
+    #[must_use]
+    pub fn spin_at(&self, s: f64) -> Point {
+        value(&self.spin, s)
     }
 
     /// The velocity in m/s `s` seconds after the start.
@@ -33,27 +41,59 @@ impl Piece {
     /// The same path `factor` times as slowly, from another start.
     pub(crate) fn slowed(&self, factor: f64, start: f64) -> Self {
         let scaled = |(c, k): (&Point, i32)| c.map(|c| c / factor.powi(k));
-        Self { start, span: self.span * factor, coefficients: self.coefficients.iter().zip(0..).map(scaled).collect() }
+        let coefficients = self.coefficients.iter().zip(0..).map(scaled).collect();
+        Self { start, span: self.span * factor, coefficients, spin: self.spin.iter().zip(1..).map(scaled).collect() }
     }
 
-    /// The part of it that lasts `span` from `s` on.
-    pub(crate) fn part(&self, s: f64, span: f64) -> Self {
-        // Taylor's shift, by repeated synthetic division.
-        let mut c = self.coefficients.clone();
-        for low in 0..c.len() {
-            for k in (low..c.len() - 1).rev() {
-                c[k] = std::array::from_fn(|axis| c[k][axis] + s * c[k + 1][axis]);
-            }
-        }
-        Self { start: self.start + s, span, coefficients: c }
+    /// The part of it that lasts `span` in s from `s` seconds after its start.
+    #[must_use]
+    pub fn part(&self, s: f64, span: f64) -> Self {
+        Self { start: self.start + s, span, coefficients: shifted(&self.coefficients, s), spin: shifted(&self.spin, s) }
     }
 }
+
+fn value(coefficients: &[Point], s: f64) -> Point {
+    coefficients.iter().rev().fold([0.0; 3], |sum, c| std::array::from_fn(|axis| sum[axis] * s + c[axis]))
+}
+
+/// Taylor's shift, by repeated synthetic division.
+fn shifted(coefficients: &[Point], s: f64) -> Vec<Point> {
+    let mut c = coefficients.to_vec();
+    for low in 0..c.len() {
+        for k in (low..c.len() - 1).rev() {
+            c[k] = std::array::from_fn(|axis| c[k][axis] + s * c[k + 1][axis]);
+        }
+    }
+    c
+}
+
+/// How a ball meets what it bounces on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The normal, towards the ball, of length 1.
+    pub normal: Point,
+    /// The speed of approach along it, in m/s.
+    pub speed: f64,
+    /// Whether it takes time: what begins with it are the places of a ball pressed in by as much as it is deformed.
+    pub pressed: bool,
+}
+
+impl Contact {
+    /// With a level floor, at `speed` in m/s, in an instant.
+    #[must_use]
+    pub const fn level(speed: f64) -> Self {
+        Self { normal: UP, speed, pressed: false }
+    }
+}
+
+/// Upwards.
+pub(crate) const UP: Point = [0.0, 0.0, 1.0];
 
 /// Pieces that join smoothly, from one impact to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stretch {
-    /// Whether it begins with a contact.
-    pub contact: bool,
+    /// The contact it begins with, if it does.
+    pub contact: Option<Contact>,
     /// Whether the ball is in the air.
     pub flight: bool,
     /// At least one.
@@ -165,7 +205,7 @@ impl Track {
 
     /// When contacts begin, in s.
     pub fn contacts(&self) -> impl Iterator<Item = f64> + '_ {
-        self.stretches.iter().filter(|stretch| stretch.contact).map(Stretch::start)
+        self.stretches.iter().filter(|stretch| stretch.contact.is_some()).map(Stretch::start)
     }
 
     /// When it ends, in s.
@@ -194,8 +234,8 @@ impl Motion {
     ///
     /// ```
     /// use saltus_motion::{Motion, Piece, Stretch, Track};
-    /// let fall = Piece { start: 0.0, span: 0.4, coefficients: vec![[0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, -4.905]] };
-    /// let stretch = Stretch { contact: false, flight: true, pieces: vec![fall] };
+    /// let fall = Piece { start: 0.0, span: 0.4, coefficients: vec![[0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, -4.905]], spin: Vec::new() };
+    /// let stretch = Stretch { contact: None, flight: true, pieces: vec![fall] };
     /// let track = Track { name: "ball".into(), radius: 0.02, stretches: vec![stretch] };
     /// let motion = Motion::new("fall", vec![track], Vec::new())?;
     /// assert!((motion.tracks[0].at(0.2)[2] - 0.8038).abs() < 1e-12);
@@ -216,7 +256,7 @@ impl Motion {
             }
             let mut t = 0.0;
             for piece in stretches.iter().flat_map(|stretch| &stretch.pieces) {
-                let finite = piece.coefficients.iter().flatten().all(|c| c.is_finite());
+                let finite = piece.coefficients.iter().chain(&piece.spin).flatten().all(|c| c.is_finite());
                 if !finite || !piece.span.is_finite() || piece.span < 0.0 || piece.coefficients.is_empty() {
                     return bad(&format!("its motion from {} s on is not finite", piece.start));
                 }

@@ -1,6 +1,6 @@
 //! From infinitely many hops to finitely many, and from contacts anywhere to contacts on whole frames.
 
-use crate::motion::{Motion, MotionError, Piece, Stretch, Track};
+use crate::motion::{Motion, MotionError, Piece, Point, Stretch, Track};
 use crate::rate::Frames;
 
 /// What stays as it was when contacts move to whole frames.
@@ -81,7 +81,8 @@ fn cut(stretches: &[Stretch], span: f64) -> Vec<Stretch> {
             let (start, end) = (first.start(), run[run.len() - 1].end());
             let (a, b) = (first.at(start), run[run.len() - 1].at(end));
             let slope = std::array::from_fn(|axis| (b[axis] - a[axis]) / (end - start));
-            let line = Piece { start, span: end - start, coefficients: vec![a, slope] };
+            let spin = evenly(run, end - start);
+            let line = Piece { start, span: end - start, coefficients: vec![a, slope], spin };
             kept.push(Stretch { contact: first.contact, flight: false, pieces: vec![line] });
             from += short;
             ended_in_cut = true;
@@ -89,7 +90,7 @@ fn cut(stretches: &[Stretch], span: f64) -> Vec<Stretch> {
             let whole = short.max(1);
             for (k, stretch) in stretches[from..from + whole].iter().enumerate() {
                 // What goes on along the ground has touched it before.
-                let contact = stretch.contact && !(ended_in_cut && k == 0 && !stretch.flight);
+                let contact = stretch.contact.filter(|_| !(ended_in_cut && k == 0 && !stretch.flight));
                 kept.push(Stretch { contact, ..stretch.clone() });
             }
             from += whole;
@@ -100,11 +101,27 @@ fn cut(stretches: &[Stretch], span: f64) -> Vec<Stretch> {
     join_still(kept)
 }
 
+/// A spin that goes evenly from that at the start of a run of stretches to that at its end, over `span` in s.
+fn evenly(run: &[Stretch], span: f64) -> Vec<Point> {
+    let mut pieces = run.iter().flat_map(|stretch| &stretch.pieces);
+    let (Some(first), Some(last)) = (pieces.next(), run.last().and_then(|stretch| stretch.pieces.last())) else {
+        return Vec::new();
+    };
+    if run.iter().flat_map(|stretch| &stretch.pieces).all(|piece| piece.spin.is_empty()) {
+        return Vec::new();
+    }
+    let (a, b) = (first.spin_at(0.0), last.spin_at(last.span));
+    vec![a, std::array::from_fn(|axis| (b[axis] - a[axis]) / span)]
+}
+
 /// Lying still after lying still is one stretch.
 fn join_still(stretches: Vec<Stretch>) -> Vec<Stretch> {
     let still = |stretch: &Stretch| {
         !stretch.flight
-            && stretch.pieces.iter().all(|piece| piece.coefficients.iter().skip(1).flatten().all(|&c| c == 0.0))
+            && stretch
+                .pieces
+                .iter()
+                .all(|piece| piece.coefficients.iter().skip(1).chain(&piece.spin).flatten().all(|&c| c == 0.0))
     };
     let mut joined: Vec<Stretch> = Vec::with_capacity(stretches.len());
     for stretch in stretches {
@@ -132,7 +149,7 @@ fn pace(stretch: &Stretch, knots: &[[f64; 2]]) -> Vec<Stretch> {
             match parts.last_mut() {
                 Some(last) if from > a[0] + 1e-12 * a[0].max(1.0) => last.pieces.push(moved),
                 _ => {
-                    let contact = parts.is_empty() && stretch.contact;
+                    let contact = stretch.contact.filter(|_| parts.is_empty());
                     parts.push(Stretch { contact, flight: stretch.flight, pieces: vec![moved] });
                 }
             }
@@ -155,7 +172,7 @@ fn thrown(track: &Track, frames: Frames) -> Result<Track, MotionError> {
                 let at = stretch.start();
                 MotionError(format!("in the flight from {at:.4} s on more than gravity acts: snap by heights"))
             })?;
-            let lands = track.stretches.get(index + 1).is_some_and(|next| next.contact);
+            let lands = track.stretches.get(index + 1).is_some_and(|next| next.contact.is_some());
             let end =
                 track.stretches.get(index + 1).map_or_else(|| stretch.at(stretch.end()), |next| next.at(next.start()));
             let mut c = [place, slope, pull];
@@ -169,7 +186,10 @@ fn thrown(track: &Track, frames: Frames) -> Result<Track, MotionError> {
                     c[1][axis] = (end[axis] - place[axis]) / span - pull[axis] * span;
                 }
             }
-            vec![Piece { start, span, coefficients: c.to_vec() }]
+            // As many turns as before.
+            let slower = |c: Point| c.map(|c| c * stretch.span() / span);
+            let spin = evenly(std::slice::from_ref(stretch), span).into_iter().map(slower).collect();
+            vec![Piece { start, span, coefficients: c.to_vec(), spin }]
         } else {
             let factor = span / stretch.span();
             let moved = |piece: &Piece| piece.slowed(factor, start + (piece.start - stretch.start()) * factor);

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use saltus_motion::{Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
+use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};
 use serde_json::Value;
 
 const G: f64 = 9.81;
@@ -18,7 +18,12 @@ fn drop(hops: usize, sideways: f64) -> (Motion, Vec<f64>) {
     let mut arc = |t: f64, span: f64, height: f64, speed: f64, flight: bool| {
         let pull = if flight { -0.5 * G } else { 0.0 };
         let coefficients = vec![[sideways * t, 0.0, height], [sideways, 0.0, speed], [0.0, 0.0, pull]];
-        stretches.push(Stretch { contact: t > 0.0, flight, pieces: vec![Piece { start: t, span, coefficients }] });
+        let contact = (t > 0.0).then(|| Contact::level(speed / COR));
+        stretches.push(Stretch {
+            contact,
+            flight,
+            pieces: vec![Piece { start: t, span, coefficients, spin: Vec::new() }],
+        });
     };
     for _ in 0..=hops {
         arc(t, span, height, speed, true);
@@ -52,7 +57,7 @@ fn frames(text: &str) -> Frames {
 }
 
 fn file(motion: &Motion, format: Format) -> File {
-    Export { motion, frames: frames("24"), tolerance: 1e-4 }.file(format).unwrap()
+    Export { motion, frames: frames("24"), tolerance: 1e-4, shape: Shape::default() }.file(format).unwrap()
 }
 
 fn text(file: &File) -> &str {
@@ -274,11 +279,12 @@ fn blender_handles_are_at_a_third_and_touch_at_zero() {
     let (motion, starts) = drop(3, SIDEWAYS);
     let rate = "23.976".parse().unwrap();
     let frames = Frames { rate, first: 1, on_twos: false };
-    let file = Export { motion: &motion, frames, tolerance: 1e-4 }.file(Format::Blender).unwrap();
+    let file =
+        Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default() }.file(Format::Blender).unwrap();
     let data = data(text(&file));
     assert_eq!(data["fps"], 24);
     assert!((data["fps_base"].as_f64().unwrap() - 1.001).abs() < 1e-12);
-    let keys = data["balls"][0]["keys"][2].as_array().unwrap();
+    let keys = data["balls"][0]["nodes"][0]["place"]["keys"][2].as_array().unwrap();
     let number = |value: &Value| value.as_f64().unwrap();
     for (key, start) in keys.iter().zip(&starts) {
         assert!((number(&key[0]) - 1.0 - start * 24.0 / 1.001).abs() < 1e-9);
@@ -296,9 +302,14 @@ fn blender_handles_are_at_a_third_and_touch_at_zero() {
 #[test]
 fn maya_knows_its_rates_and_refuses_others() {
     let (motion, _) = drop(3, SIDEWAYS);
-    let with = |rate: &str| Export { motion: &motion, frames: frames(rate), tolerance: 1e-4 }.file(Format::Maya);
+    let with = |rate: &str| {
+        Export { motion: &motion, frames: frames(rate), tolerance: 1e-4, shape: Shape::default() }.file(Format::Maya)
+    };
     let data = data(text(&with("29.97").unwrap()));
-    assert_eq!((data["time"].as_str(), data["balls"][0]["keys"].as_array().unwrap().len()), (Some("29.97fps"), 6));
+    assert_eq!(
+        (data["time"].as_str(), data["balls"][0]["nodes"][0]["place"]["keys"].as_array().unwrap().len()),
+        (Some("29.97fps"), 6)
+    );
     assert!(with("13").unwrap_err().to_string().contains("Maya has no rate of 13"));
 }
 
@@ -348,9 +359,9 @@ fn on_twos_every_drawing_stands_for_two_frames() {
     for format in
         [Format::Csv, Format::Glb, Format::Svg, Format::Lottie, Format::Blender, Format::Maya, Format::UsdSplines]
     {
-        Export { motion: &motion, frames, tolerance: 1e-4 }.file(format).unwrap();
+        Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default() }.file(format).unwrap();
     }
-    let file = Export { motion: &motion, frames, tolerance: 1e-4 }.file(Format::Json).unwrap();
+    let file = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default() }.file(Format::Json).unwrap();
     let document: Value = serde_json::from_slice(&file.bytes).unwrap();
     assert_eq!(document["balls"][0]["between"], "hold");
     for (k, key) in document["balls"][0]["keys"].as_array().unwrap().iter().enumerate() {
@@ -368,11 +379,17 @@ fn a_motion_that_is_no_parabola_takes_few_keys_within_the_tolerance() {
     for (k, c) in [(0, 1.0), (2, -1.0), (5, 1.0), (9, -0.5)] {
         coefficients[k][2] = c;
     }
-    let stretch = Stretch { contact: false, flight: true, pieces: vec![Piece { start: 0.0, span: 1.0, coefficients }] };
+    let stretch = Stretch {
+        contact: None,
+        flight: true,
+        pieces: vec![Piece { start: 0.0, span: 1.0, coefficients, spin: Vec::new() }],
+    };
     let track = Track { name: "ball".into(), radius: 0.1, stretches: vec![stretch] };
     let motion = Motion::new("curve", vec![track], Vec::new()).unwrap();
     for (tolerance, most) in [(1e-2, 4), (1e-4, 9), (1e-6, 25)] {
-        let file = Export { motion: &motion, frames: frames("24"), tolerance }.file(Format::Csv).unwrap();
+        let file = Export { motion: &motion, frames: frames("24"), tolerance, shape: Shape::default() }
+            .file(Format::Csv)
+            .unwrap();
         assert!(file.miss.height <= 1.1 * tolerance && file.keys <= most, "{tolerance}: {} {:?}", file.keys, file.miss);
     }
     let refused = motion.snapped(Snap::Gravity, frames("24")).unwrap_err().to_string();

@@ -1,9 +1,10 @@
 //! A Python script for Blender: the ball, the floor, and curves whose handles make every flight an exact parabola.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::Export;
+use super::{Ball, Export, Node};
 use crate::curve::{Between, Curve, Key};
+use crate::turn::Turn;
 
 /// Handles at a third of the time between keys make Blender's curve a plain cubic in time.
 const SCRIPT: &str = r#"
@@ -36,16 +37,16 @@ def mesh_object(name, vertices, faces, smooth):
     return item
 
 
-def sphere(name, radius, rings=16, sides=32):
-    """A sphere that stands on its origin, so that height 0 is touch."""
+def sphere(name, radius, bottom, stripes, rings=16, sides=32):
+    """A sphere with its bottom at a height: at 0 it stands on its origin, so that height 0 is touch."""
     from math import cos, pi, sin
-    vertices = [(0.0, 0.0, 0.0)]
+    vertices = [(0.0, 0.0, bottom)]
     for ring in range(1, rings):
         a = pi * ring / rings
         for side in range(sides):
             b = 2.0 * pi * side / sides
-            vertices.append((radius * sin(a) * cos(b), radius * sin(a) * sin(b), radius * (1.0 - cos(a))))
-    vertices.append((0.0, 0.0, 2.0 * radius))
+            vertices.append((radius * sin(a) * cos(b), radius * sin(a) * sin(b), bottom + radius * (1.0 - cos(a))))
+    vertices.append((0.0, 0.0, bottom + 2.0 * radius))
     last = len(vertices) - 1
     faces = []
     for side in range(sides):
@@ -56,7 +57,47 @@ def sphere(name, radius, rings=16, sides=32):
             faces.append((a + side, a + after, b + after, b + side))
         top = 1 + (rings - 2) * sides
         faces.append((top + side, top + after, last))
-    return mesh_object(name, vertices, faces, True)
+    item = mesh_object(name, vertices, faces, True)
+    if stripes:
+        # In two colours, so that a turning ball is seen to turn.
+        for colour in ((0.85, 0.33, 0.1, 1.0), (0.95, 0.8, 0.6, 1.0)):
+            material = bpy.data.materials.new("ball")
+            material.diffuse_color = colour
+            item.data.materials.append(material)
+        for number, polygon in enumerate(item.data.polygons):
+            polygon.material_index = number // rings // (sides // 4) % 2
+    return item
+
+
+def key_axes(curves, path, moves):
+    """Keys of a curve for each axis; how far they are from what was asked for."""
+    found = 0.0
+    for axis, (keys, checks) in enumerate(zip(moves["keys"], moves["checks"])):
+        curve = curves.new(path, index=axis)
+        curve.keyframe_points.add(len(keys))
+        for point, (frame, value, left, right) in zip(curve.keyframe_points, keys):
+            point.co = (frame, value)
+            point.interpolation = moves["interpolation"]
+            point.handle_left_type = point.handle_right_type = "FREE"
+            point.handle_left = left
+            point.handle_right = right
+        curve.update()
+        for frame, value in checks:
+            found = max(found, abs(curve.evaluate(frame) - value))
+    return found
+
+
+def key_turns(item, curves, turns):
+    """Turning, straight from key to key."""
+    item.rotation_mode = turns["mode"]
+    path = "rotation_quaternion" if turns["mode"] == "QUATERNION" else "rotation_euler"
+    for index, values in turns["values"]:
+        curve = curves.new(path, index=index)
+        curve.keyframe_points.add(len(values))
+        for point, frame, value in zip(curve.keyframe_points, turns["frames"], values):
+            point.co = (frame, value)
+            point.interpolation = turns["interpolation"]
+        curve.update()
 
 
 scene = bpy.context.scene
@@ -65,21 +106,26 @@ scene.render.fps_base = DATA["fps_base"]
 scene.frame_start, scene.frame_end = DATA["range"]
 worst = 0.0
 for ball in DATA["balls"]:
-    item = sphere(ball["name"], ball["radius"])
-    curves = curves_of(item)
-    for axis in range(3):
-        curve = curves.new("location", index=axis)
-        keys = ball["keys"][axis]
-        curve.keyframe_points.add(len(keys))
-        for point, (frame, value, left, right) in zip(curve.keyframe_points, keys):
-            point.co = (frame, value)
-            point.interpolation = ball["interpolation"]
-            point.handle_left_type = point.handle_right_type = "FREE"
-            point.handle_left = left
-            point.handle_right = right
-        curve.update()
-        for frame, value in ball["checks"][axis]:
-            worst = max(worst, abs(curve.evaluate(frame) - value))
+    around = None
+    for number, node in enumerate(ball["nodes"]):
+        if number == len(ball["nodes"]) - 1:
+            item = sphere(node["name"], ball["radius"], node["bottom"], node["turns"])
+        else:
+            item = bpy.data.objects.new(node["name"], None)
+            item.empty_display_size = ball["radius"]
+            bpy.context.scene.collection.objects.link(item)
+        item.parent = around
+        item.location = node["still"]
+        around = item
+        if not (node["place"] or node["scale"] or node["turns"]):
+            continue
+        curves = curves_of(item)
+        if node["place"]:
+            worst = max(worst, key_axes(curves, "location", node["place"]))
+        if node["scale"]:
+            worst = max(worst, ball["radius"] * key_axes(curves, "scale", node["scale"]))
+        if node["turns"]:
+            key_turns(item, curves, node["turns"])
 for number, (vertices, faces) in enumerate(DATA["ground"]):
     mesh_object("ground" if number == 0 else "ground %d" % number, vertices, faces, False)
 scene.frame_set(DATA["range"][0])
@@ -88,7 +134,7 @@ if worst > 1e-5 * DATA["size"]:
     print("saltus: that is more than single precision explains: please do not trust these curves")
 "#;
 
-pub(super) fn script(export: &Export<'_>, curves: &[Curve]) -> String {
+pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let frames = export.frames;
     let (per, seconds) = frames.rate.fraction();
     // Whole frames per second over a base, as Blender keeps them: 24000/1001 is 24 over 1.001.
@@ -96,19 +142,18 @@ pub(super) fn script(export: &Export<'_>, curves: &[Curve]) -> String {
     let fps = nominal.ceil();
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 1000
     let whole = fps as u32;
-    let balls = export.motion.tracks.iter().zip(curves).map(|(track, curve)| {
-        let keys: Vec<Vec<_>> = (0..3).map(|axis| axis_keys(export, curve, axis)).collect();
-        let middles: Vec<f64> = curve.keys.windows(2).map(|pair| 0.5 * (pair[0].t + pair[1].t)).collect();
-        let check = |axis: usize| middles.iter().map(|&t| [frames.number(t), curve.at(t)[axis]]).collect::<Vec<_>>();
-        json!({
-            "name": track.name, "radius": track.radius, "keys": keys,
-            "interpolation": match curve.between {
-                Between::Cubic => "BEZIER",
-                Between::Line => "LINEAR",
-                Between::Hold => "CONSTANT",
-            },
-            "checks": (0..3).map(check).collect::<Vec<_>>(),
-        })
+    let balls = balls.iter().map(|ball| {
+        let mut nodes: Vec<Value> = ball.nodes().iter().map(|node| chained(export, node, ball.held())).collect();
+        let mut bottom = -ball.track.radius;
+        if ball.dress.is_none() {
+            // A ball that stays round and does not turn is one object that stands on its origin.
+            nodes.truncate(1);
+            bottom = 0.0;
+        }
+        if let Some(inner) = nodes.last_mut() {
+            inner["bottom"] = json!(bottom);
+        }
+        json!({ "radius": ball.track.radius, "nodes": nodes })
     });
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({
@@ -119,6 +164,42 @@ pub(super) fn script(export: &Export<'_>, curves: &[Curve]) -> String {
     let data = data.to_string().replace('\'', "\\u0027");
     let head = "# Blender 4 and 5: blender --python FILE, or the Scripting tab. Written by saltus.\n";
     format!("{head}{}", SCRIPT.trim_start().replace("@DATA@", &data).replace("\"fps\":", "\n\"fps\":"))
+}
+
+/// A node as the script reads it.
+fn chained(export: &Export<'_>, node: &Node<'_>, held: bool) -> Value {
+    let frames = export.frames;
+    let moves = |curve: &Curve| {
+        let keys: Vec<Vec<_>> = (0..3).map(|axis| axis_keys(export, curve, axis)).collect();
+        let middles: Vec<f64> = curve.keys.windows(2).map(|pair| 0.5 * (pair[0].t + pair[1].t)).collect();
+        let check = |axis: usize| middles.iter().map(|&t| [frames.number(t), curve.at(t)[axis]]).collect::<Vec<_>>();
+        json!({
+            "keys": keys, "checks": (0..3).map(check).collect::<Vec<_>>(),
+            "interpolation": match curve.between {
+                Between::Cubic => "BEZIER",
+                Between::Line => "LINEAR",
+                Between::Hold => "CONSTANT",
+            },
+        })
+    };
+    // In the plane of x and up one angle does, and may count whole turns.
+    let flat = node.turns.iter().all(|turn| turn.quaternion[0] == 0.0 && turn.quaternion[2] == 0.0);
+    let values = |of: &dyn Fn(&Turn) -> f64| node.turns.iter().map(of).collect::<Vec<f64>>();
+    let turns = (!node.turns.is_empty()).then(|| {
+        json!({
+            "mode": if flat { "XYZ" } else { "QUATERNION" },
+            "interpolation": if held { "CONSTANT" } else { "LINEAR" },
+            "frames": values(&|turn| frames.number(turn.t)),
+            "values": if flat {
+                vec![(1, values(&|turn| 0.0 - turn.angle))]
+            } else {
+                [3, 0, 1, 2].into_iter().enumerate().map(|(index, part)| (index, values(&|turn| turn.quaternion[part]))).collect()
+            },
+        })
+    });
+    json!({
+        "name": node.name, "still": node.still, "place": node.place.map(moves), "scale": node.scale.map(moves), "turns": turns,
+    })
 }
 
 /// Frame, value, left handle, right handle.

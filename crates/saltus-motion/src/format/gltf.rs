@@ -4,9 +4,10 @@ use std::f64::consts::{PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::{Export, ExportError};
+use super::{Ball, Export, ExportError};
 use crate::curve::{Between, Curve};
 use crate::motion::Point;
+use crate::turn::Turn;
 
 const FLOAT: u32 = 5126;
 const SHORT: u32 = 5123;
@@ -40,9 +41,10 @@ impl Buffer {
         let bound = |pick: fn(f32, f32) -> f32, from: f32| -> Vec<f64> {
             (0..N).map(|k| f64::from(rows.iter().map(|row| row[k]).fold(from, pick))).collect()
         };
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
         self.accessors.push(json!({
             "bufferView": view, "componentType": FLOAT, "count": rows.len(),
-            "type": if N == 1 { "SCALAR" } else { "VEC3" },
+            "type": kind,
             "min": bound(f32::min, f32::INFINITY), "max": bound(f32::max, f32::NEG_INFINITY),
         }));
         self.accessors.len() - 1
@@ -57,13 +59,23 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    fn mesh(&mut self, name: &str, shape: &Shape, material: usize) -> Value {
+    fn mesh(&mut self, name: &str, shape: &Shape, materials: &[usize]) -> Value {
         let position = self.floats(&shape.positions, Some(ARRAY));
         let normal = self.floats(&shape.normals, Some(ARRAY));
-        let indices = self.indices(&shape.indices);
-        json!({ "name": name, "primitives": [{
-            "attributes": { "POSITION": position, "NORMAL": normal }, "indices": indices, "material": material,
-        }] })
+        let primitives = materials.iter().zip(&shape.indices).map(|(material, indices)| {
+            let indices = self.indices(indices);
+            json!({ "attributes": { "POSITION": position, "NORMAL": normal }, "indices": indices, "material": material })
+        });
+        json!({ "name": name, "primitives": primitives.collect::<Vec<_>>() })
+    }
+
+    /// A ball; one that turns is in two colours, so that it is seen to.
+    fn ball(&mut self, ball: &Ball<'_>, turns: bool) -> Value {
+        let mut shape = sphere(ball.track.radius);
+        if !turns {
+            shape.indices = vec![shape.indices.concat()];
+        }
+        self.mesh(&ball.track.name, &shape, &[0, 2])
     }
 }
 
@@ -71,7 +83,8 @@ impl Buffer {
 struct Shape {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
-    indices: Vec<u16>,
+    /// Of triangles, by colour.
+    indices: Vec<Vec<u16>>,
 }
 
 #[allow(clippy::cast_possible_truncation)] // single precision is what the format holds
@@ -97,15 +110,17 @@ fn sphere(radius: f64) -> Shape {
             shape.normals.push(single(normal));
         }
     }
+    shape.indices = vec![Vec::new(); 2];
     for ring in 0..RINGS {
         for side in 0..SIDES {
+            let indices = &mut shape.indices[usize::from(side / (SIDES / 4) % 2 == 1)];
             let a = ring * (SIDES + 1) + side;
             let b = a + SIDES + 1;
             if ring > 0 {
-                shape.indices.extend([a, a + 1, b + 1]);
+                indices.extend([a, a + 1, b + 1]);
             }
             if ring < RINGS - 1 {
-                shape.indices.extend([a, b + 1, b]);
+                indices.extend([a, b + 1, b]);
             }
         }
     }
@@ -115,6 +130,7 @@ fn sphere(radius: f64) -> Shape {
 /// A strip below a line of the ground; `None` for one without length, or with more corners than indices reach.
 fn strip(line: &[[f64; 2]], depth: f64) -> Option<Shape> {
     let mut shape = Shape::default();
+    let mut indices = Vec::new();
     for pair in line.windows(2) {
         let ([x0, y0], [x1, y1]) = (pair[0], pair[1]);
         let length = (x1 - x0).hypot(y1 - y0);
@@ -127,66 +143,131 @@ fn strip(line: &[[f64; 2]], depth: f64) -> Option<Shape> {
             shape.positions.push(single([x, y, z]));
             shape.normals.push(normal);
         }
-        shape.indices.extend([0, 1, 2, 0, 2, 3].map(|k| from + k));
+        indices.extend([0, 1, 2, 0, 2, 3].map(|k| from + k));
     }
+    shape.indices.push(indices);
     (!shape.positions.is_empty()).then_some(shape)
 }
 
-/// One animation: a channel for each ball. Tangents are velocities in m/s; the player multiplies by the time between keys.
+/// Channels of an animation.
+struct Channels<'a> {
+    buffer: &'a mut Buffer,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+/// Times have to rise in single precision too: of two that do not, the place and the way in of the earlier, the way out of the later.
 #[allow(clippy::cast_possible_truncation)] // single precision is what the format holds
-fn animation(name: &str, curves: &[Curve], buffer: &mut Buffer) -> Value {
-    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-    for (node, curve) in curves.iter().enumerate() {
-        // Times have to rise in single precision too.
-        let mut keys = curve.keys.clone();
-        keys.dedup_by(|later, earlier| {
-            let same = later.t as f32 <= earlier.t as f32;
-            if same {
-                earlier.leave = later.leave;
-            }
-            same
-        });
-        let times: Vec<[f32; 1]> = keys.iter().map(|key| [key.t as f32]).collect();
-        let (values, kind): (Vec<[f32; 3]>, _) = match curve.between {
+fn rising<K: Copy>(keys: &[K], t: impl Fn(&K) -> f64, join: impl Fn(&mut K, &K)) -> (Vec<K>, Vec<[f32; 1]>) {
+    let mut keys = keys.to_vec();
+    keys.dedup_by(|later, earlier| {
+        let same = t(later) as f32 <= t(earlier) as f32;
+        if same {
+            join(earlier, later);
+        }
+        same
+    });
+    let times = keys.iter().map(|key| [t(key) as f32]).collect();
+    (keys, times)
+}
+
+impl Channels<'_> {
+    fn push<const N: usize>(&mut self, (node, path): (usize, &str), times: &[[f32; 1]], rows: &[[f32; N]], kind: &str) {
+        let (input, output) = (self.buffer.floats(times, None), self.buffer.floats(rows, None));
+        self.channels.push(json!({ "sampler": self.samplers.len(), "target": { "node": node, "path": path } }));
+        self.samplers.push(json!({ "input": input, "output": output, "interpolation": kind }));
+    }
+
+    /// Tangents are velocities in m/s; the player multiplies by the time between keys.
+    fn curve(&mut self, target: (usize, &str), curve: &Curve, row: impl Fn(Point) -> [f32; 3]) {
+        let (keys, times) = rising(&curve.keys, |key| key.t, |earlier, later| earlier.leave = later.leave);
+        let (rows, kind): (Vec<[f32; 3]>, _) = match curve.between {
             Between::Cubic => {
-                let rows = keys.iter().flat_map(|key| [key.enter, key.place, key.leave].map(turned));
+                let rows = keys.iter().flat_map(|key| [key.enter, key.place, key.leave].map(&row));
                 (rows.collect(), "CUBICSPLINE")
             }
-            Between::Line => (keys.iter().map(|key| turned(key.place)).collect(), "LINEAR"),
-            Between::Hold => (keys.iter().map(|key| turned(key.place)).collect(), "STEP"),
+            Between::Line => (keys.iter().map(|key| row(key.place)).collect(), "LINEAR"),
+            Between::Hold => (keys.iter().map(|key| row(key.place)).collect(), "STEP"),
         };
-        let (input, output) = (buffer.floats(&times, None), buffer.floats(&values, None));
-        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": "translation" } }));
-        samplers.push(json!({ "input": input, "output": output, "interpolation": kind }));
+        self.push(target, &times, &rows, kind);
     }
-    json!({ "name": name, "samplers": samplers, "channels": channels })
+
+    /// Straight lines between quaternions are the shortest ways between orientations.
+    #[allow(clippy::cast_possible_truncation)] // single precision is what the format holds
+    fn turns(&mut self, node: usize, turns: &[Turn], held: bool) {
+        let (keys, times) = rising(turns, |turn| turn.t, |earlier, later| *earlier = *later);
+        let row = |turn: &Turn| {
+            let [x, y, up, w] = turn.quaternion;
+            [x, up, -y, w].map(|c| c as f32 + 0.0)
+        };
+        let rows: Vec<[f32; 4]> = keys.iter().map(row).collect();
+        self.push((node, "rotation"), &times, &rows, if held { "STEP" } else { "LINEAR" });
+    }
+}
+
+/// Which nodes the path, the squash and the shape of each ball are.
+fn numbered(ball: usize, balls: usize, nodes: usize) -> Vec<usize> {
+    // The paths of all balls come first, then what they carry.
+    if nodes == 2 { vec![ball, balls + ball] } else { vec![ball, 2 * balls + ball, balls + ball] }
+}
+
+/// One animation: the channels of each ball.
+fn animation(name: &str, balls: &[Ball<'_>], buffer: &mut Buffer) -> Value {
+    let mut out = Channels { buffer, samplers: Vec::new(), channels: Vec::new() };
+    for (n, ball) in balls.iter().enumerate() {
+        let nodes = ball.nodes();
+        for (number, node) in numbered(n, balls.len(), nodes.len()).into_iter().zip(&nodes) {
+            if let Some(place) = node.place {
+                out.curve((number, "translation"), place, turned);
+            }
+            if !node.turns.is_empty() {
+                out.turns(number, node.turns, ball.held());
+            }
+            if let Some(scale) = node.scale {
+                out.curve((number, "scale"), scale, |[x, y, along]| single([x, along, y]));
+            }
+        }
+    }
+    json!({ "name": name, "samplers": out.samplers, "channels": out.channels })
 }
 
 /// The balls are the first nodes; each stands on its origin, so that height 0 is touch.
-pub(super) fn binary(export: &Export<'_>, shown: &[Curve], exact: &[Curve]) -> Result<Vec<u8>, ExportError> {
+pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> Result<Vec<u8>, ExportError> {
     let motion = export.motion;
     let mut buffer = Buffer::default();
-    let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
+    let mut meshes = Vec::new();
     let count = motion.tracks.len();
-    for (n, track) in motion.tracks.iter().enumerate() {
-        let start = turned(track.at(0.0));
-        nodes.push(json!({ "name": track.name, "translation": start, "children": [count + n] }));
+    // Of each ball its path and what is at its end; then, if there are any, the nodes between.
+    let (mut paths, mut shapes, mut between) = (Vec::new(), Vec::new(), Vec::new());
+    for (n, ball) in shown.iter().enumerate() {
+        let nodes = ball.nodes();
+        let numbers = numbered(n, count, nodes.len());
+        for (k, node) in nodes.iter().enumerate() {
+            let start = node.place.map_or(node.still, |place| place.at(0.0));
+            let mut value = json!({ "name": node.name, "translation": turned(start) });
+            if let Some(inner) = numbers.get(k + 1) {
+                value["children"] = json!([inner]);
+                if k == 0 { paths.push(value) } else { between.push(value) }
+            } else {
+                value["mesh"] = json!(meshes.len());
+                meshes.push(buffer.ball(ball, !node.turns.is_empty()));
+                shapes.push(value);
+            }
+        }
     }
-    for track in &motion.tracks {
-        nodes.push(json!({ "name": format!("{} shape", track.name), "mesh": meshes.len(), "translation": [0.0, track.radius, 0.0] }));
-        meshes.push(buffer.mesh(&track.name, &sphere(track.radius), 0));
-    }
+    let mut nodes = [paths, shapes, between].concat();
+    let carried = nodes.len();
     let depth = super::depth(motion);
     for shape in motion.ground.iter().filter_map(|line| strip(line, depth)) {
         nodes.push(json!({ "name": "ground", "mesh": meshes.len() }));
-        meshes.push(buffer.mesh("ground", &shape, 1));
+        meshes.push(buffer.mesh("ground", &shape, &[1]));
     }
     // The order matters: a reader that plays only one takes the first, and some cannot read cubics.
     let mut animations = vec![animation("frames", shown, &mut buffer)];
-    if exact.iter().any(|curve| curve.between == Between::Cubic) {
+    if exact.iter().any(|ball| ball.path.between == Between::Cubic) {
         animations.push(animation("exact", exact, &mut buffer));
     }
-    let roots: Vec<usize> = (0..count).chain(2 * count..nodes.len()).collect();
+    let roots: Vec<usize> = (0..count).chain(carried..nodes.len()).collect();
     let (per, seconds) = export.frames.rate.fraction();
     let material = |name: &str, colour: [f64; 4]| {
         json!({
@@ -200,7 +281,7 @@ pub(super) fn binary(export: &Export<'_>, shown: &[Curve], exact: &[Curve]) -> R
             "extras": { "title": motion.title, "fps": [per, seconds], "startFrame": export.frames.first },
         },
         "scene": 0, "scenes": [{ "name": motion.title, "nodes": roots }], "nodes": nodes, "meshes": meshes,
-        "materials": [material("ball", [0.85, 0.33, 0.1, 1.0]), material("ground", [0.6, 0.6, 0.6, 1.0])],
+        "materials": [material("ball", [0.85, 0.33, 0.1, 1.0]), material("ground", [0.6, 0.6, 0.6, 1.0]), material("stripe", [0.95, 0.8, 0.6, 1.0])],
         "animations": animations, "accessors": buffer.accessors, "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });

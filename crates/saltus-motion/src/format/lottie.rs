@@ -1,13 +1,13 @@
-//! Lottie: x on a layer without a shape, heights on the ball that follows it, so that each has eases of its own.
+//! Lottie: x on a layer without a shape, heights on the ball that follows it, so that each has eases of its own; squash and spin likewise.
 
 use serde_json::{Value, json};
 
+use super::flat::{Moves, channels};
 use super::view::View;
-use super::{Export, ExportError};
-use crate::curve::Curve;
-use crate::ease::eases;
+use super::{Ball, Export, ExportError};
+use crate::ease::Ease;
 
-pub(super) fn json(export: &Export<'_>, curves: &[Curve]) -> Result<String, ExportError> {
+pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, ExportError> {
     let view = View::of(export.motion);
     let [first, last] = export.range();
     let end = last + 1;
@@ -23,22 +23,53 @@ pub(super) fn json(export: &Export<'_>, curves: &[Curve]) -> Result<String, Expo
         "ty": "tr", "p": still(json!([0, 0])), "a": still(json!([0, 0])), "s": still(json!([100, 100])), "r": still(json!(0)), "o": still(json!(100)),
     });
     let mut layers = Vec::new();
-    for (n, (track, curve)) in export.motion.tracks.iter().zip(curves).enumerate() {
-        let (carrier, ball) = (2 * n + 1, 2 * n + 2);
-        let mut moved = layer(4, &track.name, ball);
-        moved["parent"] = json!(carrier);
-        moved["ks"]["p"] = positions(export, curve, 2, |up| json!([0.0, view.y(up + track.radius), 0.0]));
-        let size = 2.0 * track.radius * view.scale;
-        moved["shapes"] = json!([{ "ty": "gr", "nm": "ball", "it": [
-            { "ty": "el", "p": still(json!([0, 0])), "s": still(json!([size, size])) },
-            { "ty": "fl", "c": paint([0.85, 0.33, 0.1]), "o": still(json!(100)), "r": 1 },
-            at_origin,
-        ] }]);
-        let mut carrying = layer(3, &format!("{} x", track.name), carrier);
-        carrying["ks"]["p"] = positions(export, curve, 0, |x| json!([view.x(x), 0.0, 0.0]));
-        layers.extend([carrying, moved]);
+    for ball in balls {
+        let channels = channels(ball, &view);
+        let from = layers.len() + 1;
+        let turns = ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty());
+        for (n, channel) in channels.iter().enumerate() {
+            let innermost = n + 1 == channels.len();
+            let (kind, name) = if innermost {
+                (4, ball.track.name.clone())
+            } else {
+                (3, format!("{} {}", ball.track.name, channel.name))
+            };
+            let mut moved = layer(kind, &name, from + n);
+            if n > 0 {
+                moved["parent"] = json!(from + n - 1);
+            }
+            let (key, at): (&str, fn(f64) -> Value) = match channel.moves {
+                Moves::X => ("p", |x| json!([x, 0.0, 0.0])),
+                Moves::Y => ("p", |y| json!([0.0, y, 0.0])),
+                Moves::Turn => ("r", |angle| json!([angle])),
+                Moves::ScaleX => ("s", |s| json!([100.0 * s, 100.0, 100.0])),
+                Moves::ScaleY => ("s", |s| json!([100.0, 100.0 * s, 100.0])),
+            };
+            moved["ks"][key] = moving(export, &channel.eases, at);
+            if innermost {
+                let r = ball.track.radius * view.scale;
+                let mut parts = vec![
+                    json!({ "ty": "el", "p": still(json!([0, 0])), "s": still(json!([2.0 * r, 2.0 * r])) }),
+                    json!({ "ty": "fl", "c": paint([0.85, 0.33, 0.1]), "o": still(json!(100)), "r": 1 }),
+                    at_origin.clone(),
+                ];
+                let mut shapes = vec![json!({ "ty": "gr", "nm": "ball", "it": parts })];
+                if turns {
+                    // A mark, so that a turning ball is seen to turn.
+                    let line = json!({ "c": false, "v": [[0.0, 0.0], [0.0, -0.8 * r]], "i": [[0, 0], [0, 0]], "o": [[0, 0], [0, 0]] });
+                    parts = vec![
+                        json!({ "ty": "sh", "ks": still(line) }),
+                        json!({ "ty": "st", "c": paint([0.95, 0.8, 0.6]), "o": still(json!(100)), "w": still(json!(0.3 * r)), "lc": 2, "lj": 2 }),
+                        at_origin.clone(),
+                    ];
+                    shapes.insert(0, json!({ "ty": "gr", "nm": "mark", "it": parts }));
+                }
+                moved["shapes"] = json!(shapes);
+            }
+            layers.push(moved);
+        }
     }
-    let mut ground = layer(4, "ground", 2 * curves.len() + 1);
+    let mut ground = layer(4, "ground", layers.len() + 1);
     let lines = export.motion.ground.iter().map(|line| {
         let points: Vec<[f64; 2]> = line.iter().map(|&[x, up]| [view.x(x), view.y(up)]).collect();
         let flat = vec![[0.0, 0.0]; points.len()];
@@ -57,11 +88,10 @@ pub(super) fn json(export: &Export<'_>, curves: &[Curve]) -> Result<String, Expo
     Ok(serde_json::to_string(&document)? + "\n")
 }
 
-/// One axis as a position: a key for each ease, x of its handles the time and y the progress.
-fn positions(export: &Export<'_>, curve: &Curve, axis: usize, at: impl Fn(f64) -> Value) -> Value {
-    let eases = eases(curve, axis);
+/// A key for each ease, x of its handles the time and y the progress.
+fn moving(export: &Export<'_>, eases: &[Ease], at: impl Fn(f64) -> Value) -> Value {
     let mut keys: Vec<Value> = Vec::new();
-    for ease in &eases {
+    for ease in eases {
         let mut key = json!({ "t": export.frames.number(ease.t[0]), "s": at(ease.value[0]) });
         match ease.handles {
             Some([a, b]) => {

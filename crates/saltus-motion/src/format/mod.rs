@@ -1,6 +1,8 @@
 //! The files that are written, and what each says of itself.
 
 mod blender;
+mod chart;
+mod flat;
 mod gltf;
 mod lottie;
 mod maya;
@@ -11,9 +13,12 @@ mod view;
 
 use std::fmt;
 
-use crate::curve::{Curve, Miss};
-use crate::motion::{Motion, Track};
+use crate::curve::{Between, Curve, Miss};
+use crate::dress::{Dress, Shown};
+use crate::motion::{Motion, Point, Track};
 use crate::rate::Frames;
+use crate::shape::Shape;
+use crate::turn::Turn;
 
 /// More frames than this are refused: an hour and more at 240 frames per second.
 const MOST_FRAMES: f64 = 1e6;
@@ -42,6 +47,8 @@ pub enum Format {
     Lottie,
     /// SVG that moves by CSS.
     Svg,
+    /// SVG that stands still: a tick for every frame, contacts and tops marked.
+    Chart,
 }
 
 impl Format {
@@ -61,6 +68,8 @@ pub struct File {
     pub keys: usize,
     /// How far it is from the motion: from frame to frame too.
     pub miss: Miss,
+    /// How the ball's form departs from a round one, and how many keys its turning needs; `None` for a round ball that does not turn.
+    pub shown: Option<Shown>,
 }
 
 /// A motion and how it is to be shown.
@@ -72,6 +81,51 @@ pub struct Export<'a> {
     pub frames: Frames,
     /// How far keys may be from a flight in which more than gravity acts, in m; other flights are exact.
     pub tolerance: f64,
+    /// Squash and stretch; [`Shape::default`] is a ball that stays round.
+    pub shape: Shape,
+}
+
+/// What is shown of one ball: where it is, and how it looks if that changes.
+struct Ball<'a> {
+    track: &'a Track,
+    path: Curve,
+    dress: Option<Dress>,
+}
+
+/// One of the nested nodes that a ball is in programs that know three dimensions: moved last, turned before, made longer first.
+struct Node<'a> {
+    name: String,
+    /// Where it is within the node around it, if it stays there.
+    still: Point,
+    place: Option<&'a Curve>,
+    turns: &'a [Turn],
+    scale: Option<&'a Curve>,
+}
+
+impl Ball<'_> {
+    /// From the outermost to that of the ball itself, whose middle is its origin: the path, squash and stretch if there is any, spin.
+    fn nodes(&self) -> Vec<Node<'_>> {
+        let name = &self.track.name;
+        let node = |name: String| Node { name, still: [0.0; 3], place: None, turns: &[], scale: None };
+        let mut nodes = vec![Node { place: Some(&self.path), ..node(name.clone()) }];
+        let mut inner = node(format!("{name} shape"));
+        inner.still[2] = self.track.radius;
+        if let Some(dress) = &self.dress {
+            inner.turns = &dress.spin;
+            if dress.shaped() {
+                inner.still[2] = 0.0;
+                let (place, scale) = (Some(&dress.offset), Some(&dress.scale));
+                nodes.push(Node { place, scale, turns: &dress.aim, ..node(format!("{name} squash")) });
+            }
+        }
+        nodes.push(inner);
+        nodes
+    }
+
+    /// Whether every drawing stands until the next.
+    fn held(&self) -> bool {
+        self.path.between == Between::Hold
+    }
 }
 
 impl Export<'_> {
@@ -88,33 +142,40 @@ impl Export<'_> {
         if end <= 0.0 {
             return Err(ExportError("the motion has no length: there is nothing to show".to_owned()));
         }
-        let curves = self.curves(format.sampled());
+        self.shape.check().map_err(ExportError)?;
+        let balls = self.balls(format, format.sampled());
         let bytes = match format {
-            Format::Csv | Format::CsvFrames => table::csv(self, &curves).into_bytes(),
-            Format::Json => table::json(self, &curves)?.into_bytes(),
-            Format::Blender => blender::script(self, &curves).into_bytes(),
-            Format::Maya => maya::script(self, &curves)?.into_bytes(),
-            Format::Glb => gltf::binary(self, &curves, &self.curves(false))?,
-            Format::Usd => usd::samples(self, &curves).into_bytes(),
-            Format::UsdSplines => usd::splines(self, &curves).into_bytes(),
-            Format::Lottie => lottie::json(self, &curves)?.into_bytes(),
-            Format::Svg => svg::animated(self, &curves).into_bytes(),
+            Format::Csv | Format::CsvFrames => table::csv(self, &balls).into_bytes(),
+            Format::Json => table::json(self, &balls)?.into_bytes(),
+            Format::Blender => blender::script(self, &balls).into_bytes(),
+            Format::Maya => maya::script(self, &balls)?.into_bytes(),
+            Format::Glb => gltf::binary(self, &balls, &self.balls(format, false))?,
+            Format::Usd => usd::samples(self, &balls).into_bytes(),
+            Format::UsdSplines => usd::splines(self, &balls).into_bytes(),
+            Format::Lottie => lottie::json(self, &balls)?.into_bytes(),
+            Format::Svg => svg::animated(self, &balls).into_bytes(),
+            Format::Chart => chart::chart(self, &balls).into_bytes(),
         };
-        let tracks = self.motion.tracks.iter();
-        let miss = curves.iter().zip(tracks).map(|(curve, track)| curve.error(track)).fold(Miss::default(), Miss::or);
-        Ok(File { bytes, keys: curves.iter().map(|curve| curve.keys.len()).sum(), miss })
+        let miss = balls.iter().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
+        let shown = balls.iter().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
+        let keys = balls.iter().map(|ball| ball.path.keys.len()).sum();
+        Ok(File { bytes, keys, miss, shown: shown.reduce(Shown::or) })
     }
 
-    /// A curve for each ball: frames, or keys; on twos always frames.
-    fn curves(&self, sampled: bool) -> Vec<Curve> {
-        let curve = |track: &Track| {
-            if sampled || self.frames.on_twos {
-                track.samples(self.frames, true)
+    /// What is shown of each ball: frames, or keys; on twos always frames.
+    fn balls(&self, format: Format, sampled: bool) -> Vec<Ball<'_>> {
+        let form =
+            (self.shape.squash > 0.0 || self.shape.stretch > 0.0).then(|| self.motion.form(self.shape, self.frames));
+        let ball = |track| {
+            let path = if sampled || (self.frames.on_twos && format != Format::Chart) {
+                Track::samples(track, self.frames, true)
             } else {
                 track.keys(self.tolerance, self.frames)
-            }
+            };
+            let dress = Dress::of(track, form.as_ref(), &path, self.frames);
+            Ball { track, path, dress }
         };
-        self.motion.tracks.iter().map(curve).collect()
+        self.motion.tracks.iter().map(ball).collect()
     }
 
     /// The numbers of the first and the last frame.

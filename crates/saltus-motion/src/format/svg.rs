@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use super::Export;
+use super::flat::{Channel, Moves, channels};
 use super::view::View;
+use super::{Ball, Export};
 use crate::curve::{Between, Curve};
-use crate::ease::eases;
 
 /// For how long the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
 
-pub(super) fn animated(export: &Export<'_>, curves: &[Curve]) -> String {
+pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let view = View::of(export.motion);
     let duration = export.motion.end() + PAUSE;
     let (mut style, mut body) = (String::new(), String::new());
@@ -18,24 +18,30 @@ pub(super) fn animated(export: &Export<'_>, curves: &[Curve]) -> String {
         let points: Vec<String> = line.iter().map(|&[x, up]| format!("{},{}", view.x(x), view.y(up))).collect();
         let _ = writeln!(body, "<polyline class=\"ground\" points=\"{}\"/>", points.join(" "));
     }
-    for (n, (track, curve)) in export.motion.tracks.iter().zip(curves).enumerate() {
-        let [x, _, up] = track.at(0.0);
-        if curve.between == Between::Cubic {
-            let _ = writeln!(body, "<path class=\"path\" d=\"{}\"/>", path(&view, curve, track.radius));
+    for (n, ball) in balls.iter().enumerate() {
+        if ball.path.between == Between::Cubic {
+            let _ = writeln!(body, "<path class=\"path\" d=\"{}\"/>", path(&view, &ball.path, ball.track.radius));
         }
-        // Sideways and up have eases of their own, so each moves a group of its own.
-        let moves = [("x", 0, view.scale), ("y", 2, -view.scale)];
-        for (name, axis, scale) in moves {
-            keyframes(&mut style, &format!("b{n}{name}"), curve, axis, scale, duration);
+        // Each number has eases of its own, so each moves a group of its own.
+        let channels = channels(ball, &view);
+        let start = |moves: Moves| {
+            let of = channels.iter().find(|channel| channel.moves == moves).and_then(|channel| channel.eases.first());
+            of.map_or(0.0, |ease| ease.value[0])
+        };
+        let (x, y, r) = (start(Moves::X), start(Moves::Y), ball.track.radius * view.scale);
+        let _ = write!(body, "<g transform=\"translate({x} {y})\">");
+        for (k, channel) in channels.iter().enumerate() {
+            let name = format!("b{n}{}", channel.name);
+            // The first two are shifts from where the ball starts.
+            keyframes(&mut style, &name, channel, [x, y].get(k).copied().unwrap_or(0.0), duration);
+            let _ = write!(body, "<g class=\"moves\" style=\"animation-name:{name}\">");
         }
-        let _ = writeln!(
-            body,
-            "<g class=\"moves\" style=\"animation-name:b{n}x\"><g class=\"moves\" style=\"animation-name:b{n}y\"><circle class=\"ball\" cx=\"{}\" cy=\"{}\" r=\"{}\"><title>{}</title></circle></g></g>",
-            view.x(x),
-            view.y(up + track.radius),
-            track.radius * view.scale,
-            escaped(&track.name)
-        );
+        let _ = write!(body, "<circle class=\"ball\" r=\"{r}\"><title>{}</title></circle>", escaped(&ball.track.name));
+        if ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()) {
+            // A mark, so that a turning ball is seen to turn.
+            let _ = write!(body, "<path class=\"mark\" stroke-width=\"{}\" d=\"M0 0V{}\"/>", 0.3 * r, -0.8 * r);
+        }
+        let _ = writeln!(body, "{}</g>", "</g>".repeat(channels.len()));
     }
     let View { width, height, .. } = view;
     format!(
@@ -45,6 +51,7 @@ pub(super) fn animated(export: &Export<'_>, curves: &[Curve]) -> String {
 .ground{{fill:none;stroke:#777;stroke-width:2}}
 .path{{fill:none;stroke:#999;stroke-width:1;stroke-dasharray:2 4}}
 .ball{{fill:#d9541a}}
+.mark{{stroke:#f2cc99;stroke-linecap:round}}
 .moves{{animation-duration:{duration}s;animation-iteration-count:infinite}}
 {style}@media (prefers-reduced-motion:reduce){{.moves{{animation:none}}}}
 </style>
@@ -54,23 +61,29 @@ pub(super) fn animated(export: &Export<'_>, curves: &[Curve]) -> String {
     )
 }
 
-/// One axis, as shifts from where it starts.
-fn keyframes(style: &mut String, name: &str, curve: &Curve, axis: usize, scale: f64, duration: f64) {
-    let eases = eases(curve, axis);
-    let letter = if axis == 0 { "X" } else { "Y" };
-    let from = curve.keys.first().map_or(0.0, |key| key.place[axis]);
-    let shift = |value: f64| format!("transform:translate{letter}({}px)", (value - from) * scale + 0.0);
+/// One number as it goes, from `from` on.
+fn keyframes(style: &mut String, name: &str, channel: &Channel, from: f64, duration: f64) {
+    let shown = |value: f64| {
+        let value = value - from + 0.0;
+        match channel.moves {
+            Moves::X => format!("transform:translateX({value}px)"),
+            Moves::Y => format!("transform:translateY({value}px)"),
+            Moves::Turn => format!("transform:rotate({value}deg)"),
+            Moves::ScaleX => format!("transform:scaleX({value})"),
+            Moves::ScaleY => format!("transform:scaleY({value})"),
+        }
+    };
     let _ = writeln!(style, "@keyframes {name}{{");
-    for ease in &eases {
+    for ease in &channel.eases {
         let timing = match ease.handles {
             Some([a, b]) => format!("cubic-bezier({},{a},{},{b})", 1.0 / 3.0, 2.0 / 3.0),
             None => "steps(1,end)".to_owned(),
         };
         let percent = 100.0 * ease.t[0] / duration;
-        let _ = writeln!(style, "{percent}%{{{};animation-timing-function:{timing}}}", shift(ease.value[0]));
+        let _ = writeln!(style, "{percent}%{{{};animation-timing-function:{timing}}}", shown(ease.value[0]));
     }
-    if let Some(last) = eases.last() {
-        let _ = writeln!(style, "{}%,100%{{{}}}", 100.0 * last.t[1] / duration, shift(last.value[1]));
+    if let Some(last) = channel.eases.last() {
+        let _ = writeln!(style, "{}%,100%{{{}}}", 100.0 * last.t[1] / duration, shown(last.value[1]));
     }
     style.push_str("}\n");
 }
@@ -93,7 +106,7 @@ fn path(view: &View, curve: &Curve, radius: f64) -> String {
 }
 
 /// Text as XML has it.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).collect();
     clean.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

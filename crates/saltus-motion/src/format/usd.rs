@@ -2,43 +2,56 @@
 
 use std::fmt::Write;
 
-use super::Export;
+use super::{Ball, Export, Node};
 use crate::curve::{Between, Curve};
+use crate::motion::Point;
 
 /// A place for each frame, and one where a contact begins between two.
-pub(super) fn samples(export: &Export<'_>, curves: &[Curve]) -> String {
-    stage(export, curves, |usd, curve| {
-        usd.push_str("    double3 xformOp:translate.timeSamples = {\n");
-        let held = curve.between == Between::Hold;
-        for (n, key) in curve.keys.iter().enumerate() {
-            let [x, y, up] = key.place;
-            let frame = export.frames.number(key.t);
-            let _ = writeln!(usd, "        {frame}: ({}, {}, {}),", x + 0.0, up + 0.0, 0.0 - y);
-            // Samples are joined by lines: a drawing that stands has one at both of its frames.
-            if held && n + 1 < curve.keys.len() {
-                let _ = writeln!(usd, "        {}: ({}, {}, {}),", frame + 1.0, x + 0.0, up + 0.0, 0.0 - y);
-            }
-        }
-        usd.push_str("    }\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n");
+pub(super) fn samples(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
+    stage(export, balls, |usd, name, curve, row| {
+        let _ = writeln!(usd, "    double3 xformOp:{name}.timeSamples = {{");
+        let rows = curve.keys.iter().map(|key| (key.t, row(key.place)));
+        timed(usd, export, curve.between == Between::Hold, rows);
+        vec![format!("\"xformOp:{name}\"")]
     })
 }
 
+/// Rows of time samples. They are joined by lines: a drawing that stands has one at both of its frames.
+fn timed<const N: usize>(
+    usd: &mut String,
+    export: &Export<'_>,
+    held: bool,
+    rows: impl Iterator<Item = (f64, [f64; N])>,
+) {
+    let mut rows = rows.peekable();
+    while let Some((t, row)) = rows.next() {
+        let frame = export.frames.number(t);
+        let cells: Vec<String> = row.iter().map(|c| (c + 0.0).to_string()).collect();
+        let _ = writeln!(usd, "        {frame}: ({}),", cells.join(", "));
+        if held && rows.peek().is_some() {
+            let _ = writeln!(usd, "        {}: ({}),", frame + 1.0, cells.join(", "));
+        }
+    }
+    usd.push_str("    }\n");
+}
+
 /// A spline for each axis: Bézier curves whose tangents reach a third of the way.
-pub(super) fn splines(export: &Export<'_>, curves: &[Curve]) -> String {
-    stage(export, curves, |usd, curve| {
+pub(super) fn splines(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
+    stage(export, balls, |usd, name, curve, row| {
         let kind = match curve.between {
             Between::Cubic => "curve",
             Between::Line => "linear",
             Between::Hold => "held",
         };
-        for (name, axis, sign) in [("X", 0, 1.0), ("Y", 2, 1.0), ("Z", 1, -1.0)] {
-            let _ = writeln!(usd, "    double xformOp:translate{name}.spline = {{\n        bezier,");
+        let mut order = Vec::new();
+        for (axis, letter) in ["X", "Y", "Z"].into_iter().enumerate() {
+            let _ = writeln!(usd, "    double xformOp:{name}{letter}.spline = {{\n        bezier,");
             let mut before = None;
             for (n, key) in curve.keys.iter().enumerate() {
                 let frame = export.frames.number(key.t);
                 let after = curve.keys.get(n + 1).map(|next| export.frames.number(next.t));
-                let slope = |velocity: [f64; 3]| sign * velocity[axis] * export.frames.rate.frame() + 0.0;
-                let _ = write!(usd, "        {frame}: {}", sign * key.place[axis] + 0.0);
+                let slope = |velocity: Point| row(velocity)[axis] * export.frames.rate.frame() + 0.0;
+                let _ = write!(usd, "        {frame}: {}", row(key.place)[axis] + 0.0);
                 if let Some(before) = before.filter(|_| kind == "curve") {
                     let _ = write!(usd, "; pre ({}, {})", (frame - before) / 3.0, slope(key.enter));
                 }
@@ -53,28 +66,80 @@ pub(super) fn splines(export: &Export<'_>, curves: &[Curve]) -> String {
                 before = Some(frame);
             }
             usd.push_str("    }\n");
+            order.push(format!("\"xformOp:{name}{letter}\""));
         }
-        let order = "\"xformOp:translateX\", \"xformOp:translateY\", \"xformOp:translateZ\"";
-        let _ = writeln!(usd, "    uniform token[] xformOpOrder = [{order}]");
+        order
     })
 }
 
-fn stage(export: &Export<'_>, curves: &[Curve], motion: impl Fn(&mut String, &Curve)) -> String {
+/// (x, y, up) as the stage has it, and the part along the axis where its scale is.
+fn turned([x, y, up]: Point) -> Point {
+    [x, up, 0.0 - y]
+}
+
+/// One operation that moves: written to the text under its name, the names of the attributes returned.
+type Move<'a> = &'a dyn Fn(&mut String, &str, &Curve, fn(Point) -> Point) -> Vec<String>;
+
+/// The operations of a node.
+fn operations(usd: &mut String, export: &Export<'_>, node: &Node<'_>, held: bool, moves: Move<'_>) {
+    let mut order = Vec::new();
+    match node.place {
+        Some(place) => order.extend(moves(usd, "translate", place, turned)),
+        None if node.still != [0.0; 3] => {
+            let [x, y, z] = turned(node.still);
+            let _ = writeln!(usd, "    double3 xformOp:translate = ({x}, {y}, {z})");
+            order.push("\"xformOp:translate\"".to_owned());
+        }
+        None => {}
+    }
+    if !node.turns.is_empty() {
+        usd.push_str("    quatd xformOp:orient.timeSamples = {\n");
+        let rows = node.turns.iter().map(|turn| {
+            let [x, y, up, w] = turn.quaternion;
+            (turn.t, [w, x, up, -y])
+        });
+        timed(usd, export, held, rows);
+        order.push("\"xformOp:orient\"".to_owned());
+    }
+    if let Some(scale) = node.scale {
+        order.extend(moves(usd, "scale", scale, |[x, y, along]| [x, along, y]));
+    }
+    if !order.is_empty() {
+        let _ = writeln!(usd, "    uniform token[] xformOpOrder = [{}]", order.join(", "));
+    }
+}
+
+fn stage(
+    export: &Export<'_>,
+    balls: &[Ball<'_>],
+    moves: impl Fn(&mut String, &str, &Curve, fn(Point) -> Point) -> Vec<String>,
+) -> String {
     let [first, last] = export.range();
     let fps = export.frames.rate.per_second();
     let mut usd = format!(
         "#usda 1.0\n(\n    defaultPrim = \"Scene\"\n    doc = {}\n    metersPerUnit = 1\n    upAxis = \"Y\"\n    startTimeCode = {first}\n    endTimeCode = {last}\n    timeCodesPerSecond = {fps}\n    framesPerSecond = {fps}\n)\n\ndef Xform \"Scene\"\n{{\n",
         quoted(&export.motion.title)
     );
-    for (n, (track, curve)) in export.motion.tracks.iter().zip(curves).enumerate() {
-        let radius = track.radius;
-        let _ = writeln!(usd, "def Xform \"Ball{}\" (\n    displayName = {}\n)\n{{", n + 1, quoted(&track.name));
-        motion(&mut usd, curve);
-        let _ = write!(
-            usd,
-            "    def Sphere \"Shape\"\n    {{\n        double radius = {radius}\n        float3[] extent = [({0}, {0}, {0}), ({radius}, {radius}, {radius})]\n        color3f[] primvars:displayColor = [(0.85, 0.33, 0.1)]\n        double3 xformOp:translate = (0, {radius}, 0)\n        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n    }}\n}}\n",
-            -radius
-        );
+    for (n, ball) in balls.iter().enumerate() {
+        let radius = ball.track.radius;
+        let _ = writeln!(usd, "def Xform \"Ball{}\" (\n    displayName = {}\n)\n{{", n + 1, quoted(&ball.track.name));
+        let nodes = ball.nodes();
+        for (k, node) in nodes.iter().enumerate() {
+            match k {
+                0 => {}
+                k if k + 1 < nodes.len() => usd.push_str("    def Xform \"Squash\"\n    {\n"),
+                _ => {
+                    let _ = write!(
+                        usd,
+                        "    def Sphere \"Shape\"\n    {{\n    double radius = {radius}\n    float3[] extent = [({0}, {0}, {0}), ({radius}, {radius}, {radius})]\n    color3f[] primvars:displayColor = [(0.85, 0.33, 0.1)]\n",
+                        -radius
+                    );
+                }
+            }
+            operations(&mut usd, export, node, ball.held(), &moves);
+        }
+        usd.push_str(&"    }\n".repeat(nodes.len() - 1));
+        usd.push_str("}\n");
     }
     let depth = super::depth(export.motion);
     for (n, line) in export.motion.ground.iter().filter(|line| line.len() > 1).enumerate() {

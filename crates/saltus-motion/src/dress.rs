@@ -1,0 +1,300 @@
+//! What moves besides the place: form and orientation as keys, and how far the picture is from the motion.
+
+use crate::curve::{APART, Between, COMPARED, Curve, Key, between, longest};
+use crate::motion::{Point, Stretch, Track, UP};
+use crate::rate::Frames;
+use crate::shape::{Form, Pose, support};
+use crate::turn::{
+    MOST, Orientation, Quaternion, Turn, aimed, axis, back, dot, fastest, product, times, turned, turns,
+};
+
+/// How exact a form is between keys, as a part of the ball's radius.
+const FINE: f64 = 1e-4;
+/// How exact an orientation is between keys, in rad.
+const TURNED: f64 = 0.01;
+
+/// The form and the orientation of one ball as keys.
+///
+/// A point of a round ball about its centre is turned by `spin`, made longer by `scale`, turned by `aim`, and moved by `offset` and by the path.
+#[derive(Clone, Debug)]
+pub(crate) struct Dress {
+    /// From the path to the centre that is shown.
+    pub(crate) offset: Curve,
+    /// Across, across and along.
+    pub(crate) scale: Curve,
+    /// What takes up to the axis; empty where that is up always.
+    pub(crate) aim: Vec<Turn>,
+    /// Empty for a ball that does not turn.
+    pub(crate) spin: Vec<Turn>,
+}
+
+/// How a picture departs from the motion it shows, and how exact it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// The least length along the axis, of a diameter.
+    pub least: f64,
+    /// The greatest.
+    pub most: f64,
+    /// How far a point of the outline is from where a round ball has it, in m, at most.
+    pub moved: f64,
+    /// How far the volume is from that of the ball, as a part of it, at most, between keys too.
+    pub volume: f64,
+    /// How far the ball gets below the height of its lowest point, or into what it touches, in m, at most.
+    pub sunk: f64,
+    /// How many keys of orientation had to be added so that none is half a turn from the next.
+    pub added: usize,
+}
+
+impl Shown {
+    pub(crate) const fn or(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            most: self.most.max(other.most),
+            moved: self.moved.max(other.moved),
+            volume: self.volume.max(other.volume),
+            sunk: self.sunk.max(other.sunk),
+            added: self.added + other.added,
+        }
+    }
+}
+
+fn scale(pose: &Pose) -> Point {
+    let across = 1.0 / pose.along.sqrt();
+    [across, across, pose.along]
+}
+
+fn index(track: &Track, t: f64) -> usize {
+    track.stretches.partition_point(|stretch| stretch.start() <= t).max(1) - 1
+}
+
+/// Offset and scale at `t` within [a, b], with their slopes there.
+fn pair(track: &Track, form: &Form, index: usize, [a, b]: [f64; 2], t: f64) -> [Key; 2] {
+    let of = |t: f64| {
+        let pose = form.pose(track, index, t);
+        [pose.offset, scale(&pose)]
+    };
+    // Differences of third order: exact for cubics, inside the span.
+    let h = (b - a) / 64.0 * if t + 3.0 * (b - a) / 64.0 > b { -1.0 } else { 1.0 };
+    let (p, rows) = (of(t), [1.0, 2.0, 3.0].map(|k| of(t + k * h)));
+    [0, 1].map(|n| {
+        let slope = std::array::from_fn(|axis| {
+            let row = |k: usize| rows[k][n][axis];
+            (-11.0 * p[n][axis] + 18.0 * row(0) - 9.0 * row(1) + 2.0 * row(2)) / (6.0 * h)
+        });
+        Key { t, place: p[n], enter: slope, leave: slope, contact: false }
+    })
+}
+
+/// Offset and scale as few cubics, both with keys at the same times.
+fn cubics(track: &Track, form: &Form, frames: Frames) -> [Curve; 2] {
+    let mut keys: Vec<[Key; 2]> = Vec::new();
+    for index in 0..track.stretches.len() {
+        for span in form.smooth(track, index).windows(2) {
+            let (from, to) = (span[0], span[1]);
+            let at = |t: f64| pair(track, form, index, [from, to], t);
+            let fits = |a: f64, b: f64| {
+                let (p, q) = (at(a), at(b));
+                (1..COMPARED).all(|k| {
+                    let t = a + (b - a) * f64::from(k) / f64::from(COMPARED);
+                    let pose = form.pose(track, index, t);
+                    let off = |n: usize, truth: Point, unit: f64| {
+                        let shown = between(Between::Cubic, &p[n], &q[n], t);
+                        shown.iter().zip(truth).all(|(a, b)| (a - b).abs() <= FINE * unit)
+                    };
+                    off(0, pose.offset, track.radius) && off(1, scale(&pose), 1.0)
+                })
+            };
+            let first = at(from);
+            match keys.last_mut() {
+                Some(last) => *last = [0, 1].map(|n| Key { enter: last[n].enter, ..first[n] }),
+                None => keys.push(first),
+            }
+            let mut a = from;
+            while a < to {
+                a = if fits(a, to) { to } else { longest(a, to, |b| fits(a, b)) };
+                keys.push(at(a));
+            }
+        }
+    }
+    // Keys closer than a hundredth of a frame are one.
+    keys.dedup_by(|later, earlier| {
+        let one = later[0].t - earlier[0].t < APART * frames.rate.frame();
+        if one {
+            *earlier = [0, 1].map(|n| Key { leave: later[n].leave, ..earlier[n] });
+        }
+        one
+    });
+    [0, 1].map(|n| Curve { keys: keys.iter().map(|pair| pair[n]).collect(), between: Between::Cubic })
+}
+
+/// Offset and scale at the times of a path's keys.
+fn sampled(track: &Track, form: &Form, path: &Curve) -> [Curve; 2] {
+    let poses = path.keys.iter().map(|key| (key.t, form.pose(track, index(track, key.t), key.t)));
+    let (offsets, scales): (Vec<Key>, Vec<Key>) = poses
+        .map(|(t, pose)| {
+            let key = |place: Point| Key { t, place, enter: [0.0; 3], leave: [0.0; 3], contact: false };
+            (key(pose.offset), key(scale(&pose)))
+        })
+        .unzip();
+    [offsets, scales].map(|keys| Curve { keys, between: path.between })
+}
+
+/// The axis, which has two directions, in the one that is given. A ball that goes straight up and down has one axis for both.
+fn direction(form: &Form, track: &Track, (index, sign): (usize, f64), t: f64) -> Point {
+    let [x, y, up] = form.pose(track, index, t).axis;
+    if x.hypot(y) < 1e-9 { UP.map(|c| c * sign) } else { [x, y, up].map(|c| c * sign) }
+}
+
+/// The direction in each stretch that is nearest to that at the end of the one before.
+fn signs(form: &Form, track: &Track) -> Vec<f64> {
+    let mut last = UP;
+    let near = |(index, stretch): (usize, &Stretch)| {
+        let start = direction(form, track, (index, 1.0), stretch.start());
+        let sign = if index > 0 && dot(&start, &last) < 0.0 { -1.0 } else { 1.0 };
+        last = direction(form, track, (index, sign), stretch.end());
+        sign
+    };
+    track.stretches.iter().enumerate().map(near).collect()
+}
+
+/// Keys of an orientation, by stretch; `at` gives it with how exact it has to be, `rate` bounds its rate in a stretch, in rad/s.
+fn keyed(
+    track: &Track,
+    frames: Frames,
+    path: &Curve,
+    rate: impl Fn(&Stretch) -> f64,
+    at: impl Fn(usize, f64) -> (Quaternion, f64),
+) -> Vec<Turn> {
+    if path.between == Between::Hold {
+        return turns(path.keys.iter().map(|key| (key.t, at(index(track, key.t), key.t).0)));
+    }
+    let close = APART * frames.rate.frame();
+    let mut keys: Vec<(f64, Quaternion)> = Vec::new();
+    for (n, stretch) in track.stretches.iter().enumerate() {
+        let span = [stretch.start(), stretch.end()];
+        let mut own = 0;
+        for (k, t) in times(span, rate(stretch), |t| at(n, t).0, |t| at(n, t).1).into_iter().enumerate() {
+            let q = at(n, t).0;
+            let last = keys.last().copied().filter(|(last, _)| t - last < close);
+            match last {
+                // Where a stretch ends one way and the next begins another, two keys stand close together, in the air: in contact the axis is the normal.
+                Some((last, before)) if k == 0 && dot(&before, &q).abs() < 1.0 - 1e-12 => {
+                    if stretch.flight {
+                        keys.push((last + close, q));
+                    } else {
+                        keys.pop();
+                        let before = (t - close).max(keys.last().map_or(0.0, |key| key.0 + 0.5 * close));
+                        keys.push((before, at(n.max(1) - 1, before).0));
+                        keys.push((t, q));
+                    }
+                }
+                Some(_) if own > 1 => {
+                    keys.pop();
+                    keys.push((t, q));
+                    continue;
+                }
+                Some(_) => continue,
+                None => keys.push((t, q)),
+            }
+            own += 1;
+        }
+    }
+    turns(keys)
+}
+
+impl Dress {
+    /// The form and the orientation that go with a path; `None` where neither changes.
+    pub(crate) fn of(track: &Track, form: Option<&Form>, path: &Curve, frames: Frames) -> Option<Self> {
+        let orientation = Orientation::of(track);
+        if form.is_none() && orientation.is_none() {
+            return None;
+        }
+        let [offset, scale] = match form {
+            None => {
+                let still = |place: Point| Curve {
+                    keys: vec![Key { t: 0.0, place, enter: [0.0; 3], leave: [0.0; 3], contact: false }],
+                    between: path.between,
+                };
+                [still(UP.map(|c| c * track.radius)), still([1.0; 3])]
+            }
+            Some(form) if path.between == Between::Cubic => cubics(track, form, frames),
+            Some(form) => sampled(track, form, path),
+        };
+        let signs = form.map_or_else(Vec::new, |form| signs(form, track));
+        let facing = |index: usize, t: f64| {
+            form.map_or(([0.0, 0.0, 0.0, 1.0], TURNED), |form| {
+                let (q, along) =
+                    (aimed(direction(form, track, (index, signs[index]), t)), form.pose(track, index, t).along);
+                // A ball that is nearly round does not show where its axis is.
+                (q, 3.0 * FINE / (along - 1.0).abs().max(0.001))
+            })
+        };
+        let mut aim = keyed(track, frames, path, |_| 0.0, facing);
+        let turned = |n: usize, t: f64| {
+            let q = orientation.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |orientation| orientation.at(t));
+            product(back(facing(n, t).0), q)
+        };
+        let spin = match &orientation {
+            Some(_) => keyed(track, frames, path, fastest, |n, t| (turned(n, t), TURNED.min(facing(n, t).1))),
+            None => Vec::new(),
+        };
+        if aim.iter().all(|turn| turn.angle == 0.0 && turn.quaternion[3].abs() == 1.0) {
+            aim.clear();
+        }
+        Some(Self { offset, scale, aim, spin })
+    }
+
+    /// Whether the form changes at all.
+    pub(crate) const fn shaped(&self) -> bool {
+        self.scale.keys.len() > 1
+    }
+
+    /// What is shown of a ball whose place is shown by `path`.
+    pub(crate) fn shown(&self, track: &Track, path: &Curve) -> Shown {
+        let mut shown = Shown { least: 1.0, most: 1.0, ..Shown::default() };
+        let fast = |turn: &&Turn| {
+            let stretch = track.stretch(turn.t);
+            let inside = turn.t > stretch.start() && turn.t < stretch.end();
+            inside && fastest(stretch) * stretch.span() > MOST
+        };
+        shown.added = self.spin.iter().filter(fast).count();
+        if !self.shaped() {
+            return shown;
+        }
+        let r = track.radius;
+        let mut stops: Vec<f64> = path.keys.iter().chain(&self.scale.keys).map(|key| key.t).collect();
+        stops.sort_by(f64::total_cmp);
+        for span in stops.windows(2) {
+            for k in 0..COMPARED {
+                let t = span[0] + (span[1] - span[0]) * f64::from(k) / f64::from(COMPARED);
+                let ([across, _, along], offset) = (self.scale.at(t), self.offset.at(t));
+                let axis = axis(turned(&self.aim, t));
+                shown.least = shown.least.min(along);
+                shown.most = shown.most.max(along);
+                let shift = [offset[0], offset[1], offset[2] - r];
+                let moved = dot(&shift, &shift).sqrt() + r * (along - 1.0).abs().max((across - 1.0).abs());
+                shown.moved = shown.moved.max(moved);
+                shown.volume = shown.volume.max((across * across * along - 1.0).abs());
+                let stretch = track.stretch(t);
+                let (normal, gap) = match stretch.contact.filter(|_| !stretch.flight) {
+                    Some(contact) => {
+                        let touch = stretch.at(stretch.start());
+                        let (n, p) = (contact.normal, path.at(t));
+                        // From where a round ball touches, which is its lowest point on a level floor only.
+                        let at = |k: usize| p[k] + offset[k] - touch[k] - r * UP[k] + r * n[k];
+                        (n, dot(&n, &std::array::from_fn(at)))
+                    }
+                    None => (UP, offset[2]),
+                };
+                let reach = if along > 0.0 {
+                    let cos = dot(&axis, &normal);
+                    r * ((along * cos).powi(2) + across * across * (1.0 - cos * cos).max(0.0)).sqrt()
+                } else {
+                    r * support(1.0, 1.0)
+                };
+                shown.sunk = shown.sunk.max(reach - gap);
+            }
+        }
+        shown
+    }
+}

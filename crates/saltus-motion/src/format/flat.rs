@@ -1,0 +1,68 @@
+//! A ball in the plane of x and up, as groups within groups, each moved by one number.
+
+use super::Ball;
+use super::view::View;
+use crate::curve::Curve;
+use crate::ease::{Ease, eases};
+use crate::turn::Turn;
+
+/// What a number does; sizes in units of the picture, angles in degrees with the clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Moves {
+    X,
+    Y,
+    Turn,
+    ScaleX,
+    ScaleY,
+}
+
+/// One number as it goes.
+#[derive(Clone, Debug)]
+pub(super) struct Channel {
+    pub(super) name: &'static str,
+    pub(super) moves: Moves,
+    pub(super) eases: Vec<Ease>,
+}
+
+/// From the outermost inwards: along the path, from there to the centre, squash, spin. The innermost holds a disc about its origin.
+pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
+    let shaped = ball.dress.as_ref().filter(|dress| dress.shaped());
+    let of = |name, moves, curve: &Curve, axis, to: &dyn Fn(f64) -> f64| {
+        let mapped = |ease: Ease| Ease { value: ease.value.map(to), ..ease };
+        Channel { name, moves, eases: eases(curve, axis).into_iter().map(mapped).collect() }
+    };
+    let lift = if shaped.is_some() { 0.0 } else { ball.track.radius };
+    let mut channels = vec![
+        of("x", Moves::X, &ball.path, 0, &|x| view.x(x)),
+        of("y", Moves::Y, &ball.path, 2, &|up| view.y(up + lift)),
+    ];
+    let turning = |name, turns: &[Turn]| Channel { name, moves: Moves::Turn, eases: turned(turns, ball.held()) };
+    let mut within = Vec::new();
+    if let Some(dress) = shaped {
+        within.push(of("u", Moves::X, &dress.offset, 0, &|x| x * view.scale));
+        within.push(of("v", Moves::Y, &dress.offset, 2, &|up| -up * view.scale));
+        within.push(turning("a", &dress.aim));
+        within.push(of("w", Moves::ScaleX, &dress.scale, 0, &|s| s));
+        within.push(of("h", Moves::ScaleY, &dress.scale, 2, &|s| s));
+    }
+    if let Some(dress) = &ball.dress {
+        within.push(turning("s", &dress.spin));
+    }
+    // What does nothing is left out.
+    let idle = |channel: &Channel| {
+        let rest = if matches!(channel.moves, Moves::ScaleX | Moves::ScaleY) { 1.0 } else { 0.0 };
+        channel.eases.iter().flat_map(|ease| ease.value).all(|value| value == rest)
+    };
+    channels.extend(within.into_iter().filter(|channel| !idle(channel)));
+    channels
+}
+
+/// Even turns, in degrees with the clock.
+fn turned(turns: &[Turn], held: bool) -> Vec<Ease> {
+    let ease = |pair: &[Turn]| Ease {
+        t: [pair[0].t, pair[1].t],
+        value: [pair[0], pair[1]].map(|turn| 0.0 - turn.angle.to_degrees()),
+        handles: (!held).then_some([1.0 / 3.0, 2.0 / 3.0]),
+    };
+    turns.windows(2).map(ease).collect()
+}
