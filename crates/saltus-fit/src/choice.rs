@@ -5,22 +5,86 @@ use serde::Serialize;
 use crate::bounces::Measured;
 use crate::model::Law;
 
+/// What the COR is supposed to depend on, and what else there is beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CorModel {
+    /// One COR.
+    Constant,
+    /// e = e₀ − k v.
+    Linear,
+    /// A viscoelastic sphere: e = 1 − γ v^(1/5) + (3/5) γ² v^(2/5) ∓ …, as the Padé approximant of Müller and Pöschel (2011).
+    Viscoelastic,
+    /// A plastic impact: e = C v^(−1/4).
+    Plastic,
+    /// e = C v^(−p).
+    Power,
+    /// Straight lines between three or four speeds, never rising.
+    Knots,
+    /// A COR for every bounce.
+    Each,
+    /// A height scale that reads too high, by a ball at most.
+    Offset,
+    /// Air drag, quadratic in speed.
+    Drag,
+}
+
+impl CorModel {
+    /// Every model.
+    pub const ALL: [Self; 9] = [
+        Self::Constant,
+        Self::Linear,
+        Self::Viscoelastic,
+        Self::Plastic,
+        Self::Power,
+        Self::Knots,
+        Self::Each,
+        Self::Offset,
+        Self::Drag,
+    ];
+
+    /// Its word in [`ModelChoice::name`].
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Linear => "linear",
+            Self::Viscoelastic => "viscoelastic",
+            Self::Plastic => "plastic",
+            Self::Power => "power",
+            Self::Knots => "knots",
+            Self::Each => "each",
+            Self::Offset => "offset",
+            Self::Drag => "drag",
+        }
+    }
+}
+
 /// A model that was tried.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ModelChoice {
-    /// A fixed word: `constant`, `linear`, `each`, `offset`, `drag`; for a series `constant`, `linear`, `each`, and these with `-drag`.
+    /// A fixed word: `constant`, `linear`, `viscoelastic`, `plastic`, `power`, `knots`, `each`, `offset`, `drag`; for a series `constant`,
+    /// `linear`, `each`, and these with `-drag`.
     pub name: String,
     /// What it supposes, for people.
     pub about: String,
     /// The COR it gives; if it has several, their mean; if it depends on speed, that at the middle of the speeds.
     pub cor: Measured,
-    /// How the COR changes with speed, per m/s, where it does.
+    /// How the COR changes with speed, per m/s, where it does so along a straight line.
     pub slope: Option<Measured>,
+    /// The p of e = C v^(−p), where that is unknown.
+    pub exponent: Option<Measured>,
+    /// The COR from the slowest impact to the fastest, where it depends on speed.
+    pub speeds: Vec<SpeedCor>,
     /// The drag coefficient, per metre, where there is drag.
     pub drag: Option<Measured>,
     /// The height that the scale shows for a ball on the floor, in metres, where it is not zero.
     pub offset_m: Option<Measured>,
+    /// What is known of the offset or the drag where it came out at the end of its range: a limit, and no error.
+    pub limit: Option<Limit>,
+    /// The probability of a chi-square as large as it leaves by chance; none for a series, and where the errors are those of the scatter.
+    pub p: Option<f64>,
     /// Its Bayesian information criterion less that of the chosen model.
     pub bic: f64,
     /// The same with Akaike's, corrected for few readings; none where there are too few.
@@ -31,6 +95,28 @@ pub struct ModelChoice {
     pub chosen: bool,
 }
 
+/// The COR at one speed of impact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SpeedCor {
+    /// The speed, in m/s.
+    pub speed: f64,
+    /// The COR there, without unit.
+    pub cor: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// How far an unknown may be from the end of its range: 95 %, one-sided, where the chi-square has grown by 2.71.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Limit {
+    /// The end of its range that the unknown came out at: metres for an offset, 1/m for drag.
+    pub bound: f64,
+    /// The limit, in the same unit.
+    pub limit: f64,
+}
+
 impl ModelChoice {
     pub(crate) fn new(name: &str, about: &str, cor: Measured, bic: f64) -> Self {
         Self {
@@ -38,8 +124,12 @@ impl ModelChoice {
             about: about.to_owned(),
             cor,
             slope: None,
+            exponent: None,
+            speeds: Vec::new(),
             drag: None,
             offset_m: None,
+            limit: None,
+            p: None,
             bic,
             aicc: None,
             left_out: None,

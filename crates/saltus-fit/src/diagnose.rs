@@ -7,15 +7,16 @@ use crate::evidence::Evidence;
 use crate::joint::Joint;
 use crate::model::{Contacts, Heights};
 use crate::report::{Cor, Report, Verdict};
-use crate::rivals::{self, Readings};
+use crate::rivals::{self, Compared, Readings};
 use crate::settings::differ;
 use crate::statistics::NORMAL;
 use crate::table::{Table, Trial};
+use crate::weigh;
 
 /// A fit less probable than this by chance is rejected.
 pub(crate) const REJECT: f64 = 0.01;
-/// A BIC this much less decides.
-const CLEAR: f64 = 6.0;
+/// A rebound so many standard errors high is not read as zero.
+const TOO_HIGH: f64 = 5.0;
 /// A fit more probable than this has reading errors that were stated too large.
 const TOO_GOOD: f64 = 0.999;
 
@@ -28,11 +29,41 @@ pub(crate) struct Findings<'a> {
     pub(crate) table: &'a Table,
     pub(crate) evidence: &'a Evidence,
     pub(crate) sigma_height: f64,
+    /// The size of the ball, m, if it is stated.
+    pub(crate) ball: Option<f64>,
+    /// The COR by neighbouring heights, where a rebound of zero is one of them.
+    pub(crate) ratio: Option<Estimate>,
 }
 
 impl Findings<'_> {
     fn mean(&self, method: &str) -> Option<&Estimate> {
         self.means.iter().find(|e| e.method == method)
+    }
+
+    /// Whether drops differ for another cause than the height they fall from: then no model of the speed can be told from that cause.
+    fn drops_differ(&self, cor: f64) -> bool {
+        let of = |spread: Option<f64>, separate: &[(f64, f64)]| {
+            let settings = differ(self.table.trials(), separate, cor).is_some_and(|d| d.p < REJECT);
+            if settings { !self.set_by_height() } else { spread.is_some() }
+        };
+        self.heights.as_ref().is_some_and(|k| of(k.spread, &k.separate))
+            || self.times.as_ref().is_some_and(|k| of(k.spread, &k.separate))
+            || self.joint.as_ref().is_some_and(|j| j.spread.is_some())
+    }
+
+    /// Whether the settings are three heights of release or more, and nothing else.
+    fn set_by_height(&self) -> bool {
+        let mut heights: Vec<(f64, &str)> = Vec::new();
+        for (trial, found) in self.table.trials().iter().zip(&self.evidence.trials) {
+            let Some((height, _)) = found.release_height else { return false };
+            match heights.iter().find(|h| h.1 == trial.setting) {
+                Some(known) if (known.0 / height - 1.0).abs() < 0.05 => {}
+                Some(_) => return false,
+                None => heights.push((height, &trial.setting)),
+            }
+        }
+        heights.sort_by(|a, b| a.0.total_cmp(&b.0));
+        heights.len() > 2 && heights.windows(2).all(|w| w[1].0 > 1.05 * w[0].0)
     }
 }
 
@@ -53,6 +84,7 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     if let Some(kind) = &found.heights {
         chosen = Some(single(report, kind, found.table.trials(), &mut doubts));
     }
+    doubts.extend(contradicted(found));
     if let Some(kind) = &found.times {
         let times = single(report, kind, found.table.trials(), &mut doubts);
         chosen = Some(match chosen {
@@ -60,8 +92,11 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
             _ => times,
         });
     }
-    if let Some(joint) = joint {
-        chosen = Some(of(joint));
+    if let Some(joint) = &found.joint {
+        chosen = Some(of(&joint.estimate));
+        if let Some(spread) = joint.spread {
+            report.warnings.push(differing(spread, joint.trials.len()));
+        }
     }
     if let (Some(Some(cor)), Some(first)) =
         (&chosen, found.mean("first-flight").filter(|_| joint.is_none()).and_then(of))
@@ -109,24 +144,17 @@ pub(crate) fn models(
         (None, None, Some(_)) if !scattering => (Readings::times(found.evidence, sigma_time.value), sigma_time.source),
         _ => return Ok(Vec::new()),
     };
-    let readings = Readings { trials, gravity: report.gravity.value, scattered: source == Source::Scatter };
-    let list = rivals::compare(&readings, cor.value)?;
-    let Some(one) = list.iter().find(|m| m.chosen) else { return Ok(Vec::new()) };
-    for model in list.iter().filter(|m| !m.chosen && m.bic < CLEAR) {
-        let apart = (model.cor.value - one.cor.value).abs();
-        let differ = apart > 2.0 * model.cor.standard_error.hypot(one.cor.standard_error) && apart > 0.002;
-        if model.bic < -CLEAR || differ {
-            let how = if model.bic < -CLEAR { "better than" } else { "about as well as" };
-            report.warnings.push(format!(
-                "{} fits {how} one COR (BIC {:+.1}), with {:.3} ± {:.3}",
-                model.about, model.bic, model.cor.value, model.cor.standard_error
-            ));
-        }
-        if differ && let Some(cor) = &mut report.cor {
-            cor.low = cor.low.min(model.cor.value - NORMAL * model.cor.standard_error).max(0.0);
-            cor.high = cor.high.max(model.cor.value + NORMAL * model.cor.standard_error);
-        }
+    if found.drops_differ(cor.value) {
+        report
+            .notes
+            .push("other models are not compared: where drops differ, they would take that for their own".to_owned());
+        return Ok(Vec::new());
     }
+    let scattered = source == Source::Scatter;
+    let readings = Readings { trials, gravity: report.gravity.value, scattered, ball: found.ball };
+    let Compared { models: list, notes } = rivals::compare(&readings, cor.value)?;
+    report.notes.extend(notes);
+    weigh::models(report, &list);
     Ok(list)
 }
 
@@ -136,6 +164,7 @@ fn estimates(report: &mut Report, found: &Findings<'_>) {
         list.push(kind.estimate.clone());
         list.extend(kind.unbounded.clone());
     }
+    list.extend(found.ratio.clone());
     list.extend(found.mean("heights-mean").cloned());
     if let Some(kind) = &found.times {
         list.push(kind.estimate.clone());
@@ -208,7 +237,9 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
     if let (Some(p), Some(chi_square), Some(freedom)) = (estimate.p, estimate.chi_square, estimate.degrees_of_freedom) {
         #[allow(clippy::cast_precision_loss)]
         let birge = (chi_square / freedom as f64).sqrt();
-        if p < REJECT && kind.replicated && kind.scatter.is_none() {
+        if p < REJECT && kind.spread.is_some() {
+            // Said below: reading errors explain every drop by itself.
+        } else if p < REJECT && kind.replicated && kind.scatter.is_none() {
             report.warnings.push(format!(
                 "the {what} scatter {birge:.1} times more than their reading errors; the error of the COR is taken from the \
                  spread between trials"
@@ -232,6 +263,7 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
             ));
         }
     }
+    let mut settings_differ = false;
     if let Some(differ) = differ(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT) {
         doubts.push(format!(
             "the COR by {what} is not the same throughout: {:.3} for {}, {:.3} for {} (by chance: p {})",
@@ -241,12 +273,16 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
             differ.high.0,
             chance(differ.p)
         ));
+        settings_differ = true;
         (cor.low, cor.high) = (cor.low.min(differ.low.1), cor.high.max(differ.high.1));
         cor.standard_error = Some((cor.high - cor.low) / (2.0 * NORMAL));
         report.warnings.push(
             "one COR for different balls, floors or drop heights is a mean of them: fit each by itself (--filter)"
                 .to_owned(),
         );
+    }
+    if let Some(spread) = kind.spread.filter(|_| report.agreement.is_none() && !settings_differ) {
+        report.warnings.push(differing(spread, estimate.trials));
     }
     if let Some(scatter) = kind.scatter {
         report.warnings.push(format!(
@@ -267,6 +303,31 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
         }
     }
     Some(cor)
+}
+
+/// A rebound read as zero that the fitted heights do not allow.
+fn contradicted(found: &Findings<'_>) -> Option<String> {
+    let kind = found.heights.as_ref()?;
+    let (height, bounce) = found.evidence.trials.iter().zip(&kind.fitted.own).find_map(|(trial, own)| {
+        // A trial with a single height has no level of its own.
+        let level = own.first().filter(|_| trial.heights.len() > 1)?;
+        #[allow(clippy::cast_precision_loss)]
+        let height = |n: usize| (level + 2.0 * n as f64 * kind.fitted.shared[0]).exp();
+        let too_high = |n: &&usize| height(**n) > TOO_HIGH * found.sigma_height;
+        trial.zeros.iter().find(too_high).map(|&n| (height(n), n))
+    })?;
+    Some(format!(
+        "a rebound was read as zero (bounce {bounce}) that should be {:.1} cm high: leave its cell empty if it was not read",
+        100.0 * height
+    ))
+}
+
+/// That drops differ, and by how much.
+fn differing(spread: f64, drops: usize) -> String {
+    format!(
+        "the COR differs from drop to drop by {spread:.3} (standard deviation of {drops} drops), more than the reading errors explain: \
+         this spread sets the error; it belongs to the ball, the floor or the way of dropping"
+    )
 }
 
 /// A probability for people, with the sign before it.
@@ -295,8 +356,15 @@ fn either(heights: &Option<Cor>, times: &Option<Cor>, doubts: &mut Vec<String>) 
 
 /// What speaks for a trusted COR.
 fn fits(found: &Findings<'_>) -> String {
-    if found.joint.is_some() {
-        return "heights and times agree on one COR".to_owned();
+    let spread = found.times.as_ref().and_then(|k| k.spread).or(found.heights.as_ref().and_then(|k| k.spread));
+    if let Some(joint) = &found.joint {
+        return match joint.spread {
+            Some(_) => "heights and times agree in every drop; the COR is the mean over drops that differ".to_owned(),
+            None => "heights and times agree on one COR".to_owned(),
+        };
+    }
+    if spread.is_some() {
+        return "the COR is the mean over drops that differ by more than their readings".to_owned();
     }
     let kinds = match (&found.heights, &found.times) {
         (Some(_), Some(_)) => "heights and times agree on one COR",
@@ -308,12 +376,10 @@ fn fits(found: &Findings<'_>) -> String {
 
 /// Why there is no COR, or at most a limit.
 fn none(report: &mut Report, found: &Findings<'_>) {
-    let dropped = found.evidence.trials.iter().find_map(|t| t.release_height.map(|h| h.0));
-    if let (true, Some(height)) = (found.table.zero_rebounds > 0, dropped) {
-        let high = (found.sigma_height / height).sqrt().min(1.0);
-        report.cor = Some(Cor { value: 0.0, standard_error: None, low: 0.0, high });
+    if let Some(cor) = found.ratio.as_ref().and_then(of) {
+        report.cor = Some(cor);
         report.verdict = Verdict::Doubtful;
-        report.reason = format!("no rebound was high enough to be read: the COR is below {high:.2}");
+        report.reason = format!("no rebound was high enough to be read: the COR is at most {:.2} (95 %)", cor.high);
         return;
     }
     report.verdict = Verdict::Refused;

@@ -4,12 +4,15 @@ use std::marker::PhantomData;
 
 use serde::Serialize;
 
+use crate::bounces::Measured;
 use crate::diagnose::REJECT;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::least_squares::Failure;
 use crate::model::{Contacts, Height, Heights, Moment};
+use crate::profile::limit;
 use crate::ratios::scattering;
+use crate::spread::{Across, across, apart};
 use crate::statistics::{NORMAL, chi_square_p, median, student, variance_ratio_p};
 use crate::successive::{Fitted, Model, fit, score_gain};
 
@@ -110,6 +113,8 @@ pub(crate) struct Kind<M> {
     pub(crate) separate: Vec<(f64, f64)>,
     /// How much the COR scatters from bounce to bounce, relative to it, where the estimate allows for that.
     pub(crate) scatter: Option<f64>,
+    /// The standard deviation of the COR from drop to drop, where the drops differ by more than the reading errors.
+    pub(crate) spread: Option<f64>,
 }
 
 /// A model that describes one kind of reading by one COR.
@@ -243,10 +248,31 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
             fitted.separate.iter_mut().for_each(|s| s.0 /= factor * factor);
         }
     }
-    let (estimate, replicated) = describe::<M>(&fitted, sigma, "");
+    let (mut estimate, mut replicated) = describe::<M>(&fitted, sigma, "");
+    let pooled = estimate.value;
+    let mut spread = None;
+    // Above all where each drop by itself is explained by the reading errors, and only all together are not.
+    if !fitted.active[0]
+        && known.is_some()
+        && estimate.p.is_some_and(|p| p < REJECT)
+        && let Some(apart) = apart::<M>(evidence, sigma)?
+        && apart.explains(fitted.chi_square, sigma.source, REJECT)
+        && let Some(across) = across(&apart.cors)
+    {
+        spread = Some(across.spread);
+        estimate = with_spread(estimate, &across);
+        replicated = true;
+    }
     let trend = trend(&model, &fitted, sigma)?;
-    let separate = in_cor(&fitted.separate, M::cor(fitted.shared[0]).1);
+    let mut separate = in_cor(&fitted.separate, M::cor(fitted.shared[0]).1);
+    if let (Some(pooled), Some(mean)) = (pooled, estimate.value) {
+        // Each is counted from the estimate.
+        separate.iter_mut().for_each(|(_, shift)| *shift += pooled - mean);
+    }
     let mut unbounded = None;
+    if fitted.active[0] {
+        at_bound(&mut estimate, &model, &fitted)?;
+    }
     if fitted.active[0]
         && let Some(free) = run(&model.without_bound())?
     {
@@ -263,6 +289,7 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         replicated,
         separate,
         scatter: None,
+        spread,
     }))
 }
 
@@ -271,8 +298,11 @@ pub(crate) fn times(evidence: &Evidence, known: Option<Sourced>) -> Result<Optio
     let Some(mut kind) = one_kind::<Contacts>(evidence, known)? else { return Ok(None) };
     let unexplained = known.is_none() || kind.estimate.p.is_some_and(|p| p < REJECT);
     if unexplained
+        && kind.spread.is_none()
         && kind.unbounded.is_none()
         && let Some(found) = scattering(evidence, kind.sigma)
+        // Ratios that follow the number of the bounce do not scatter: their cause is looked for among the models.
+        && found.followed < 0.5
     {
         let Estimate { chi_square, p, .. } = kind.estimate;
         kind.estimate = Estimate { chi_square, p, ..found.estimate };
@@ -317,6 +347,22 @@ fn describe<M: OneKind>(fitted: &Fitted, sigma: Sourced, suffix: &str) -> (Estim
         (estimate.standard_error, estimate.low, estimate.high) = (None, None, None);
     }
     (estimate, replicated)
+}
+
+/// The estimate with the mean over drops that differ.
+pub(crate) fn with_spread(estimate: Estimate, across: &Across) -> Estimate {
+    let Measured { value, standard_error } = across.mean;
+    let Estimate { chi_square, degrees_of_freedom, p, trials, .. } = estimate;
+    let means = Estimate::new(&estimate.method, &estimate.about, value, standard_error, across.quantile);
+    Estimate { chi_square, degrees_of_freedom, p, trials, ..means }
+}
+
+/// A one-sided limit for an estimate at a bound, where no covariance means anything.
+fn at_bound<M: OneKind>(estimate: &mut Estimate, model: &M, fitted: &Fitted) -> Result<(), FitError> {
+    let Some(limit) = identified("a limit", limit(model, fitted, 0))? else { return Ok(()) };
+    let (bound, limit) = (M::cor(fitted.shared[0]).0, M::cor(limit).0);
+    (estimate.low, estimate.high) = (Some(bound.min(limit)), Some(bound.max(limit)));
+    Ok(())
 }
 
 /// The delete-one-trial standard error from the shifts that deletions cause.

@@ -2,7 +2,11 @@
 
 use crate::mend::{Contact, mend, usual};
 use crate::model::{FlightTrial, Height, Moment};
+use crate::statistics::median;
 use crate::table::{Event, Table};
+
+/// By so much the first ratio of intervals is above the later ones if the first is a fall; exactly it would be twice.
+const RELEASED: f64 = 1.25;
 
 /// The evidence of one trial.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +17,8 @@ pub(crate) struct TrialEvidence {
     pub(crate) release_time: Option<f64>,
     /// Number of contacts before, height, stated error; the release is number 0.
     pub(crate) heights: Vec<(usize, f64, Option<f64>)>,
+    /// Bounces whose rebound was read as zero.
+    pub(crate) zeros: Vec<usize>,
     /// Flights since contact 1, whether at an apex, time, stated error.
     pub(crate) moments: Vec<(usize, bool, f64, Option<f64>)>,
 }
@@ -44,6 +50,9 @@ impl Evidence {
                         if let Some(height) = r.height.filter(|h| *h > 0.0) {
                             found.heights.push((r.bounce, height, r.sigma_height));
                         }
+                        if r.height == Some(0.0) {
+                            found.zeros.push(r.bounce);
+                        }
                         if let (Some(time), Some(flights)) = (r.time, r.bounce.checked_sub(1)) {
                             found.moments.push((flights, true, time, r.sigma_time));
                         }
@@ -59,9 +68,40 @@ impl Evidence {
             evidence.trials.push(found);
         }
         if repair {
+            evidence.releases(table);
             evidence.mend(table, sigma_time);
         }
         evidence
+    }
+
+    /// Finds releases that stand among the contacts: a first time of exactly 0, and a flight after it that is the fall, half a flight.
+    ///
+    /// From the release the times between are 1, 2e, 2e², …; from a contact 1, e, e², …
+    fn releases(&mut self, table: &Table) {
+        let first = |t: &TrialEvidence| {
+            let bare = t.release_time.is_none() && t.heights.iter().all(|h| h.0 == 0) && t.moments.len() > 3;
+            bare && t.moments.first() == Some(&(0, false, 0.0, t.moments[0].3))
+        };
+        let starts: Vec<usize> = (0..self.trials.len()).filter(|&n| first(&self.trials[n])).collect();
+        let mut later: Vec<f64> =
+            self.trials.iter().flat_map(|t| t.ratios().filter(|r| r.0 > 1).map(|r| r.3)).collect();
+        let ratios = |n: &usize| self.trials[*n].ratios().find(|r| r.0 == 1).map(|r| r.3);
+        let mut early: Vec<f64> = starts.iter().filter_map(ratios).collect();
+        let (Some(early), Some(later)) = (median(&mut early), median(&mut later)) else { return };
+        if early < RELEASED * later {
+            return;
+        }
+        for n in starts {
+            let trial = &mut self.trials[n];
+            trial.moments.remove(0);
+            trial.moments.iter_mut().for_each(|m| m.0 -= 1);
+            trial.release_time = Some(0.0);
+            let of = named(table, trial.trial);
+            self.repairs.push(format!(
+                "{of}the time 0 is taken as that of the release: the first interval is shorter beside the others than between contacts it \
+                 would be; if it is a contact, see --no-repair"
+            ));
+        }
     }
 
     /// Finds contacts that were missed, heard twice or misread.

@@ -2,6 +2,7 @@
 
 use crate::bootstrap;
 use crate::bounces::{self, Setting};
+use crate::choice::CorModel;
 use crate::diagnose::{self, Findings};
 use crate::error::FitError;
 use crate::estimate::{self, Kind, Source, Sourced, one_kind};
@@ -10,10 +11,12 @@ use crate::joint;
 use crate::model::{Contacts, Heights};
 use crate::motion;
 use crate::outliers;
+use crate::ratio;
 use crate::report::Report;
 use crate::series;
 use crate::table::{Event, Reading, Table};
 use crate::tolerance;
+use crate::weigh;
 
 /// Gravity where nobody states it, m/s².
 const GRAVITY: f64 = 9.81;
@@ -45,6 +48,8 @@ pub struct Fit {
     tolerance_height: Option<f64>,
     tolerance_time: Option<f64>,
     bootstrap: Option<(usize, u64)>,
+    ball: Option<f64>,
+    model: Option<CorModel>,
 }
 
 impl Fit {
@@ -72,6 +77,20 @@ impl Fit {
     #[must_use]
     pub fn gravity(mut self, metres_per_second_squared: f64) -> Self {
         self.gravity = Some(metres_per_second_squared);
+        self
+    }
+
+    /// The diameter of the ball, in metres: the zero of the height scale is supposed to be off by no more. Without it, that of a basketball.
+    #[must_use]
+    pub fn ball(mut self, metres: f64) -> Self {
+        self.ball = Some(metres);
+        self
+    }
+
+    /// Lets the COR of the report be that of this model, where the readings can tell of it.
+    #[must_use]
+    pub fn model(mut self, model: CorModel) -> Self {
+        self.model = Some(model);
         self
     }
 
@@ -140,13 +159,13 @@ impl Fit {
         if !self.no_repair {
             let error = |known: Option<Sourced>| (known.map_or(0.01, |s| s.value), known.is_some());
             let (sigma, stated) = error(known_height);
-            let wrong = outliers::find::<Heights>(&evidence, sigma, stated)?;
-            evidence.drop_heights(table, &wrong);
+            let drop = |evidence: &mut Evidence, wrong: &[(usize, usize)]| evidence.drop_heights(table, wrong);
+            evidence = outliers::without::<Heights>(evidence, sigma, stated, drop)?;
             let (sigma, stated) = error(known_time);
             // Where bounces scatter, times have errors that add up, and none stands alone.
             if stated {
-                let wrong = outliers::find::<Contacts>(&evidence, sigma, stated)?;
-                evidence.drop_moments(table, &wrong);
+                let drop = |evidence: &mut Evidence, wrong: &[(usize, usize)]| evidence.drop_moments(table, wrong);
+                evidence = outliers::without::<Contacts>(evidence, sigma, stated, drop)?;
             }
         }
         let heights: Option<Kind<Heights>> = one_kind(&evidence, known_height)?;
@@ -191,8 +210,19 @@ impl Fit {
             report.hypotheses.extend(joint::height_zero(&evidence, one_cor)?);
         }
         let means = bounces::means(&evidence, &setting);
-        let findings =
-            Findings { heights, times, means, joint, table, evidence: &evidence, sigma_height: sigma_height.value };
+        let read_as_zero = evidence.trials.iter().any(|t| !t.zeros.is_empty());
+        let ratio = if read_as_zero || self.losses { ratio::estimate(&evidence, sigma_height.value) } else { None };
+        let findings = Findings {
+            heights,
+            times,
+            means,
+            joint,
+            table,
+            evidence: &evidence,
+            sigma_height: sigma_height.value,
+            ball: self.ball,
+            ratio,
+        };
         diagnose::judge(&mut report, &findings);
         if let Some(kind) = &findings.heights {
             if self.losses {
@@ -224,6 +254,9 @@ impl Fit {
             }
         }
         report.models = diagnose::models(&mut report, &findings, (sigma_height, sigma_time))?;
+        if let Some(wanted) = self.model {
+            weigh::rest_on(&mut report, wanted);
+        }
 
         let (motions, release_is_fitted) = match (&findings.joint, &findings.times, &findings.heights) {
             (Some(joint), _, _) => (motion::of_joint(joint, &evidence), false),
@@ -242,6 +275,7 @@ impl Fit {
             ("the standard error of heights", self.sigma_height),
             ("the standard error of times", self.sigma_time),
             ("gravity", self.gravity),
+            ("the size of the ball", self.ball),
             ("the tolerance of heights", self.tolerance_height),
             ("the tolerance of times", self.tolerance_time),
         ];

@@ -3,11 +3,14 @@
 use serde::Serialize;
 
 use crate::bounces::Measured;
+use crate::diagnose::REJECT;
 use crate::error::FitError;
-use crate::estimate::{Estimate, identified};
+use crate::estimate::{Estimate, Source, identified, with_spread};
 use crate::evidence::Evidence;
-use crate::model::{Flight, FlightTrial};
+use crate::least_squares::Bounds;
+use crate::model::{CorLaw, Flight, FlightTrial};
 use crate::rivals::Readings;
+use crate::spread::{Apart, across};
 use crate::statistics::{NORMAL, chi_square_p};
 use crate::successive::{Fitted, fit};
 
@@ -152,6 +155,8 @@ pub(crate) struct Joint {
     pub(crate) fitted: Fitted,
     /// For each block the trial's place in the table.
     pub(crate) trials: Vec<usize>,
+    /// The standard deviation of the COR from drop to drop, where heights and times agree in every drop, but not on one COR for all.
+    pub(crate) spread: Option<f64>,
 }
 
 /// What the variants of the joint model suppose.
@@ -161,8 +166,8 @@ struct Suppose {
     lag: bool,
     per_bounce: bool,
     drag: bool,
-    /// A COR linear in speed, with this middle speed.
-    slope: Option<f64>,
+    /// A COR linear in speed, between these speeds.
+    slope: Option<(f64, f64)>,
 }
 
 /// The sum of squares may have several minima: the lowest that the starts lead to.
@@ -172,23 +177,21 @@ fn run(
     suppose: Suppose,
     starts: &[f64],
 ) -> Result<Option<(Flight, Fitted)>, FitError> {
-    let mut model = Flight {
-        trials: trials.to_vec(),
-        gravity,
-        cors: 1,
-        offset: suppose.offset,
-        lag: suppose.lag,
-        drag: suppose.drag,
-        slope: suppose.slope,
-        ..Flight::default()
-    };
-    if suppose.per_bounce {
-        model.cors = model.bounces().max(1);
+    let mut model =
+        Flight { trials: trials.to_vec(), gravity, lag: suppose.lag, drag: suppose.drag, ..Flight::default() };
+    if suppose.offset {
+        let tallest = model.tallest();
+        model.offset = Some(Bounds { low: -tallest, high: 0.9 * tallest });
     }
-    let extra = usize::from(model.slope.is_some()) + usize::from(model.offset) + usize::from(model.lag);
+    if suppose.per_bounce {
+        model.law = CorLaw::Each(model.bounces().max(1));
+    } else if let Some((low, high)) = suppose.slope {
+        model.law = CorLaw::Linear { low, high };
+    }
+    let extra = usize::from(suppose.offset) + usize::from(model.lag);
     let mut best: Option<(Flight, Fitted)> = None;
     for &e in starts {
-        let mut shared = vec![e; model.cors];
+        let mut shared = model.law.start(e);
         shared.extend(vec![0.0; extra]);
         shared.extend(suppose.drag.then_some(0.01));
         let own = model.start(e);
@@ -224,7 +227,37 @@ pub(crate) fn joint(
     estimate.chi_square = Some(fitted.chi_square);
     estimate.degrees_of_freedom = Some(fitted.freedom);
     estimate.p = chi_square_p(fitted.chi_square, fitted.freedom);
-    Ok(Some(Joint { estimate, model, fitted, trials: places }))
+    let mut joint = Joint { estimate, model, fitted, trials: places, spread: None };
+    if joint.estimate.p.is_some_and(|p| p < REJECT)
+        && let Some(apart) = apart(&joint)?
+        && apart.explains(joint.fitted.chi_square, Source::Stated, REJECT)
+        && let Some(across) = across(&apart.cors)
+    {
+        joint.spread = Some(across.spread);
+        joint.estimate = with_spread(joint.estimate, &across);
+        joint.estimate.chi_square = Some(apart.chi_square);
+        joint.estimate.degrees_of_freedom = Some(apart.freedom);
+        joint.estimate.p = chi_square_p(apart.chi_square, apart.freedom);
+    }
+    Ok(Some(joint))
+}
+
+/// Heights and times together, trial by trial; `None` where one of them determines no COR.
+fn apart(joint: &Joint) -> Result<Option<Apart>, FitError> {
+    let mut found = Apart::default();
+    for trial in &joint.model.trials {
+        let starts = [joint.fitted.shared[0], 0.5];
+        let alone = std::slice::from_ref(trial);
+        let Some((_, fitted)) = run(alone, joint.model.gravity, Suppose::default(), &starts)? else { return Ok(None) };
+        let cor = fitted.measured(0);
+        if fitted.active[0] || !cor.standard_error.is_finite() || cor.standard_error <= 0.0 {
+            return Ok(None);
+        }
+        found.chi_square += fitted.chi_square;
+        found.freedom += fitted.freedom;
+        found.cors.push(cor);
+    }
+    Ok((found.cors.len() > 1).then_some(found))
 }
 
 /// The agreement that a joint fit shows.
@@ -271,8 +304,8 @@ pub(crate) fn agreement(joint: &Joint, evidence: &Evidence, gravity: f64, frame_
     let size = |c: &Conflict| (c.measured_s - c.predicted_s).abs();
     let largest = conflicts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     Agreement {
-        chi_square: joint.fitted.chi_square,
-        degrees_of_freedom: joint.fitted.freedom,
+        chi_square: joint.estimate.chi_square.unwrap_or(joint.fitted.chi_square),
+        degrees_of_freedom: joint.estimate.degrees_of_freedom.unwrap_or(joint.fitted.freedom),
         p: joint.estimate.p,
         total_time: total,
         largest_conflict_s: largest.map(size),
@@ -317,6 +350,8 @@ pub(crate) fn hypotheses(
     let starts = [joint.fitted.shared[0], 0.5];
     let mut found = Vec::new();
     let speed = joint.model.first_contact(0, &joint.fitted.shared, &joint.fitted.own[0]).0;
+    let later = i32::try_from(joint.model.bounces().saturating_sub(1)).unwrap_or(i32::MAX);
+    let slowest = speed * joint.fitted.shared[0].powi(later).clamp(0.01, 0.9);
     let cases = [
         (
             Suppose { offset: true, ..Suppose::default() },
@@ -343,7 +378,7 @@ pub(crate) fn hypotheses(
             "weigh the ball and measure its diameter: k = 0.28 kg/m\u{b3} x cross-section / mass, or drop a heavier one",
         ),
         (
-            Suppose { slope: Some(speed), ..Suppose::default() },
+            Suppose { slope: Some((slowest, speed)), ..Suppose::default() },
             "cor-of-speed",
             "the COR depends on the speed of impact",
             "repeat the drop from other heights: equal speeds must give equal CORs",
@@ -360,18 +395,19 @@ pub(crate) fn hypotheses(
         let generous = run(&loose, joint.model.gravity, suppose, &starts[..1])?.map(|(_, f)| Generous {
             sigma_height: tall * sigma_height,
             sigma_time: generous_time,
-            cor: (!suppose.per_bounce).then_some(f.shared[0]),
+            cor: (!suppose.per_bounce).then(|| f.shared[usize::from(suppose.slope.is_some())]),
             chi_square: f.chi_square,
             degrees_of_freedom: f.freedom,
             p: chi_square_p(f.chi_square, f.freedom),
         });
         found.push(Hypothesis {
-            cor: (!suppose.per_bounce).then(|| fitted.measured(0)),
-            cors: if suppose.per_bounce { fitted.shared[..model.cors].to_vec() } else { Vec::new() },
+            // A COR that depends on speed is given at the first impact.
+            cor: (!suppose.per_bounce).then(|| fitted.measured(usize::from(suppose.slope.is_some()))),
+            cors: if suppose.per_bounce { fitted.shared[..model.law.unknowns()].to_vec() } else { Vec::new() },
             offset_m: suppose.offset.then(|| fitted.measured(1)),
             lag_s: suppose.lag.then(|| fitted.measured(1)),
             drag: suppose.drag.then(|| fitted.measured(1)),
-            slope: suppose.slope.map(|v| scaled(fitted.measured(1), 1.0 / v)),
+            slope: suppose.slope.map(|speeds| slope(&fitted, speeds)),
             generous,
             ..Hypothesis::of([name, about, settle], &fitted)
         });
@@ -381,8 +417,11 @@ pub(crate) fn hypotheses(
     Ok(found)
 }
 
-fn scaled(measured: Measured, scale: f64) -> Measured {
-    Measured { value: scale * measured.value, standard_error: scale * measured.standard_error }
+/// The slope of a COR that is known at two speeds, per m/s.
+pub(crate) fn slope(fitted: &Fitted, (low, high): (f64, f64)) -> Measured {
+    let apart = high - low;
+    let standard_error = fitted.error_of(&[-1.0 / apart, 1.0 / apart]);
+    Measured { value: (fitted.shared[1] - fitted.shared[0]) / apart, standard_error }
 }
 
 /// Whether the readings of a single trial would agree if one contact had been overlooked, and which.

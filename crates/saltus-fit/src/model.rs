@@ -5,6 +5,7 @@ mod drag;
 mod dual;
 mod flight;
 mod heights;
+mod law;
 mod trajectory;
 
 pub(crate) use contacts::{Contacts, Moment};
@@ -12,4 +13,5 @@ pub(crate) use drag::Air;
 pub(crate) use dual::Dual;
 pub(crate) use flight::{Flight, FlightTrial};
 pub(crate) use heights::{Height, Heights};
+pub(crate) use law::CorLaw;
 pub(crate) use trajectory::{FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};

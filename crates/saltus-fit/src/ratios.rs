@@ -44,6 +44,8 @@ pub(crate) struct FromRatios {
     /// The standard deviation of the COR from bounce to bounce, relative to the COR.
     pub(crate) scatter: f64,
     pub(crate) trend: Option<f64>,
+    /// How much of the scatter goes with the number of the bounce: from 0 to 1.
+    pub(crate) followed: f64,
     pub(crate) replicated: bool,
     /// For each trial of the table its information on ln e, and its own ln e less that of all.
     pub(crate) separate: Vec<(f64, f64)>,
@@ -154,12 +156,20 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     let mut estimate = Estimate::new("times", about, value, value * error, quantile);
     estimate.trials = trials.len();
     estimate.degrees_of_freedom = Some(freedom);
-    Some(FromRatios { estimate, scatter, trend: trend(&trials, evidence, scatter, reading), replicated, separate })
+    let (trend, followed) = trend(&trials, evidence, scatter, reading).unzip();
+    Some(FromRatios {
+        estimate,
+        scatter,
+        trend: trend.flatten(),
+        followed: followed.unwrap_or(0.0),
+        replicated,
+        separate,
+    })
 }
 
-/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do.
+/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do, and how much of their squares that is.
 #[allow(clippy::cast_precision_loss)]
-fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<f64> {
+fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<(Option<f64>, f64)> {
     let mut normal = DMatrix::<f64>::zeros(2, 2);
     let mut right = DVector::<f64>::zeros(2);
     let (mut total, mut count) = (0.0, 0);
@@ -178,5 +188,6 @@ fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> 
     let both = normal.clone().cholesky()?.solve(&right).dot(&right);
     let level = right[0] * right[0] / normal[(0, 0)];
     let freedom = count.checked_sub(2).filter(|n| *n > 0)?;
-    variance_ratio_p((both - level).max(0.0) / ((total - both) / freedom as f64), 1, freedom)
+    let gain = (both - level).max(0.0);
+    Some((variance_ratio_p(gain / ((total - both) / freedom as f64), 1, freedom), gain / (total - level)))
 }

@@ -7,6 +7,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+pub(crate) use self::text::pair;
 use crate::bootstrap::Bootstrap;
 use crate::bounces::BounceCor;
 use crate::choice::ModelChoice;

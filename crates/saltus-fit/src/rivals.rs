@@ -4,19 +4,31 @@
 //! they were not fitted to.
 
 use crate::bounces::Measured;
-use crate::choice::ModelChoice;
+use crate::choice::{Limit, ModelChoice, SpeedCor};
 use crate::error::FitError;
 use crate::estimate::identified;
 use crate::evidence::Evidence;
-use crate::model::{Flight, FlightTrial, Height};
+use crate::joint::slope;
+use crate::least_squares::Bounds;
+use crate::model::{CorLaw, Flight, FlightTrial, Height};
+use crate::profile::limit;
+use crate::statistics::chi_square_p;
 use crate::successive::{Fitted, fit};
 
 /// A table with more readings is left to the models of one COR.
 const READINGS: usize = 5000;
 /// So many spare readings a model must leave to be worth comparing.
 const SPARE: usize = 3;
-/// Speeds must differ by this factor before a dependence on speed, or drag, can be told from one COR.
-const SPEEDS: f64 = 1.6;
+/// Speeds must differ by this factor, over so many bounces, before a dependence on speed can be told from one COR.
+const SPEEDS: f64 = 2.0;
+const IMPACTS: usize = 6;
+/// The same for drag, which has a law of its own.
+const DRAG_SPEEDS: f64 = 1.6;
+/// Heights must differ by a factor of two over so many bounces before a wrong zero shows.
+const OFFSET_SPEEDS: f64 = std::f64::consts::SQRT_2;
+const OFFSET_IMPACTS: usize = 4;
+/// From so many bounces on, the COR is drawn through four speeds instead of three.
+const FOUR_KNOTS: usize = 12;
 /// A COR for every bounce is tried for up to so many.
 const BOUNCES: usize = 12;
 /// A model whose BIC is worse by more is out of the question.
@@ -24,6 +36,10 @@ const DISPUTED: f64 = 2.0;
 /// Leaving out each trial in turn is tried for up to so many trials and readings.
 const TRIALS: usize = 30;
 const LEFT_OUT: usize = 1500;
+/// The zero of a scale is off by a ball at most, and this is the largest: a basketball, m.
+const LARGEST_BALL: f64 = 0.25;
+/// The COR is listed at so many speeds.
+const LISTED: usize = 25;
 
 /// What the readings are, for the comparison.
 pub(crate) struct Readings {
@@ -31,6 +47,15 @@ pub(crate) struct Readings {
     pub(crate) gravity: f64,
     /// The errors were taken from the scatter: only ratios of sums of squares mean something.
     pub(crate) scattered: bool,
+    /// The size of the ball, m, where it is known.
+    pub(crate) ball: Option<f64>,
+}
+
+/// The models, and what could not be tried.
+#[derive(Default)]
+pub(crate) struct Compared {
+    pub(crate) models: Vec<ModelChoice>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Readings {
@@ -53,60 +78,131 @@ impl Readings {
     }
 }
 
-/// Fits the models, that of one COR first, and returns them with the best first; empty where there is nothing to compare.
-pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Vec<ModelChoice>, FitError> {
-    let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
-    let base = Flight { trials: readings.trials.clone(), gravity: readings.gravity, cors: 1, ..Flight::default() };
-    let bounces = base.bounces();
-    if rows > READINGS || bounces < 2 || !(0.01..1.0).contains(&cor) {
-        return Ok(Vec::new());
+/// The speeds of the impacts that the readings tell of, under one COR: the slowest, the fastest, how many.
+fn impacts(base: &Flight, fitted: &Fitted) -> (f64, f64, usize) {
+    let e = fitted.shared[0];
+    let (mut slowest, mut fastest, mut count) = (f64::INFINITY, 0.0f64, 0);
+    for (block, trial) in base.trials.iter().enumerate() {
+        let last_height = trial.heights.last().map_or(0, |h| h.0);
+        let last_moment = trial.moments.last().map_or(0, |m| m.flights + usize::from(m.apex));
+        // Without the release nobody knows how fast the ball came to the first contact, and so not the COR there.
+        let from = usize::from(trial.release.is_none());
+        let to = last_height.max(last_moment);
+        if to <= from {
+            continue;
+        }
+        let first = base.first_contact(block, &fitted.shared, &fitted.own[block]).0.abs();
+        let at = |contact: usize| first * e.powi(i32::try_from(contact).unwrap_or(i32::MAX));
+        (slowest, fastest) = (slowest.min(at(to - 1)), fastest.max(at(from)));
+        count += (to - from).min(trial.heights.len() + trial.moments.len());
     }
-    let Some(constant) = run(&base, &[cor], None)? else { return Ok(Vec::new()) };
-    let e = constant.shared[0];
-    let first = base.first_contact(0, &constant.shared, &constant.own[0]).0;
-    // The middle speed, where value and slope are nearly independent.
-    let exponent = i32::try_from(bounces - 1).unwrap_or(i32::MAX);
-    let middle = first * e.powi(exponent).sqrt();
-    let dependent = e.powi(-exponent) > SPEEDS && middle.is_finite() && middle > 0.0;
-    let heights = readings.trials.iter().any(|t| !t.heights.is_empty());
-    let mut models = vec![("constant", "one COR", base.clone(), vec![e])];
-    if dependent {
-        let slope = Flight { slope: Some(middle), ..base.clone() };
-        models.push(("linear", "a COR linear in the speed of impact", slope, vec![e, 0.0]));
-        let drag = Flight { drag: true, ..base.clone() };
-        models.push(("drag", "one COR and air drag", drag, vec![e, 0.01]));
+    (slowest, fastest, count)
+}
+
+/// What is fitted beside one COR, as name, description, model and the COR to start from.
+fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64, usize)) -> Vec<Rival> {
+    let factor = fastest / slowest;
+    let spans = factor.is_finite() && slowest > 0.0;
+    let of = |law| Flight { law, ..base.clone() };
+    let mut list = Vec::new();
+    let mut push = |name, about, model| list.push(Rival { name, about, model });
+    if spans && factor >= SPEEDS && count >= IMPACTS {
+        let (low, high, middle) = (slowest, fastest, (slowest * fastest).sqrt());
+        push("linear", "a COR linear in the speed of impact", of(CorLaw::Linear { low, high }));
+        push("viscoelastic", "the COR of a viscoelastic sphere", of(CorLaw::Viscoelastic { high }));
+        push("plastic", "a COR that falls as v^(-1/4), plastic", of(CorLaw::Plastic { middle }));
+        push("power", "a COR that falls as a power of speed", of(CorLaw::Power { middle }));
+        let knots = if count >= FOUR_KNOTS { 4 } else { 3 };
+        let at = |k: usize| slowest * factor.powf(k as f64 / (knots - 1) as f64);
+        push("knots", "a COR that falls with speed, by knots", of(CorLaw::Knots((0..knots).map(at).collect())));
     }
-    if heights {
-        let offset = Flight { offset: true, ..base.clone() };
-        models.push(("offset", "one COR and a wrong zero of the height scale", offset, vec![e, 0.0]));
+    if spans && factor > DRAG_SPEEDS {
+        push("drag", "one COR and air drag", Flight { drag: true, ..base.clone() });
+    }
+    let heights = base.trials.iter().any(|t| !t.heights.is_empty());
+    if heights && spans && factor >= OFFSET_SPEEDS && count >= OFFSET_IMPACTS {
+        let lowest = base.trials.iter().flat_map(|t| &t.heights).map(|h| h.1).fold(f64::INFINITY, f64::min);
+        // No ball is higher than where it is let go; the lowest reading may well lie within the error of the zero.
+        let high = ball.unwrap_or(LARGEST_BALL).min(0.9 * base.tallest().max(lowest));
+        let offset = Flight { offset: Some(Bounds { low: 0.0, high }), ..base.clone() };
+        push("offset", "one COR and a wrong zero of the height scale", offset);
     }
     // Times alone do not tell how fast the ball came to the first contact, and so not the COR there.
+    let bounces = base.bounces();
     if heights && (2..=BOUNCES).contains(&bounces) {
-        models.push(("each", "a COR for every bounce", Flight { cors: bounces, ..base }, vec![e; bounces]));
+        push("each", "a COR for every bounce", of(CorLaw::Each(bounces)));
     }
+    list
+}
+
+/// A model to be tried.
+struct Rival {
+    name: &'static str,
+    about: &'static str,
+    model: Flight,
+}
+
+/// Fits the models, that of one COR first, and returns them with the best first; empty where there is nothing to compare.
+pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitError> {
+    let mut compared = Compared::default();
+    let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
+    let base = Flight { trials: readings.trials.clone(), gravity: readings.gravity, ..Flight::default() };
+    if rows > READINGS || !(0.01..1.0).contains(&cor) {
+        return Ok(compared);
+    }
+    let Some(constant) = run(&base, &[cor], None) else { return Ok(compared) };
+    let e = constant.shared[0];
+    let speeds = impacts(&base, &constant);
+    let (slowest, fastest, count) = speeds;
+    if count < IMPACTS || fastest / slowest < SPEEDS {
+        compared.notes.push(format!(
+            "a COR that depends on speed was not tried: that takes {IMPACTS} bounces (here {count}) at speeds that differ by a factor of \
+             {SPEEDS} (here {:.2})",
+            (fastest / slowest).max(1.0)
+        ));
+    }
+    let mut all = vec![Rival { name: "constant", about: "one COR", model: base.clone() }];
+    all.extend(rivals(&base, readings.ball, speeds));
     let mut list = Vec::new();
-    for (name, about, model, start) in models {
-        let Some(fitted) = run(&model, &start, Some(&constant.own))? else { continue };
+    for Rival { name, about, model } in all {
+        let mut start = model.law.start(e);
+        start.extend(model.offset.map(|b| 0.1 * b.high));
+        start.extend(model.drag.then_some(0.01));
+        let Some(fitted) = run(&model, &start, Some(&constant.own)) else { continue };
         if fitted.freedom < SPARE {
             continue;
         }
         let n = used(&model) as f64;
         let p = n - fitted.freedom as f64;
         let misfit = if readings.scattered { n * (fitted.chi_square / n).max(1e-300).ln() } else { fitted.chi_square };
-        let places = usize::from(model.slope.is_some()) + model.cors - 1;
-        let measured = |j: usize, scale: f64| Measured {
-            value: scale * fitted.shared[j],
-            standard_error: scale * fitted.covariance[(j, j)].sqrt(),
+        let cor = if model.law.of_speed() {
+            at(&model, &fitted, (slowest * fastest).sqrt())
+        } else {
+            mean(&fitted, model.law.unknowns())
         };
-        let mut choice = ModelChoice::new(name, about, mean(&fitted, model.cors), misfit + p * n.ln());
+        let mut choice = ModelChoice::new(name, about, cor, misfit + p * n.ln());
+        choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
         choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
-        choice.slope = model.slope.map(|speed| measured(1, 1.0 / speed));
-        choice.offset_m = model.offset.then(|| measured(places + 1, 1.0));
-        choice.drag = model.drag.then(|| measured(places + 1, 1.0));
+        if model.law.of_speed() {
+            let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);
+            let point = |k| {
+                let Measured { value: cor, standard_error } = at(&model, &fitted, speed(k));
+                SpeedCor { speed: speed(k), cor, standard_error }
+            };
+            choice.speeds = (0..LISTED).map(point).collect();
+        }
+        choice.slope = (name == "linear").then(|| slope(&fitted, (slowest, fastest)));
+        choice.exponent = (name == "power").then(|| fitted.measured(1));
+        choice.offset_m = model.offset_place().map(|j| fitted.measured(j));
+        choice.drag = model.drag_place().map(|j| fitted.measured(j));
+        if let Some(j) = model.offset_place().or(model.drag_place()).filter(|&j| fitted.active[j]) {
+            let found = identified("a limit", limit(&model, &fitted, j))?;
+            choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
+        }
         choice.chosen = name == "constant";
         list.push((choice, model, fitted));
     }
-    let Some(reference) = list.iter().find(|m| m.0.chosen).map(|m| (m.0.bic, m.0.aicc)) else { return Ok(Vec::new()) };
+    let Some(reference) = list.iter().find(|m| m.0.chosen).map(|m| (m.0.bic, m.0.aicc)) else { return Ok(compared) };
     for (choice, ..) in &mut list {
         choice.bic -= reference.0;
         choice.aicc = choice.aicc.zip(reference.1).map(|(a, b)| a - b);
@@ -117,13 +213,20 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Vec<ModelChoice>,
     for (choice, model, fitted) in list.iter_mut().filter(|m| disputed && m.0.bic < DISPUTED) {
         choice.left_out = left_out(model, fitted)?;
     }
-    Ok(list.into_iter().map(|m| m.0).collect())
+    compared.models = list.into_iter().map(|m| m.0).collect();
+    Ok(compared)
 }
 
-/// Fits one model, from other own unknowns if they are given.
-fn run(model: &Flight, shared: &[f64], own: Option<&Vec<Vec<f64>>>) -> Result<Option<Fitted>, FitError> {
+/// The COR at a speed, under a law.
+fn at(model: &Flight, fitted: &Fitted, speed: f64) -> Measured {
+    let (value, _, by) = model.law.at(0, speed, &fitted.shared[..model.law.unknowns()]);
+    Measured { value, standard_error: fitted.error_of(&by) }
+}
+
+/// Fits one model, from other own unknowns if they are given. One that cannot be fitted, or whose solution does not pass its checks, is no rival.
+fn run(model: &Flight, shared: &[f64], own: Option<&Vec<Vec<f64>>>) -> Option<Fitted> {
     let own = own.cloned().unwrap_or_else(|| model.start(shared[0]));
-    identified("a model of heights and times", fit(model, shared, own))
+    fit(model, shared, own).ok()
 }
 
 /// The readings of blocks that say something.
@@ -157,12 +260,12 @@ fn left_out(model: &Flight, whole: &Fitted) -> Result<Option<f64>, FitError> {
         let (mut rest, mut own) = (model.clone(), whole.own.clone());
         let trial = rest.trials.remove(j);
         let left = own.remove(j);
-        let Some(others) = run(&rest, &whole.shared, Some(&own))? else { return Ok(None) };
+        let Some(others) = run(&rest, &whole.shared, Some(&own)) else { return Ok(None) };
         let alone = Flight { trials: vec![trial], pinned: Some(others.shared.clone()), ..model.clone() };
         if used(&alone) == 0 {
             continue;
         }
-        let Some(found) = run(&alone, &others.shared, Some(&vec![left]))? else { return Ok(None) };
+        let Some(found) = run(&alone, &others.shared, Some(&vec![left])) else { return Ok(None) };
         (sum, rows) = (sum + found.chi_square, rows + used(&alone));
     }
     Ok((rows > 0).then(|| sum / rows as f64))

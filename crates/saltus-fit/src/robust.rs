@@ -107,6 +107,10 @@ fn whole(
     let (mut x, mut left) = (DMatrix::zeros(rows, owned + n), DVector::zeros(rows));
     let (mut row, mut column) = (0, 0);
     for (block, &(m, q)) in sizes.iter().enumerate() {
+        // Left aside: it has rows, but none that say anything.
+        if m == 0 {
+            continue;
+        }
         let mut filled = DMatrix::zeros(m, q + n + 1);
         model.fill(block, shared, &own[block], &mut filled);
         x.view_mut((row, column), (m, q)).copy_from(&filled.columns(0, q));

@@ -52,6 +52,13 @@ impl Fitted {
     pub(crate) fn measured(&self, n: usize) -> Measured {
         Measured { value: self.shared[n], standard_error: self.covariance[(n, n)].sqrt() }
     }
+
+    /// The error of a number from its derivatives by the shared unknowns, the first of which they are.
+    pub(crate) fn error_of(&self, by: &[f64]) -> f64 {
+        let each = |i: usize| (0..by.len()).map(move |j| (i, j));
+        let variance: f64 = (0..by.len()).flat_map(each).map(|(i, j)| by[i] * by[j] * self.covariance[(i, j)]).sum();
+        variance.max(0.0).sqrt()
+    }
 }
 
 /// An upper triangle that rows are rotated into.
@@ -122,7 +129,8 @@ pub(crate) fn fit(model: &impl Model, shared: &[f64], own: Vec<Vec<f64>>) -> Res
         if gain <= IDLE * here.cost && small(IDLE.sqrt()) {
             break;
         }
-        let last = small(FINE);
+        // Unknowns of one trial may still move where there is no shared one, or it stands at a bound.
+        let last = small(FINE) && own.iter().zip(&own_step).all(|(x, d)| d.abs() <= FINE * (1.0 + x.abs()));
         let mut fraction = 1.0;
         let mut accepted = None;
         while fraction > 1e-4 {
@@ -186,9 +194,9 @@ fn finish(
     let within: Vec<Bounds> =
         whole.iter().zip(&shared).map(|(b, x)| Bounds { low: b.low - x, high: b.high - x }).collect();
     let last = solve(&here.x, &here.y, &within)?;
-    let active: Vec<bool> = (0..shared.len())
-        .map(|j| last.active[j] && (shared[j] <= whole[j].low || shared[j] >= whole[j].high))
-        .collect();
+    // On a bound counts, even where the free minimum is there too: no covariance speaks for both sides.
+    let active: Vec<bool> =
+        (0..shared.len()).map(|j| shared[j] <= whole[j].low || shared[j] >= whole[j].high).collect();
     let (influence, separate) = influence(model, &shared, own, sizes)?;
     let mut rest = own;
     let split = |&q: &usize| rest.split_off(..q).map_or_else(Vec::new, <[f64]>::to_vec);

@@ -6,6 +6,7 @@ use super::contacts::Moment;
 use super::drag::{Air, Sloped};
 use super::dual::Dual;
 use super::heights::Height;
+use super::law::CorLaw;
 use crate::least_squares::Bounds;
 use crate::successive::Model;
 
@@ -25,26 +26,23 @@ pub(crate) struct FlightTrial {
 /// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball comes back after leaving at e vₙ; heights
 /// are read from a zero δ. In still air hₙ = δ + (e v)²/2g and a flight lasts 2 e v/g; with drag both are those of [`Air::hop`].
 ///
-/// Shared: e (or one for each bounce), then on request its slope with speed, the zero δ of the height scale, a lag of the clock, and drag k.
+/// Shared: the unknowns of the law of the COR, then on request the zero δ of the height scale, a lag of the clock, and drag k.
 /// Own: v₁ unless the height of release is set, a unless the time of release is known (then a is that time plus the fall, plus the lag).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flight {
     pub(crate) trials: Vec<FlightTrial>,
     pub(crate) gravity: f64,
-    /// The number of separate CORs; with one it holds for all bounces.
-    pub(crate) cors: usize,
-    /// e = e₀ + s (v/v₀ − 1), with this speed v₀.
-    pub(crate) slope: Option<f64>,
-    pub(crate) offset: bool,
+    pub(crate) law: CorLaw,
+    /// The zero of the height scale is unknown within these bounds, m.
+    pub(crate) offset: Option<Bounds>,
     pub(crate) lag: bool,
     pub(crate) drag: bool,
     /// The shared unknowns are known: only own ones are fitted.
     pub(crate) pinned: Option<Vec<f64>>,
 }
 
-/// Where the shared unknowns beside the CORs stand.
+/// Where the shared unknowns beside those of the law stand.
 struct Places {
-    slope: Option<usize>,
     offset: Option<usize>,
     lag: Option<usize>,
     drag: Option<usize>,
@@ -60,17 +58,12 @@ impl Flight {
     }
 
     fn places(&self) -> Places {
-        let mut next = self.cors;
+        let mut next = self.law.unknowns();
         let mut place = |wanted: bool| {
             next += usize::from(wanted);
             wanted.then(|| next - 1)
         };
-        Places {
-            slope: place(self.slope.is_some()),
-            offset: place(self.offset),
-            lag: place(self.lag),
-            drag: place(self.drag),
-        }
+        Places { offset: place(self.offset.is_some()), lag: place(self.lag), drag: place(self.drag) }
     }
 
     /// The own unknowns of a trial for a given COR: the speed from release or first height, the clock from the first moment.
@@ -139,17 +132,19 @@ impl Flight {
         Beginning { air, drag, offset, speed, released, clock }
     }
 
-    /// The COR of bounce `n` (from 0) at a speed.
-    fn cor(&self, n: usize, speed: &Dual, shared: &[f64], q: usize) -> Dual {
-        let which = n.min(self.cors - 1);
-        let e = Dual::unknown(shared[which], speed.by.len(), q + which);
-        match (self.slope, self.places().slope) {
-            (Some(reference), Some(j)) => {
-                let excess = Dual { value: speed.value / reference - 1.0, by: &speed.by / reference };
-                e.plus(&Dual::unknown(shared[j], speed.by.len(), q + j).times(&excess))
-            }
-            _ => e,
-        }
+    /// The highest release, m.
+    pub(crate) fn tallest(&self) -> f64 {
+        self.trials.iter().filter_map(|t| t.release.map(|r| r.0)).fold(0.0, f64::max)
+    }
+
+    /// The unknown zero of the height scale, where it is one of the shared.
+    pub(crate) fn offset_place(&self) -> Option<usize> {
+        self.places().offset
+    }
+
+    /// The drag, where it is one of the shared unknowns.
+    pub(crate) fn drag_place(&self) -> Option<usize> {
+        self.places().drag
     }
 
     /// The largest number of contacts that any row looks back on.
@@ -171,13 +166,9 @@ struct Beginning {
 
 impl Model for Flight {
     fn ranges(&self) -> Vec<(Bounds, f64)> {
-        let mut ranges = vec![(Bounds { low: 1e-6, high: 2.0 }, 0.1); self.cors];
-        let tallest = self.trials.iter().filter_map(|t| t.release.map(|r| r.0)).fold(0.1, f64::max);
-        if self.slope.is_some() {
-            ranges.push((Bounds { low: -1.0, high: 1.0 }, 0.05));
-        }
-        if self.offset {
-            ranges.push((Bounds { low: -tallest, high: 0.9 * tallest }, 0.05 * tallest));
+        let mut ranges = self.law.ranges();
+        if let Some(bounds) = self.offset {
+            ranges.push((bounds, 0.05 * self.tallest()));
         }
         if self.lag {
             ranges.push((Bounds { low: -10.0, high: 10.0 }, 0.1));
@@ -225,7 +216,8 @@ impl Model for Flight {
             if heights.peek().is_none() && moments.peek().is_none() {
                 break;
             }
-            let departure = self.cor(n, &speed, shared, q).times(&speed);
+            let cor = self.law.through(n, &speed, &shared[..self.law.unknowns()], q);
+            let departure = cor.times(&speed);
             let hop = start.air.hop(departure.value);
             let top = contact.plus(&through(&departure, &hop.rise));
             while let Some(&(_, height, sigma)) = heights.next_if(|h| h.0 <= n + 1) {

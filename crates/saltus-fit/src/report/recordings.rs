@@ -4,10 +4,13 @@ use std::fmt::{self, Formatter};
 
 use super::Report;
 use super::text::{figures, pair};
+use crate::choice::ModelChoice;
 use crate::series::Track;
 
 /// More impacts than this are left to the JSON.
 const IMPACTS: usize = 12;
+/// More models than this are left to the JSON.
+const MODELS: usize = 6;
 /// Gravity within this part of the expected means that heights are in metres and times in seconds.
 const METRES: f64 = 0.2;
 
@@ -29,10 +32,11 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     }
     if report.models.len() > 1 {
         writeln!(f, "\nModels, the best first (a greater BIC is worse; by six, clearly)")?;
-        for model in &report.models {
+        let shown = |(n, m): &(usize, &ModelChoice)| *n < MODELS || m.chosen;
+        for (_, model) in report.models.iter().enumerate().filter(shown) {
             let chosen = if model.chosen { "   chosen" } else { "" };
             let cor = pair(model.cor.value, model.cor.standard_error);
-            writeln!(f, "  {:<46}{cor:>16}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
+            writeln!(f, "  {:<44}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
         }
     }
     if let [track] = report.series.as_slice() {

@@ -71,7 +71,7 @@ fn digits(error: f64) -> usize {
     (3..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
 }
 
-pub(super) fn pair(value: f64, error: f64) -> String {
+pub(crate) fn pair(value: f64, error: f64) -> String {
     let digits = digits(error);
     if error < 0.5e-9 {
         return format!("{value:.digits$} ± {error:.0e}");

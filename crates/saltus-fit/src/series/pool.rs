@@ -4,7 +4,7 @@ use super::track::{CHOICES, Choice, name};
 use super::{Track, Variant};
 use crate::bounces::Measured;
 use crate::model::Law;
-use crate::statistics::{NORMAL, student};
+use crate::spread::across;
 
 /// The COR over all recordings, and its rivals.
 #[derive(Clone, Debug)]
@@ -25,8 +25,8 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
         let own: Option<Vec<&Variant>> = tracks.iter().map(|t| variant(t, choice)).collect();
         let own = own?;
         let cors: Vec<Measured> = own.iter().map(|v| v.cor).collect();
-        let (cor, quantile) = mean(&cors)?;
-        Some((cor, quantile, own.iter().map(|v| v.bic).sum::<f64>()))
+        let found = across(&cors)?;
+        Some((found.mean, found.quantile, own.iter().map(|v| v.bic).sum::<f64>()))
     };
     let fitted = |t: &Track| variant(t, choice).is_some();
     let choice = if tracks.iter().all(fitted) { choice } else { (choice.0, false) };
@@ -34,7 +34,7 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
     let most = tracks.iter().map(|t| t.impacts.len()).max().unwrap_or(0);
     let impacts = (0..most).filter_map(|n| {
         let cors: Vec<Measured> = tracks.iter().filter_map(|t| t.impacts.get(n)).map(|i| i.cor).collect();
-        mean(&cors).map(|m| m.0)
+        across(&cors).map(|m| m.mean)
     });
     let several = |c: &Choice| tracks.iter().any(|t| t.impacts.len() > usize::from(c.0 == Law::Linear) + 1);
     let rivals = CHOICES
@@ -50,29 +50,4 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
 fn variant(track: &Track, (law, drag): Choice) -> Option<&Variant> {
     let of = |law: Law| track.models.iter().find(|m| m.law == name(law) && m.drag == drag);
     of(law).or_else(|| of(Law::Constant))
-}
-
-/// The mean of values that scatter by more than their errors (`DerSimonian` and Laird 1986), its error from their own scatter (Hartung
-/// and Knapp 2001) but never below what the errors allow; and the factor to a 95 % interval.
-fn mean(values: &[Measured]) -> Option<(Measured, f64)> {
-    let first = values.first()?;
-    if values.len() == 1 {
-        return Some((*first, NORMAL));
-    }
-    let freedom = values.len() - 1;
-    let variance = |m: &Measured| m.standard_error.max(1e-12).powi(2);
-    let weighted = |extra: f64| {
-        let weights: Vec<f64> = values.iter().map(|m| 1.0 / (variance(m) + extra)).collect();
-        let total: f64 = weights.iter().sum();
-        let mean = weights.iter().zip(values).map(|(w, m)| w * m.value).sum::<f64>() / total;
-        let square: f64 = weights.iter().zip(values).map(|(w, m)| w * (m.value - mean).powi(2)).sum();
-        (total, weights.iter().map(|w| w * w).sum::<f64>(), mean, square)
-    };
-    let (total, squares, _, q) = weighted(0.0);
-    let extra = ((q - freedom as f64) / (total - squares / total)).max(0.0);
-    let (total, _, value, q) = weighted(extra);
-    let own = (1.0 / total).sqrt();
-    let scattered = (q / (freedom as f64 * total)).sqrt();
-    let standard_error = own.max(scattered);
-    value.is_finite().then_some((Measured { value, standard_error }, student(freedom)))
 }

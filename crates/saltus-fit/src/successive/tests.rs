@@ -1,7 +1,7 @@
 //! The derivatives are those of the residuals, the elimination is exact, and two ways to the same COR meet.
 
 use super::*;
-use crate::model::{Contacts, Flight, FlightTrial, Heights, Moment};
+use crate::model::{Contacts, CorLaw, Flight, FlightTrial, Heights, Moment};
 
 fn contacts(times: &[f64], sigma: f64) -> Contacts {
     let one = |(flights, &time): (usize, &f64)| Moment { flights, apex: false, time, sigma };
@@ -64,13 +64,21 @@ fn derivatives_are_those_of_the_residuals() {
                         moment(3, true, 2.0),
                     ],
                 };
-                for (cors, slope, drag) in
-                    [(1, None, false), (2, None, false), (4, None, true), (1, Some(2.0), false), (1, Some(3.0), true)]
-                {
-                    let trials = vec![trial.clone()];
-                    let model = Flight { trials, gravity: 9.8, cors, slope, offset, lag, drag, pinned: None };
-                    let mut shared = vec![0.6; cors];
-                    shared.extend(slope.map(|_| -0.05));
+                let (low, high, middle) = (0.7, 4.2, 2.1);
+                for (law, unknowns, drag) in [
+                    (CorLaw::Constant, vec![0.6], false),
+                    (CorLaw::Each(2), vec![0.6, 0.5], false),
+                    (CorLaw::Each(4), vec![0.6; 4], true),
+                    (CorLaw::Linear { low, high }, vec![0.65, 0.55], false),
+                    (CorLaw::Linear { low, high }, vec![0.65, 0.55], true),
+                    (CorLaw::Viscoelastic { high }, vec![0.7], true),
+                    (CorLaw::Plastic { middle }, vec![0.6], false),
+                    (CorLaw::Power { middle }, vec![0.6, 0.2], false),
+                    (CorLaw::Knots(vec![0.7, 1.3, 2.5, 4.2]), vec![0.8, 0.95, 0.9, 0.85], false),
+                ] {
+                    let (trials, zero) = (vec![trial.clone()], offset.then_some(Bounds { low: 0.0, high: 0.2 }));
+                    let model = Flight { trials, gravity: 9.8, law, offset: zero, lag, drag, pinned: None };
+                    let mut shared = unknowns;
                     shared.extend(offset.then_some(0.05));
                     shared.extend(lag.then_some(0.02));
                     shared.extend(drag.then_some(0.15));

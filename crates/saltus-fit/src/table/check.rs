@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{Event, Table, Trial};
+use super::{Event, Reading, Table, Trial};
 
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
@@ -11,7 +11,7 @@ const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
 /// A copied trial must have at least this many readings: two rebounds to the same centimetre are no copy.
 const COPY: usize = 3;
 
-/// Takes out what must not be counted, and says so.
+/// Takes out what must not be counted, notes what has no logarithm, and says so.
 pub(super) fn table(table: &mut Table) {
     zeros(table);
     copies(table);
@@ -30,21 +30,13 @@ fn size(table: &mut Table) {
 }
 
 fn zeros(table: &mut Table) {
-    let mut lines = Vec::new();
-    for trial in &mut table.trials {
-        trial.readings.retain(|r| {
-            let zero = r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
-            if zero {
-                lines.push(r.line);
-            }
-            !zero
-        });
-    }
+    let zero = |r: &&Reading| r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
+    let lines: Vec<u64> = table.trials.iter().flat_map(|t| &t.readings).filter(zero).map(|r| r.line).collect();
     if let Some(first) = lines.first() {
         let where_ =
             if lines.len() == 1 { format!("line {first}") } else { format!("{} lines from {first}", lines.len()) };
         table.warnings.push(format!(
-            "{where_}: a rebound of zero height is below what can be read; it was left out, and its logarithm with it"
+            "{where_}: a rebound of zero height is below what can be read; only 'heights-ratio' counts it"
         ));
         table.zero_rebounds = lines.len();
     }

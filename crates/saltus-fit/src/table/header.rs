@@ -115,7 +115,7 @@ const HEIGHT: &[&str] = &[
 ];
 const AVERAGE: &[&str] = &["average", "mean", "avg", "moyenne", "mittelwert", "media"];
 const FRAME: &[&str] = &["frame", "frames", "slice"];
-const RELEASE: &[&str] = &["drop", "release", "initial", "start", "released", "dropped"];
+const RELEASE: &[&str] = &["drop", "release", "initial", "start", "released", "dropped", "before"];
 const TRIAL: &[&str] = &[
     "trial",
     "run",
@@ -161,6 +161,12 @@ const IGNORED: &[&str] = &[
     "force",
     "step",
     "flag",
+    // What is to be found, worked out by somebody already.
+    "cor",
+    "e",
+    "cr",
+    "coefficient",
+    "restitution",
     "pixelx",
     "pixely",
 ];

@@ -1,0 +1,114 @@
+//! Limits by profiling the cost: what an unknown may be at most, or at least, where a bound holds it and no covariance speaks for it.
+
+use nalgebra::DMatrix;
+
+use crate::least_squares::{Bounds, Failure};
+use crate::successive::{Fitted, Model, fit};
+
+/// One-sided, 95 %: the square of the 95 % point of the normal distribution, 1.645.
+pub(crate) const ONE_SIDED: f64 = 2.705_543_454_095_404;
+/// Doublings on the way out, and halvings on the way back.
+const OUT: usize = 60;
+const HALVINGS: usize = 60;
+/// The limit is found to this part of its distance from the bound.
+const FINE: f64 = 1e-4;
+
+/// A model with one shared unknown held at a value.
+struct Held<'a, M> {
+    model: &'a M,
+    place: usize,
+    value: f64,
+}
+
+impl<M: Model> Held<'_, M> {
+    fn all(&self, others: &[f64]) -> Vec<f64> {
+        let mut all = others.to_vec();
+        all.insert(self.place, self.value);
+        all
+    }
+}
+
+impl<M: Model> Model for Held<'_, M> {
+    fn ranges(&self) -> Vec<(Bounds, f64)> {
+        let mut ranges = self.model.ranges();
+        ranges.remove(self.place);
+        ranges
+    }
+
+    fn size(&self, block: usize) -> (usize, usize) {
+        self.model.size(block)
+    }
+
+    fn fill(&self, block: usize, shared: &[f64], own: &[f64], rows: &mut DMatrix<f64>) {
+        let mut whole = DMatrix::zeros(rows.nrows(), rows.ncols() + 1);
+        self.model.fill(block, &self.all(shared), own, &mut whole);
+        rows.copy_from(&whole.remove_column(own.len() + self.place));
+    }
+}
+
+/// The least cost with an unknown held at a value, all others free.
+pub(crate) fn held<M: Model>(model: &M, at: &Fitted, place: usize, value: f64) -> Result<Fitted, Failure> {
+    let mut others = at.shared.clone();
+    others.remove(place);
+    fit(&Held { model, place, value }, &others, at.own.clone())
+}
+
+/// How far a shared unknown may be from the bound that holds it until the cost has grown by 2.71; the other end of its range, if it never does.
+pub(crate) fn limit<M: Model>(model: &M, at: &Fitted, place: usize) -> Result<f64, Failure> {
+    let (bounds, reach) = model.ranges()[place];
+    let here = at.shared[place];
+    let (far, sign) = if here - bounds.low < bounds.high - here { (bounds.high, 1.0) } else { (bounds.low, -1.0) };
+    let allowed = |value: f64, from: &Fitted| -> Result<(bool, Option<Fitted>), Failure> {
+        match held(model, from, place, value) {
+            Ok(found) => Ok((found.chi_square - at.chi_square <= ONE_SIDED, Some(found))),
+            // Where the model has no value there is nothing that the readings would allow.
+            Err(Failure::Malformed | Failure::NotIdentified) => Ok((false, None)),
+            Err(failure) => Err(failure),
+        }
+    };
+    // Small steps first: the cost is steep where the readings are good.
+    let (mut inside, mut step) = (here, 1e-3 * reach.min(1.0));
+    let mut nearest = at.clone();
+    let mut outside = None;
+    for _ in 0..OUT {
+        let next = here + sign * step;
+        if (next - far) * sign >= 0.0 {
+            outside = Some(far);
+            break;
+        }
+        match allowed(next, &nearest)? {
+            (true, found) => (inside, nearest) = (next, restored(found, &nearest, place, next)),
+            (false, _) => {
+                outside = Some(next);
+                break;
+            }
+        }
+        step *= 2.0;
+    }
+    let mut outside = outside.unwrap_or(far);
+    if outside == far && allowed(far, &nearest)?.0 {
+        return Ok(far);
+    }
+    for _ in 0..HALVINGS {
+        if (outside - inside).abs() <= FINE * (outside - here).abs() {
+            break;
+        }
+        let middle = 0.5 * (inside + outside);
+        match allowed(middle, &nearest)? {
+            (true, found) => (inside, nearest) = (middle, restored(found, &nearest, place, middle)),
+            (false, _) => outside = middle,
+        }
+    }
+    Ok(inside)
+}
+
+/// A fit without the held unknown, as a start for the next.
+fn restored(found: Option<Fitted>, instead: &Fitted, place: usize, value: f64) -> Fitted {
+    found.map_or_else(
+        || instead.clone(),
+        |mut found| {
+            found.shared.insert(place, value);
+            found
+        },
+    )
+}

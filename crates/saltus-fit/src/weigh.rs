@@ -1,0 +1,150 @@
+//! What other models of the same readings mean for the COR and the verdict.
+
+use crate::choice::{CorModel, ModelChoice};
+use crate::diagnose::REJECT;
+use crate::report::{Cor, Report, Verdict, pair};
+use crate::statistics::NORMAL;
+
+/// A BIC this much less decides.
+const CLEAR: f64 = 6.0;
+/// CORs that differ by less are the same for any purpose.
+const SAME: f64 = 0.002;
+/// A COR that changes by less over all speeds may be called one.
+const LEVEL: f64 = 0.02;
+
+/// Models that suppose the same kind of thing: the best of them speaks for all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Speed,
+    Drag,
+    Offset,
+    Each,
+}
+
+fn kind(model: &ModelChoice) -> Option<Kind> {
+    match model.name.as_str() {
+        "linear" | "viscoelastic" | "plastic" | "power" | "knots" => Some(Kind::Speed),
+        "drag" => Some(Kind::Drag),
+        "offset" => Some(Kind::Offset),
+        "each" => Some(Kind::Each),
+        _ => None,
+    }
+}
+
+/// Warns of models that fit better than one COR, or as well with another COR; doubts one COR where the first is so and it matters.
+///
+/// The models come with the best first.
+pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
+    let Some(one) = list.iter().find(|m| m.chosen) else { return };
+    let least = list.first().map_or(0.0, |m| m.bic);
+    let mut seen = Vec::new();
+    let mut better: Vec<(Kind, &ModelChoice)> = Vec::new();
+    // A model that another beats clearly is out of the question.
+    for model in list.iter().filter(|m| !m.chosen && m.bic < least + CLEAR) {
+        let Some(kind) = kind(model).filter(|k| !seen.contains(k)) else { continue };
+        seen.push(kind);
+        let apart = (model.cor.value - one.cor.value).abs();
+        let differ = apart > 2.0 * model.cor.standard_error.hypot(one.cor.standard_error) && apart > SAME;
+        let last_resort = kind == Kind::Each && !better.is_empty();
+        if !last_resort && (model.bic < -CLEAR || differ) {
+            let how = if model.bic < -CLEAR { "better than" } else { "about as well as" };
+            let text = format!("{} fits {how} one COR (BIC {:+.1}), with {}", model.about, model.bic, gives(model));
+            report.warnings.push(text);
+        }
+        if model.bic < -CLEAR && (differ || changes(model) > LEVEL || kind == Kind::Each) {
+            better.push((kind, model));
+        }
+        if differ && let Some(cor) = &mut report.cor {
+            cor.low = cor.low.min(model.cor.value - NORMAL * model.cor.standard_error).max(0.0);
+            cor.high = cor.high.max(model.cor.value + NORMAL * model.cor.standard_error);
+        }
+    }
+    // What is no one number is given as the range that it takes.
+    for (_, model) in &better {
+        if let Some(cor) = &mut report.cor {
+            cor.low = model.speeds.iter().map(|s| s.cor).fold(cor.low, f64::min);
+            cor.high = model.speeds.iter().map(|s| s.cor).fold(cor.high, f64::max);
+        }
+    }
+    // A COR of its own for every bounce explains nothing where something else does.
+    if better.len() > 1 {
+        better.retain(|(kind, _)| *kind != Kind::Each);
+    }
+    if better.is_empty() {
+        return;
+    }
+    let mut causes: Vec<String> = better.iter().map(|&(kind, model)| cause(kind, model)).collect();
+    if !list.iter().any(|m| kind(m) == Some(Kind::Speed)) {
+        causes.push("it depends on the speed of impact (not tried: see the notes)".to_owned());
+    }
+    let open = if causes.len() > 1 { "; the readings cannot tell which" } else { "" };
+    let reason = format!("one COR does not do: {}{open}", causes.join(", or "));
+    if better.iter().any(|(kind, _)| *kind == Kind::Offset) {
+        report.warnings.push(
+            "to tell a wrong zero from a dependence on speed, lay the ball on the floor and read its height on the same scale".to_owned(),
+        );
+    }
+    // The cause says more than the symptom.
+    let before = std::mem::replace(&mut report.reason, reason);
+    if report.verdict == Verdict::Doubtful {
+        report.warnings.insert(0, before);
+    }
+    report.verdict = Verdict::Doubtful;
+}
+
+/// Lets the report rest on the model that was asked for; says so where it could not be fitted.
+pub(crate) fn rest_on(report: &mut Report, wanted: CorModel) {
+    let best = report.models.first().map_or(0.0, |m| m.bic);
+    let Some(model) = report.models.iter_mut().find(|m| m.name == wanted.name()) else {
+        report.verdict = if report.cor.is_some() { Verdict::Doubtful } else { Verdict::Refused };
+        report.reason =
+            format!("the model '{}' cannot be fitted to these readings; the COR is that of one COR", wanted.name());
+        return;
+    };
+    let (about, holds, as_good) = (gives(model), model.p.is_none_or(|p| p >= REJECT), model.bic < best + CLEAR);
+    let (e, error, of_speed) = (model.cor.value, model.cor.standard_error, !model.speeds.is_empty());
+    model.chosen = true;
+    report.cor = Some(Cor {
+        value: e,
+        standard_error: Some(error),
+        low: (e - NORMAL * error).max(0.0),
+        high: e + NORMAL * error,
+    });
+    report.models.iter_mut().for_each(|m| m.chosen = m.name == wanted.name());
+    let model = report.models.iter().find(|m| m.chosen).map_or("", |m| &m.about);
+    (report.verdict, report.reason) = match (holds, as_good) {
+        (true, true) if of_speed => {
+            (Verdict::Trusted, format!("{model} fits: {about}; the COR here is that at the middle speed"))
+        }
+        (true, true) => (Verdict::Trusted, format!("{model} fits")),
+        (false, _) => (Verdict::Doubtful, format!("{model} was asked for, but does not fit ({about})")),
+        (_, false) => (Verdict::Doubtful, format!("{model} was asked for, but another model fits better ({about})")),
+    };
+}
+
+/// By how much the COR changes from the slowest impact to the fastest.
+fn changes(model: &ModelChoice) -> f64 {
+    model.speeds.first().zip(model.speeds.last()).map_or(0.0, |(a, b)| (a.cor - b.cor).abs())
+}
+
+/// The COR or CORs that a model gives, for people.
+fn gives(model: &ModelChoice) -> String {
+    match (model.speeds.first(), model.speeds.last()) {
+        (Some(slow), Some(fast)) => {
+            format!("{:.3} at {:.2} m/s and {:.3} at {:.2} m/s", slow.cor, slow.speed, fast.cor, fast.speed)
+        }
+        _ => pair(model.cor.value, model.cor.standard_error),
+    }
+}
+
+fn cause(kind: Kind, model: &ModelChoice) -> String {
+    match kind {
+        Kind::Speed => format!("it depends on the speed of impact ({})", gives(model)),
+        Kind::Drag => format!("air drag slows the ball (COR {})", gives(model)),
+        Kind::Offset => {
+            let offset = model.offset_m.map_or(0.0, |o| 100.0 * o.value);
+            format!("the height scale reads {offset:.1} cm too high (COR {})", gives(model))
+        }
+        Kind::Each => "it differs from bounce to bounce".to_owned(),
+    }
+}

@@ -1,0 +1,111 @@
+//! With three readings in ten wild, the COR is still found, and its interval still holds it.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod noise;
+
+use noise::Noise;
+use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
+
+/// The part of runs whose interval holds `truth`. A trusted COR must be near it, and nearly all must be.
+fn held(what: &str, runs: usize, truth: f64, mut run: impl FnMut(&mut Noise) -> Report) -> f64 {
+    let mut noise = Noise(77);
+    let (mut held, mut near) = (0, 0);
+    for _ in 0..runs {
+        let report = run(&mut noise);
+        let Some(cor) = report.cor() else { continue };
+        let good = (cor.value - truth).abs() < 0.01;
+        assert!(good || report.verdict() != Verdict::Trusted, "{what}: {report}");
+        near += usize::from(good);
+        held += usize::from(cor.low <= truth && truth <= cor.high);
+    }
+    let part = |n: usize| n as f64 / runs as f64;
+    println!(
+        "{what}: of {runs} intervals {:.3} hold the truth, {:.3} of the values within 0.01",
+        part(held),
+        part(near)
+    );
+    part(held).min(part(near))
+}
+
+fn parse(text: &str) -> Table {
+    Table::parse("planted", text.as_bytes(), &ReadOptions::default()).expect("a table")
+}
+
+#[test]
+fn heights() {
+    let part = held("heights", 200, 0.8, |noise| {
+        let mut text = "trial,bounce,height_m\n".to_owned();
+        for trial in 0..8 {
+            for n in 0..6 {
+                let h = 0.8f64.powi(2 * n) + noise.normal(0.004);
+                // A misread digit, another ball, a hand: anywhere up to the height of release.
+                let h = if noise.uniform() < 0.3 { 1.2 * noise.uniform() } else { h };
+                text += &format!("{trial},{n},{:.5}\n", h.max(0.001));
+            }
+        }
+        Fit::new().sigma_height(0.004).run(&parse(&text)).unwrap()
+    });
+    assert!(part > 0.9, "{part}");
+}
+
+#[test]
+fn times_with_double_triggers_and_missed_contacts() {
+    let part = held("times", 200, 0.85, |noise| {
+        let mut text = "trial,bounce,time_s\n".to_owned();
+        for trial in 0..8 {
+            let (mut t, mut flight, mut n) = (0.2, 0.8, 0);
+            for _ in 0..12 {
+                let fault = noise.uniform();
+                if fault >= 0.15 {
+                    text += &format!("{trial},{n},{:.5}\n", t + noise.normal(0.001));
+                    n += 1;
+                }
+                if (0.15..0.3).contains(&fault) {
+                    text += &format!("{trial},{n},{:.5}\n", t + 0.02 + 0.03 * noise.uniform());
+                    n += 1;
+                }
+                t += flight;
+                flight *= 0.85;
+            }
+        }
+        Fit::new().sigma_time(0.001).run(&parse(&text)).unwrap()
+    });
+    assert!(part > 0.9, "{part}");
+}
+
+/// A film of two seconds at 120 frames a second, a part of the samples anywhere.
+fn film(noise: &mut Noise, wild: f64) -> Report {
+    let mut text = "time_s,height_m\n".to_owned();
+    let g = 9.81f64;
+    for n in 0..240 {
+        let time = f64::from(n) / 120.0;
+        let fall = (2.0 / g).sqrt();
+        let (mut start, mut speed) = (fall, 0.8 * g * fall);
+        let mut h = 1.0 - 0.5 * g * time * time;
+        while time > start {
+            let s = time - start;
+            h = speed * s - 0.5 * g * s * s;
+            start += 2.0 * speed / g;
+            speed *= 0.8;
+        }
+        let h = if noise.uniform() < wild { 1.2 * noise.uniform() } else { h + noise.normal(0.003) };
+        text += &format!("{time:.5},{h:.5}\n");
+    }
+    Fit::new().run(&parse(&text)).unwrap()
+}
+
+/// One in six is refused: its contacts are not all found. None is trusted and wrong.
+#[test]
+fn series_of_which_one_in_twenty_is_wild() {
+    let part = held("series", 30, 0.8, |noise| film(noise, 0.05));
+    assert!(part > 0.75, "{part}");
+}
+
+/// Fails: with three samples in ten anywhere the contacts are not all found, and most films are refused or doubtful; none is trusted and wrong.
+#[test]
+#[ignore = "the contacts are looked for among neighbouring samples, of which too many are wild"]
+fn series_of_which_three_in_ten_are_wild() {
+    let part = held("series", 30, 0.8, |noise| film(noise, 0.3));
+    assert!(part > 0.85, "{part}");
+}
