@@ -7,6 +7,7 @@ use saltus_bounce::Cor;
 use saltus_bounce::scene::Kind;
 use saltus_bounce::scene::accuracy::Target;
 use saltus_bounce::units::Quantity;
+use saltus_fit::CorModel;
 use saltus_motion::Rate;
 
 use crate::error::Error;
@@ -39,11 +40,13 @@ in the table, from the scatter, or are assumed; the report says which.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    Fit(Fit),
+    Fit(Box<Fit>),
     Simulate(Simulate),
     Explain(Explain),
     Accuracy(Accuracy),
     Export(Export),
+    Check(Check),
+    Solve(crate::solve::Solve),
     Sweep(crate::sweep::Sweep),
     /// Write a shell's completions to standard output.
     ///
@@ -74,6 +77,9 @@ pub(crate) struct Fit {
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
+    /// Draw the COR against the speed of impact, as SVG.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot_cor: Option<PathBuf>,
     /// How to write the report.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
@@ -125,6 +131,13 @@ pub(crate) struct Fit {
     /// Use every reading as it stands: look neither for missed, doubled and misread contacts nor for outliers.
     #[arg(long)]
     pub(crate) no_repair: bool,
+    /// Let the COR be that of this model, if the readings can tell of it: `linear`, `viscoelastic`, `plastic`, `power` and `knots` depend on
+    /// the speed of impact.
+    #[arg(long, value_name = "MODEL", value_parser = clap::builder::PossibleValuesParser::new(CorModel::ALL.map(CorModel::name)))]
+    pub(crate) model: Option<String>,
+    /// The diameter of the ball, such as `4cm`: the zero of the height scale can be off by no more.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    pub(crate) ball: Option<f64>,
     /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual.
     #[arg(long)]
     pub(crate) losses: bool,
@@ -239,7 +252,8 @@ pub(crate) struct Accuracy {
 /// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
 ///
 /// Every flight is one exact parabola between two contacts where the format can hold it. Hops shorter than a frame are left out. It ends in one line:
-/// how many keys, how far a contact is from a frame, how far the file is from the motion. See docs/motion.md.
+/// how many keys, how far a contact is from a frame, how far the file is from the motion, and by how much squash and stretch depart from it. See
+/// docs/motion.md.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Export {
     /// The scene; `-` for standard input.
@@ -247,27 +261,72 @@ pub(crate) struct Export {
     /// What is written; without it, after the extension of the output file.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) to: Option<ExportFormat>,
-    /// Frames per second, such as `24`, `29.97` or `24000/1001`.
-    #[arg(long, value_name = "RATE", default_value = "24")]
-    pub(crate) fps: Rate,
     /// Write to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The number of the frame at which the motion starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
     pub(crate) first_frame: i32,
+    #[command(flatten)]
+    pub(crate) staging: Staging,
+    /// How far keys may be from the motion where more than gravity acts.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
+    pub(crate) tolerance: f64,
+}
+
+/// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
+///
+/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG, CSV and JSON. Give the options it was exported with.
+/// Exit status 1 if a height is farther off than the export says, or than --tolerance.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Check {
+    /// The file.
+    pub(crate) file: PathBuf,
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) staging: Staging,
+    /// How far heights may be from the motion; without it, what the export promised, and what single precision adds.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    pub(crate) tolerance: Option<f64>,
+}
+
+/// How a motion is shown.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Staging {
+    /// Frames per second, such as `24`, `29.97` or `24000/1001`.
+    #[arg(long, value_name = "RATE", default_value = "24")]
+    pub(crate) fps: Rate,
     /// Move every contact to a whole frame, and keep gravity or the heights.
     #[arg(long, value_enum)]
     pub(crate) snap: Option<SnapBy>,
     /// Draw every second frame only, and let it stand for two.
     #[arg(long)]
     pub(crate) on_twos: bool,
-    /// How far keys may be from the motion where more than gravity acts.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
-    pub(crate) tolerance: f64,
+    /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law` for what a contact that takes time says.
+    #[arg(long, value_name = "PART", value_parser = squash)]
+    pub(crate) squash: Option<Squash>,
+    /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
+    #[arg(long, value_name = "PART", value_parser = part(2.0))]
+    pub(crate) stretch: Option<f64>,
+    /// Squash and stretch so many times as much.
+    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
+    pub(crate) exaggerate: f64,
+    /// Hold each contact for this many frames at least; what comes after is later. Where a contact is an instant, --squash holds it for 2.
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) hold: Option<u32>,
     /// When to stop, such as `4s`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
+}
+
+/// How far a ball is squashed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Squash {
+    /// As the law of a contact that takes time has it.
+    Law,
+    /// By a part of its height.
+    Part(f64),
 }
 
 /// A format for animators.
@@ -293,6 +352,8 @@ pub(crate) enum ExportFormat {
     Lottie,
     /// A moving SVG.
     Svg,
+    /// The timing chart, an SVG that stands still: a tick for every frame, contacts and tops marked.
+    Chart,
 }
 
 /// What stays when contacts move to whole frames.
@@ -428,6 +489,28 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err(format!("'{text}' is not a frame rate: give a number above zero, such as 30")),
+    }
+}
+
+/// A number from 0 to `most`.
+fn part(most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse::<f64>() {
+        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
+        _ => Err(format!("'{text}' is not a number from 0 to {most}")),
+    }
+}
+
+fn squash(text: &str) -> Result<Squash, String> {
+    match text {
+        "law" => Ok(Squash::Law),
+        text => part(0.9)(text).map(Squash::Part).map_err(|error| format!("{error}, nor `law`")),
+    }
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a number above zero")),
     }
 }
 

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use saltus_fit::{Fit, Measure, Motion, ReadOptions, Report, Table, Verdict};
-use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
+use saltus_fit::{CorModel, Fit, Measure, Motion, ReadOptions, Report, Table, Verdict};
+use saltus_plot::{Arc, Background, Chart, HeightTime, Mark, Measure as Scale, Measured, Residual, Stroke};
 
 use crate::args::{self, ReportFormat};
 use crate::error::Error;
@@ -15,6 +15,7 @@ use crate::output::{check_picture, say, write};
 
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
+    check_picture(args.plot_cor.as_deref())?;
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     let report = watched(args, quiet, |progress| fit(args).run_with(&table, progress)).map_err(Error::new)?;
@@ -28,6 +29,12 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
             None => say(quiet, "no picture: the table has no motion to draw"),
         }
     }
+    if let Some(path) = &args.plot_cor {
+        match cor_picture(&report) {
+            Some(picture) => write(Some(path), picture.svg().map_err(Error::new)?.as_bytes())?,
+            None => say(quiet, "no picture of the COR: the table does not give it at several speeds"),
+        }
+    }
     write(args.output.as_deref(), text.as_bytes())?;
     if let Some(path) = args.plot.as_ref().filter(|path| path.exists() && *path != Path::new("-")) {
         say(quiet, &format!("picture: {}", path.display()));
@@ -37,6 +44,13 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
 }
 
 fn read(args: &args::Fit) -> Result<Table, Error> {
+    // The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !info.location().is_some_and(|place| place.file().contains("calamine")) {
+            usual(info);
+        }
+    }));
     let options = options(args);
     if args.tables == [Path::new("-")] {
         let mut bytes = Vec::new();
@@ -111,6 +125,12 @@ fn fit(args: &args::Fit) -> Fit {
     if let Some(within) = args.tolerance_time {
         fit = fit.tolerance_time(within);
     }
+    if let Some(model) = CorModel::ALL.into_iter().find(|m| args.model.as_deref() == Some(m.name())) {
+        fit = fit.model(model);
+    }
+    if let Some(ball) = args.ball {
+        fit = fit.ball(ball);
+    }
     if let Some(rounds) = args.bootstrap {
         fit = fit.bootstrap(rounds as usize, args.seed);
     }
@@ -151,6 +171,62 @@ fn picture(report: &Report) -> Option<HeightTime> {
         picture = picture.caption(&agreement);
     }
     Some(picture)
+}
+
+/// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed with its 95 % band.
+fn cor_picture(report: &Report) -> Option<Chart> {
+    let bounces: Vec<(f64, saltus_fit::Measured)> =
+        report.bounces().iter().filter_map(|b| Some((speed(report, b.bounce)?, b.heights.or(b.times)?))).collect();
+    let law = report.models().iter().find(|m| !m.speeds.is_empty());
+    let mut speeds: Vec<f64> = bounces.iter().map(|b| b.0).collect();
+    speeds.extend(law.iter().flat_map(|m| &m.speeds).map(|s| s.speed));
+    let (slowest, fastest) = (speeds.iter().copied().reduce(f64::min)?, speeds.iter().copied().reduce(f64::max)?);
+    if fastest <= slowest {
+        return None;
+    }
+    let mut picture = Chart::new(&title(report.table()), ("Speed of impact", Scale::Speed), ("COR", Scale::Count))
+        .marks(bounces.iter().map(|(v, e)| [*v, e.value]))
+        .jumps(bounces.iter().map(|(v, e)| [-1.0, 1.0].map(|side| [*v, e.value + side * e.standard_error])))
+        .background(Background::Adaptive)
+        .caption("Marks: each bounce by itself, ± one standard error");
+    if let Some(law) = law {
+        let bent = |points: Vec<[f64; 2]>| {
+            points
+                .windows(2)
+                .map(|w| Stroke::new(1.0, vec![w[0][0], w[1][0] - w[0][0]], vec![w[0][1], w[1][1] - w[0][1]]))
+                .collect::<Vec<_>>()
+        };
+        let at =
+            |side: f64| bent(law.speeds.iter().map(|s| [s.speed, s.cor + side * 1.96 * s.standard_error]).collect());
+        picture = picture.line(&law.about, at(0.0)).line("95 % band", at(-1.0).into_iter().chain(at(1.0)));
+    }
+    if let Some(one) =
+        report.models().iter().find(|m| m.name == "constant").map(|m| m.cor.value).or(report.cor().map(|c| c.value))
+    {
+        picture = picture.line("one COR", [Stroke::new(1.0, vec![slowest, fastest - slowest], vec![one])]);
+    }
+    Some(picture.caption(&caption(report)))
+}
+
+/// The speed at a contact as it was read: from the height before it, else from the flight before it, the mean over trials.
+fn speed(report: &Report, bounce: usize) -> Option<f64> {
+    let g = report.gravity().value;
+    let apex = if bounce == 1 { "release".to_owned() } else { format!("apex {}", bounce - 1) };
+    let contact = |n: usize| format!("contact {n}");
+    let points = report.points();
+    let heights = points.iter().filter(|p| p.label == apex).map(|p| (2.0 * g * p.height.max(0.0)).sqrt());
+    let mut speeds: Vec<f64> = heights.collect();
+    if speeds.is_empty() {
+        let ends = points.iter().filter(|p| p.label == contact(bounce));
+        let flight = |end: &saltus_fit::Point| {
+            let before = |p: &&saltus_fit::Point| p.trial == end.trial && p.label == contact(bounce - 1);
+            points.iter().find(before).map(|start| 0.5 * g * (end.time - start.time))
+        };
+        speeds.extend(ends.filter_map(flight));
+    }
+    #[allow(clippy::cast_precision_loss)]
+    let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+    mean.is_finite().then_some(mean)
 }
 
 fn label(report: &Report, motion: &Motion) -> String {

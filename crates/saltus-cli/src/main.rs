@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod args;
+mod check;
 mod cost;
 mod error;
 mod explain;
@@ -13,6 +14,8 @@ mod output;
 mod picture;
 mod row;
 mod simulate;
+mod solve;
+mod stage;
 mod sweep;
 
 use std::process::ExitCode;
@@ -33,6 +36,8 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Explain(explain) => explain::run(explain),
         args::Command::Accuracy(accuracy) => accuracy::run(accuracy),
         args::Command::Export(export) => export::run(export, args.quiet),
+        args::Command::Check(check) => check::run(check, args.quiet),
+        args::Command::Solve(solve) => solve::run(solve, args.quiet),
         args::Command::Sweep(sweep) => sweep::run(sweep, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
         args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),

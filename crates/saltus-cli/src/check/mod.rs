@@ -1,0 +1,96 @@
+//! `saltus check`: an exported file in, how far its heights are from the motion out.
+
+mod read;
+
+use std::process::ExitCode;
+
+use saltus_motion::{Export, Format, Motion};
+
+use self::read::Reading;
+use crate::args;
+use crate::error::Error;
+use crate::output::stdout;
+use crate::stage::{Stage, length};
+
+/// Heights are compared at so many times, and at every contact.
+const TIMES: u32 = 4000;
+/// An export looks at its curves in points, and may say this much less than there is.
+const LOOKED: f64 = 1.01;
+/// What single precision adds to a height, of the size of the picture.
+const SINGLE: f64 = 1e-6;
+/// Keys are this near to a motion in which more than gravity acts, unless an export says otherwise, in m.
+const KEYS: f64 = 1e-4;
+
+pub(crate) fn run(args: &args::Check, quiet: bool) -> Result<ExitCode, Error> {
+    // A file that cannot be read is said before a scene is run.
+    let readings = read::readings(&args.file)?;
+    let Stage { motion, frames, shape, .. } = Stage::of(&args.scene, &args.staging, 0, quiet)?;
+    let export = Export { motion: &motion, frames, tolerance: KEYS, shape };
+    let [[left, right], [low, high]] = motion.reach();
+    let size = (right - left).max(high - low);
+    let (mut lines, mut good) = (String::new(), true);
+    for reading in &readings {
+        if reading.balls.len() != motion.tracks.len() {
+            let (file, scene) = (reading.balls.len(), motion.tracks.len());
+            return Err(Error::new(format!("'{}' has {file} balls, the scene {scene}", args.file.display())));
+        }
+        let allowed = match args.tolerance {
+            Some(tolerance) => tolerance,
+            None => {
+                let format = if reading.sampled { Format::CsvFrames } else { Format::Csv };
+                export.file(format).map_err(Error::new)?.miss.height * LOOKED + SINGLE * size
+            }
+        };
+        let Found { worst, at, sunk } = compared(reading, &motion);
+        let ends = reading.balls.iter().map(|ball| ball.end).fold(0.0, f64::max);
+        let whole = (ends - motion.end()).abs() <= frames.step();
+        let kept = worst <= allowed && whole;
+        good &= kept;
+        lines += &format!("{}: worst height error {} at {at:.4} s", reading.name, length(worst));
+        lines += &match sunk {
+            sunk if sunk > allowed => format!("; a contact is {} too low", length(sunk)),
+            _ => "; contacts touch".to_owned(),
+        };
+        if !whole {
+            lines += &format!("; it ends at {ends:.4} s, the motion at {:.4} s", motion.end());
+        }
+        lines += &format!("; {} {}\n", if kept { "within" } else { "not within" }, length(allowed));
+    }
+    stdout(lines.as_bytes())?;
+    Ok(if good { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+struct Found {
+    /// The worst distance in height in m, and when.
+    worst: f64,
+    at: f64,
+    /// How far a contact is below where it should be, at most.
+    sunk: f64,
+}
+
+fn compared(reading: &Reading, motion: &Motion) -> Found {
+    let mut found = Found { worst: 0.0, at: 0.0, sunk: 0.0 };
+    for (ball, track) in reading.balls.iter().zip(&motion.tracks) {
+        // A picture shows by how much the ball is lower than at the start.
+        let above = ball.from.map_or(0.0, |per_radius| track.radius * per_radius);
+        let height = |t: f64| match ball.from {
+            Some(_) => track.at(0.0)[2] + above * (ball.height)(t),
+            None => (ball.height)(t),
+        };
+        let mut compare = |t: f64, contact: bool| {
+            let off = height(t) - track.at(t)[2];
+            // A number that is none is as wrong as can be.
+            let far = if off.is_finite() { off.abs() } else { f64::INFINITY };
+            if far > found.worst {
+                (found.worst, found.at) = (far, t);
+            }
+            if contact {
+                found.sunk = found.sunk.max(-off);
+            }
+        };
+        let end = track.end();
+        (0..TIMES).for_each(|k| compare(end * (f64::from(k) + 0.5) / f64::from(TIMES), false));
+        track.contacts().for_each(|t| compare(t, true));
+    }
+    found
+}

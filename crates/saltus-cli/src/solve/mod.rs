@@ -1,0 +1,245 @@
+//! `saltus solve`: wishes in, a scene out.
+
+mod args;
+mod freedom;
+mod search;
+mod wish;
+
+use std::process::ExitCode;
+
+pub(crate) use args::Solve;
+use freedom::{Freedom, digits};
+use saltus_bounce::scene::plan::Record;
+use saltus_bounce::scene::{Run, Scene};
+use search::{Found, Problem, starts};
+use toml_edit::DocumentMut;
+use wish::{What, Wish};
+
+use crate::error::Error;
+use crate::output::{say, write};
+use crate::simulate::{ending, note, read};
+
+/// What is begun with where no scene is given.
+const DROP: &str = "gravity = \"earth\"\nrestitution = 0.7\n\n[ball]\nheight = \"1 m\"\nvelocity = \"0 m/s\"\n";
+/// How long runs may go on, in s, and in units of the last time that is asked for.
+const LONG: f64 = 1e3;
+const TIMES_AS_LONG: f64 = 20.0;
+/// Jumps that are no contacts, such as apexes, for each that is one.
+const OTHER_JUMPS: usize = 4;
+
+pub(crate) fn run(args: &Solve, quiet: bool) -> Result<ExitCode, Error> {
+    let wishes = args.wished().map_err(Error::new)?;
+    let (name, text) = match &args.scene {
+        Some(path) => read(path)?,
+        None => ("a drop".to_owned(), DROP.as_bytes().to_vec()),
+    };
+    let begun = Scene::parse(&name, &text).map_err(Error::new)?;
+    if let Some(note) = note(&begun) {
+        say(quiet, &note);
+    }
+    let text = String::from_utf8(text).map_err(Error::new)?;
+    let mut file: DocumentMut = text.parse().map_err(Error::new)?;
+    let mut freedoms: Vec<Freedom> = Vec::new();
+    for name in &args.free {
+        let name = name.trim();
+        if freedoms.iter().any(|freedom| freedom.name == name) {
+            return Err(Error::new(format!("`{name}` is free twice: name it once")));
+        }
+        freedoms.push(Freedom::named(name, &mut file, &begun).map_err(Error::new)?);
+    }
+    let stage = Stage { file, freedoms, run: long_enough(&wishes) };
+    // What is wrong with the scene to begin with is said, not searched around.
+    let start: Vec<f64> = stage.freedoms.iter().map(|freedom| freedom.start).collect();
+    let first = stage.written(&start).map_err(Error::new)?;
+    let first = Scene::parse_with(&name, first.as_bytes(), stage.run).map_err(Error::new)?;
+    first.plan().map_err(Error::new)?;
+
+    let all: Vec<&Wish> = wishes.iter().collect();
+    let Some(found) = stage.best(&all) else { return Err(Error::new(never(&stage, &wishes))) };
+    if !found.meets() && wishes.len() <= stage.freedoms.len() {
+        return Err(Error::new(contradiction(&stage, &wishes, &found)));
+    }
+    write(args.output.as_deref(), stage.whole(&found.numbers).map_err(Error::new)?.as_bytes())?;
+    for line in report(&stage, &wishes, &found, args) {
+        say(quiet, &line);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A scene file, and what of it may change.
+struct Stage {
+    file: DocumentMut,
+    freedoms: Vec<Freedom>,
+    run: Run,
+}
+
+impl Stage {
+    /// The file with these numbers.
+    fn written(&self, numbers: &[f64]) -> Result<String, String> {
+        let mut file = self.file.clone();
+        for (freedom, &number) in self.freedoms.iter().zip(numbers) {
+            freedom.set(&mut file, number)?;
+        }
+        Ok(file.to_string())
+    }
+
+    /// The file with these numbers, and with an end where the motion has none of its own.
+    fn whole(&self, numbers: &[f64]) -> Result<String, String> {
+        let text = self.written(numbers)?;
+        let ends = self.file.get("run").is_some_and(|run| run.get("until").is_some());
+        if ends || Scene::parse("solve", text.as_bytes()).is_ok() {
+            return Ok(text);
+        }
+        let last = self.record(numbers).and_then(|record| Some(record.impacts().last()?.t));
+        let mut file: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
+        file["run"]["until"] = toml_edit::value(format!("{} s", digits(last.unwrap_or(1.0), 3)));
+        Ok(file.to_string())
+    }
+
+    fn record(&self, numbers: &[f64]) -> Option<Record> {
+        let text = self.written(numbers).ok()?;
+        let scene = Scene::parse_with("solve", text.as_bytes(), self.run).ok()?;
+        scene.plan().ok()?.run().ok()
+    }
+
+    /// The numbers that come nearest to the wishes; `None` if nothing comes to all of them.
+    fn best(&self, wishes: &[&Wish]) -> Option<Found> {
+        let off = |numbers: &[f64]| {
+            let record = self.record(numbers)?;
+            wishes.iter().map(|wish| Some((wish.measured(&record)? - wish.asked) / wish.within)).collect()
+        };
+        let numbers: Vec<f64> = self.freedoms.iter().map(|freedom| freedom.start).collect();
+        let limits: Vec<[f64; 2]> = self.freedoms.iter().map(|freedom| [freedom.least, freedom.most]).collect();
+        let sizes: Vec<f64> = numbers.iter().map(|number| if *number == 0.0 { 1.0 } else { number.abs() }).collect();
+        let starts = starts(&numbers, &limits, &sizes);
+        Problem { limits, sizes, off: &off }.best(&starts)
+    }
+
+    fn names(&self) -> String {
+        let names: Vec<&str> = self.freedoms.iter().map(|freedom| freedom.name.as_str()).collect();
+        names.join(", ")
+    }
+
+    /// The numbers for a person.
+    fn says(&self, numbers: &[f64]) -> String {
+        let says: Vec<String> =
+            self.freedoms.iter().zip(numbers).map(|(freedom, &number)| freedom.says(number)).collect();
+        says.join(", ")
+    }
+}
+
+/// Long enough to see what is wished for.
+fn long_enough(wishes: &[Wish]) -> Run {
+    let last = wishes.iter().filter(|wish| !wish.what.is_length()).map(|wish| wish.asked).fold(0.0, f64::max);
+    let contacts: Option<Vec<usize>> = wishes.iter().map(Wish::contacts).collect();
+    let most = contacts.and_then(|contacts| contacts.into_iter().max());
+    let jumps = most.and_then(|most| u32::try_from((1 + OTHER_JUMPS) * (most + 2)).ok());
+    ending(Some(LONG.max(TIMES_AS_LONG * last)), jumps)
+}
+
+/// What a wish came to.
+fn came(wish: &Wish, value: f64, clock: wish::Clock) -> String {
+    let shown = match wish.what {
+        What::Place(_) | What::Height(_) => format!("{} m", digits(value, 6)),
+        What::Hop(_) => format!("{} s, {} frames", digits(value, 6), digits(value * clock.fps, 6)),
+        _ => format!("{} s, frame {}", digits(value, 6), digits(value * clock.fps + f64::from(clock.first), 6)),
+    };
+    let missed = value - wish.asked;
+    let unit = if wish.what.is_length() { "m" } else { "s" };
+    if (missed / wish.within).abs() < 1e-6 {
+        return format!("{}: {shown}", wish.text);
+    }
+    let way = match (wish.what.is_length(), wish.what, missed > 0.0) {
+        (true, _, true) => "more",
+        (true, _, false) => "less",
+        (_, What::Hop(_), true) => "longer",
+        (_, What::Hop(_), false) => "shorter",
+        (_, _, true) => "later",
+        (_, _, false) => "earlier",
+    };
+    format!("{}: {shown}, {} {unit} {way} than asked", wish.text, digits(missed.abs(), 3))
+}
+
+fn report(stage: &Stage, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<String> {
+    let clock = wish::Clock { fps: args.fps.per_second(), first: args.first_frame };
+    let mut lines = vec![stage.says(&found.numbers)];
+    for (wish, off) in wishes.iter().zip(&found.off) {
+        lines.push(format!("  {}", came(wish, wish.asked + off * wish.within, clock)));
+    }
+    if args.scene.is_none() {
+        let held = [("height", "1 m"), ("throw", "0 m/s"), ("gravity", "the Earth's"), ("cor", "0.7")];
+        let held: Vec<String> = held
+            .iter()
+            .filter(|(name, _)| stage.freedoms.iter().all(|freedom| freedom.name != *name))
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        if !held.is_empty() {
+            lines.push(format!("not said, and so taken: {}; --scene begins with another", held.join(", ")));
+        }
+    }
+    if let Some((_, &gravity)) =
+        stage.freedoms.iter().zip(&found.numbers).find(|(freedom, _)| freedom.name == "gravity")
+    {
+        let times = gravity / saltus_bounce::effects::Gravity::EARTH.value();
+        lines.push(format!("gravity is {} times the Earth's", digits(times, 3)));
+    }
+    if !found.meets() {
+        lines.push(format!(
+            "{} wishes and {} to change: not all can be met, and how far off they are is as even as can be; 'within' behind a wish says how much it matters",
+            wishes.len(),
+            stage.freedoms.len()
+        ));
+    } else if wishes.len() < stage.freedoms.len() {
+        lines.push("many scenes do that, and this is one near where it began: wish for more, or free less".to_owned());
+    }
+    lines
+}
+
+/// Why nothing that was tried came to all wishes.
+fn never(stage: &Stage, wishes: &[Wish]) -> String {
+    let alone = wishes.iter().find(|wish| stage.best(&[wish]).is_none());
+    match alone {
+        Some(wish) => format!(
+            "'{}' never comes, whatever {} is: ask for less, or free another of height, throw, forward, gravity and cor",
+            wish.text,
+            stage.names()
+        ),
+        None => format!("no {} was found with which all wishes come: wish for less", stage.names()),
+    }
+}
+
+/// Which wishes cannot be met, alone or together.
+fn contradiction(stage: &Stage, wishes: &[Wish], found: &Found) -> String {
+    let others = "free another of height, throw, forward, gravity and cor";
+    for wish in wishes {
+        let Some(best) = stage.best(&[wish]) else { continue };
+        if !best.meets() {
+            let unit = if wish.what.is_length() { "m" } else { "s" };
+            let nearest = digits(wish.asked + best.off[0] * wish.within, 3);
+            return format!(
+                "'{}' cannot be by {} alone: the nearest is {nearest} {unit}, with {}; {others}",
+                wish.text,
+                stage.names(),
+                stage.says(&best.numbers)
+            );
+        }
+    }
+    for (k, one) in wishes.iter().enumerate() {
+        for other in &wishes[k + 1..] {
+            if !stage.best(&[one, other]).is_some_and(|best| best.meets()) {
+                return format!(
+                    "'{}' and '{}' contradict each other: either can be met by {}, both cannot; {others}",
+                    one.text,
+                    other.text,
+                    stage.names()
+                );
+            }
+        }
+    }
+    let worst = wishes.iter().zip(&found.off).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let worst = worst.map_or("", |(wish, _)| wish.text.as_str());
+    format!(
+        "the wishes contradict each other, '{worst}' most: any two can be met by {}, all cannot; {others}",
+        stage.names()
+    )
+}
