@@ -1,13 +1,12 @@
 //! `saltus export`: a scene in, a file for animators out.
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use saltus_motion::{Export, Format};
 
 use crate::args::{self, ExportFormat};
 use crate::error::Error;
-use crate::output::{say, write};
+use crate::output::{extension, say, write};
 use crate::stage::{Stage, length};
 
 pub(crate) fn run(args: &args::Export, quiet: bool) -> Result<ExitCode, Error> {
@@ -41,7 +40,7 @@ pub(crate) fn run(args: &args::Export, quiet: bool) -> Result<ExitCode, Error> {
 
 /// The format by name, or by the extension of the file.
 fn format(args: &args::Export) -> Result<Format, Error> {
-    let extension = args.output.as_deref().and_then(Path::extension).map(|e| e.to_string_lossy().to_lowercase());
+    let extension = args.output.as_deref().and_then(extension);
     let format = match (args.to, extension.as_deref()) {
         (Some(format), _) => format,
         (None, Some("csv")) => ExportFormat::Csv,

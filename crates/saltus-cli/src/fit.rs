@@ -3,22 +3,25 @@
 use std::io::Read;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
 use saltus_fit::{CorModel, Fit, Measure, Motion, ReadOptions, Report, Table, Verdict};
 use saltus_plot::{Arc, Background, Chart, HeightTime, Mark, Measure as Scale, Measured, Residual, Stroke};
 
 use crate::args::{self, ReportFormat};
 use crate::error::Error;
 use crate::output::{check_picture, say, write};
+use crate::progress::Progress;
 
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     check_picture(args.plot_cor.as_deref())?;
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
-    let report = watched(args, quiet, |progress| fit(args).run_with(&table, progress)).map_err(Error::new)?;
+    // What takes long is a bootstrap.
+    let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
+    let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));
+    progress.clear();
+    let report = report.map_err(Error::new)?;
     let text = match args.format {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
@@ -96,25 +99,6 @@ fn options(args: &args::Fit) -> ReadOptions {
         options = options.filter(column, value);
     }
     options
-}
-
-/// Runs with a progress bar, if it is a bootstrap that takes longer than a second.
-fn watched<T>(args: &args::Fit, quiet: bool, run: impl FnOnce(&mut dyn FnMut(usize)) -> T) -> T {
-    let Some(rounds) = args.bootstrap.filter(|_| !quiet) else { return run(&mut |_| {}) };
-    let start = Instant::now();
-    let mut bar: Option<ProgressBar> = None;
-    let found = run(&mut |done| {
-        if bar.is_none() && start.elapsed() > Duration::from_secs(1) {
-            bar = Some(ProgressBar::new(rounds.into()));
-        }
-        if let Some(bar) = &bar {
-            bar.set_position(done as u64);
-        }
-    });
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
-    found
 }
 
 fn fit(args: &args::Fit) -> Fit {

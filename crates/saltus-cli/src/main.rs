@@ -12,11 +12,14 @@ mod ground;
 mod motion;
 mod output;
 mod picture;
+mod progress;
+mod quantity;
 mod row;
 mod simulate;
 mod solve;
 mod stage;
 mod sweep;
+mod vary;
 
 use std::process::ExitCode;
 

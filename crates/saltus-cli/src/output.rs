@@ -65,6 +65,11 @@ fn builder<'a>() -> tempfile::Builder<'a, 'static> {
     builder
 }
 
+/// The extension of a file, in small letters.
+pub(crate) fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase())
+}
+
 /// A line of talk, unless silence was asked for.
 pub(crate) fn say(quiet: bool, line: &str) {
     if !quiet {

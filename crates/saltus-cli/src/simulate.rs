@@ -13,7 +13,7 @@ use crate::accuracy;
 use crate::args::{self, MotionFormat};
 use crate::error::Error;
 use crate::motion::Motion;
-use crate::output::{check_picture, say, write};
+use crate::output::{check_picture, extension, say, write};
 use crate::picture;
 
 pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error> {
@@ -143,7 +143,7 @@ fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>
         }
         return Ok((args.format, Some(path)));
     }
-    let extension = output.and_then(Path::extension).map(|e| e.to_string_lossy().to_lowercase());
+    let extension = output.and_then(extension);
     let format = match (args.format, extension.as_deref()) {
         (Some(format), _) => format,
         (None, None | Some("txt")) => MotionFormat::Text,

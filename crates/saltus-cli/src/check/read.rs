@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::error::Error;
+use crate::output::extension;
 
 /// One motion of a file.
 pub(super) struct Reading {
@@ -81,7 +82,7 @@ fn between(a: &Key, b: &Key, t: f64) -> f64 {
 
 /// What a file holds, after its extension.
 pub(super) fn readings(path: &Path) -> Result<Vec<Reading>, Error> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let extension = extension(path).unwrap_or_default();
     if extension == "py" {
         return Err(Error::new(
             "a script can only be run by the program it is for: Blender's and Maya's say themselves how near their curves are to the motion",

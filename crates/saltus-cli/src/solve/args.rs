@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args as ClapArgs;
 use saltus_motion::Rate;
 
-use super::wish::Wish;
+use super::wish::{Clock, Wish};
 
 /// What wishes look like.
 const WISHES: &str = "Wishes, for example:
@@ -53,7 +53,10 @@ pub(crate) struct Solve {
 
 impl Solve {
     pub(super) fn wished(&self) -> Result<Vec<Wish>, String> {
-        let clock = super::wish::Clock { fps: self.fps.per_second(), first: self.first_frame };
-        self.wishes.iter().map(|text| Wish::parse(text, clock)).collect()
+        self.wishes.iter().map(|text| Wish::parse(text, self.clock())).collect()
+    }
+
+    pub(super) fn clock(&self) -> Clock {
+        Clock { fps: self.fps.per_second(), first: self.first_frame }
     }
 }

@@ -3,6 +3,8 @@
 use saltus_bounce::scene::Scene;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
+use crate::quantity;
+
 /// A number of the scene that may be changed.
 #[derive(Clone, Debug)]
 pub(super) struct Freedom {
@@ -113,9 +115,7 @@ fn written(file: &DocumentMut, path: &[String]) -> Option<(f64, String)> {
     if let Some(number) = value.as_float().or_else(|| value.as_integer().map(|n| n as f64)) {
         return Some((number, String::new()));
     }
-    let text = value.as_str()?.trim();
-    let split = (1..=text.len()).rev().filter(|&end| text.is_char_boundary(end));
-    let (number, unit) = split.filter_map(|end| Some((text[..end].trim().parse().ok()?, text[end..].trim()))).next()?;
+    let (number, unit) = quantity::split(value.as_str()?)?;
     Some((number, unit.to_owned()))
 }
 

@@ -13,7 +13,7 @@ use saltus_bounce::scene::plan::Record;
 use saltus_bounce::scene::{Run, Scene};
 use search::{Found, Problem, starts};
 use toml_edit::DocumentMut;
-use wish::{What, Wish};
+use wish::{Clock, What, Wish};
 
 use crate::error::Error;
 use crate::output::{say, write};
@@ -47,33 +47,33 @@ pub(crate) fn run(args: &Solve, quiet: bool) -> Result<ExitCode, Error> {
         }
         freedoms.push(Freedom::named(name, &mut file, &begun).map_err(Error::new)?);
     }
-    let stage = Stage { file, freedoms, run: long_enough(&wishes) };
+    let draft = Draft { file, freedoms, run: long_enough(&wishes) };
     // What is wrong with the scene to begin with is said, not searched around.
-    let start: Vec<f64> = stage.freedoms.iter().map(|freedom| freedom.start).collect();
-    let first = stage.written(&start).map_err(Error::new)?;
-    let first = Scene::parse_with(&name, first.as_bytes(), stage.run).map_err(Error::new)?;
+    let start: Vec<f64> = draft.freedoms.iter().map(|freedom| freedom.start).collect();
+    let first = draft.written(&start).map_err(Error::new)?;
+    let first = Scene::parse_with(&name, first.as_bytes(), draft.run).map_err(Error::new)?;
     first.plan().map_err(Error::new)?;
 
     let all: Vec<&Wish> = wishes.iter().collect();
-    let Some(found) = stage.best(&all) else { return Err(Error::new(never(&stage, &wishes))) };
-    if !found.meets() && wishes.len() <= stage.freedoms.len() {
-        return Err(Error::new(contradiction(&stage, &wishes, &found)));
+    let Some(found) = draft.best(&all) else { return Err(Error::new(never(&draft, &wishes))) };
+    if !found.meets() && wishes.len() <= draft.freedoms.len() {
+        return Err(Error::new(contradiction(&draft, &wishes, &found)));
     }
-    write(args.output.as_deref(), stage.whole(&found.numbers).map_err(Error::new)?.as_bytes())?;
-    for line in report(&stage, &wishes, &found, args) {
+    write(args.output.as_deref(), draft.whole(&found.numbers).map_err(Error::new)?.as_bytes())?;
+    for line in report(&draft, &wishes, &found, args) {
         say(quiet, &line);
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// A scene file, and what of it may change.
-struct Stage {
+struct Draft {
     file: DocumentMut,
     freedoms: Vec<Freedom>,
     run: Run,
 }
 
-impl Stage {
+impl Draft {
     /// The file with these numbers.
     fn written(&self, numbers: &[f64]) -> Result<String, String> {
         let mut file = self.file.clone();
@@ -138,7 +138,7 @@ fn long_enough(wishes: &[Wish]) -> Run {
 }
 
 /// What a wish came to.
-fn came(wish: &Wish, value: f64, clock: wish::Clock) -> String {
+fn came(wish: &Wish, value: f64, clock: Clock) -> String {
     let shown = match wish.what {
         What::Place(_) | What::Height(_) => format!("{} m", digits(value, 6)),
         What::Hop(_) => format!("{} s, {} frames", digits(value, 6), digits(value * clock.fps, 6)),
@@ -160,9 +160,9 @@ fn came(wish: &Wish, value: f64, clock: wish::Clock) -> String {
     format!("{}: {shown}, {} {unit} {way} than asked", wish.text, digits(missed.abs(), 3))
 }
 
-fn report(stage: &Stage, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<String> {
-    let clock = wish::Clock { fps: args.fps.per_second(), first: args.first_frame };
-    let mut lines = vec![stage.says(&found.numbers)];
+fn report(draft: &Draft, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<String> {
+    let clock = args.clock();
+    let mut lines = vec![draft.says(&found.numbers)];
     for (wish, off) in wishes.iter().zip(&found.off) {
         lines.push(format!("  {}", came(wish, wish.asked + off * wish.within, clock)));
     }
@@ -170,7 +170,7 @@ fn report(stage: &Stage, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<St
         let held = [("height", "1 m"), ("throw", "0 m/s"), ("gravity", "the Earth's"), ("cor", "0.7")];
         let held: Vec<String> = held
             .iter()
-            .filter(|(name, _)| stage.freedoms.iter().all(|freedom| freedom.name != *name))
+            .filter(|(name, _)| draft.freedoms.iter().all(|freedom| freedom.name != *name))
             .map(|(name, value)| format!("{name} {value}"))
             .collect();
         if !held.is_empty() {
@@ -178,7 +178,7 @@ fn report(stage: &Stage, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<St
         }
     }
     if let Some((_, &gravity)) =
-        stage.freedoms.iter().zip(&found.numbers).find(|(freedom, _)| freedom.name == "gravity")
+        draft.freedoms.iter().zip(&found.numbers).find(|(freedom, _)| freedom.name == "gravity")
     {
         let times = gravity / saltus_bounce::effects::Gravity::EARTH.value();
         lines.push(format!("gravity is {} times the Earth's", digits(times, 3)));
@@ -187,51 +187,51 @@ fn report(stage: &Stage, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<St
         lines.push(format!(
             "{} wishes and {} to change: not all can be met, and how far off they are is as even as can be; 'within' behind a wish says how much it matters",
             wishes.len(),
-            stage.freedoms.len()
+            draft.freedoms.len()
         ));
-    } else if wishes.len() < stage.freedoms.len() {
+    } else if wishes.len() < draft.freedoms.len() {
         lines.push("many scenes do that, and this is one near where it began: wish for more, or free less".to_owned());
     }
     lines
 }
 
 /// Why nothing that was tried came to all wishes.
-fn never(stage: &Stage, wishes: &[Wish]) -> String {
-    let alone = wishes.iter().find(|wish| stage.best(&[wish]).is_none());
+fn never(draft: &Draft, wishes: &[Wish]) -> String {
+    let alone = wishes.iter().find(|wish| draft.best(&[wish]).is_none());
     match alone {
         Some(wish) => format!(
             "'{}' never comes, whatever {} is: ask for less, or free another of height, throw, forward, gravity and cor",
             wish.text,
-            stage.names()
+            draft.names()
         ),
-        None => format!("no {} was found with which all wishes come: wish for less", stage.names()),
+        None => format!("no {} was found with which all wishes come: wish for less", draft.names()),
     }
 }
 
 /// Which wishes cannot be met, alone or together.
-fn contradiction(stage: &Stage, wishes: &[Wish], found: &Found) -> String {
+fn contradiction(draft: &Draft, wishes: &[Wish], found: &Found) -> String {
     let others = "free another of height, throw, forward, gravity and cor";
     for wish in wishes {
-        let Some(best) = stage.best(&[wish]) else { continue };
+        let Some(best) = draft.best(&[wish]) else { continue };
         if !best.meets() {
             let unit = if wish.what.is_length() { "m" } else { "s" };
             let nearest = digits(wish.asked + best.off[0] * wish.within, 3);
             return format!(
                 "'{}' cannot be by {} alone: the nearest is {nearest} {unit}, with {}; {others}",
                 wish.text,
-                stage.names(),
-                stage.says(&best.numbers)
+                draft.names(),
+                draft.says(&best.numbers)
             );
         }
     }
     for (k, one) in wishes.iter().enumerate() {
         for other in &wishes[k + 1..] {
-            if !stage.best(&[one, other]).is_some_and(|best| best.meets()) {
+            if !draft.best(&[one, other]).is_some_and(|best| best.meets()) {
                 return format!(
                     "'{}' and '{}' contradict each other: either can be met by {}, both cannot; {others}",
                     one.text,
                     other.text,
-                    stage.names()
+                    draft.names()
                 );
             }
         }
@@ -240,6 +240,6 @@ fn contradiction(stage: &Stage, wishes: &[Wish], found: &Found) -> String {
     let worst = worst.map_or("", |(wish, _)| wish.text.as_str());
     format!(
         "the wishes contradict each other, '{worst}' most: any two can be met by {}, all cannot; {others}",
-        stage.names()
+        draft.names()
     )
 }

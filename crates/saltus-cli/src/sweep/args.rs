@@ -6,17 +6,8 @@ use clap::{Args as ClapArgs, ValueEnum};
 use saltus_bounce::units::Quantity;
 
 use super::row::Column;
-use super::vary::Variation;
 use crate::args::positive;
-
-/// What may stand behind --vary.
-const VARIATIONS: &str = "Variations, for example:
-  --vary restitution=0.5:0.9:41        41 numbers from 0.5 to 0.9
-  --vary ball.height=1m:10m:100        a hundred heights
-  --vary drag.per_length=1e-3:1:31:log 31 numbers, each by the same factor above the last
-  --vary gravity=earth,moon,mars       a list
-  --vary floor.0.friction=0,0.2,0.4    of the first of several floors
-Several make a grid, in which the first changes slowest; with --random N each of N runs draws from all.";
+use crate::vary::{VARIATIONS, Vary};
 
 /// Run a scene many times with other values, and write a table with a row for each run.
 ///
@@ -27,15 +18,8 @@ Several make a grid, in which the first changes slowest; with --random N each of
 pub(crate) struct Sweep {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
-    #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
-    pub(crate) variations: Vec<Variation>,
-    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all; COUNT does not matter then.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
-    pub(crate) random: Option<u64>,
-    /// The seed of the draws: the same seed gives the same values.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "random")]
-    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) vary: Vary,
     /// The results to write, behind the values; without it, all that the scene has.
     #[arg(long, value_enum, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) columns: Option<Vec<Column>>,
@@ -61,9 +45,6 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) most_jumps: Option<u32>,
 }
-
-/// More runs than anyone waits for.
-pub(super) const MOST_RUNS: u64 = 1_000_000_000_000;
 
 /// How the rows are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

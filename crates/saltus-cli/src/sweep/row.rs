@@ -5,7 +5,8 @@ use saltus_bounce::scene::Scene;
 use saltus_bounce::scene::plan::{Moment, Outcome};
 
 use super::args::RowFormat;
-use super::vary::Value;
+use crate::quantity::number;
+use crate::vary::Value;
 
 /// A result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -235,14 +236,4 @@ pub(super) struct Nothing {
     pub(super) end: &'static str,
     /// In one line.
     pub(super) why: String,
-}
-
-/// The shortest text of the same number, without an exponent where that is short.
-pub(super) fn number(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".to_owned(),
-        1e-4..1e15 => value.to_string(),
-        _ if value.is_finite() => format!("{value:e}"),
-        _ => String::new(),
-    }
 }

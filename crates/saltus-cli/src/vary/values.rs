@@ -1,4 +1,4 @@
-//! What varies in a sweep: a key of the scene, and its values.
+//! A key of the scene, and the values it takes.
 
 use std::str::FromStr;
 
@@ -6,15 +6,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use saltus_bounce::units::Quantity;
 
-use super::row::number;
+use crate::quantity::{self, number};
 
 /// A key of the scene, and the values it takes.
 #[derive(Clone, Debug)]
 pub(crate) struct Variation {
     /// Its path in the file.
-    pub(super) key: String,
+    pub(crate) key: String,
     /// As it was written.
-    pub(super) text: String,
+    pub(crate) text: String,
     values: Values,
 }
 
@@ -26,12 +26,12 @@ enum Values {
 
 /// A value of a run.
 #[derive(Clone, Debug)]
-pub(super) struct Value {
+pub(crate) struct Value {
     /// As the scene file would have it.
-    pub(super) toml: String,
+    pub(crate) toml: String,
     /// As the table has it: a number, or a word.
-    pub(super) cell: String,
-    pub(super) word: bool,
+    pub(crate) cell: String,
+    pub(crate) word: bool,
 }
 
 impl Value {
@@ -43,6 +43,11 @@ impl Value {
             None => format!("{value:?}"),
         };
         Self { toml, cell: number(value), word: false }
+    }
+
+    /// Without quotes.
+    pub(crate) fn bare(&self) -> &str {
+        self.toml.trim_matches('"')
     }
 
     fn word(word: &str) -> Self {
@@ -129,14 +134,10 @@ fn list(text: &str) -> Result<Values, String> {
     Ok(Values::List { list: values.collect(), unit: first.filter(|_| one) })
 }
 
-/// A number, and the unit behind it.
+/// A number, and the unit behind it if there is one.
 fn parsed(text: &str) -> Option<(f64, Option<&str>)> {
-    if !text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.')) {
-        return None;
-    }
-    let end = (1..=text.len()).rev().filter(|&end| text.is_char_boundary(end));
-    let (value, unit) = end.filter_map(|end| Some((text[..end].parse::<f64>().ok()?, text[end..].trim()))).next()?;
-    value.is_finite().then_some((value, (!unit.is_empty()).then_some(unit)))
+    let (value, unit) = quantity::split(text)?;
+    Some((value, (!unit.is_empty()).then_some(unit)))
 }
 
 /// What one `unit` is in `other`.
@@ -147,7 +148,7 @@ fn ratio(unit: &str, other: &str) -> Result<f64, String> {
 
 impl Variation {
     /// How many values it takes; `None` for a range without a count.
-    pub(super) fn count(&self) -> Option<u64> {
+    pub(crate) fn count(&self) -> Option<u64> {
         match &self.values {
             Values::Range { count, .. } => *count,
             Values::List { list, .. } => Some(list.len() as u64),
@@ -155,7 +156,7 @@ impl Variation {
     }
 
     /// The name of its column.
-    pub(super) fn header(&self) -> String {
+    pub(crate) fn header(&self) -> String {
         let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
         match unit {
             None => self.key.clone(),
@@ -169,7 +170,7 @@ impl Variation {
 
     /// Value `n` of as many as it takes.
     #[allow(clippy::cast_precision_loss)] // counts are below 10^12
-    fn value(&self, n: u64) -> Value {
+    pub(crate) fn value(&self, n: u64) -> Value {
         match &self.values {
             Values::List { list, .. } => list[n as usize].clone(),
             Values::Range { from, to, count, logarithmic, unit } => {
@@ -184,12 +185,23 @@ impl Variation {
             }
         }
     }
+}
 
-    /// A value drawn from all it may take.
+/// Values drawn from a seed, each run's from a stream of its own.
+pub(super) struct Draws(ChaCha8Rng);
+
+impl Draws {
+    pub(super) fn of(seed: u64, run: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(run);
+        Self(random)
+    }
+
+    /// A value drawn from all that a variation may take.
     #[allow(clippy::cast_precision_loss)] // 53 bits
-    fn drawn(&self, random: &mut ChaCha8Rng) -> Value {
-        let bits = random.next_u64();
-        match &self.values {
+    pub(super) fn next(&mut self, variation: &Variation) -> Value {
+        let bits = self.0.next_u64();
+        match &variation.values {
             Values::List { list, .. } => list[((u128::from(bits) * list.len() as u128) >> 64) as usize].clone(),
             Values::Range { from, to, logarithmic, unit, .. } => {
                 let share = (bits >> 11) as f64 * 2.0_f64.powi(-53);
@@ -204,37 +216,4 @@ impl Variation {
 fn between(from: f64, to: f64, share: f64) -> f64 {
     let value = from * (to / from).powf(share);
     format!("{value:.14e}").parse().unwrap_or(value)
-}
-
-/// Which values which run has.
-#[derive(Debug)]
-pub(super) enum Plan {
-    /// Every value with every other, the last variation fastest.
-    Grid,
-    /// Draws from a seed, each run from its own stream.
-    Random { seed: u64 },
-}
-
-impl Plan {
-    /// The values of a run, counted from 0, one for each variation.
-    pub(super) fn values(&self, variations: &[Variation], run: u64) -> Vec<Value> {
-        match self {
-            Self::Random { seed } => {
-                let mut random = ChaCha8Rng::seed_from_u64(*seed);
-                random.set_stream(run);
-                variations.iter().map(|variation| variation.drawn(&mut random)).collect()
-            }
-            Self::Grid => {
-                let mut rest = run;
-                let mut values = Vec::with_capacity(variations.len());
-                for variation in variations.iter().rev() {
-                    let count = variation.count().unwrap_or(1);
-                    values.push(variation.value(rest % count));
-                    rest /= count;
-                }
-                values.reverse();
-                values
-            }
-        }
-    }
 }
