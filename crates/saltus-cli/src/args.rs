@@ -8,7 +8,6 @@ use saltus_bounce::scene::Kind;
 use saltus_bounce::scene::accuracy::Target;
 use saltus_bounce::units::Quantity;
 use saltus_fit::CorModel;
-use saltus_motion::Rate;
 
 use crate::error::Error;
 
@@ -44,8 +43,9 @@ pub(crate) enum Command {
     Simulate(Simulate),
     Explain(Explain),
     Accuracy(Accuracy),
-    Export(Export),
-    Check(Check),
+    Export(crate::export::Export),
+    Library(crate::library::Library),
+    Check(crate::check::Check),
     Solve(crate::solve::Solve),
     Sweep(crate::sweep::Sweep),
     /// Write a shell's completions to standard output.
@@ -80,6 +80,12 @@ pub(crate) struct Fit {
     /// Draw the COR against the speed of impact, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_cor: Option<PathBuf>,
+    /// Write the fitted motion as a scene, to simulate, to change and to export; a scene that exists is kept, unless --force is given.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Write the scene anew where it exists.
+    #[arg(long, requires = "scene")]
+    pub(crate) force: bool,
     /// How to write the report.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
@@ -249,122 +255,6 @@ pub(crate) struct Accuracy {
     pub(crate) format: ReportFormat,
 }
 
-/// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
-///
-/// Every flight is one exact parabola between two contacts where the format can hold it. Hops shorter than a frame are left out. It ends in one line:
-/// how many keys, how far a contact is from a frame, how far the file is from the motion, and by how much squash and stretch depart from it. See
-/// docs/motion.md.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Export {
-    /// The scene; `-` for standard input.
-    pub(crate) scene: PathBuf,
-    /// What is written; without it, after the extension of the output file.
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub(crate) to: Option<ExportFormat>,
-    /// Write to a file; `-` for standard output.
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// The number of the frame at which the motion starts.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
-    pub(crate) first_frame: i32,
-    #[command(flatten)]
-    pub(crate) staging: Staging,
-    /// How far keys may be from the motion where more than gravity acts.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
-    pub(crate) tolerance: f64,
-}
-
-/// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
-///
-/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG, CSV and JSON. Give the options it was exported with.
-/// Exit status 1 if a height is farther off than the export says, or than --tolerance.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Check {
-    /// The file.
-    pub(crate) file: PathBuf,
-    /// The scene; `-` for standard input.
-    pub(crate) scene: PathBuf,
-    #[command(flatten)]
-    pub(crate) staging: Staging,
-    /// How far heights may be from the motion; without it, what the export promised, and what single precision adds.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
-    pub(crate) tolerance: Option<f64>,
-}
-
-/// How a motion is shown.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Staging {
-    /// Frames per second, such as `24`, `29.97` or `24000/1001`.
-    #[arg(long, value_name = "RATE", default_value = "24")]
-    pub(crate) fps: Rate,
-    /// Move every contact to a whole frame, and keep gravity or the heights.
-    #[arg(long, value_enum)]
-    pub(crate) snap: Option<SnapBy>,
-    /// Draw every second frame only, and let it stand for two.
-    #[arg(long)]
-    pub(crate) on_twos: bool,
-    /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law` for what a contact that takes time says.
-    #[arg(long, value_name = "PART", value_parser = squash)]
-    pub(crate) squash: Option<Squash>,
-    /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
-    #[arg(long, value_name = "PART", value_parser = part(2.0))]
-    pub(crate) stretch: Option<f64>,
-    /// Squash and stretch so many times as much.
-    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
-    pub(crate) exaggerate: f64,
-    /// Hold each contact for this many frames at least; what comes after is later. Where a contact is an instant, --squash holds it for 2.
-    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) hold: Option<u32>,
-    /// When to stop, such as `4s`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
-    pub(crate) until: Option<f64>,
-}
-
-/// How far a ball is squashed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Squash {
-    /// As the law of a contact that takes time has it.
-    Law,
-    /// By a part of its height.
-    Part(f64),
-}
-
-/// A format for animators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ExportFormat {
-    /// Keys as a table.
-    Csv,
-    /// A place for every frame as a table.
-    CsvFrames,
-    /// Keys and frames, for programs.
-    Json,
-    /// A Python script for Blender 4 and 5.
-    Blender,
-    /// A Python script for Maya.
-    Maya,
-    /// Binary glTF: frames first, exact cubics second.
-    Glb,
-    /// USD as text, a place for every frame.
-    Usd,
-    /// USD as text with splines, for USD 25.5 and later.
-    UsdSplines,
-    /// Lottie.
-    Lottie,
-    /// A moving SVG.
-    Svg,
-    /// The timing chart, an SVG that stands still: a tick for every frame, contacts and tops marked.
-    Chart,
-}
-
-/// What stays when contacts move to whole frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SnapBy {
-    /// Gravity; heights change.
-    Gravity,
-    /// Heights; each flight is slower or faster.
-    Heights,
-}
-
 /// What is drawn of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum PictureKind {
@@ -489,28 +379,6 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err(format!("'{text}' is not a frame rate: give a number above zero, such as 30")),
-    }
-}
-
-/// A number from 0 to `most`.
-fn part(most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| match text.parse::<f64>() {
-        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
-        _ => Err(format!("'{text}' is not a number from 0 to {most}")),
-    }
-}
-
-fn squash(text: &str) -> Result<Squash, String> {
-    match text {
-        "law" => Ok(Squash::Law),
-        text => part(0.9)(text).map(Squash::Part).map_err(|error| format!("{error}, nor `law`")),
-    }
-}
-
-fn factor(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err(format!("'{text}' is not a number above zero")),
     }
 }
 

@@ -9,12 +9,15 @@ use saltus_plot::{Arc, Background, Chart, HeightTime, Mark, Measure as Scale, Me
 
 use crate::args::{self, ReportFormat};
 use crate::error::Error;
-use crate::output::{check_picture, say, write};
+use crate::output::{check_new, check_picture, say, write};
 use crate::progress::Progress;
 
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     check_picture(args.plot_cor.as_deref())?;
+    if let Some(path) = &args.scene {
+        check_new(path, args.force)?;
+    }
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     // What takes long is a bootstrap.
@@ -39,6 +42,14 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         }
     }
     write(args.output.as_deref(), text.as_bytes())?;
+    if let Some(path) = &args.scene {
+        let scene = report.scene().ok_or_else(|| Error::new(format!("no scene was written: {}", report.reason())))?;
+        write(Some(path), scene.as_bytes())?;
+        if path != Path::new("-") {
+            let (scene, moving) = (path.display(), path.with_extension("svg"));
+            say(quiet, &format!("scene: {scene}; to see it move: saltus export {scene} -o {}", moving.display()));
+        }
+    }
     if let Some(path) = args.plot.as_ref().filter(|path| path.exists() && *path != Path::new("-")) {
         say(quiet, &format!("picture: {}", path.display()));
     }
@@ -144,7 +155,7 @@ fn picture(report: &Report) -> Option<HeightTime> {
         measured
     });
     let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(&r.label)));
-    let mut picture = HeightTime::new(&title(report.table()))
+    let mut picture = HeightTime::new(&report.title())
         .motion(&label(report, motion), arcs(motion))
         .measured(points)
         .contacts(motion.contacts.iter().copied())
@@ -168,7 +179,7 @@ fn cor_picture(report: &Report) -> Option<Chart> {
     if fastest <= slowest {
         return None;
     }
-    let mut picture = Chart::new(&title(report.table()), ("Speed of impact", Scale::Speed), ("COR", Scale::Count))
+    let mut picture = Chart::new(&report.title(), ("Speed of impact", Scale::Speed), ("COR", Scale::Count))
         .marks(bounces.iter().map(|(v, e)| [*v, e.value]))
         .jumps(bounces.iter().map(|(v, e)| [-1.0, 1.0].map(|side| [*v, e.value + side * e.standard_error])))
         .background(Background::Adaptive)
@@ -230,14 +241,6 @@ fn mark(label: &str) -> Mark {
         Some("apex") => Mark::Apex,
         _ => Mark::Sample,
     }
-}
-
-/// `squash-on-cement.csv` is about "squash on cement".
-fn title(table: &str) -> String {
-    let name = Path::new(table).file_stem().map_or(table.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let words = name.replace(['-', '_'], " ");
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 fn caption(report: &Report) -> String {

@@ -9,6 +9,7 @@ mod explain;
 mod export;
 mod fit;
 mod ground;
+mod library;
 mod motion;
 mod output;
 mod picture;
@@ -18,6 +19,7 @@ mod row;
 mod simulate;
 mod solve;
 mod stage;
+mod staging;
 mod sweep;
 mod vary;
 
@@ -39,6 +41,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Explain(explain) => explain::run(explain),
         args::Command::Accuracy(accuracy) => accuracy::run(accuracy),
         args::Command::Export(export) => export::run(export, args.quiet),
+        args::Command::Library(library) => library::run(library, args.quiet),
         args::Command::Check(check) => check::run(check, args.quiet),
         args::Command::Solve(solve) => solve::run(solve, args.quiet),
         args::Command::Sweep(sweep) => sweep::run(sweep, args.quiet),

@@ -65,6 +65,14 @@ fn builder<'a>() -> tempfile::Builder<'a, 'static> {
     builder
 }
 
+/// Refuses to write over a file that may hold a person's work, unless it is asked for.
+pub(crate) fn check_new(path: &Path, force: bool) -> Result<(), Error> {
+    if force || path == Path::new("-") || !path.is_file() {
+        return Ok(());
+    }
+    Err(Error::new(format!("'{}' exists: name another file, or say --force to write it anew", path.display())))
+}
+
 /// The extension of a file, in small letters.
 pub(crate) fn extension(path: &Path) -> Option<String> {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase())

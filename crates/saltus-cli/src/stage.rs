@@ -7,11 +7,11 @@ use saltus_bounce::scene::plan::{Impact, Record, Segment, Sides, With};
 use saltus_bounce::scene::{Floor, Scene, Shape};
 use saltus_motion::{Contact, Frames, Motion, Piece, Snap, Stretch, Track};
 
-use crate::args::{SnapBy, Squash, Staging};
 use crate::error::Error;
 use crate::ground::{corners, name};
 use crate::output::say;
 use crate::simulate::{ended, ending, note, planned, scene};
+use crate::staging::{SnapBy, Squash, Staging};
 
 /// What is shown of a scene.
 pub(crate) struct Stage {
@@ -20,31 +20,54 @@ pub(crate) struct Stage {
     pub(crate) shape: saltus_motion::Shape,
     /// How it departs from the scene's motion, in words after semicolons.
     pub(crate) says: String,
+    /// What had to be supposed.
+    pub(crate) note: Option<String>,
 }
 
 impl Stage {
-    /// Runs a scene.
+    /// Runs the scene of a file, and says what has to be said of it.
     pub(crate) fn of(path: &Path, staging: &Staging, first: i32, quiet: bool) -> Result<Self, Error> {
-        let frames = Frames { rate: staging.fps, first, on_twos: staging.on_twos };
         let scene = scene(path, ending(staging.until, None))?;
         if let Some(note) = note(&scene) {
             say(quiet, &note);
         }
         let record = planned(&scene, Some(path))?.run().map_err(Error::new)?;
         ended(&record, quiet);
-        let whole = motion(&scene, &record, quiet)?;
-        let free = whole.cut(frames.step());
-        let mut says = match hops_below(&whole, frames.step()) {
-            high if high > 0.0 && whole.tracks != free.tracks => format!("; hops of up to {} left out", length(high)),
-            _ => String::new(),
+        let stage = Self::shown(&scene, &record, staging, first)?;
+        if let Some(note) = &stage.note {
+            say(quiet, note);
+        }
+        Ok(stage)
+    }
+
+    /// A run as it is to be shown.
+    pub(crate) fn shown(scene: &Scene, record: &Record, staging: &Staging, first: i32) -> Result<Self, Error> {
+        let frames = Frames { rate: staging.fps, first, on_twos: staging.on_twos };
+        let (mut whole, note) = motion(scene, record)?;
+        if staging.mirror {
+            whole = whole.mirrored();
+        }
+        let mut free = whole.cut(frames.step());
+        let mut says = String::new();
+        if let Some(hop) = staging.looped {
+            free = free.looped(hop as usize).map_err(Error::new)?;
+            says += &format!("; hop {hop} alone, as a loop");
+        } else if let high @ f64::MIN_POSITIVE.. = hops_below(&whole, frames.step())
+            && whole.tracks != free.tracks
+        {
+            says += &format!("; hops of up to {} left out", length(high));
+        }
+        let by = match (staging.snap, staging.looped) {
+            (Some(SnapBy::Gravity), _) => Some(Snap::Gravity),
+            (Some(SnapBy::Heights), _) => Some(Snap::Heights),
+            // A loop has whole frames.
+            (None, Some(_)) if free.snapped(Snap::Gravity, frames).is_ok() => Some(Snap::Gravity),
+            (None, Some(_)) => Some(Snap::Heights),
+            (None, None) => None,
         };
-        let snapped = match staging.snap {
+        let snapped = match by {
             None => free,
             Some(by) => {
-                let by = match by {
-                    SnapBy::Gravity => Snap::Gravity,
-                    SnapBy::Heights => Snap::Heights,
-                };
                 let snapped = free.snapped(by, frames).map_err(Error::new)?;
                 says += &if by == Snap::Gravity {
                     format!("; snapped by gravity, tops moved by up to {}", length(snapped.tops_differ(&free)))
@@ -55,7 +78,12 @@ impl Stage {
             }
         };
         let (motion, shape, more) = shaped(staging, &snapped, frames)?;
-        Ok(Self { motion, frames, shape, says: says + &more })
+        says += &more;
+        if motion.loops {
+            let count = (motion.end() / frames.rate.frame()).round();
+            says += &format!("; frame {} is frame {} again", f64::from(first) + count, first);
+        }
+        Ok(Self { motion, frames, shape, says, note })
     }
 }
 
@@ -130,8 +158,8 @@ pub(crate) fn length(metres: f64) -> String {
     }
 }
 
-/// The record as tracks: a stretch ends where a velocity jumps, or where a flight begins or ends.
-fn motion(scene: &Scene, record: &Record, quiet: bool) -> Result<Motion, Error> {
+/// The record as tracks, and what had to be supposed: a stretch ends where a velocity jumps, or where a flight begins or ends.
+fn motion(scene: &Scene, record: &Record) -> Result<(Motion, Option<String>), Error> {
     let (events, impacts) = (record.events(), record.impacts());
     let mut tracks = Vec::new();
     let mut sizeless = Vec::new();
@@ -181,16 +209,17 @@ fn motion(scene: &Scene, record: &Record, quiet: bool) -> Result<Motion, Error> 
     }
     let reach = |tracks: Vec<Track>| Motion::new("", tracks, Vec::new()).map(|motion| (motion.reach(), motion.tracks));
     let ([_, [low, top]], mut tracks) = reach(tracks).map_err(Error::new)?;
+    let mut note = None;
     if !sizeless.is_empty() {
         let high = if sizeless.len() == tracks.len() { top - low - 2.0 } else { top - low };
         let drawn = if high > 0.0 { 0.02 * high } else { 0.02 };
         sizeless.iter().for_each(|&ball| tracks[ball].radius = drawn);
-        say(quiet, &format!("the scene gives no radius: drawn with {}; set `radius` under [ball]", length(drawn)));
+        note = Some(format!("the scene gives no radius: drawn with {}; set `radius` under [ball]", length(drawn)));
     }
     let (reach, tracks) = reach(tracks).map_err(Error::new)?;
     let title = scene.picture.title.clone().unwrap_or_else(|| "A bouncing ball".to_owned());
     let ground = scene.floors.iter().filter_map(|floor| outline(floor, reach)).collect();
-    Motion::new(&title, tracks, ground).map_err(Error::new)
+    Ok((Motion::new(&title, tracks, ground).map_err(Error::new)?, note))
 }
 
 /// Whether a stretch is a contact that takes time.

@@ -177,6 +177,7 @@ impl Fit {
             Setting { gravity: gravity.value, sigma_height: sigma_height.value, sigma_time: sigma_time.value };
 
         let mut report = Report::new(table.name(), gravity);
+        report.ball = self.ball;
         let has = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
         report.sigma_height =
             (table.zero_rebounds > 0 || has(|r| r.event == Event::Apex && r.height.is_some())).then_some(sigma_height);

@@ -1,9 +1,11 @@
 //! The report: the verdict, the COR, and everything it rests on; serialised, it is the JSON contract.
 
 mod recordings;
+mod scene;
 mod text;
 
 use std::fmt;
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -93,6 +95,8 @@ pub struct Report {
     pub(crate) repairs: Vec<String>,
     pub(crate) notes: Vec<String>,
     #[serde(skip)]
+    pub(crate) ball: Option<f64>,
+    #[serde(skip)]
     pub(crate) motion: Option<Motion>,
     #[serde(skip)]
     pub(crate) residuals: Vec<Residual>,
@@ -124,6 +128,7 @@ impl Report {
             warnings: Vec::new(),
             repairs: Vec::new(),
             notes: Vec::new(),
+            ball: None,
             motion: None,
             residuals: Vec::new(),
             points: Vec::new(),
@@ -134,6 +139,15 @@ impl Report {
     #[must_use]
     pub fn table(&self) -> &str {
         &self.table
+    }
+
+    /// What the table is about, after its name: `squash-on-cement.csv` is about "Squash on cement".
+    #[must_use]
+    pub fn title(&self) -> String {
+        let stem = Path::new(&self.table).file_stem().map_or(self.table.as_str().into(), |stem| stem.to_string_lossy());
+        let words = stem.replace(['-', '_'], " ");
+        let mut letters = words.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
     }
 
     /// Whether the COR may be believed.

@@ -78,9 +78,9 @@ impl Readings {
     }
 }
 
-/// The speeds of the impacts that the readings tell of, under one COR: the slowest, the fastest, how many.
+/// The speeds of the impacts that the readings tell of, under a law: the slowest, the fastest, how many.
 fn impacts(base: &Flight, fitted: &Fitted) -> (f64, f64, usize) {
-    let e = fitted.shared[0];
+    let unknowns = &fitted.shared[..base.law.unknowns()];
     let (mut slowest, mut fastest, mut count) = (f64::INFINITY, 0.0f64, 0);
     for (block, trial) in base.trials.iter().enumerate() {
         let last_height = trial.heights.last().map_or(0, |h| h.0);
@@ -91,9 +91,13 @@ fn impacts(base: &Flight, fitted: &Fitted) -> (f64, f64, usize) {
         if to <= from {
             continue;
         }
-        let first = base.first_contact(block, &fitted.shared, &fitted.own[block]).0.abs();
-        let at = |contact: usize| first * e.powi(i32::try_from(contact).unwrap_or(i32::MAX));
-        (slowest, fastest) = (slowest.min(at(to - 1)), fastest.max(at(from)));
+        let mut speed = base.first_contact(block, &fitted.shared, &fitted.own[block]).0.abs();
+        for contact in 0..to {
+            if contact >= from {
+                (slowest, fastest) = (slowest.min(speed), fastest.max(speed));
+            }
+            speed *= base.law.at(contact, speed, unknowns).0;
+        }
         count += (to - from).min(trial.heights.len() + trial.moments.len());
     }
     (slowest, fastest, count)
@@ -184,6 +188,7 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
         choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
         choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
         if model.law.of_speed() {
+            let (slowest, fastest, _) = impacts(&model, &fitted);
             let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);
             let point = |k| {
                 let Measured { value: cor, standard_error } = at(&model, &fitted, speed(k));

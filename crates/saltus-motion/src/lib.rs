@@ -41,6 +41,7 @@
 //! ```
 
 mod curve;
+mod cycle;
 mod dress;
 mod ease;
 mod format;

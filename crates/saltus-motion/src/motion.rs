@@ -224,6 +224,8 @@ pub struct Motion {
     pub tracks: Vec<Track>,
     /// Floors and walls as lines from point to point, (x, up) in m.
     pub ground: Vec<Vec<[f64; 2]>>,
+    /// Whether its end is its start, and it is played for ever.
+    pub loops: bool,
 }
 
 impl Motion {
@@ -266,7 +268,7 @@ impl Motion {
                 t = piece.start + piece.span;
             }
         }
-        Ok(Self { title: title.to_owned(), tracks, ground })
+        Ok(Self { title: title.to_owned(), tracks, ground, loops: false })
     }
 
     /// When it ends, in s.
@@ -282,7 +284,8 @@ impl Motion {
             let n = t / frames.step();
             (n - n.round()).abs()
         };
-        let off = self.tracks.iter().flat_map(Track::contacts).map(off).fold(0.0, f64::max);
+        let end = self.loops.then(|| self.end());
+        let off = self.tracks.iter().flat_map(Track::contacts).chain(end).map(off).fold(0.0, f64::max);
         if off < 1e-9 { 0.0 } else { off * frames.step() / frames.rate.frame() }
     }
 

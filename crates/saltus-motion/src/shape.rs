@@ -59,6 +59,8 @@ pub struct Form {
     fastest: [f64; 2],
     /// The greatest deformation of a contact that takes time, of the ball's radius.
     deepest: f64,
+    /// Whether the first stretch comes after the last.
+    loops: bool,
 }
 
 /// What a contact that takes time has pressed in, in m.
@@ -130,7 +132,7 @@ impl Motion {
         });
         let impacts = stretches().filter_map(|stretch| stretch.contact).filter(|contact| !contact.pressed);
         let fastest = [speeds.fold(0.0, f64::max), impacts.map(|contact| contact.speed).fold(0.0, f64::max)];
-        Form { shape, ramp: frames.step(), fastest, deepest: self.deformation() }
+        Form { shape, ramp: frames.step(), fastest, deepest: self.deformation(), loops: self.loops }
     }
 }
 
@@ -181,7 +183,7 @@ impl Form {
     fn touches(&self, track: &Track, index: usize) -> [Option<f64>; 2] {
         let stretch = &track.stretches[index];
         let before = index.checked_sub(1).and_then(|before| track.stretches.get(before));
-        let after = track.stretches.get(index + 1);
+        let after = track.stretches.get(index + 1).or_else(|| track.stretches.first().filter(|_| self.loops));
         let starts = stretch.contact.is_some() || before.is_some_and(|before| !before.flight);
         let ends = after.is_some_and(|after| after.contact.is_some() || !after.flight);
         [starts.then(|| stretch.start()), ends.then(|| stretch.end())]

@@ -33,7 +33,7 @@ impl Motion {
     pub fn snapped(&self, snap: Snap, frames: Frames) -> Result<Self, MotionError> {
         match (snap, &self.tracks[..]) {
             (Snap::Heights, _) => Ok(self.paced(frames)),
-            (Snap::Gravity, [track]) => Ok(Self { tracks: vec![thrown(track, frames)?], ..self.clone() }),
+            (Snap::Gravity, [track]) => Ok(Self { tracks: vec![thrown(track, frames, self.loops)?], ..self.clone() }),
             (Snap::Gravity, _) => {
                 let says = "balls that meet cannot all keep gravity and meet on whole frames: snap by heights";
                 Err(MotionError(says.to_owned()))
@@ -159,7 +159,7 @@ fn pace(stretch: &Stretch, knots: &[[f64; 2]]) -> Vec<Stretch> {
 }
 
 /// A track whose every stretch lasts whole frames, under the same gravity, through the same places of contact.
-fn thrown(track: &Track, frames: Frames) -> Result<Track, MotionError> {
+fn thrown(track: &Track, frames: Frames, loops: bool) -> Result<Track, MotionError> {
     let step = frames.step();
     let mut stretches = Vec::with_capacity(track.stretches.len());
     let mut drawn = 0.0;
@@ -172,15 +172,15 @@ fn thrown(track: &Track, frames: Frames) -> Result<Track, MotionError> {
                 let at = stretch.start();
                 MotionError(format!("in the flight from {at:.4} s on more than gravity acts: snap by heights"))
             })?;
-            let lands = track.stretches.get(index + 1).is_some_and(|next| next.contact.is_some());
-            let end =
-                track.stretches.get(index + 1).map_or_else(|| stretch.at(stretch.end()), |next| next.at(next.start()));
+            let next = track.stretches.get(index + 1).or_else(|| track.stretches.first().filter(|_| loops));
+            let lands = next.is_some_and(|next| next.contact.is_some());
+            let end = next.map_or_else(|| stretch.at(stretch.end()), |next| next.at(next.start()));
             let mut c = [place, slope, pull];
             for axis in 0..3 {
                 if !lands {
                     continue;
                 }
-                if index == 0 && axis == 2 && slope[axis] == 0.0 {
+                if index == 0 && axis == 2 && slope[axis] == 0.0 && !loops {
                     c[0][axis] = end[axis] - pull[axis] * span * span;
                 } else {
                     c[1][axis] = (end[axis] - place[axis]) / span - pull[axis] * span;

@@ -2,15 +2,36 @@
 
 mod read;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::Args as ClapArgs;
+use saltus_bounce::units::Quantity;
 use saltus_motion::{Export, Format, Motion};
 
 use self::read::Reading;
-use crate::args;
+use crate::args::positive;
 use crate::error::Error;
 use crate::output::stdout;
 use crate::stage::{Stage, length};
+use crate::staging::Staging;
+
+/// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
+///
+/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG, CSV and JSON. Give the options it was exported with.
+/// Exit status 1 if a height is farther off than the export says, or than --tolerance.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Check {
+    /// The file.
+    pub(crate) file: PathBuf,
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) staging: Staging,
+    /// How far heights may be from the motion; without it, what the export promised, and what single precision adds.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    pub(crate) tolerance: Option<f64>,
+}
 
 /// Heights are compared at so many times, and at every contact.
 const TIMES: u32 = 4000;
@@ -21,7 +42,7 @@ const SINGLE: f64 = 1e-6;
 /// Keys are this near to a motion in which more than gravity acts, unless an export says otherwise, in m.
 const KEYS: f64 = 1e-4;
 
-pub(crate) fn run(args: &args::Check, quiet: bool) -> Result<ExitCode, Error> {
+pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
     // A file that cannot be read is said before a scene is run.
     let readings = read::readings(&args.file)?;
     let Stage { motion, frames, shape, .. } = Stage::of(&args.scene, &args.staging, 0, quiet)?;

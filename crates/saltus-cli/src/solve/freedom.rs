@@ -3,7 +3,7 @@
 use saltus_bounce::scene::Scene;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
-use crate::quantity;
+use crate::quantity::{self, digits};
 
 /// A number of the scene that may be changed.
 #[derive(Clone, Debug)]
@@ -94,12 +94,6 @@ impl Freedom {
     pub(super) fn says(&self, value: f64) -> String {
         format!("{} = {} {}", self.name, digits(value, 6), self.unit).trim_end().to_owned()
     }
-}
-
-/// So many digits, without zeros behind.
-pub(super) fn digits(value: f64, count: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", count - 1).parse().unwrap_or(value);
-    format!("{rounded}")
 }
 
 /// The number at a path, and its unit.

@@ -8,7 +8,7 @@ mod wish;
 use std::process::ExitCode;
 
 pub(crate) use args::Solve;
-use freedom::{Freedom, digits};
+use freedom::Freedom;
 use saltus_bounce::scene::plan::Record;
 use saltus_bounce::scene::{Run, Scene};
 use search::{Found, Problem, starts};
@@ -17,6 +17,7 @@ use wish::{Clock, What, Wish};
 
 use crate::error::Error;
 use crate::output::{say, write};
+use crate::quantity::digits;
 use crate::simulate::{ending, note, read};
 
 /// What is begun with where no scene is given.

@@ -12,7 +12,7 @@ const IMPACTS: usize = 12;
 /// More models than this are left to the JSON.
 const MODELS: usize = 6;
 /// Gravity within this part of the expected means that heights are in metres and times in seconds.
-const METRES: f64 = 0.2;
+pub(super) const METRES: f64 = 0.2;
 
 /// Writes the impacts of each recording and the models.
 pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {

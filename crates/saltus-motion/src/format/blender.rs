@@ -82,6 +82,8 @@ def key_axes(curves, path, moves):
             point.handle_left = left
             point.handle_right = right
         curve.update()
+        if DATA["loops"]:
+            curve.modifiers.new(type="CYCLES")
         for frame, value in checks:
             found = max(found, abs(curve.evaluate(frame) - value))
     return found
@@ -98,6 +100,8 @@ def key_turns(item, curves, turns):
             point.co = (frame, value)
             point.interpolation = turns["interpolation"]
         curve.update()
+        if DATA["loops"]:
+            curve.modifiers.new(type="CYCLES")
 
 
 scene = bpy.context.scene
@@ -157,8 +161,8 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     });
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({
-        "fps": whole, "fps_base": fps / nominal, "range": export.range(), "balls": balls.collect::<Vec<_>>(),
-        "ground": ground(export), "size": (right - left).max(high - low).max(1.0),
+        "fps": whole, "fps_base": fps / nominal, "range": export.range(), "loops": export.motion.loops,
+        "balls": balls.collect::<Vec<_>>(), "ground": ground(export), "size": (right - left).max(high - low).max(1.0),
     });
     // A raw string of Python ends at three quotes only, and JSON has none.
     let data = data.to_string().replace('\'', "\\u0027");

@@ -97,6 +97,8 @@ for ball in DATA["balls"]:
             key_axes(item, "scale", node["scale"], 1e-5)
         if node["turns"]:
             key_turns(item, node["turns"])
+        if DATA["loops"]:
+            cmds.setInfinity(item, preInfinite="cycle", postInfinite="cycle")
 for strip in DATA["ground"]:
     for a, b, c, d in strip:
         cmds.polyCreateFacet(point=[a, b, c, d], name="ground")
@@ -209,7 +211,7 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, 
     let data = json!({
         "time": unit(export)?, "frame": frames.rate.frame(), "shift": f64::from(frames.first) * frames.rate.frame(),
         "range": export.range(), "size": (right - left).max(high - low).max(1.0),
-        "balls": balls.collect::<Vec<_>>(), "ground": export.motion.ground.iter().map(strip).collect::<Vec<_>>(),
+        "loops": export.motion.loops, "balls": balls.collect::<Vec<_>>(), "ground": export.motion.ground.iter().map(strip).collect::<Vec<_>>(),
     });
     // A raw string of Python ends at three quotes only, and JSON has none.
     let data = data.to_string().replace('\'', "\\u0027");

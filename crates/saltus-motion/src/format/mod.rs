@@ -178,12 +178,12 @@ impl Export<'_> {
         self.motion.tracks.iter().map(ball).collect()
     }
 
-    /// The numbers of the first and the last frame.
+    /// The numbers of the first and the last frame; of a loop the last before the first again.
     fn range(&self) -> [i64; 2] {
         let first = i64::from(self.frames.first);
         #[allow(clippy::cast_possible_truncation)] // at most a million
         let count = (self.motion.end() / self.frames.rate.frame() - 1e-6).ceil() as i64;
-        [first, first + count]
+        [first, first + count - i64::from(self.motion.loops)]
     }
 }
 

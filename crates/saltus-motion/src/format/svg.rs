@@ -12,7 +12,7 @@ const PAUSE: f64 = 1.0;
 
 pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let view = View::of(export.motion);
-    let duration = export.motion.end() + PAUSE;
+    let duration = export.motion.end() + if export.motion.loops { 0.0 } else { PAUSE };
     let (mut style, mut body) = (String::new(), String::new());
     for line in &export.motion.ground {
         let points: Vec<String> = line.iter().map(|&[x, up]| format!("{},{}", view.x(x), view.y(up))).collect();

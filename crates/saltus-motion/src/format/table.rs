@@ -113,7 +113,7 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
     let (per, seconds) = frames.rate.fraction();
     let document = json!({
         "schema": SCHEMA, "title": export.motion.title, "fps": [per, seconds], "first_frame": frames.first,
-        "on_twos": frames.on_twos, "ground": export.motion.ground, "balls": balls.collect::<Vec<Value>>(),
+        "on_twos": frames.on_twos, "loops": export.motion.loops, "ground": export.motion.ground, "balls": balls.collect::<Vec<Value>>(),
     });
     Ok(serde_json::to_string_pretty(&document)? + "\n")
 }

@@ -1,0 +1,267 @@
+//! `saltus library`: one motion in, a folder of many like it out, and an index of them.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::{fs, io};
+
+use clap::Args as ClapArgs;
+use saltus_bounce::scene::Template;
+use saltus_bounce::units::Quantity;
+use saltus_fit::{Fit, ReadOptions, Table};
+use serde_json::{Map, Value as Json, json};
+
+use crate::args::positive;
+use crate::error::Error;
+use crate::export::{self, ExportFormat};
+use crate::output::{extension, say, write};
+use crate::progress::Progress;
+use crate::quantity;
+use crate::simulate::{ending, read};
+use crate::stage::{Stage, length};
+use crate::staging::Staging;
+use crate::vary::{self, VARIATIONS, Value, Vary};
+
+/// The number of the contract of `index.json`.
+const SCHEMA: u32 = 1;
+/// More motions than a folder should hold.
+const MOST: u64 = 10_000;
+/// File names end after so many letters.
+const NAME: usize = 100;
+
+/// Write many motions like one for animators: a file for each, and an index of them.
+///
+/// The one is a scene, or a table of bounces, whose fitted motion is varied. A key is the path of a value in the scene file, as in `ball.height`, or says how the
+/// motion is shown: fps, snap, on-twos, squash, stretch, exaggerate, hold, loop, mirror. `index.json` has the values, frames and contacts of every motion. See
+/// docs/motion.md.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = VARIATIONS)]
+pub(crate) struct Library {
+    /// The scene, `-` for standard input; or a table of bounces (.csv, .tsv, .txt, .xlsx, .xls, .zip).
+    pub(crate) source: PathBuf,
+    #[command(flatten)]
+    pub(crate) vary: Vary,
+    /// What is written of each motion; several with commas between.
+    #[arg(long, value_enum, value_name = "FORMATS", value_delimiter = ',', required = true)]
+    pub(crate) to: Vec<ExportFormat>,
+    /// The folder, made if there is none.
+    #[arg(long, short, value_name = "FOLDER", required = true)]
+    pub(crate) output: PathBuf,
+    /// Write into the folder also where it is not empty.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// The number of the frame at which each motion starts.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
+    pub(crate) first_frame: i32,
+    #[command(flatten)]
+    pub(crate) staging: Staging,
+    /// How far keys may be from the motion where more than gravity acts.
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
+    pub(crate) tolerance: f64,
+}
+
+pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
+    let keys = args.vary.keys()?;
+    let runs = args.vary.runs()?;
+    if runs > MOST {
+        return Err(Error::new(format!(
+            "{runs} motions are more than {MOST}: vary less, or draw some of them by --random 100"
+        )));
+    }
+    let (name, toml) = source(&args.source, quiet)?;
+    check_folder(&args.output, args.force)?;
+    let of_scene: Vec<&str> = keys.into_iter().filter(|key| !Staging::VARIED.contains(key)).collect();
+    let template = Template::parse(&name, &toml, &of_scene).map_err(Error::new)?;
+    let maker = Maker { args, template: &template, digits: (runs - 1).to_string().len() };
+
+    // What is wrong with the first motion is wrong with the library, and is said before anything is written.
+    let first = maker.made(0).map_err(|error| Error::new(format!("motion 0, {}: {error}", args.vary.says(0))))?;
+    if let Some(note) = &first.note {
+        say(quiet, note);
+    }
+    let folder = |error: io::Error| Error::new(format!("cannot make the folder '{}': {error}", args.output.display()));
+    fs::create_dir_all(&args.output).map_err(folder)?;
+
+    let mut progress = Progress::new(runs, quiet);
+    let (mut motions, mut nothing) = (Vec::new(), Vec::new());
+    let (mut off, mut miss) = (0.0_f64, 0.0_f64);
+    #[allow(clippy::cast_possible_truncation)] // at most ten thousand
+    let ended = saltus::ensemble(
+        0..runs as usize,
+        |run| maker.made(run as u64),
+        |run, made| {
+            progress.reached(run as u64 + 1);
+            match made {
+                Ok(made) => {
+                    (off, miss) = (off.max(made.off), miss.max(made.miss));
+                    for (file, bytes) in &made.files {
+                        if let Err(error) = write(Some(&args.output.join(file)), bytes) {
+                            return ControlFlow::Break(error);
+                        }
+                    }
+                    motions.push(made.says);
+                }
+                Err(why) => nothing.push(json!({ "run": run, "values": maker.values(run as u64), "why": why })),
+            }
+            ControlFlow::Continue(())
+        },
+    );
+    progress.clear();
+    if let ControlFlow::Break(error) = ended {
+        return Err(error);
+    }
+    let index = json!({
+        "schema": SCHEMA, "saltus": env!("CARGO_PKG_VERSION"), "source": name, "vary": args.vary.texts(),
+        "random": args.vary.random, "seed": args.vary.random.map(|_| args.vary.seed),
+        "motions": motions, "nothing": nothing,
+    });
+    let index = serde_json::to_string_pretty(&index).map_err(Error::new)? + "\n";
+    write(Some(&args.output.join("index.json")), index.as_bytes())?;
+    let (made, folder) = (motions.len(), args.output.display());
+    say(
+        quiet,
+        &format!(
+            "{made} motions and index.json in '{folder}'; farthest contact from a frame: {off:.2} frames; worst height error: {}",
+            length(miss)
+        ),
+    );
+    if let Some(first) = nothing.first() {
+        let run = first["run"].as_u64().unwrap_or(0);
+        let why = first["why"].as_str().unwrap_or_default();
+        say(
+            quiet,
+            &format!(
+                "{} of {runs} came to nothing; the first is motion {run}, {}: {why}",
+                nothing.len(),
+                args.vary.says(run)
+            ),
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The text of the scene, and its name: of a table the scene that is fitted to it.
+fn source(path: &Path, quiet: bool) -> Result<(String, Vec<u8>), Error> {
+    match extension(path).as_deref() {
+        Some("csv" | "tsv" | "txt" | "xlsx" | "xls" | "zip") => {
+            let table = Table::read_all(&[path.to_owned()], &ReadOptions::default()).map_err(Error::new)?;
+            let report = Fit::new().run(&table).map_err(Error::new)?;
+            let scene = report
+                .scene()
+                .ok_or_else(|| Error::new(format!("'{}' gives no motion: {}", path.display(), report.reason())))?;
+            say(quiet, &format!("{}: {}; {}", table.name(), report.verdict(), report.reason()));
+            Ok((path.to_string_lossy().into_owned(), scene.into_bytes()))
+        }
+        _ => read(path),
+    }
+}
+
+/// Refuses to mix the library with what is in the folder, unless it is asked for.
+fn check_folder(path: &Path, force: bool) -> Result<(), Error> {
+    match fs::read_dir(path) {
+        Ok(files) => {
+            if files.count() > 0 && !force {
+                let says = "is not empty: name a new one, or say --force to write into it";
+                return Err(Error::new(format!("the folder '{}' {says}", path.display())));
+            }
+            Ok(())
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
+            Err(Error::new(format!("'{}' is a file: name a folder", path.display())))
+        }
+        // What keeps it from being made is said then.
+        Err(_) => Ok(()),
+    }
+}
+
+/// Makes motions by their numbers.
+struct Maker<'a> {
+    args: &'a Library,
+    template: &'a Template<'a>,
+    /// Of the greatest number.
+    digits: usize,
+}
+
+/// One motion of the library.
+struct Made {
+    files: Vec<(String, Vec<u8>)>,
+    /// Its entry in the index.
+    says: Json,
+    note: Option<String>,
+    /// Farthest contact from a frame, in frames, and worst error of a height, in m.
+    off: f64,
+    miss: f64,
+}
+
+impl Maker<'_> {
+    /// The motion of a run, or why there is none.
+    fn made(&self, run: u64) -> Result<Made, String> {
+        let args = self.args;
+        let values = args.vary.values(run);
+        let mut staging = args.staging.clone();
+        let mut of_scene: Vec<Value> = Vec::new();
+        for (variation, value) in args.vary.variations.iter().zip(values) {
+            if Staging::VARIED.contains(&variation.key.as_str()) {
+                staging.set(&variation.key, value.bare())?;
+            } else {
+                of_scene.push(value);
+            }
+        }
+        let end = ending(staging.until, None);
+        let scene = vary::scene(self.template, &of_scene, end).map_err(|error| vary::refused(&error))?;
+        let record = scene.plan().map_err(|error| error.to_string())?.run().map_err(|error| error.to_string())?;
+        let stage = Stage::shown(&scene, &record, &staging, args.first_frame).map_err(|error| error.to_string())?;
+        let name = self.name(run);
+        let (mut files, mut named, mut miss) = (Vec::new(), Map::new(), 0.0_f64);
+        for &format in &args.to {
+            let file = export::file(&stage, format, args.tolerance).map_err(|error| error.to_string())?;
+            let path = format!("{name}.{}", format.ending());
+            miss = miss.max(file.miss.height);
+            let says = export::says(&stage, &file);
+            let of = json!({ "name": path, "keys": file.keys, "height_error_m": file.miss.height, "says": says });
+            named.insert(format.name(), of);
+            files.push((path, file.bytes));
+        }
+        let Stage { motion, frames, note, .. } = stage;
+        let contacts = motion.tracks.iter().enumerate().flat_map(|(ball, track)| {
+            track.stretches.iter().filter_map(move |stretch| {
+                let contact = stretch.contact?;
+                let t = stretch.start();
+                Some(json!({ "ball": ball, "t": t, "frame": frames.number(t), "speed": contact.speed }))
+            })
+        });
+        let off = motion.off_frame(frames);
+        let says = json!({
+            "run": run, "values": self.values(run), "files": named, "fps": frames.rate.to_string(),
+            "first_frame": frames.first, "last_frame": frames.number(motion.end()), "end_s": motion.end(), "loops": motion.loops,
+            "contacts": contacts.collect::<Vec<_>>(), "frames_off": off,
+        });
+        Ok(Made { files, says, note, off, miss })
+    }
+
+    /// The values of a run by the names of their columns.
+    fn values(&self, run: u64) -> Map<String, Json> {
+        let values = self.args.vary.values(run);
+        let pairs = self.args.vary.variations.iter().zip(values).map(|(variation, value)| {
+            let number = value.cell.parse::<f64>().ok().filter(|_| !value.word);
+            (variation.header(), number.map_or_else(|| json!(value.cell), Json::from))
+        });
+        pairs.collect()
+    }
+
+    /// `07-restitution=0.7-ball.height=1m`: for people to tell files apart; the number alone does for programs.
+    fn name(&self, run: u64) -> String {
+        let mut name = format!("{run:0width$}", width = self.digits);
+        for (variation, value) in self.args.vary.variations.iter().zip(self.args.vary.values(run)) {
+            let value = match quantity::split(value.bare()) {
+                Some((number, unit)) => {
+                    format!("{}{}", quantity::digits(number, 4), unit.replace('/', "p"))
+                }
+                None => value.bare().to_owned(),
+            };
+            name += &format!("-{}={value}", variation.key);
+        }
+        let plain = |c: char| c.is_alphanumeric() || matches!(c, '.' | '-' | '=' | '_' | '+');
+        name.chars().map(|c| if plain(c) { c } else { '_' }).take(NAME).collect()
+    }
+}

@@ -1,0 +1,111 @@
+//! How a motion is shown: what can be asked of it.
+
+use clap::{Args as ClapArgs, ValueEnum};
+use saltus_bounce::units::Quantity;
+use saltus_motion::Rate;
+
+use crate::args::positive;
+
+/// How a motion is shown.
+#[derive(Clone, Debug, ClapArgs)]
+pub(crate) struct Staging {
+    /// Frames per second, such as `24`, `29.97` or `24000/1001`.
+    #[arg(long, value_name = "RATE", default_value = "24")]
+    pub(crate) fps: Rate,
+    /// Move every contact to a whole frame, and keep gravity or the heights.
+    #[arg(long, value_enum)]
+    pub(crate) snap: Option<SnapBy>,
+    /// Draw every second frame only, and let it stand for two.
+    #[arg(long)]
+    pub(crate) on_twos: bool,
+    /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law` for what a contact that takes time says.
+    #[arg(long, value_name = "PART", value_parser = squash)]
+    pub(crate) squash: Option<Squash>,
+    /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
+    #[arg(long, value_name = "PART", value_parser = part(2.0))]
+    pub(crate) stretch: Option<f64>,
+    /// Squash and stretch so many times as much.
+    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
+    pub(crate) exaggerate: f64,
+    /// Hold each contact for this many frames at least; what comes after is later. Where a contact is an instant, --squash holds it for 2.
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) hold: Option<u32>,
+    /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole frames, its end its start.
+    #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) looped: Option<u32>,
+    /// Turn left and right around.
+    #[arg(long)]
+    pub(crate) mirror: bool,
+    /// When to stop, such as `4s`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+}
+
+/// How far a ball is squashed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Squash {
+    /// As the law of a contact that takes time has it.
+    Law,
+    /// By a part of its height.
+    Part(f64),
+}
+
+/// What stays when contacts move to whole frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SnapBy {
+    /// Gravity; heights change.
+    Gravity,
+    /// Heights; each flight is slower or faster.
+    Heights,
+}
+
+impl Staging {
+    /// The options that may vary from motion to motion, by name.
+    pub(crate) const VARIED: [&'static str; 9] =
+        ["fps", "snap", "on-twos", "squash", "stretch", "exaggerate", "hold", "loop", "mirror"];
+
+    /// Sets one of [`Staging::VARIED`] to what would stand behind it.
+    pub(crate) fn set(&mut self, option: &str, value: &str) -> Result<(), String> {
+        let switch = || value.parse().map_err(|_| format!("'{value}' is neither true nor false"));
+        match option {
+            "fps" => self.fps = value.parse().map_err(|error: saltus_motion::RateError| error.to_string())?,
+            "snap" => self.snap = Some(SnapBy::from_str(value, true)?),
+            "on-twos" => self.on_twos = switch()?,
+            "mirror" => self.mirror = switch()?,
+            "squash" => self.squash = Some(squash(value)?),
+            "stretch" => self.stretch = Some(part(2.0)(value)?),
+            "exaggerate" => self.exaggerate = factor(value)?,
+            "hold" => self.hold = Some(count(value)?),
+            "loop" => self.looped = Some(count(value)?),
+            _ => return Err(format!("'{option}' is no way to show a motion")),
+        }
+        Ok(())
+    }
+}
+
+/// A number from 0 to `most`.
+fn part(most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse::<f64>() {
+        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
+        _ => Err(format!("'{text}' is not a number from 0 to {most}")),
+    }
+}
+
+fn squash(text: &str) -> Result<Squash, String> {
+    match text {
+        "law" => Ok(Squash::Law),
+        text => part(0.9)(text).map(Squash::Part).map_err(|error| format!("{error}, nor `law`")),
+    }
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a number above zero")),
+    }
+}
+
+fn count(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().filter(|count| (1..=1000).contains(count));
+    count.ok_or_else(|| format!("'{text}' is no whole number from 1 to 1000"))
+}
