@@ -1,6 +1,6 @@
 //! The path in space, and the ball at equal times.
 
-use saltus_bounce::scene::plan::{Moment, Record};
+use saltus_bounce::scene::plan::{Moment, Record, Segment};
 use saltus_bounce::scene::{Floor, Scene, Shape};
 use saltus_plot::{Chart, Disc, Measure, Stroke};
 
@@ -45,10 +45,8 @@ pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
         for &(axis, k) in axes {
             let label = if record.balls() > 1 { format!("{} {axis}", name(scene, ball)) } else { axis.to_owned() };
             let strokes = record.segments(ball).into_iter().map(|segment| {
-                let part = |of: &dyn Fn(&Moment) -> f64| segment.coefficients.iter().map(of).collect::<Vec<f64>>();
-                let mut up = part(&Moment::height);
-                up[0] += r;
-                Stroke::new(segment.span, part(&|m| m.position[k]), up)
+                let across = segment.coefficients.iter().map(|c| c.position[k]).collect();
+                arc(&segment, across, r)
             });
             chart = chart.line(label.trim(), strokes);
             let disc = |m: Moment| Disc { at: [m.position[k], m.height() + r], radius: r, full: false };
@@ -59,7 +57,14 @@ pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
     Ok(chart.ground(outline(scene, reach(scene, record, &sideways))))
 }
 
-/// The balls at equal times, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
+/// The way of a ball's centre in a segment, exact as the segment is: what is across it, and up.
+fn arc(segment: &Segment, across: Vec<f64>, radius: f64) -> Stroke {
+    let mut up: Vec<f64> = segment.coefficients.iter().map(Moment::height).collect();
+    up[0] += radius;
+    Stroke::new(segment.span, across, up)
+}
+
+/// The balls at equal times and the arcs of their centres, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
 pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
     let reach = reach(scene, record, &[0]);
     let size = (reach[0][1] - reach[0][0]).max(reach[1][1] - reach[1][0]);
@@ -74,8 +79,19 @@ pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
     let widest = (0..record.balls()).map(radius).fold(0.0, f64::max);
     // A film strip is no wider than twice its height.
     let step = (2.5 * widest).max(2.0 * size / f64::from(FRAMES));
+    // Frame beside frame, time goes from left to right.
+    let pace = step * f64::from(FRAMES) / record.until().max(f64::MIN_POSITIVE);
     for ball in 0..record.balls() {
         let r = radius(ball);
+        let strokes = record.segments(ball).into_iter().map(|segment| {
+            let across = if aside {
+                vec![pace * segment.start, pace]
+            } else {
+                segment.coefficients.iter().map(|c| c.position.x).collect()
+            };
+            arc(&segment, across, r)
+        });
+        chart = chart.line("", strokes);
         for frame in 0..=FRAMES {
             let t = record.until() * f64::from(frame) / f64::from(FRAMES);
             let Some(m) = record.at(ball, t) else { continue };

@@ -275,13 +275,17 @@ pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]
             "pbrMetallicRoughness": { "baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 0.7 },
         })
     };
+    let mut materials = vec![material("ball", [0.85, 0.33, 0.1, 1.0]), material("ground", [0.6, 0.6, 0.6, 1.0])];
+    if shown.iter().any(|ball| ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty())) {
+        materials.push(material("stripe", [0.95, 0.8, 0.6, 1.0]));
+    }
     let document = json!({
         "asset": {
             "version": "2.0", "generator": concat!("saltus ", env!("CARGO_PKG_VERSION")),
             "extras": { "title": motion.title, "fps": [per, seconds], "startFrame": export.frames.first, "loops": motion.loops },
         },
         "scene": 0, "scenes": [{ "name": motion.title, "nodes": roots }], "nodes": nodes, "meshes": meshes,
-        "materials": [material("ball", [0.85, 0.33, 0.1, 1.0]), material("ground", [0.6, 0.6, 0.6, 1.0]), material("stripe", [0.95, 0.8, 0.6, 1.0])],
+        "materials": materials,
         "animations": animations, "accessors": buffer.accessors, "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });

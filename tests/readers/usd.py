@@ -1,0 +1,24 @@
+"""What Pixar's USD makes of a .usda: the lowest point and the volume of the ball at given times."""
+import json
+import math
+import sys
+
+from pxr import Usd, UsdGeom, UsdValidation
+
+path, times = sys.argv[1], json.loads(sys.argv[2])
+stage = Usd.Stage.Open(path)
+fps, first = stage.GetTimeCodesPerSecond(), stage.GetStartTimeCode()
+ball = next(prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Sphere))
+radius = UsdGeom.Sphere(ball).GetRadiusAttr().Get()
+rows = []
+for t in times:
+    world = UsdGeom.Xformable(ball).ComputeLocalToWorldTransform(Usd.TimeCode(first + t * fps))
+    # Row vectors: a place is p M, and height is y.
+    up = math.sqrt(sum(world[k][1] ** 2 for k in range(3)))
+    rows.append([world[3][1] - radius * up, world.GetDeterminant()])
+registry = UsdValidation.ValidationRegistry()
+found = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators()).Validate(stage)
+issues = ["%s: %s" % (error.GetName(), error.GetMessage()) for error in found]
+wrong = [error for error in found if error.GetType() == UsdValidation.ValidationErrorType.Error]
+name = "USD %d.%d" % Usd.GetVersion()[1:]
+print(json.dumps({"issues": issues, "errors": len(wrong), "animations": {name: rows}}))
