@@ -151,7 +151,7 @@ def main():
             times = sorted(truth)
             for kind, read in sorted(known.items()):
                 file = folder / ("ball." + {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json"}.get(kind, kind))
-                said = run(saltus, "export", path, *options, "--to", kind, "-o", file).stderr
+                said = run(saltus, "export", path, *options, "--to", kind, "--force", "-o", file).stderr
                 height, volume = promised(said)
                 found = read(file, times)
                 for animation, rows in found["animations"].items():

@@ -9,7 +9,7 @@ use saltus_motion::{File, Format};
 
 use crate::args::positive;
 use crate::error::Error;
-use crate::output::{extension, say, write};
+use crate::output::{check_new, extension, say, write};
 use crate::stage::{Stage, length};
 use crate::staging::Staging;
 
@@ -28,6 +28,9 @@ pub(crate) struct Export {
     /// Write to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Write the file anew where it exists.
+    #[arg(long)]
+    pub(crate) force: bool,
     /// The number of the frame at which the motion starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
     pub(crate) first_frame: i32,
@@ -107,6 +110,7 @@ impl ExportFormat {
 
 pub(crate) fn run(args: &Export, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
+    check_new(args.output.as_deref(), args.force)?;
     let stage = Stage::of(&args.scene, &args.staging, args.first_frame, quiet)?;
     let file = file(&stage, format, args.tolerance)?;
     write(args.output.as_deref(), &file.bytes)?;

@@ -15,9 +15,7 @@ use crate::progress::Progress;
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     check_picture(args.plot_cor.as_deref())?;
-    if let Some(path) = &args.scene {
-        check_new(path, args.force)?;
-    }
+    check_new(args.scene.as_deref(), args.force)?;
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     // What takes long is a bootstrap.

@@ -66,11 +66,14 @@ fn builder<'a>() -> tempfile::Builder<'a, 'static> {
 }
 
 /// Refuses to write over a file that may hold a person's work, unless it is asked for.
-pub(crate) fn check_new(path: &Path, force: bool) -> Result<(), Error> {
-    if force || path == Path::new("-") || !path.is_file() {
-        return Ok(());
+pub(crate) fn check_new(path: Option<&Path>, force: bool) -> Result<(), Error> {
+    let holds = |path: &&Path| fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() > 0);
+    match path.filter(|path| !force && *path != Path::new("-")).filter(holds) {
+        Some(path) => {
+            Err(Error::new(format!("'{}' exists: name another file, or say --force to write it anew", path.display())))
+        }
+        None => Ok(()),
     }
-    Err(Error::new(format!("'{}' exists: name another file, or say --force to write it anew", path.display())))
 }
 
 /// The extension of a file, in small letters.

@@ -578,6 +578,28 @@ fn a_scene_is_exported_for_animators_and_says_how_exactly() {
 }
 
 #[test]
+fn what_exists_is_written_over_only_when_that_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.toml");
+    let (path, scene) = (file.to_str().unwrap(), root().join("examples/scenes/squash.toml"));
+    let scene = scene.to_str().unwrap();
+    for command in
+        [&["export", scene, "--to", "csv", "-o", path][..], &["solve", "touch 1 at 1s", "--free", "height", "-o", path]]
+    {
+        fs::write(&file, "mine").unwrap();
+        let says = format!("'{path}' exists: name another file, or say --force to write it anew");
+        assert!(refused(command).contains(&says));
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+        done(&[&["-q"], command, &["--force"]].concat());
+        assert_ne!(fs::read_to_string(&file).unwrap(), "mine");
+        // There is nothing to lose in an empty file, nor with standard output.
+        fs::write(&file, "").unwrap();
+        done(&[&["-q"], command].concat());
+    }
+    done(&["-q", "export", scene, "--to", "csv", "-o", "-"]);
+}
+
+#[test]
 fn what_is_exported_reads_back_as_promised() {
     let scenes = root().join("examples/scenes");
     let folder = TempDir::new().unwrap();
@@ -604,7 +626,10 @@ fn what_is_exported_reads_back_as_promised() {
             }
             let file = folder.path().join(name);
             let file = file.to_str().unwrap();
-            done(&[&["-q", "export", scene, "--to", format, "-o", file, "--first-frame", "1"], options].concat());
+            done(
+                &[&["-q", "export", scene, "--to", format, "-o", file, "--force", "--first-frame", "1"], options]
+                    .concat(),
+            );
             let said = done(&[&["-q", "check", file, scene], options].concat());
             assert!(
                 said.contains("contacts touch; within") && !said.contains("not within"),

@@ -49,6 +49,9 @@ pub(crate) struct Solve {
     /// Where to write the scene; `-` for standard output, as without it.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Write the scene anew where the file exists.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 impl Solve {

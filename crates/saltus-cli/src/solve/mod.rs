@@ -16,7 +16,7 @@ use toml_edit::DocumentMut;
 use wish::{Clock, What, Wish};
 
 use crate::error::Error;
-use crate::output::{say, write};
+use crate::output::{check_new, say, write};
 use crate::quantity::digits;
 use crate::simulate::{ending, note, read};
 
@@ -30,6 +30,7 @@ const OTHER_JUMPS: usize = 4;
 
 pub(crate) fn run(args: &Solve, quiet: bool) -> Result<ExitCode, Error> {
     let wishes = args.wished().map_err(Error::new)?;
+    check_new(args.output.as_deref(), args.force)?;
     let (name, text) = match &args.scene {
         Some(path) => read(path)?,
         None => ("a drop".to_owned(), DROP.as_bytes().to_vec()),
