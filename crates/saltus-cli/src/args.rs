@@ -80,6 +80,12 @@ pub(crate) struct Fit {
     /// Draw the COR against the speed of impact, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_cor: Option<PathBuf>,
+    /// Draw the heights of apexes, bounce by bounce, as SVG: with one COR they are on a straight line.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot_ladder: Option<PathBuf>,
+    /// Draw how well each method could do with other CORs, as SVG.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot_profile: Option<PathBuf>,
     /// Write the fitted motion as a scene, to simulate, to change and to export; a scene that exists is kept, unless --force is given.
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) scene: Option<PathBuf>,

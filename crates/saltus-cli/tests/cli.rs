@@ -81,6 +81,31 @@ fn the_main_job() {
 }
 
 #[test]
+fn pictures_of_a_fit() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (profile, ladder, squash) = (path("profile.svg"), path("ladder.svg"), squash());
+    let squash = squash.to_str().unwrap();
+    done(&["-q", "fit", squash, "--plot-profile", &profile, "--plot-ladder", &ladder]);
+    golden(&root().join("docs/squash-profile.svg"), &fs::read_to_string(&profile).unwrap());
+    let ladder = fs::read_to_string(&ladder).unwrap();
+    assert!(ladder.contains("Apex (cm)") && ladder.contains("one COR of 0.496"), "{ladder}");
+    // What there is nothing to draw of is said, and no file is made.
+    let (_folder, one) = table("bounce,height_cm\n0,100\n");
+    let none = [
+        ("--plot", "the table has no motion to draw"),
+        ("--plot-cor", "the table does not give it at several speeds"),
+        ("--plot-ladder", "the table gives no two heights of apexes"),
+        ("--plot-profile", "no COR was fitted to heights or times of bounces"),
+    ];
+    for (option, says) in none {
+        let output = run(&["fit", &one, option, &path("none.svg")]);
+        assert!(output.status.success() && text(&output.stderr).contains(says), "{option}: {}", text(&output.stderr));
+        assert!(!folder.path().join("none.svg").exists());
+    }
+}
+
+#[test]
 fn a_report_for_programs() {
     let json: Value = serde_json::from_str(&done(&["fit", squash().to_str().unwrap(), "--format", "json"])).unwrap();
     assert_eq!(json["schema"], 1);

@@ -1,11 +1,13 @@
 //! The verdict: what the fits amount to, and what speaks against them.
 
+use crate::bounces::Measured;
 use crate::choice::ModelChoice;
 use crate::error::FitError;
 use crate::estimate::{Estimate, Kind, OneKind, Source, Sourced};
 use crate::evidence::Evidence;
 use crate::joint::Joint;
 use crate::model::{Contacts, Heights};
+use crate::profile::Profile;
 use crate::report::{Cor, Report, Verdict};
 use crate::rivals::{self, Compared, Readings};
 use crate::settings::differ;
@@ -36,6 +38,26 @@ pub(crate) struct Findings<'a> {
 }
 
 impl Findings<'_> {
+    /// The cost of each method over the COR.
+    pub(crate) fn profiles(&self) -> Vec<Profile> {
+        let heights = self.heights.as_ref().map(|kind| {
+            let model = Heights::with_sigma(self.evidence, kind.sigma.value);
+            // Heights are fitted in the logarithm of the COR.
+            let Measured { value: ln, standard_error } = kind.fitted.measured(0);
+            let best = Measured { value: ln.exp(), standard_error: ln.exp() * standard_error };
+            Profile::of("heights", &model, &kind.fitted, best, f64::ln)
+        });
+        let times = self.times.as_ref().map(|kind| {
+            let model = Contacts::with_sigma(self.evidence, kind.sigma.value);
+            Profile::of("times", &model, &kind.fitted, kind.fitted.measured(0), |cor| cor)
+        });
+        let joint = self
+            .joint
+            .as_ref()
+            .map(|joint| Profile::of("joint", &joint.model, &joint.fitted, joint.fitted.measured(0), |cor| cor));
+        [heights, times, joint].into_iter().flatten().collect()
+    }
+
     fn mean(&self, method: &str) -> Option<&Estimate> {
         self.means.iter().find(|e| e.method == method)
     }

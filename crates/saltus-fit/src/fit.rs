@@ -45,6 +45,7 @@ pub struct Fit {
     gravity: Option<f64>,
     no_repair: bool,
     losses: bool,
+    profiles: bool,
     tolerance_height: Option<f64>,
     tolerance_time: Option<f64>,
     bootstrap: Option<(usize, u64)>,
@@ -84,6 +85,24 @@ impl Fit {
     #[must_use]
     pub fn ball(mut self, metres: f64) -> Self {
         self.ball = Some(metres);
+        self
+    }
+
+    /// Also gives the cost of each method as the COR is held at other values: see [`Report::profiles`]. It counts the reading errors alone, not how
+    /// much drops differ; a series has none.
+    ///
+    /// ```
+    /// use saltus_fit::{Fit, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?;
+    /// let report = Fit::new().sigma_height(0.005).profiles(true).run(&table)?;
+    /// let points = &report.profiles()[0].points;
+    /// let best = points.iter().min_by(|a, b| a.chi_square.total_cmp(&b.chi_square)).unwrap();
+    /// assert!((best.cor - 0.8).abs() < 0.003);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn profiles(mut self, wanted: bool) -> Self {
+        self.profiles = wanted;
         self
     }
 
@@ -240,6 +259,9 @@ impl Fit {
             if let Some(within) = self.tolerance_time {
                 report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
             }
+        }
+        if self.profiles {
+            report.profiles = findings.profiles();
         }
         if let Some(draws) = self.bootstrap {
             let setting = bootstrap::Setting {

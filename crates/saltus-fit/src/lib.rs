@@ -57,6 +57,7 @@ pub use estimate::{Estimate, Source, Sourced};
 pub use fit::Fit;
 pub use joint::{Agreement, Conflict, Generous, Hypothesis, ImpliedGravity, TotalTime};
 pub use motion::{Arc, Motion};
+pub use profile::{Profile, ProfilePoint};
 pub use report::{Cor, Report, Verdict};
 pub use residual::{Measure, Point, Residual};
 pub use series::{Impact, Track, Variant};

@@ -1,7 +1,9 @@
-//! Limits by profiling the cost: what an unknown may be at most, or at least, where a bound holds it and no covariance speaks for it.
+//! The cost as one unknown is held at other values: its shape over the COR, and limits, where a bound holds an unknown and no covariance speaks for it.
 
 use nalgebra::DMatrix;
+use serde::Serialize;
 
+use crate::bounces::Measured;
 use crate::least_squares::{Bounds, Failure};
 use crate::successive::{Fitted, Model, fit};
 
@@ -12,6 +14,47 @@ const OUT: usize = 60;
 const HALVINGS: usize = 60;
 /// The limit is found to this part of its distance from the bound.
 const FINE: f64 = 1e-4;
+
+/// How the cost of a method grows as the COR is held away from its best, all else fitted anew.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Profile {
+    /// The name of its estimate: `heights`, `times` or `joint`.
+    pub method: String,
+    /// From the least COR to the greatest.
+    pub points: Vec<ProfilePoint>,
+}
+
+/// The cost at one COR.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ProfilePoint {
+    /// The COR that is held, without unit.
+    pub cor: f64,
+    /// The least sum of squared residuals, each divided by its standard error.
+    pub chi_square: f64,
+}
+
+/// A profile has so many points.
+const POINTS: u32 = 121;
+/// It reaches so many standard errors to both sides of the best, and this far at least.
+const REACH: f64 = 6.0;
+const LEAST_REACH: f64 = 0.01;
+
+impl Profile {
+    /// Around the best COR and its standard error, of a model whose first shared unknown is what `of` makes of the COR. What cannot be fitted is
+    /// left out.
+    pub(crate) fn of<M: Model>(method: &str, model: &M, at: &Fitted, best: Measured, of: impl Fn(f64) -> f64) -> Self {
+        let reach = (REACH * best.standard_error).max(LEAST_REACH);
+        let (low, high) = ((best.value - reach).max(1e-3), (best.value + reach).min(2.0));
+        let point = |k: u32| {
+            let cor = low + (high - low) * f64::from(k) / f64::from(POINTS - 1);
+            let chi_square = held(model, at, 0, of(cor)).ok()?.chi_square;
+            chi_square.is_finite().then_some(ProfilePoint { cor, chi_square })
+        };
+        Self { method: method.to_owned(), points: (0..POINTS).filter_map(point).collect() }
+    }
+}
 
 /// A model with one shared unknown held at a value.
 struct Held<'a, M> {

@@ -16,6 +16,7 @@ use crate::choice::ModelChoice;
 use crate::estimate::{Estimate, Sourced};
 use crate::joint::{Agreement, Hypothesis};
 use crate::motion::Motion;
+use crate::profile::Profile;
 use crate::residual::{Point, Residual};
 use crate::series::Track;
 use crate::tolerance::Allowed;
@@ -89,6 +90,8 @@ pub struct Report {
     pub(crate) hypotheses: Vec<Hypothesis>,
     pub(crate) models: Vec<ModelChoice>,
     pub(crate) allowed: Vec<Allowed>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) profiles: Vec<Profile>,
     pub(crate) bootstrap: Option<Bootstrap>,
     pub(crate) series: Vec<Track>,
     pub(crate) warnings: Vec<String>,
@@ -123,6 +126,7 @@ impl Report {
             hypotheses: Vec::new(),
             models: Vec::new(),
             allowed: Vec::new(),
+            profiles: Vec::new(),
             bootstrap: None,
             series: Vec::new(),
             warnings: Vec::new(),
@@ -220,6 +224,12 @@ impl Report {
     #[must_use]
     pub fn allowed(&self) -> &[Allowed] {
         &self.allowed
+    }
+
+    /// How the cost of each method depends on the COR, where that was asked for.
+    #[must_use]
+    pub fn profiles(&self) -> &[Profile] {
+        &self.profiles
     }
 
     /// The error by drawing whole trials anew, where that was asked for and there are five trials or more.

@@ -83,3 +83,22 @@ fn options_out_of_range_are_errors_that_name_themselves() {
         }
     }
 }
+
+#[test]
+fn a_profile_is_the_cost_with_the_cor_held() {
+    // Heights in logarithms, by hand: with e held, ln h0 is the weighted mean of ln h_n - 2 n ln e; errors this small make the logarithm exact enough.
+    let (sigma, heights) = (1e-4, [1.0, 0.6401, 0.4097, 0.2621]);
+    let report = Fit::new().sigma_height(sigma).profiles(true).run(&Table::from_heights(&heights).unwrap()).unwrap();
+    assert_eq!(report.profiles().len(), 1);
+    let profile = &report.profiles()[0];
+    assert_eq!((profile.method.as_str(), profile.points.len()), ("heights", 121));
+    for point in &profile.points {
+        let e = point.cor;
+        let model: Vec<f64> = (0..4).map(|n| e.powi(2 * n)).collect();
+        // The release height enters linearly: h_n = h0 e^(2n).
+        let h0 = heights.iter().zip(&model).map(|(h, m)| h * m).sum::<f64>() / model.iter().map(|m| m * m).sum::<f64>();
+        let cost: f64 = heights.iter().zip(&model).map(|(h, m)| ((h - h0 * m) / sigma).powi(2)).sum();
+        assert!((point.chi_square - cost).abs() < 1e-6 * cost.max(1.0), "{e}: {} is not {cost}", point.chi_square);
+    }
+    assert!(json(&Table::from_heights(&heights).unwrap(), Fit::new()).get("profiles").is_none());
+}

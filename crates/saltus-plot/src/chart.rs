@@ -21,8 +21,10 @@ pub enum Measure {
     SpecificEnergy,
     /// In N.
     Force,
-    /// A number.
+    /// How many: whole numbers.
     Count,
+    /// A number without a unit.
+    Number,
 }
 
 /// A disc to scale.

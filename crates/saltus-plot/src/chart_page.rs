@@ -137,7 +137,7 @@ fn unit(measure: Measure, (low, high): (f64, f64)) -> Unit {
         Measure::Energy => Unit::prefixed("J", largest, span),
         Measure::SpecificEnergy => Unit::prefixed("J/kg", largest, span),
         Measure::Force => Unit::prefixed("N", largest, span),
-        Measure::Count => Unit { size: 1.0, label: String::new() },
+        Measure::Count | Measure::Number => Unit { size: 1.0, label: String::new() },
     }
 }
 

@@ -1,0 +1,147 @@
+//! `saltus fit`: a table in, a report and pictures out.
+
+mod pictures;
+
+use std::io::Read;
+use std::path::Path;
+use std::process::ExitCode;
+
+use saltus_fit::{CorModel, Fit, ReadOptions, Table, Verdict};
+
+use crate::args::{self, ReportFormat};
+use crate::error::Error;
+use crate::output::{check_new, check_picture, say, write};
+use crate::progress::Progress;
+
+pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
+    for picture in [&args.plot, &args.plot_cor, &args.plot_ladder, &args.plot_profile] {
+        check_picture(picture.as_deref())?;
+    }
+    check_new(args.scene.as_deref(), args.force)?;
+    let table = read(args)?;
+    say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
+    // What takes long is a bootstrap.
+    let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
+    let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));
+    progress.clear();
+    let report = report.map_err(Error::new)?;
+    let text = match args.format {
+        ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
+        ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
+    };
+    let drawn = [
+        (&args.plot, pictures::motion(&report), "no picture: the table has no motion to draw"),
+        (&args.plot_cor, pictures::cor(&report), "no picture of the COR: the table does not give it at several speeds"),
+        (&args.plot_ladder, pictures::ladder(&report), "no ladder: the table gives no two heights of apexes"),
+        (
+            &args.plot_profile,
+            pictures::profile(&report),
+            "no profile: no COR was fitted to heights or times of bounces",
+        ),
+    ];
+    for (path, picture, none) in drawn {
+        match (path, picture.transpose().map_err(Error::new)?) {
+            (Some(path), Some(picture)) => write(Some(path), picture.as_bytes())?,
+            (Some(_), None) => say(quiet, none),
+            (None, _) => {}
+        }
+    }
+    write(args.output.as_deref(), text.as_bytes())?;
+    if let Some(path) = &args.scene {
+        let scene = report.scene().ok_or_else(|| Error::new(format!("no scene was written: {}", report.reason())))?;
+        write(Some(path), scene.as_bytes())?;
+        if path != Path::new("-") {
+            let (scene, moving) = (path.display(), path.with_extension("svg"));
+            say(quiet, &format!("scene: {scene}; to see it move: saltus export {scene} -o {}", moving.display()));
+        }
+    }
+    if let Some(path) = args.plot.as_ref().filter(|path| path.exists() && *path != Path::new("-")) {
+        say(quiet, &format!("picture: {}", path.display()));
+    }
+    let passed = !args.strict || report.verdict() == Verdict::Trusted;
+    Ok(if passed { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+fn read(args: &args::Fit) -> Result<Table, Error> {
+    // The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !info.location().is_some_and(|place| place.file().contains("calamine")) {
+            usual(info);
+        }
+    }));
+    let options = options(args);
+    if args.tables == [Path::new("-")] {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
+        Table::parse("standard input", &bytes, &options).map_err(Error::new)
+    } else if args.tables.iter().any(|table| table == Path::new("-")) {
+        Err(Error::new("standard input, '-', cannot be read together with other tables"))
+    } else {
+        Table::read_all(&args.tables, &options).map_err(Error::new)
+    }
+}
+
+fn options(args: &args::Fit) -> ReadOptions {
+    let mut options = ReadOptions::default();
+    if let Some(unit) = &args.height_unit {
+        options = options.height_unit(unit);
+    }
+    if let Some(unit) = &args.time_unit {
+        options = options.time_unit(unit);
+    }
+    if let Some(column) = &args.column {
+        options = options.column(column);
+    }
+    if let Some(sheet) = &args.sheet {
+        options = options.sheet(sheet);
+    }
+    if let Some(header) = &args.header {
+        options = options.header(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    if let Some(fps) = args.fps {
+        options = options.fps(fps);
+    }
+    if let Some(scale) = args.scale {
+        options = options.scale(scale);
+    }
+    if let Some(zero) = args.zero {
+        options = options.zero(zero);
+    }
+    if args.y_down || args.y_up {
+        options = options.y_down(args.y_down);
+    }
+    for (column, value) in &args.filters {
+        options = options.filter(column, value);
+    }
+    options
+}
+
+fn fit(args: &args::Fit) -> Fit {
+    let mut fit = Fit::new().repair(!args.no_repair).losses(args.losses).profiles(args.plot_profile.is_some());
+    if let Some(within) = args.tolerance_height {
+        fit = fit.tolerance_height(within);
+    }
+    if let Some(within) = args.tolerance_time {
+        fit = fit.tolerance_time(within);
+    }
+    if let Some(model) = CorModel::ALL.into_iter().find(|m| args.model.as_deref() == Some(m.name())) {
+        fit = fit.model(model);
+    }
+    if let Some(ball) = args.ball {
+        fit = fit.ball(ball);
+    }
+    if let Some(rounds) = args.bootstrap {
+        fit = fit.bootstrap(rounds as usize, args.seed);
+    }
+    if let Some(sigma) = args.sigma_height {
+        fit = fit.sigma_height(sigma);
+    }
+    if let Some(sigma) = args.sigma_time {
+        fit = fit.sigma_time(sigma);
+    }
+    if let Some(gravity) = args.gravity {
+        fit = fit.gravity(gravity);
+    }
+    fit
+}

@@ -1,0 +1,189 @@
+//! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the profile of the cost.
+
+use saltus_fit::{Measure, Motion, Report, Verdict};
+use saltus_plot::{Arc, Background, Chart, HeightTime, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke};
+
+/// The measured points, the fitted motion, and what is left between them.
+pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
+    let motion = report.motion()?;
+    let points = report.points().iter().map(|point| {
+        let mut measured = Measured::new(point.time, point.height).mark(mark(&point.label));
+        if let Some(sigma) = point.sigma_time {
+            measured = measured.time_error(sigma);
+        }
+        if let Some(sigma) = point.sigma_height {
+            measured = measured.height_error(sigma);
+        }
+        measured
+    });
+    let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(&r.label)));
+    let mut picture = HeightTime::new(&report.title())
+        .motion(&label(report, motion), arcs(motion))
+        .measured(points)
+        .contacts(motion.contacts.iter().copied())
+        .residuals(residuals)
+        .background(Background::Adaptive)
+        .caption(&caption(report));
+    if let Some(agreement) = disagreement(report) {
+        picture = picture.caption(&agreement);
+    }
+    Some(picture.svg())
+}
+
+/// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed with its 95 % band.
+pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
+    let bounces: Vec<(f64, saltus_fit::Measured)> =
+        report.bounces().iter().filter_map(|b| Some((speed(report, b.bounce)?, b.heights.or(b.times)?))).collect();
+    let law = report.models().iter().find(|m| !m.speeds.is_empty());
+    let mut speeds: Vec<f64> = bounces.iter().map(|b| b.0).collect();
+    speeds.extend(law.iter().flat_map(|m| &m.speeds).map(|s| s.speed));
+    let (slowest, fastest) = (speeds.iter().copied().reduce(f64::min)?, speeds.iter().copied().reduce(f64::max)?);
+    if fastest <= slowest {
+        return None;
+    }
+    let mut picture = Chart::new(&report.title(), ("Speed of impact", Scale::Speed), ("COR", Scale::Number))
+        .marks(bounces.iter().map(|(v, e)| [*v, e.value]))
+        .jumps(bounces.iter().map(|(v, e)| [-1.0, 1.0].map(|side| [*v, e.value + side * e.standard_error])))
+        .background(Background::Adaptive)
+        .caption("Marks: each bounce by itself, ± one standard error");
+    if let Some(law) = law {
+        let bent = |points: Vec<[f64; 2]>| {
+            points
+                .windows(2)
+                .map(|w| Stroke::new(1.0, vec![w[0][0], w[1][0] - w[0][0]], vec![w[0][1], w[1][1] - w[0][1]]))
+                .collect::<Vec<_>>()
+        };
+        let at =
+            |side: f64| bent(law.speeds.iter().map(|s| [s.speed, s.cor + side * 1.96 * s.standard_error]).collect());
+        picture = picture.line(&law.about, at(0.0)).line("95 % band", at(-1.0).into_iter().chain(at(1.0)));
+    }
+    if let Some(one) =
+        report.models().iter().find(|m| m.name == "constant").map(|m| m.cor.value).or(report.cor().map(|c| c.value))
+    {
+        picture = picture.line("one COR", [Stroke::new(1.0, vec![slowest, fastest - slowest], vec![one])]);
+    }
+    Some(picture.caption(&caption(report)).svg())
+}
+
+/// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every trial, and of the fitted motion.
+pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
+    let motion = report.motion()?;
+    let number = |label: &str| match label {
+        "release" => Some(0.0),
+        label => label.strip_prefix("apex ")?.parse::<f64>().ok(),
+    };
+    let read = report.points().iter().filter(|point| point.height > 0.0);
+    let read: Vec<_> = read.filter_map(|point| Some((number(&point.label)?, point))).collect();
+    let fitted = motion.release_height.map(|height| (0.0, height)).into_iter();
+    let fitted: Vec<[f64; 2]> =
+        fitted.chain((1_u32..).map(f64::from).zip(motion.apexes.iter().copied())).map(|(n, h)| [n, h]).collect();
+    if fitted.len() < 2 {
+        return None;
+    }
+    let bars = read.iter().filter_map(|(n, point)| {
+        let sigma = point.sigma_height.filter(|sigma| *sigma < point.height)?;
+        Some([[*n, point.height - sigma], [*n, point.height + sigma]])
+    });
+    let marked = if read.is_empty() { "" } else { "Marks: heights as they were read, ± one standard error" };
+    let chart = Chart::new(&report.title(), ("Bounce", Scale::Count), ("Apex", Scale::Length))
+        .logarithmic()
+        .line(&format!("one COR of {:.3}", motion.cor), Stroke::polygon(&fitted))
+        .marks(read.iter().map(|(n, point)| [*n, point.height]))
+        .jumps(bars)
+        .background(Background::Adaptive)
+        .caption(marked)
+        .caption(&caption(report));
+    Some(chart.svg())
+}
+
+/// A cost above its least by this is outside the 95 % interval: the chi-square distribution of one degree of freedom.
+const LIMIT: f64 = 3.84;
+/// Costs are drawn up to this above the least.
+const DRAWN: f64 = 30.0;
+
+/// The cost of each method as the COR is held at other values.
+pub(super) fn profile(report: &Report) -> Option<Result<String, PlotError>> {
+    let mut chart = Chart::new(&report.title(), ("COR", Scale::Number), ("Chi-square above its least", Scale::Number));
+    let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+    for profile in report.profiles() {
+        let least = profile.points.iter().map(|point| point.chi_square).fold(f64::INFINITY, f64::min);
+        let above = profile.points.iter().map(|point| [point.cor, point.chi_square - least]);
+        let shown: Vec<[f64; 2]> = above.filter(|[_, cost]| *cost <= DRAWN).collect();
+        let name = match profile.method.as_str() {
+            "joint" => "heights and times together",
+            method => method,
+        };
+        reach = shown.iter().fold(reach, |[low, high], [cor, _]| [low.min(*cor), high.max(*cor)]);
+        chart = chart.line(name, Stroke::polygon(&shown));
+    }
+    if reach[0] >= reach[1] {
+        return None;
+    }
+    let chart = chart
+        .jumps([[[reach[0], LIMIT], [reach[1], LIMIT]]])
+        .background(Background::Adaptive)
+        .caption("Below the dashed line: the 95 % interval of each method, by the reading errors alone")
+        .caption(&caption(report));
+    Some(chart.svg())
+}
+
+/// The speed at a contact as it was read: from the height before it, else from the flight before it, the mean over trials.
+fn speed(report: &Report, bounce: usize) -> Option<f64> {
+    let g = report.gravity().value;
+    let apex = if bounce == 1 { "release".to_owned() } else { format!("apex {}", bounce - 1) };
+    let contact = |n: usize| format!("contact {n}");
+    let points = report.points();
+    let heights = points.iter().filter(|p| p.label == apex).map(|p| (2.0 * g * p.height.max(0.0)).sqrt());
+    let mut speeds: Vec<f64> = heights.collect();
+    if speeds.is_empty() {
+        let ends = points.iter().filter(|p| p.label == contact(bounce));
+        let flight = |end: &saltus_fit::Point| {
+            let before = |p: &&saltus_fit::Point| p.trial == end.trial && p.label == contact(bounce - 1);
+            points.iter().find(before).map(|start| 0.5 * g * (end.time - start.time))
+        };
+        speeds.extend(ends.filter_map(flight));
+    }
+    #[allow(clippy::cast_precision_loss)]
+    let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+    mean.is_finite().then_some(mean)
+}
+
+fn label(report: &Report, motion: &Motion) -> String {
+    let trials = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
+    let whose = if trials > 1 { format!("first of {trials} trials: ") } else { String::new() };
+    format!("{whose}free flight with one COR of {:.3}", motion.cor)
+}
+
+fn arcs(motion: &Motion) -> impl Iterator<Item = Arc> {
+    motion.flights.iter().map(|flight| Arc::new(flight.start, flight.span, flight.height.to_vec()))
+}
+
+fn mark(label: &str) -> Mark {
+    match label.split(' ').next() {
+        Some("release") => Mark::Release,
+        Some("contact") => Mark::Contact,
+        Some("apex") => Mark::Apex,
+        _ => Mark::Sample,
+    }
+}
+
+fn caption(report: &Report) -> String {
+    match report.cor() {
+        None => format!("No COR: {}", report.reason()),
+        Some(cor) => match (report.verdict(), cor.standard_error) {
+            (Verdict::Trusted, Some(error)) => format!("COR {:.4} ± {error:.4}", cor.value),
+            (verdict, _) => format!("COR between {:.2} and {:.2}, {verdict}: {}", cor.low, cor.high, report.reason()),
+        },
+    }
+}
+
+/// How badly one motion holds both heights and times, if it does.
+fn disagreement(report: &Report) -> Option<String> {
+    let both = report.residuals().iter().any(|r| r.kind == Measure::Height)
+        && report.residuals().iter().any(|r| r.kind == Measure::Time);
+    let agreement = report.agreement().filter(|_| both && report.verdict() != Verdict::Trusted)?;
+    Some(format!(
+        "One COR for heights and times together: χ² = {:.0} on {} degrees of freedom",
+        agreement.chi_square, agreement.degrees_of_freedom
+    ))
+}
