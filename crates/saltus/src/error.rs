@@ -16,7 +16,11 @@ use crate::state::State;
 /// assert!(error.to_string().starts_with("the guard of edge flight -> flight (edge 0) is already negative"));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Error {
+pub struct Error(Box<Failure>);
+
+/// Boxed, so that what goes well is not moved about in the room that a failure would need.
+#[derive(Clone, Debug, PartialEq)]
+struct Failure {
     kind: ErrorKind,
     place: Place,
     note: Option<Box<str>>,
@@ -82,55 +86,56 @@ pub enum ErrorKind {
 }
 
 impl Error {
+    #[cold]
     pub(crate) fn new(kind: ErrorKind, place: Place) -> Self {
-        Self { kind, place, note: None }
+        Self(Box::new(Failure { kind, place, note: None }))
     }
 
     /// With what its kind and place do not say.
     pub(crate) fn noting(mut self, note: Option<String>) -> Self {
-        self.note = note.map(String::into_boxed_str);
+        self.0.note = note.map(String::into_boxed_str);
         self
     }
 
     /// What kind of failure it is.
     #[must_use]
-    pub const fn kind(&self) -> ErrorKind {
-        self.kind
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
     }
 
     /// When it happened, in seconds.
     #[must_use]
-    pub const fn t(&self) -> f64 {
-        self.place.t
+    pub fn t(&self) -> f64 {
+        self.0.place.t
     }
 
     /// The mode it happened in, as its `Debug` writes it.
     #[must_use]
     pub fn mode(&self) -> &str {
-        &self.place.mode
+        &self.0.place.mode
     }
 
     /// The edge concerned, if any, as its `Debug` writes it.
     #[must_use]
     pub fn edge(&self) -> Option<&str> {
-        self.place.edge.as_deref()
+        self.0.place.edge.as_deref()
     }
 
     /// The state it happened at, coordinate by coordinate; of a jump, the state just before.
     #[must_use]
     pub fn state(&self) -> &[f64] {
-        &self.place.state
+        &self.0.place.state
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Place { t, mode, edge, state } = &self.place;
-        let note = self.note.as_deref();
+        let Failure { kind, place: Place { t, mode, edge, state }, note } = &*self.0;
+        let note = note.as_deref();
         let said = note.unwrap_or("?");
         let edge = edge.as_deref();
         let by = edge.unwrap_or("?");
-        match self.kind {
+        match kind {
             ErrorKind::Span => {
                 return write!(
                     f,
