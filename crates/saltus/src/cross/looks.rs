@@ -23,7 +23,12 @@ impl<G: FnMut(f64) -> f64> Search<G> {
                 _ => {}
             }
         }
-        Ok(Part::None(walk.side))
+        Ok(self.passed(side, walk.side, b))
+    }
+
+    /// A walk from one side to another, on which no fall but one from the start was seen; the signs of its steps count.
+    fn passed(&self, from: Side, to: Side, b: f64) -> Part {
+        if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
     }
 
     /// Whether the guard seems to go in steps: it stands still between neighbouring samples.
@@ -55,7 +60,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         }
         let steps = samples.chunk_by(|x, y| x.1 == y.1).count();
         if turns > MOST_TURNS {
-            return Ok(Look::Rounding(self.seen_through(&samples, a, side)));
+            return Ok(Look::Rounding(self.seen_through(&samples, a, b, side)));
         }
         if steps > LOOKS / PER_STEP {
             return Ok(Look::Smooth);
@@ -74,13 +79,16 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             let (first, second) = (steps.next().unwrap_or(0), steps.next().unwrap_or(0));
             let (half, at_half) = samples[LOOKS / 2];
             let slow = samples[0].1 == self.base && first > second;
-            return Ok(Look::Steps(self.left(slow.then(|| order(at_half - self.base, last - self.base, half, b)))));
+            // Among ups and downs that is not seen, but a longer stretch may know.
+            let slow = slow || turns > 0 && self.departure.is_some_and(|it| it.touches() && it.is_far(b));
+            let order = if slow { order(at_half - self.base, last - self.base, half, b) } else { 1.0 };
+            return Ok(Look::Steps(self.left(Some(order), b)));
         }
         Ok(Look::Steps(Part::None(walk.side)))
     }
 
     /// What is left of samples when all that is as small as their rounding counts as zero.
-    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, side: Side) -> Part {
+    fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
         let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
         let came_from = side;
@@ -103,6 +111,9 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             self.weaken(Evidence::Rounding { from, to });
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };
+        if came_from == Side::Wall && side == Side::Outside && self.spent {
+            return self.left(None, b);
+        }
         Part::None(side)
     }
 }

@@ -1,6 +1,7 @@
 //! Where a guard first falls through zero: excluded by bounds, isolated by halving, refined to neighbouring times.
 
 pub(crate) mod chebyshev;
+mod departure;
 mod looks;
 mod refine;
 mod search;

@@ -2,6 +2,7 @@
 
 use crate::poly::{Bernstein, Shape};
 
+use super::departure::Departure;
 use super::looks::{Look, order};
 use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
 
@@ -19,6 +20,9 @@ const ROUGH: f64 = 1e-6;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
+/// A guard that falls from a spent root by this more than its samples leave open does so: that is the fall that was spent.
+const SURELY: f64 = 1024.0;
+
 pub(super) struct Search<G> {
     pub(super) guard: G,
     pub(super) span: f64,
@@ -26,6 +30,8 @@ pub(super) struct Search<G> {
     pub(super) spent: bool,
     /// The guard's value at a spent start.
     pub(super) base: f64,
+    /// How the guard leaves a spent root at the start, as far as its samples have shown.
+    pub(super) departure: Option<Departure>,
     /// What a guard on a step is rough by: close to its start, where the solution is zero but for rounding, it is known no better than
     /// to this times the square of the part of the step.
     rough: f64,
@@ -77,6 +83,8 @@ pub(super) enum Part {
     Fall { a: f64, b: f64, near: Option<f64> },
     /// The guard falls at once from the root at the start.
     AtStart,
+    /// Rounding hides a rise and the fall after it, which lies here.
+    Hidden(f64),
     /// No fall; this is where the guard is at the end.
     None(Side),
 }
@@ -89,6 +97,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             span,
             spent: false,
             base: 0.0,
+            departure: None,
             rough: ROUGH * bend,
             falls_smoothly: false,
             evaluations: 0,
@@ -113,6 +122,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         let fall = match self.part(&all, side)? {
             Part::None(_) => None,
             Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
+            Part::Hidden(near) => Some(Crossing::after(self.inside_near(near)?)),
             Part::Fall { near: Some(near), .. } => settle(&mut self.guard, near),
             Part::Fall { a, b, near: None } => Some(self.refined(a, b)?),
         };
@@ -180,6 +190,7 @@ impl<G: FnMut(f64) -> f64> Search<G> {
         if leaving && known.is_some() {
             margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
         }
+        let sampled = margin;
         if side == Side::Wall {
             let (roughness, base) = (self.roughness(b), if known.is_some() { 0.0 } else { self.base });
             if p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
@@ -188,6 +199,9 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             margin += roughness;
         }
         let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
+        if leaving && self.spent && known.is_none() {
+            self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
+        }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
         let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
         let scale = p.scale();
@@ -205,15 +219,20 @@ impl<G: FnMut(f64) -> f64> Search<G> {
                 Side::Inside => Part::Fall { a: from, b, near: None },
                 Side::Outside => Part::None(Side::Outside),
                 // The samples may be too far apart to see that the guard rises first.
-                Side::Wall if leaving && self.spent && known.is_none() && self.rises_first(b)? => {
+                Side::Wall
+                    if leaving
+                        && self.spent
+                        && known.is_none()
+                        && (q.start() > -SURELY * sampled || self.rises_first(b)?) =>
+                {
                     return self.halved(stretch, margin, side);
                 }
-                Side::Wall if leaving => self.left(None),
-                Side::Wall => self.left(Some(order(p.start(), p.end(), a, b))),
+                Side::Wall if leaving => self.left(None, b),
+                Side::Wall => self.left(Some(order(p.start(), p.end(), a, b)), b),
             }),
             Shape::Falling if resolved => match side {
                 Side::Outside => Some(Part::None(Side::Outside)),
-                Side::Wall if !leaving => Some(self.left(Some(order(p.start(), p.end(), a, b)))),
+                Side::Wall if !leaving => Some(self.left(Some(order(p.start(), p.end(), a, b)), b)),
                 Side::Wall if q.start() <= q_margin => {
                     self.falls_smoothly = true;
                     None
@@ -284,14 +303,6 @@ impl<G: FnMut(f64) -> f64> Search<G> {
             }
         }
         Ok(true)
-    }
-
-    /// The guard has left the root at the start to below zero, as tᵐ with m = `order` where that is not one.
-    ///
-    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again.
-    pub(super) fn left(&self, order: Option<f64>) -> Part {
-        let even = order.is_some_and(|order| order.round().rem_euclid(2.0) == 0.0);
-        if self.spent && !even { Part::None(Side::Outside) } else { Part::AtStart }
     }
 
     fn halved(&mut self, stretch: &Stretch, margin: f64, side: Side) -> Result<Part, Undefined> {

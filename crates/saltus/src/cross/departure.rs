@@ -1,0 +1,98 @@
+//! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a long stretch shows to more digits than a short one.
+
+use crate::poly::Bernstein;
+
+use super::Undefined;
+use super::looks::order;
+use super::search::{Part, Search, Side};
+
+/// What the stretches that begin at a spent root have shown of the guard there.
+///
+/// On a long stretch the interpolant errs by what it leaves out, on a short one by the guard's rounding over its length. The slope is known best on one
+/// between them, which is remembered: so a rebound of 10⁻¹⁰ m/s is told though it rises by 10⁻²¹ m, a thousandth of what the guard is rounded by.
+#[derive(Clone, Copy)]
+pub(super) struct Departure {
+    /// The slope at the root, and by how much it may be off.
+    slope: f64,
+    doubt: f64,
+    /// The guard with that root divided out, on the stretch that shows the slope best, and its length.
+    rest: Bernstein,
+    length: f64,
+    /// The m of the power tᵐ as which the guard falls from the root, on the shortest stretch on which it is seen to.
+    order: Option<f64>,
+}
+
+/// So much longer a stretch tells the slope better than the steps of rounding on a shorter one.
+const FAR: f64 = 1024.0;
+/// A guard is seen where it is by this larger than its rounding, which a few samples may show too small.
+const SEEN: f64 = 64.0;
+/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may change its sign, and it is not to be lost then.
+const NONE: f64 = 64.0;
+
+impl Departure {
+    /// The guard with its root at the start of `0..=length` divided out, whose values are known to within `margin`, and away from the start to `roughness` more.
+    pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
+        let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
+        let mut best = match last {
+            Some(last) if last.doubt <= doubt => last,
+            _ => Self { slope, doubt, rest: *rest, length, order: last.and_then(|last| last.order) },
+        };
+        let (half, end) = (0.5 * rest.halves().0.end(), rest.end());
+        if half < -SEEN * (margin + roughness) {
+            best.order = Some(order(half, end, 0.5, 1.0));
+        }
+        best
+    }
+
+    /// Whether the guard rises from the root: what its slope may be off by is taken with room, and so a quarter of it will do.
+    fn rises(&self) -> bool {
+        self.slope > 0.25 * self.doubt
+    }
+
+    /// Whether nothing is seen of a slope, and the guard falls as the square of time.
+    pub(super) fn touches(&self) -> bool {
+        self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
+    }
+
+    /// Whether it was told by a stretch so long that it knows better than steps of rounding within `0..=b`.
+    pub(super) fn is_far(&self, b: f64) -> bool {
+        self.length > FAR * b
+    }
+}
+
+fn is_even(order: f64) -> bool {
+    order.round().rem_euclid(2.0) == 0.0
+}
+
+impl<G: FnMut(f64) -> f64> Search<G> {
+    /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.
+    ///
+    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again. Where rounding hides
+    /// which it was, what longer stretches have shown decides; and if they show that the guard rises first, it falls where their polynomial does.
+    pub(super) fn left(&self, order: Option<f64>, b: f64) -> Part {
+        if !self.spent {
+            return Part::AtStart;
+        }
+        let told = self.departure.filter(|it| order.is_none() || it.is_far(b));
+        if let Some(it) = told.filter(Departure::rises)
+            && let Some(root) = it.rest.root()
+        {
+            return Part::Hidden(root * it.length);
+        }
+        let linear = order.is_some_and(|order| order < 1.25);
+        let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
+        if touched { Part::AtStart } else { Part::None(Side::Outside) }
+    }
+
+    /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the guard inside; or the fall, if there is none.
+    pub(super) fn inside_near(&mut self, fall: f64) -> Result<f64, Undefined> {
+        for k in 0..=16 {
+            for s in [fall * (1.0 + f64::from(k) / 64.0), fall * (1.0 - f64::from(k) / 64.0)] {
+                if self.value(s)? >= 0.0 {
+                    return Ok(s);
+                }
+            }
+        }
+        Ok(fall)
+    }
+}
