@@ -14,9 +14,7 @@ use saltus_examples::{Figure, gallery};
 const G: f64 = 9.81; // m/s²
 const OMEGA: f64 = 50.0; // rad/s
 const COR: f64 = 0.8;
-
-/// Below this speed of rebound, in m/s, the ball rides on the table.
-const SLOW: f64 = 1e-5;
+const SLOW: f64 = 1e-5; // m/s; after a slower rebound the ball rides on the table
 
 /// A table that moves as A sin(ω t), and a ball.
 struct Table {
@@ -26,8 +24,7 @@ struct Table {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ball {
     Flies,
-    /// Until the table falls away faster than the ball would.
-    Rides,
+    Rides, // until the table falls away faster than the ball would
 }
 
 impl Table {
@@ -42,8 +39,7 @@ impl Table {
 impl Automaton for Table {
     type Mode = Ball;
     type State = Vector2<f64>;
-    /// The mode that is left.
-    type Edge = Ball;
+    type Edge = Ball; // the mode that is left
 
     fn flow(&self, ball: Ball, t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         vector![x[1], if ball == Ball::Flies { -G } else { -OMEGA * OMEGA * self.place(t) }]
@@ -105,7 +101,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let strengths: Vec<f64> = (0..1000).map(|k| 0.95 + 5e-4 * f64::from(k)).collect();
     let began = std::time::Instant::now();
     let attractors = strengths.par_iter().map(|&strength| attractor(strength)).collect::<Result<Vec<_>, _>>()?;
-    let took = began.elapsed();
     let picture =
         Figure::new("A ball on a vibrating table", "acceleration of the table, Aω²/g", "phase of the impact, of 1")
             .cloud("", attractors.concat())
@@ -118,7 +113,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let doubles = cos.hypot(2.0 * (1.0 + COR * COR) / (1.0 + COR).powi(2));
     let ordered = attractors.concat().into_iter().filter(|[strength, _]| *strength < doubles - 0.02);
     let off = ordered.map(|[strength, phase]| (phase - (cos / strength).acos() / TAU).abs()).fold(0.0, f64::max);
-    println!("a million impacts in {took:.1?}, phases exact to {off:.0e}: see docs/gallery/chaos.svg");
+    println!("a million impacts in {:.1?}, phases exact to {off:.0e}: see docs/gallery/chaos.svg", began.elapsed());
     assert!(off < 1e-10);
     Ok(())
 }

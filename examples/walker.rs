@@ -24,8 +24,7 @@ pub(crate) enum Swing {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Event {
-    /// The stance leg passes the vertical; until then the swing foot may scuff the ground, as a walker without knees does.
-    MidStance,
+    MidStance, // until then the swing foot may scuff the ground, as a walker without knees does
     HeelStrike,
 }
 
@@ -41,17 +40,11 @@ impl Linearize for Walker {
         [th1, ph1, fall, fall + th1 * th1 * ph.sin() - (th - slope).cos() * ph.sin()]
     }
     fn guard_over<D: Number>(&self, event: Event, _t: D, [th, ph, ..]: [D; 4], _: [D; 1]) -> D {
-        match event {
-            Event::MidStance => th,
-            Event::HeelStrike => th * 2.0 - ph,
-        }
+        if event == Event::MidStance { th } else { th * 2.0 - ph }
     }
     fn reset_over<D: Number>(&self, event: Event, _t: D, x: [D; 4], _: [D; 1]) -> [D; 4] {
         let [th, _, th1, _] = x;
-        match event {
-            Event::MidStance => x,
-            Event::HeelStrike => HeelStrike.place([-th, (th * 2.0).cos() * th1], [th]),
-        }
+        if event == Event::MidStance { x } else { HeelStrike.place([-th, (th * 2.0).cos() * th1], [th]) }
     }
 }
 
@@ -120,8 +113,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .dots("period doubling", doubled);
     gallery("walker", &picture.svg())?;
 
-    // Published: stable up to a slope of 0.0151.
-    println!("stable up to a slope of {:.10}: see docs/gallery/walker.svg", at.parameter);
+    println!("stable up to a slope of {:.10} (published: 0.0151): see docs/gallery/walker.svg", at.parameter);
     assert!((at.parameter - 0.0151).abs() < 5e-5 && (at.orbit.multipliers[0].re + 1.0).abs() < 1e-8);
     Ok(())
 }
