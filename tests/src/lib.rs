@@ -1,4 +1,5 @@
-//! Runs the code in the project's pages as documentation tests; the other tests are in the files of this package's `tests` folder.
+//! Runs the code in the project's pages as documentation tests, and keeps what several tests share; those are in this package's `tests` folder,
+//! fuzz targets in `fuzz`.
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
@@ -20,7 +21,11 @@ pub struct Sensitivities;
 #[doc = include_str!("../../docs/simulating.md")]
 pub struct Simulating;
 
+pub mod any_scene;
+pub mod random_scene;
 pub mod reference;
+pub mod scene_laws;
+pub mod sturm;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/physics.md")]

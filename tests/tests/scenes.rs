@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use saltus_bounce::scene::{Contact, Scene, Shape, schema};
+use saltus_tests::any_scene::answered;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -123,18 +124,9 @@ fn the_schema_is_that_of_the_reader() {
     }
 }
 
-/// A reader that is given anything answers with a scene or with a place inside the file.
+/// A reader that is given anything answers, and what it reads ends.
 fn answers(bytes: &[u8]) -> Result<(), TestCaseError> {
-    let Err(error) = Scene::parse("fuzz", bytes) else { return Ok(()) };
-    let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').collect();
-    prop_assert!((1..=lines.len()).contains(&error.line()), "{error}");
-    let line = String::from_utf8_lossy(lines[error.line() - 1]);
-    prop_assert!((1..=line.chars().count() + 1).contains(&error.column()), "{error}\n{line:?}");
-    prop_assert!(!error.message().is_empty());
-    let shown = error.to_string();
-    prop_assert!(shown.starts_with(&format!("fuzz:{}:{}: ", error.line(), error.column())), "{shown}");
-    prop_assert!(shown.len() < 4000 && !shown.contains('\r') && !shown.contains('\0'), "{shown}");
-    Ok(())
+    answered(bytes).map_err(TestCaseError::fail)
 }
 
 fn runner(share: u32) -> TestRunner {

@@ -4,6 +4,7 @@ mod check;
 mod export;
 mod header;
 mod layout;
+mod old_workbook;
 mod options;
 mod order;
 mod pool;

@@ -10,17 +10,17 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use saltus_fit::{ReadOptions, Table};
-use written::{cells, xlsx, zip};
+use written::{cells, workbook, xlsx, zip};
 
 const TEXTS: [&str; 8] = [
-    "# frame rate: 30\nevent,time_s,height_cm\nrelease,0,100\ncontact,0.45,\napex,,30\ncontact,0.85,\n",
-    "mass A\t\t\t\nt\tx\ty\tv_{y}\n0\t0\t1\t\n0.04\t0\t9.0E-1\t-5\n0.08\t0\t0.7\t\n",
-    "#multi:\n\tball\t\t\tedge\t\nt\tframe\tx\ty\tx\ty\n0\t1\t0\t1\t5\t5\n0.04\t2\t0\t0.9\t5\t5.001\n",
-    "Frame\tX1\tY1\tFlag1\tX2\tY2\tFlag2\nTracks 1 to 2\n1\t5\t100\t \t9\t50\t \n2\t5\t104\t*\t9\t50.5\t \n\nTrack \tLength\n1\t9\n",
-    "Vernier Format 2\nlab\nRun\nTime\tPosition\nt\ty\ns\tcm\n\n0\t100\n0.1\t90\n0\t0\nVernier Format 2\nlab\nRun\nTime\tPosition\ns\tcm\n1\t2\n",
-    "673.3;587.1;\n673.7;587.4;\n674.2;nan;\n",
-    "Run 1: Time (s),Run 1: Position (m),Run 2: Time (s),Run 2: Position (m)\n0,1,0,2\n0.1,0.9,0.1,1.9\n",
-    "H (cm),T0,T1\n100,0:01.25,1:02:03\n",
+    include_str!("tables/events.csv"),
+    include_str!("tables/tracker.txt"),
+    include_str!("tables/tracks.txt"),
+    include_str!("tables/imagej.txt"),
+    include_str!("tables/logger.txt"),
+    include_str!("tables/bare.txt"),
+    include_str!("tables/runs.csv"),
+    include_str!("tables/stopwatch.csv"),
 ];
 
 /// Reads whatever it is, in every way; only that it ends matters.
@@ -100,6 +100,21 @@ fn no_change_to_a_good_file_is_too_much() {
             assert!(outcome.is_ok(), "kind {kind}, round {round}: {} bytes", bytes.len());
         }
     }
+}
+
+/// Addresses of cells beyond any sheet make the reader of workbooks overflow.
+#[test]
+fn no_address_is_too_far() {
+    for address in ["AINTERVALLLLLL3", "A99999999999"] {
+        swallow(&workbook(&[("a", format!("<row r=\"1\"><c r=\"{address}\"><v>1</v></c></row>"))]));
+    }
+}
+
+#[test]
+fn no_message_is_too_long() {
+    let rows = format!("<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><{}></row>", "\u{3}I".repeat(5000));
+    let error = Table::parse("any", &workbook(&[("a", rows)]), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.len() < 1000 && !error.contains('\u{3}'), "{error}");
 }
 
 proptest! {

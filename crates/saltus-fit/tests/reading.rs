@@ -313,13 +313,18 @@ fn swallow(bytes: &[u8]) {
     }
 }
 
+#[test]
+fn no_number_of_a_bounce_is_too_large() {
+    swallow(b"h18446744073709551615_cm\n65\n67\n");
+}
+
 const SEEDS: [&str; 6] = [
-    "# frame rate: 30\nevent,time_s,height_cm\nrelease,0,100\ncontact,0.45,\napex,,30\ncontact,0.85,\napex,,10\ncontact,1.11,\n",
-    "bounce;height_cm\n0;100,0\n1;30,5\n2;9,8\n",
-    "trial,bounce,time_s\n1,0,0.1\n1,1,0.9\n1,2,1.5\n1,3,1.9\n2,0,0.1\n2,1,0.8\n2,2,1.4\n",
-    "bounce,trial 1 (cm),trial 2 (cm)\n0,100,100\n1,64,65\n2,41,\n",
-    "h0_cm,bounce,trial,interval_s\n65,1,1,0.5\n65,2,1,0.4\n65,3,1,0.3\n",
-    "drop_cm,rebound_cm,height_error_cm\n100,64,1\n100,65,\n80,51,2\n",
+    include_str!("tables/frames.csv"),
+    include_str!("tables/semicolons.csv"),
+    include_str!("tables/trials.csv"),
+    include_str!("tables/wide.csv"),
+    include_str!("tables/intervals.csv"),
+    include_str!("tables/rebounds.csv"),
 ];
 
 proptest! {

@@ -180,6 +180,30 @@ fn a_mark_and_windows_line_ends_change_nothing() {
     assert!(!error.to_string().contains('\r'));
 }
 
+/// The middle ball of three hands the impact on to the one that touches it: its event has both sides of all three.
+#[test]
+fn an_impact_that_is_handed_on_has_a_side_of_each_ball() {
+    let ball = |height: f64, mass: f64| format!("[[ball]]\nradius = 0.0625\nmass = {mass:?}\nheight = {height:?}\n");
+    let balls = [ball(0.0, 2.0), ball(0.25, 1.0), ball(0.375, 1.0)].concat();
+    let toml = format!("restitution = 0.9375\n{balls}[run]\nmost_jumps = 3\n");
+    let record = Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+    let events = record.events();
+    let event = events.iter().find(|event| event.edge == "ball").unwrap();
+    let mut balls: Vec<usize> = event.sides.iter().map(|side| side.ball).collect();
+    balls.sort_unstable();
+    assert_eq!(balls, [0, 1, 2]);
+    assert!(event.sides.iter().all(|side| side.before.velocity != side.after.velocity));
+}
+
+/// What swings on long after it could be seen is not kept as finely as the rounding of its time.
+#[test]
+fn what_lies_on_a_soft_floor_is_kept_in_few_pieces() {
+    let toml = "ball = { height = '5 mm', mass = '3 g' }\ncontact = { law = 'kelvin-voigt', stiffness = 3.5e5, damping = 2.6 }\nrun = { until = 4 }\n";
+    let record = Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+    let pieces = record.segments(0).len();
+    assert!(pieces < 40_000, "{pieces} pieces");
+}
+
 #[test]
 fn what_rests_from_the_start_is_shown_at_rest() {
     for more in ["", "drag = { per_length = 0.1 }\n", "drag = { per_length = 0.1, rate = 0.1 }\n"] {

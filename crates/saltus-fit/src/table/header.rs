@@ -328,7 +328,12 @@ fn words(cell: &str) -> (Vec<String>, Option<String>) {
 fn is_trial(cell: &str) -> bool {
     let (words, _) = words(cell);
     words.first().is_some_and(|word| TRIAL.contains(&word.as_str()))
-        && words.get(1).is_some_and(|n| n.parse::<usize>().is_ok())
+        && words.get(1).is_some_and(|n| number(n).is_some())
+}
+
+/// The number of a bounce or a trial in a name; nobody counts further.
+fn number(word: &str) -> Option<usize> {
+    word.parse().ok().filter(|n| *n <= 1_000_000)
 }
 
 fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) -> Result<Column, TableError> {
@@ -341,8 +346,8 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
     let Some(first) = words.first().map(String::as_str) else {
         return if cell.is_empty() { make(Kind::Ignored, one) } else { Err(unknown(sheet, index, cell)) };
     };
-    let numbered = words.get(1).and_then(|n| n.parse::<usize>().ok());
-    let joined = first.get(1..).and_then(|n| n.parse::<usize>().ok());
+    let numbered = words.get(1).and_then(|n| number(n));
+    let joined = first.get(1..).and_then(number);
 
     let beside_trials = || sheet.block.header.iter().any(|cell| is_trial(cell));
     if AVERAGE.contains(&first) && beside_trials() {

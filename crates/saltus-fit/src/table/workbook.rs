@@ -4,10 +4,12 @@
 //! trusted, cells are read one by one, and what they add up to is bounded.
 
 use std::io::{Cursor, Read, copy, sink};
+use std::panic::{UnwindSafe, catch_unwind};
 
 use calamine::{Data, DataRef, Reader, Xls, Xlsx, XlsxError};
 use zip::ZipArchive;
 
+use super::old_workbook;
 use crate::error::TableError;
 
 /// What a workbook or an archive may hold when unpacked, in bytes.
@@ -16,6 +18,8 @@ const UNPACKED: u64 = 128 << 20;
 const TEXT: usize = 64 << 20;
 /// Entries of an archive that are looked at.
 const ENTRIES: usize = 1000;
+/// How much of another reader's message is shown, in characters.
+const SHOWN: usize = 200;
 /// A cell longer than this holds no reading.
 const CELL: usize = 1000;
 
@@ -35,9 +39,7 @@ pub(super) enum Content {
 /// The tables of a workbook or an archive; `None` if `bytes` are neither.
 pub(super) fn parts(name: &str, bytes: &[u8]) -> Option<Result<Vec<Part>, TableError>> {
     if bytes.starts_with(&[0xD0, 0xCF, 0x11, 0xE0]) {
-        // The reader of this old format trusts what it reads and may panic over a damaged file.
-        let read = std::panic::catch_unwind(|| xls(bytes)).unwrap_or_else(|_| Err("it is damaged".to_owned()));
-        Some(read.map_err(|problem| broken(name, "workbook", &problem)))
+        Some(caught(|| xls(bytes)).map_err(|problem| broken(name, "workbook", &problem)))
     } else if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
         Some(archive(name, bytes))
     } else {
@@ -45,7 +47,14 @@ pub(super) fn parts(name: &str, bytes: &[u8]) -> Option<Result<Vec<Part>, TableE
     }
 }
 
+/// The readers of workbooks trust what they read and may panic over a damaged file.
+fn caught(read: impl FnOnce() -> Result<Vec<Part>, String> + UnwindSafe) -> Result<Vec<Part>, String> {
+    catch_unwind(read).unwrap_or_else(|_| Err("it is damaged".to_owned()))
+}
+
 fn broken(name: &str, what: &str, problem: &str) -> TableError {
+    // Readers quote what they stumble over, whatever its length.
+    let problem: String = problem.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
     TableError::new(name, format!("this {what} cannot be read: {problem}"))
         .help("save the table as CSV (UTF-8) and try again")
 }
@@ -56,7 +65,7 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
     let has = |entry: &str| names.iter().any(|n| n == entry);
     if has("xl/workbook.xml") {
         measure(&mut zip).map_err(|problem| broken(name, "workbook", &problem))?;
-        return xlsx(bytes).map_err(|problem| broken(name, "workbook", &problem));
+        return caught(|| xlsx(bytes)).map_err(|problem| broken(name, "workbook", &problem));
     }
     if has("content.xml") || has("xl/workbook.bin") {
         return Err(TableError::new(name, "workbooks of this kind are not read").help("save it as .xlsx or as CSV"));
@@ -128,24 +137,8 @@ fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
     Ok(parts)
 }
 
-/// Whether every sector that the container of an old workbook chains together is in the file: else it was cut short.
-fn is_whole(bytes: &[u8]) -> bool {
-    let long = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
-    let size = if bytes.get(30) == Some(&12) { 4096 } else { 512 };
-    let sectors = bytes.len().div_ceil(size).saturating_sub(1);
-    // The largest six numbers mean "the end", "free" and the like.
-    let here = |id: u32| id > 0xFFFF_FFF9 || (id as usize) < sectors;
-    let tables = (0..109).map_while(|n| long(76 + 4 * n)).filter(|id| *id <= 0xFFFF_FFF9);
-    tables.into_iter().all(|id| {
-        let start = (id as usize + 1) * size;
-        here(id) && (start..start + size).step_by(4).all(|at| long(at).is_some_and(here))
-    })
-}
-
 fn xls(bytes: &[u8]) -> Result<Vec<Part>, String> {
-    if !is_whole(bytes) {
-        return Err("it is damaged or was cut short".to_owned());
-    }
+    old_workbook::check(bytes)?;
     let mut workbook = Xls::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     let mut parts = Vec::new();
     let mut left = TEXT;

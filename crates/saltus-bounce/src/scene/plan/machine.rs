@@ -376,9 +376,15 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
                 to: self.reader.mode(jump.to, ball),
                 after: self.moment(&jump.after, ball),
             };
+            let all = || (0..self.balls()).map(side);
             let sides = match happening.balls {
-                [None, None] => (0..self.balls()).map(side).collect(),
-                some => some.into_iter().flatten().map(side).collect(),
+                [None, None] => all().collect(),
+                // What touches hands an impact on at the same time: then others take part.
+                some => {
+                    let passed =
+                        all().filter(|s| !some.contains(&Some(s.ball)) && s.before.velocity != s.after.velocity);
+                    some.into_iter().flatten().map(side).chain(passed).collect()
+                }
             };
             Event { t: jump.t(), j: jump.j, edge: happening.edge, sides }
         };
