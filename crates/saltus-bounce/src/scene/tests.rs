@@ -237,7 +237,12 @@ fn an_outcome_is_what_the_record_shows() {
                     [ball.position - shown.position, ball.velocity - shown.velocity, ball.spin - shown.spin];
                 assert!(difference.iter().all(|d| d.norm() < 1e-12), "{ball:?} {shown:?}");
             }
-            let shown = Outcome { cost: outcome.cost, balls: outcome.balls.clone(), ..shown };
+            // And so is the state at an apex that is a jump.
+            let apexes = outcome.first_apex.zip(shown.first_apex);
+            let apart = apexes.map_or(0.0, |(a, b)| (a.t - b.t).abs().max((a.height - b.height).abs()));
+            assert!(apart < 1e-12 && outcome.first_apex.is_some() == shown.first_apex.is_some(), "{apexes:?}");
+            let (balls, first_apex) = (outcome.balls.clone(), outcome.first_apex);
+            let shown = Outcome { cost: outcome.cost, balls, first_apex, ..shown };
             assert_eq!(outcome, shown, "{} until {until:?}", path.display());
             assert_eq!(outcome.cost.jumps, record.cost().jumps, "{}", path.display());
             seen += usize::from(outcome.impacts > 0 && outcome.first_apex.is_some());
