@@ -24,7 +24,7 @@ impl Report {
     /// use saltus_fit::{Fit, Table};
     /// let report = Fit::new().run(&Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?)?;
     /// let scene = report.scene().unwrap();
-    /// assert!(scene.contains("restitution = 0.79") && scene.contains("[ball]\nheight = \"0.99"));
+    /// assert!(scene.contains("restitution = 0.79") && scene.contains("[ball]\nheight = \"1.000"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
