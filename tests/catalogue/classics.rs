@@ -2,9 +2,10 @@
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, Run, Simulation};
+use saltus_tests::watched::watched;
 
 use crate::report::Report;
-use crate::root::{tight, times, watched};
+use crate::root::{tight, times};
 
 cases! {
     two_rate_switch = "two-rate-switch";

@@ -1,7 +1,8 @@
 //! Crossings that are hard to find, hard to tell apart, or not there.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, Simulation, State};
+use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, Simulation};
+use saltus_tests::watched::watched;
 
 use crate::report::Report;
 
@@ -20,18 +21,6 @@ cases! {
     fast_guard = "fast-guard";
     newton_killer = "newton-killer";
     grazing_impact = "grazing-impact";
-}
-
-/// A flow whose guard is recorded in both directions and changes nothing.
-pub(crate) fn watched<'a, S: State + 'a>(
-    flow: impl Fn(f64, &S) -> S + Send + Sync + 'a,
-    guard: impl Fn(f64, &S) -> f64 + Send + Sync + Copy + 'a,
-) -> Hybrid<'a, S> {
-    Hybrid::new()
-        .mode("run", flow)
-        .edge("run", "run", guard, |_t, x| *x)
-        .edge("run", "run", move |t, x| -guard(t, x), |_t, x| *x)
-        .entry("run", "run", Entry::Wait)
 }
 
 pub(crate) fn times<A: Automaton>(run: &Run<A>) -> Vec<f64> {

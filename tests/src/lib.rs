@@ -26,6 +26,7 @@ pub mod random_scene;
 pub mod reference;
 pub mod scene_laws;
 pub mod sturm;
+pub mod watched;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/physics.md")]

@@ -31,6 +31,13 @@ pub(crate) struct Export {
     /// Write the file anew where it exists.
     #[arg(long)]
     pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) shown: Shown,
+}
+
+/// How a motion is put on frames and keys.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Shown {
     /// The number of the frame at which the motion starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
     pub(crate) first_frame: i32,
@@ -111,8 +118,8 @@ impl ExportFormat {
 pub(crate) fn run(args: &Export, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
     check_new(args.output.as_deref(), args.force)?;
-    let stage = Stage::of(&args.scene, &args.staging, args.first_frame, quiet)?;
-    let file = file(&stage, format, args.tolerance)?;
+    let stage = Stage::of(&args.scene, &args.shown.staging, args.shown.first_frame, quiet)?;
+    let file = file(&stage, format, args.shown.tolerance)?;
     write(args.output.as_deref(), &file.bytes)?;
     say(quiet, &says(&stage, &file));
     Ok(ExitCode::SUCCESS)

@@ -7,13 +7,12 @@ use std::{fs, io};
 
 use clap::Args as ClapArgs;
 use saltus_bounce::scene::Template;
-use saltus_bounce::units::Quantity;
-use saltus_fit::{Fit, ReadOptions, Table};
+use saltus_fit::{Fit, ReadOptions};
 use serde_json::{Map, Value as Json, json};
 
-use crate::args::positive;
 use crate::error::Error;
-use crate::export::{self, ExportFormat};
+use crate::export::{self, ExportFormat, Shown};
+use crate::fit::tables;
 use crate::output::{extension, say, write};
 use crate::progress::Progress;
 use crate::quantity;
@@ -50,14 +49,8 @@ pub(crate) struct Library {
     /// Write into the folder also where it is not empty.
     #[arg(long)]
     pub(crate) force: bool,
-    /// The number of the frame at which each motion starts.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = clap::value_parser!(i32).range(-1_000_000..=1_000_000))]
-    pub(crate) first_frame: i32,
     #[command(flatten)]
-    pub(crate) staging: Staging,
-    /// How far keys may be from the motion where more than gravity acts.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
-    pub(crate) tolerance: f64,
+    pub(crate) shown: Shown,
 }
 
 pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
@@ -85,27 +78,31 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     let mut progress = Progress::new(runs, quiet);
     let (mut motions, mut nothing) = (Vec::new(), Vec::new());
     let (mut off, mut miss) = (0.0_f64, 0.0_f64);
-    #[allow(clippy::cast_possible_truncation)] // at most ten thousand
-    let ended = saltus::ensemble(
-        0..runs as usize,
-        |run| maker.made(run as u64),
-        |run, made| {
-            progress.reached(run as u64 + 1);
-            match made {
-                Ok(made) => {
-                    (off, miss) = (off.max(made.off), miss.max(made.miss));
-                    for (file, bytes) in &made.files {
-                        if let Err(error) = write(Some(&args.output.join(file)), bytes) {
-                            return ControlFlow::Break(error);
-                        }
+    let mut put = |run: usize, made: Result<Made, String>| {
+        progress.reached(run as u64 + 1);
+        match made {
+            Ok(made) => {
+                (off, miss) = (off.max(made.off), miss.max(made.miss));
+                for (file, bytes) in &made.files {
+                    if let Err(error) = write(Some(&args.output.join(file)), bytes) {
+                        return ControlFlow::Break(error);
                     }
-                    motions.push(made.says);
                 }
-                Err(why) => nothing.push(json!({ "run": run, "values": maker.values(run as u64), "why": why })),
+                motions.push(made.says);
             }
-            ControlFlow::Continue(())
-        },
-    );
+            Err(why) => {
+                let values = named(&args.vary, &args.vary.values(run as u64));
+                nothing.push(json!({ "run": run, "values": values, "why": why }));
+            }
+        }
+        ControlFlow::Continue(())
+    };
+    #[allow(clippy::cast_possible_truncation)] // at most ten thousand
+    let rest = 1..runs as usize;
+    let ended = match put(0, Ok(first)) {
+        ControlFlow::Continue(()) => saltus::ensemble(rest, |run| maker.made(run as u64), put),
+        stopped => stopped,
+    };
     progress.clear();
     if let ControlFlow::Break(error) = ended {
         return Err(error);
@@ -144,7 +141,7 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
 fn source(path: &Path, quiet: bool) -> Result<(String, Vec<u8>), Error> {
     match extension(path).as_deref() {
         Some("csv" | "tsv" | "txt" | "xlsx" | "xls" | "zip") => {
-            let table = Table::read_all(&[path.to_owned()], &ReadOptions::default()).map_err(Error::new)?;
+            let table = tables(&[path.to_owned()], &ReadOptions::default())?;
             let report = Fit::new().run(&table).map_err(Error::new)?;
             let scene = report
                 .scene()
@@ -198,28 +195,29 @@ impl Maker<'_> {
     fn made(&self, run: u64) -> Result<Made, String> {
         let args = self.args;
         let values = args.vary.values(run);
-        let mut staging = args.staging.clone();
-        let mut of_scene: Vec<Value> = Vec::new();
-        for (variation, value) in args.vary.variations.iter().zip(values) {
+        let mut staging = args.shown.staging.clone();
+        let mut of_scene: Vec<&str> = Vec::new();
+        for (variation, value) in args.vary.variations.iter().zip(&values) {
             if Staging::VARIED.contains(&variation.key.as_str()) {
                 staging.set(&variation.key, value.bare())?;
             } else {
-                of_scene.push(value);
+                of_scene.push(&value.toml);
             }
         }
         let end = ending(staging.until, None);
-        let scene = vary::scene(self.template, &of_scene, end).map_err(|error| vary::refused(&error))?;
+        let scene = self.template.scene(&of_scene, end).map_err(|error| vary::refused(&error))?;
         let record = scene.plan().map_err(|error| error.to_string())?.run().map_err(|error| error.to_string())?;
-        let stage = Stage::shown(&scene, &record, &staging, args.first_frame).map_err(|error| error.to_string())?;
-        let name = self.name(run);
-        let (mut files, mut named, mut miss) = (Vec::new(), Map::new(), 0.0_f64);
+        let stage =
+            Stage::shown(&scene, &record, &staging, args.shown.first_frame).map_err(|error| error.to_string())?;
+        let name = self.name(run, &values);
+        let (mut files, mut written, mut miss) = (Vec::new(), Map::new(), 0.0_f64);
         for &format in &args.to {
-            let file = export::file(&stage, format, args.tolerance).map_err(|error| error.to_string())?;
+            let file = export::file(&stage, format, args.shown.tolerance).map_err(|error| error.to_string())?;
             let path = format!("{name}.{}", format.ending());
             miss = miss.max(file.miss.height);
             let says = export::says(&stage, &file);
             let of = json!({ "name": path, "keys": file.keys, "height_error_m": file.miss.height, "says": says });
-            named.insert(format.name(), of);
+            written.insert(format.name(), of);
             files.push((path, file.bytes));
         }
         let Stage { motion, frames, note, .. } = stage;
@@ -232,27 +230,17 @@ impl Maker<'_> {
         });
         let off = motion.off_frame(frames);
         let says = json!({
-            "run": run, "values": self.values(run), "files": named, "fps": frames.rate.to_string(),
+            "run": run, "values": named(&args.vary, &values), "files": written, "fps": frames.rate.to_string(),
             "first_frame": frames.first, "last_frame": frames.number(motion.end()), "end_s": motion.end(), "loops": motion.loops,
             "contacts": contacts.collect::<Vec<_>>(), "frames_off": off,
         });
         Ok(Made { files, says, note, off, miss })
     }
 
-    /// The values of a run by the names of their columns.
-    fn values(&self, run: u64) -> Map<String, Json> {
-        let values = self.args.vary.values(run);
-        let pairs = self.args.vary.variations.iter().zip(values).map(|(variation, value)| {
-            let number = value.cell.parse::<f64>().ok().filter(|_| !value.word);
-            (variation.header(), number.map_or_else(|| json!(value.cell), Json::from))
-        });
-        pairs.collect()
-    }
-
     /// `07-restitution=0.7-ball.height=1m`: for people to tell files apart; the number alone does for programs.
-    fn name(&self, run: u64) -> String {
+    fn name(&self, run: u64, values: &[Value]) -> String {
         let mut name = format!("{run:0width$}", width = self.digits);
-        for (variation, value) in self.args.vary.variations.iter().zip(self.args.vary.values(run)) {
+        for (variation, value) in self.args.vary.variations.iter().zip(values) {
             let value = match quantity::split(value.bare()) {
                 Some((number, unit)) => {
                     format!("{}{}", quantity::digits(number, 4), unit.replace('/', "p"))
@@ -264,4 +252,13 @@ impl Maker<'_> {
         let plain = |c: char| c.is_alphanumeric() || matches!(c, '.' | '-' | '=' | '_' | '+');
         name.chars().map(|c| if plain(c) { c } else { '_' }).take(NAME).collect()
     }
+}
+
+/// Values by the names of their columns.
+fn named(vary: &Vary, values: &[Value]) -> Map<String, Json> {
+    let pairs = vary.variations.iter().zip(values).map(|(variation, value)| {
+        let number = value.cell.parse::<f64>().ok().filter(|_| !value.word);
+        (variation.header(), number.map_or_else(|| json!(value.cell), Json::from))
+    });
+    pairs.collect()
 }

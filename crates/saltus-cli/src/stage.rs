@@ -52,23 +52,22 @@ impl Stage {
         if let Some(hop) = staging.looped {
             free = free.looped(hop as usize).map_err(Error::new)?;
             says += &format!("; hop {hop} alone, as a loop");
-        } else if let high @ f64::MIN_POSITIVE.. = hops_below(&whole, frames.step())
-            && whole.tracks != free.tracks
-        {
-            says += &format!("; hops of up to {} left out", length(high));
+        } else {
+            let high = hops_below(&whole, frames.step());
+            if high > 0.0 && whole.tracks != free.tracks {
+                says += &format!("; hops of up to {} left out", length(high));
+            }
         }
-        let by = match (staging.snap, staging.looped) {
-            (Some(SnapBy::Gravity), _) => Some(Snap::Gravity),
-            (Some(SnapBy::Heights), _) => Some(Snap::Heights),
+        let by = |by: Snap| free.snapped(by, frames).map(|snapped| (by, snapped));
+        let snapped = match staging.snap {
+            Some(SnapBy::Gravity) => Some(by(Snap::Gravity)),
+            Some(SnapBy::Heights) => Some(by(Snap::Heights)),
             // A loop has whole frames.
-            (None, Some(_)) if free.snapped(Snap::Gravity, frames).is_ok() => Some(Snap::Gravity),
-            (None, Some(_)) => Some(Snap::Heights),
-            (None, None) => None,
+            None => staging.looped.map(|_| by(Snap::Gravity).or_else(|_| by(Snap::Heights))),
         };
-        let snapped = match by {
+        let snapped = match snapped.transpose().map_err(Error::new)? {
             None => free,
-            Some(by) => {
-                let snapped = free.snapped(by, frames).map_err(Error::new)?;
+            Some((by, snapped)) => {
                 says += &if by == Snap::Gravity {
                     format!("; snapped by gravity, tops moved by up to {}", length(snapped.tops_differ(&free)))
                 } else {

@@ -15,7 +15,8 @@ mod twice;
 use std::ops::Range;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Entry, Hybrid, Link, Polynomial, Run, Simulation, State};
+use saltus::{Automaton, Hybrid, Link, Polynomial, Run, Simulation, State};
+use saltus_tests::watched::watched;
 
 /// Gravity, m/s².
 const G: f64 = 9.8;
@@ -75,18 +76,6 @@ fn ball(g: f64, e: f64, path: Path) -> Hybrid<'static, Flight> {
         .exact("rest", |_t, x| Polynomial::from([*x]))
         .beyond("flight", "rest", |_t, _x| vector![0.0, 0.0]);
     path.prepare(automaton, "flight", "flight", parabola(g))
-}
-
-/// A flow and a guard whose crossings in both directions are recorded and change nothing.
-fn watched<'a, S: State + 'a>(
-    flow: impl Fn(f64, &S) -> S + Send + Sync + 'a,
-    guard: impl Fn(f64, &S) -> f64 + Send + Sync + Copy + 'a,
-) -> Hybrid<'a, S> {
-    Hybrid::new()
-        .mode("run", flow)
-        .edge("run", "run", guard, |_t, x| *x)
-        .edge("run", "run", move |t, x| -guard(t, x), |_t, x| *x)
-        .entry("run", "run", Entry::Wait)
 }
 
 /// The crossings of a watched guard in order.

@@ -3,15 +3,19 @@
 mod pictures;
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use saltus_fit::{CorModel, Fit, ReadOptions, Table, Verdict};
+use saltus_fit::{CorModel, Fit, ReadOptions, Report, Table, Verdict};
+use saltus_plot::PlotError;
 
 use crate::args::{self, ReportFormat};
 use crate::error::Error;
 use crate::output::{check_new, check_picture, say, write};
 use crate::progress::Progress;
+
+/// A picture of a report, where it has one.
+type Draw = fn(&Report) -> Option<Result<String, PlotError>>;
 
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     for picture in [&args.plot, &args.plot_cor, &args.plot_ladder, &args.plot_profile] {
@@ -29,21 +33,17 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
     };
-    let drawn = [
-        (&args.plot, pictures::motion(&report), "no picture: the table has no motion to draw"),
-        (&args.plot_cor, pictures::cor(&report), "no picture of the COR: the table does not give it at several speeds"),
-        (&args.plot_ladder, pictures::ladder(&report), "no ladder: the table gives no two heights of apexes"),
-        (
-            &args.plot_profile,
-            pictures::profile(&report),
-            "no profile: no COR was fitted to heights or times of bounces",
-        ),
+    let pictures: [(_, Draw, _); 4] = [
+        (&args.plot, pictures::motion, "no picture: the table has no motion to draw"),
+        (&args.plot_cor, pictures::cor, "no picture of the COR: the table does not give it at several speeds"),
+        (&args.plot_ladder, pictures::ladder, "no ladder: the table gives no two heights of apexes"),
+        (&args.plot_profile, pictures::profile, "no profile: no COR was fitted to heights or times of bounces"),
     ];
-    for (path, picture, none) in drawn {
-        match (path, picture.transpose().map_err(Error::new)?) {
-            (Some(path), Some(picture)) => write(Some(path), picture.as_bytes())?,
-            (Some(_), None) => say(quiet, none),
-            (None, _) => {}
+    for (path, draw, none) in pictures {
+        let Some(path) = path else { continue };
+        match draw(&report).transpose().map_err(Error::new)? {
+            Some(picture) => write(Some(path), picture.as_bytes())?,
+            None => say(quiet, none),
         }
     }
     write(args.output.as_deref(), text.as_bytes())?;
@@ -63,13 +63,6 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
 }
 
 fn read(args: &args::Fit) -> Result<Table, Error> {
-    // The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
-    let usual = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        if !info.location().is_some_and(|place| place.file().contains("calamine")) {
-            usual(info);
-        }
-    }));
     let options = options(args);
     if args.tables == [Path::new("-")] {
         let mut bytes = Vec::new();
@@ -78,8 +71,20 @@ fn read(args: &args::Fit) -> Result<Table, Error> {
     } else if args.tables.iter().any(|table| table == Path::new("-")) {
         Err(Error::new("standard input, '-', cannot be read together with other tables"))
     } else {
-        Table::read_all(&args.tables, &options).map_err(Error::new)
+        tables(&args.tables, &options)
     }
+}
+
+/// The trials of files, together.
+pub(crate) fn tables(paths: &[PathBuf], options: &ReadOptions) -> Result<Table, Error> {
+    // The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !info.location().is_some_and(|place| place.file().contains("calamine")) {
+            usual(info);
+        }
+    }));
+    Table::read_all(paths, options).map_err(Error::new)
 }
 
 fn options(args: &args::Fit) -> ReadOptions {

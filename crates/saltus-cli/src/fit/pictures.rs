@@ -47,20 +47,16 @@ pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
         .background(Background::Adaptive)
         .caption("Marks: each bounce by itself, ± one standard error");
     if let Some(law) = law {
-        let bent = |points: Vec<[f64; 2]>| {
-            points
-                .windows(2)
-                .map(|w| Stroke::new(1.0, vec![w[0][0], w[1][0] - w[0][0]], vec![w[0][1], w[1][1] - w[0][1]]))
-                .collect::<Vec<_>>()
+        let at = |side: f64| {
+            let shifted = law.speeds.iter().map(|s| [s.speed, s.cor + side * 1.96 * s.standard_error]);
+            Stroke::polygon(&shifted.collect::<Vec<_>>())
         };
-        let at =
-            |side: f64| bent(law.speeds.iter().map(|s| [s.speed, s.cor + side * 1.96 * s.standard_error]).collect());
         picture = picture.line(&law.about, at(0.0)).line("95 % band", at(-1.0).into_iter().chain(at(1.0)));
     }
     if let Some(one) =
         report.models().iter().find(|m| m.name == "constant").map(|m| m.cor.value).or(report.cor().map(|c| c.value))
     {
-        picture = picture.line("one COR", [Stroke::new(1.0, vec![slowest, fastest - slowest], vec![one])]);
+        picture = picture.line("one COR", Stroke::polygon(&[[slowest, one], [fastest, one]]));
     }
     Some(picture.caption(&caption(report)).svg())
 }

@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
+use super::flat::cubics;
 use super::svg::escaped;
 use super::{Ball, Export};
-use crate::curve::Curve;
 use crate::motion::Track;
 
 /// The least width and the height of the picture, in its own units.
@@ -57,7 +57,8 @@ pub(super) fn chart(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
         let track = ball.track;
         if travels {
             let x = |x: f64| ROOM[0] + (x - left) * scale;
-            let _ = writeln!(lines, "<path class=\"way\" d=\"{}\"/>", path(&ball.path, &x, &y));
+            let way = cubics(&ball.path, |p| format!("{:.2} {:.2}", x(p[0]), y(p[2])));
+            let _ = writeln!(lines, "<path class=\"way\" d=\"{way}\"/>");
             let at = |t: f64| [x(track.at(t)[0]), y(track.at(t)[2])];
             let all = [0.0, track.end()];
             marks.extend(events(export, track, all).into_iter().map(|(t, event)| {
@@ -212,21 +213,4 @@ fn numbered(export: &Export<'_>, mut marks: Vec<Mark>, columns: bool) -> (String
         }
     }
     (ticks + &points + &numbers, hidden)
-}
-
-/// A path as exact cubics.
-fn path(curve: &Curve, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64) -> String {
-    let mut path = String::new();
-    for (n, pair) in curve.keys.windows(2).enumerate() {
-        let third = (pair[1].t - pair[0].t) / 3.0;
-        let [p, q] = [pair[0].place, pair[1].place];
-        let point = |p: [f64; 3]| format!("{:.2} {:.2}", x(p[0]), y(p[2]));
-        let out = std::array::from_fn(|axis| p[axis] + third * pair[0].leave[axis]);
-        let back = std::array::from_fn(|axis| q[axis] - third * pair[1].enter[axis]);
-        if n == 0 {
-            let _ = write!(path, "M{}", point(p));
-        }
-        let _ = write!(path, "C{} {} {}", point(out), point(back), point(q));
-    }
-    path
 }

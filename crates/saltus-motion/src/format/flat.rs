@@ -1,5 +1,7 @@
 //! A ball in the plane of x and up, as groups within groups, each moved by one number.
 
+use std::fmt::Write;
+
 use super::Ball;
 use super::view::View;
 use crate::curve::Curve;
@@ -65,4 +67,20 @@ fn turned(turns: &[Turn], held: bool) -> Vec<Ease> {
         handles: (!held).then_some([1.0 / 3.0, 2.0 / 3.0]),
     };
     turns.windows(2).map(ease).collect()
+}
+
+/// A curve as exact cubics of an SVG path, whose points are written by `point`.
+pub(super) fn cubics(curve: &Curve, point: impl Fn([f64; 3]) -> String) -> String {
+    let mut path = String::new();
+    for (n, pair) in curve.keys.windows(2).enumerate() {
+        let third = (pair[1].t - pair[0].t) / 3.0;
+        let [p, q] = [pair[0].place, pair[1].place];
+        let out = std::array::from_fn(|axis| p[axis] + third * pair[0].leave[axis]);
+        let back = std::array::from_fn(|axis| q[axis] - third * pair[1].enter[axis]);
+        if n == 0 {
+            let _ = write!(path, "M{}", point(p));
+        }
+        let _ = write!(path, "C{} {} {}", point(out), point(back), point(q));
+    }
+    path
 }

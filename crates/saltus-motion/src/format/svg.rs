@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::flat::{Channel, Moves, channels};
+use super::flat::{Channel, Moves, channels, cubics};
 use super::view::View;
 use super::{Ball, Export};
-use crate::curve::{Between, Curve};
+use crate::curve::Between;
 
 /// For how long the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
@@ -20,7 +20,8 @@ pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     }
     for (n, ball) in balls.iter().enumerate() {
         if ball.path.between == Between::Cubic {
-            let _ = writeln!(body, "<path class=\"path\" d=\"{}\"/>", path(&view, &ball.path, ball.track.radius));
+            let way = cubics(&ball.path, |[x, _, up]| format!("{} {}", view.x(x), view.y(up + ball.track.radius)));
+            let _ = writeln!(body, "<path class=\"path\" d=\"{way}\"/>");
         }
         // Each number has eases of its own, so each moves a group of its own.
         let channels = channels(ball, &view);
@@ -86,23 +87,6 @@ fn keyframes(style: &mut String, name: &str, channel: &Channel, from: f64, durat
         let _ = writeln!(style, "{}%,100%{{{}}}", 100.0 * last.t[1] / duration, shown(last.value[1]));
     }
     style.push_str("}\n");
-}
-
-/// The path of the centre.
-fn path(view: &View, curve: &Curve, radius: f64) -> String {
-    let point = |[x, _, up]: [f64; 3]| format!("{} {}", view.x(x), view.y(up + radius));
-    let mut path = String::new();
-    for (n, pair) in curve.keys.windows(2).enumerate() {
-        let third = (pair[1].t - pair[0].t) / 3.0;
-        let [p, q] = [pair[0].place, pair[1].place];
-        let out = std::array::from_fn(|axis| p[axis] + third * pair[0].leave[axis]);
-        let back = std::array::from_fn(|axis| q[axis] - third * pair[1].enter[axis]);
-        if n == 0 {
-            let _ = write!(path, "M{}", point(p));
-        }
-        let _ = write!(path, "C{} {} {}", point(out), point(back), point(q));
-    }
-    path
 }
 
 /// Text as XML has it.

@@ -136,9 +136,8 @@ impl<R: Restitution> Reader<Ball<QuadraticDragFlight, R>> for Upright {
     fn origin(&self, _: usize) -> Moment {
         self.origin()
     }
-    const APEXES_ARE_JUMPS: bool = true;
-    fn is_apex(&self, jump: &Jump<Ball<QuadraticDragFlight, R>>) -> bool {
-        (jump.from, jump.to) == (Phase::Rising, Phase::Falling)
+    fn apex_jump(&self) -> Option<(Phase, Phase)> {
+        Some((Phase::Rising, Phase::Falling))
     }
     fn mode(&self, phase: Phase, _: usize) -> &'static str {
         match phase {

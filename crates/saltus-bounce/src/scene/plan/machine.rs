@@ -99,11 +99,9 @@ pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
     fn flies(&self, mode: A::Mode, ball: usize) -> bool;
     /// Whether nothing moves any more.
     fn rests(&self, mode: A::Mode, x: &A::State) -> bool;
-    /// Whether a flight has a jump at its apex, which [`Reader::is_apex`] tells from others.
-    const APEXES_ARE_JUMPS: bool = false;
-    fn is_apex(&self, jump: &Jump<A>) -> bool {
-        let _ = jump;
-        false
+    /// The modes before and after the jump at an apex, where a flight has one.
+    fn apex_jump(&self) -> Option<(A::Mode, A::Mode)> {
+        None
     }
     /// A jump by an edge.
     fn happening(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> Happening;

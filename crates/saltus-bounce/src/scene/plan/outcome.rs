@@ -108,7 +108,7 @@ impl<'a, A: Automaton, R: Reader<A>> Watch<'a, A, R> {
 
 impl<A: Automaton, R: Reader<A>> Observer<A> for Watch<'_, A, R> {
     fn wants_pieces(&self) -> bool {
-        self.tops.is_some() && !R::APEXES_ARE_JUMPS
+        self.tops.is_some() && self.reader.apex_jump().is_none()
     }
 
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
@@ -122,7 +122,7 @@ impl<A: Automaton, R: Reader<A>> Observer<A> for Watch<'_, A, R> {
     }
 
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
-        if self.reader.is_apex(jump) {
+        if self.reader.apex_jump() == Some((jump.from, jump.to)) {
             if self.tops.take().is_some() {
                 let height = moment(self.reader, &jump.before, 0).height();
                 self.apex = Some(Apex { t: jump.t(), height });
