@@ -210,7 +210,7 @@ impl Fit {
 
         if heights.is_none()
             && times.is_none()
-            && let Some(found) = series::fit(table)?
+            && let Some(found) = series::fit(table, !self.no_repair)?
         {
             series::judge(&mut report, &found);
             (report.motion, report.points, report.residuals) = found.picture();

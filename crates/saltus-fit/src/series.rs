@@ -10,6 +10,7 @@ mod motion;
 mod parabolas;
 mod pool;
 mod track;
+mod wild;
 
 use serde::Serialize;
 
@@ -95,8 +96,8 @@ pub(crate) struct Series {
     pub(crate) repairs: Vec<String>,
 }
 
-/// Fits every series of the table; `None` if it has none.
-pub(crate) fn fit(table: &Table) -> Result<Option<Series>, FitError> {
+/// Fits every series of the table, with wild samples left out if `repair`; `None` if it has none.
+pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitError> {
     let mut series = Series::default();
     let mut seen = false;
     let mut candidates = Vec::new();
@@ -108,7 +109,7 @@ pub(crate) fn fit(table: &Table) -> Result<Option<Series>, FitError> {
             ("", _) => format!("trial {}: ", n + 1),
             (label, _) => format!("{label}: "),
         };
-        let found = match track::Candidates::of(n, &samples) {
+        let found = match track::Candidates::of(n, &samples, repair) {
             Ok(found) => Some(found),
             Err(track::Refusal::Flights(why)) => {
                 series.refused.push((n, format!("{of}{}", reason(why, samples.times.len()))));

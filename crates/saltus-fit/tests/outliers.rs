@@ -74,8 +74,8 @@ fn times_with_double_triggers_and_missed_contacts() {
     assert!(part > 0.9, "{part}");
 }
 
-/// A film of two seconds at 120 frames a second, a part of the samples anywhere.
-fn film(noise: &mut Noise, wild: f64) -> Report {
+/// A film of two seconds at 120 frames a second, of which `misread` says what is seen instead of a height, frame by frame.
+fn film(noise: &mut Noise, mut misread: impl FnMut(u32, &mut Noise) -> Option<f64>) -> Report {
     let mut text = "time_s,height_m\n".to_owned();
     let g = 9.81f64;
     for n in 0..240 {
@@ -89,23 +89,35 @@ fn film(noise: &mut Noise, wild: f64) -> Report {
             start += 2.0 * speed / g;
             speed *= 0.8;
         }
-        let h = if noise.uniform() < wild { 1.2 * noise.uniform() } else { h + noise.normal(0.003) };
+        let h = misread(n, noise).unwrap_or_else(|| h + noise.normal(0.003));
         text += &format!("{time:.5},{h:.5}\n");
     }
     Fit::new().run(&parse(&text)).unwrap()
 }
 
-/// One in six is refused: its contacts are not all found. None is trusted and wrong.
-#[test]
-fn series_of_which_one_in_twenty_is_wild() {
-    let part = held("series", 30, 0.8, |noise| film(noise, 0.05));
-    assert!(part > 0.75, "{part}");
+/// A part of the samples anywhere.
+fn anywhere(wild: f64) -> impl Fn(u32, &mut Noise) -> Option<f64> {
+    move |_, noise| (noise.uniform() < wild).then(|| 1.2 * noise.uniform())
 }
 
-/// Fails: with three samples in ten anywhere the contacts are not all found, and most films are refused or doubtful; none is trusted and wrong.
 #[test]
-#[ignore = "the contacts are looked for among neighbouring samples, of which too many are wild"]
+fn series_of_which_one_in_twenty_is_wild() {
+    let part = held("series", 30, 0.8, |noise| film(noise, anywhere(0.05)));
+    assert!(part > 0.95, "{part}");
+}
+
+#[test]
 fn series_of_which_three_in_ten_are_wild() {
-    let part = held("series", 30, 0.8, |noise| film(noise, 0.3));
+    let part = held("series", 30, 0.8, |noise| film(noise, anywhere(0.3)));
+    assert!(part > 0.85, "{part}");
+}
+
+/// A tracker that takes something else far above for the ball, which lies still, for eight frames in every fifty.
+#[test]
+fn series_whose_tracker_jumps_elsewhere_and_back() {
+    let part = held("jumps", 30, 0.8, |noise| {
+        let from = (50.0 * noise.uniform()) as u32;
+        film(noise, |n, noise| ((n + from) % 50 < 8).then(|| 9.0 + noise.normal(0.003)))
+    });
     assert!(part > 0.85, "{part}");
 }

@@ -11,9 +11,6 @@ const ABOVE_NOISE: f64 = 8.0;
 const FLOOR: f64 = 0.05;
 /// A flight with fewer samples than this says nothing of its own.
 const FEWEST: usize = 4;
-/// Noise of more than this part of the range is of wild samples, if there are so many samples.
-const WILD: f64 = 0.02;
-const DENSE: usize = 100;
 
 /// A series that was cut into flights: times and heights ascend in time.
 #[derive(Clone, Debug)]
@@ -74,14 +71,11 @@ pub(super) fn upside_down(times: &[f64], heights: &[f64]) -> bool {
     up > down
 }
 
-/// Wild samples taken back between their neighbours, for finding extremes only: single ones, or, where samples are dense, also neighbouring
-/// ones, by the median of so many.
-fn smoothed(heights: &[f64], window: usize) -> Vec<f64> {
-    let half = window / 2;
+/// Single wild samples taken back between their neighbours, for finding extremes only.
+fn smoothed(heights: &[f64]) -> Vec<f64> {
     let mut smooth = heights.to_vec();
-    for i in half..heights.len().saturating_sub(half) {
-        let mut near = heights[i - half..=i + half].to_vec();
-        smooth[i] = median(&mut near).unwrap_or(heights[i]);
+    for (smooth, near) in smooth[1..].iter_mut().zip(heights.windows(3)) {
+        *smooth = median(&mut near.to_vec()).unwrap_or(*smooth);
     }
     smooth
 }
@@ -113,15 +107,7 @@ fn extremes(heights: &[f64], least: f64) -> Vec<(usize, bool)> {
 
 /// Cuts a series, heights upwards, into the fall and the flights after each contact.
 pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> {
-    let (mut noise, mut smooth) = (noise_by_thirds(times, heights), smoothed(heights, 3));
-    let range = |h: &[f64]| {
-        h.iter().copied().fold(f64::NEG_INFINITY, f64::max) - h.iter().copied().fold(f64::INFINITY, f64::min)
-    };
-    // So much noise is that of wild samples, of which neighbours may be wild too.
-    if noise > WILD * range(&smooth) && heights.len() > DENSE {
-        smooth = smoothed(heights, 7);
-        noise = noise_by_thirds(times, &smooth);
-    }
+    let (noise, smooth) = (noise_by_thirds(times, heights), smoothed(heights));
     let (Some(top), Some(bottom)) = (smooth.iter().copied().reduce(f64::max), smooth.iter().copied().reduce(f64::min))
     else {
         return Err(NoFlights::NoBounce);

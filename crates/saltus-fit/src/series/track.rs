@@ -2,6 +2,7 @@
 
 use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
+use super::wild::wild;
 use super::{Impact, Samples, Track, Variant};
 use crate::bounces::Measured;
 use crate::least_squares::Failure;
@@ -86,16 +87,21 @@ pub(crate) struct Course {
 
 impl Candidates {
     /// Fits every model to one series.
-    pub(crate) fn of(trial: usize, series: &Samples) -> Result<Self, Refusal> {
-        let span = series.times.last().copied().unwrap_or(0.0) - series.times.first().copied().unwrap_or(0.0);
-        let top = series.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let range = top - series.heights.iter().copied().fold(f64::INFINITY, f64::min);
+    pub(crate) fn of(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
+        let wild = if repair { wild(&series.times, &series.heights) } else { vec![false; series.times.len()] };
+        let kept = |values: &[f64]| -> Vec<f64> {
+            values.iter().zip(&wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
+        };
+        let (times, heights) = (kept(&series.times), kept(&series.heights));
+        let span = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
+        let top = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let range = top - heights.iter().copied().fold(f64::INFINITY, f64::min);
         if !(span > 0.0 && range > 0.0 && span.is_finite() && range.is_finite()) {
             return Err(Refusal::Flights(NoFlights::NoBounce));
         }
-        let start = series.times[0];
-        let times: Vec<f64> = series.times.iter().map(|t| (t - start) / span).collect();
-        let heights: Vec<f64> = series.heights.iter().map(|h| (h - top) / range).collect();
+        let start = times[0];
+        let times: Vec<f64> = times.iter().map(|t| (t - start) / span).collect();
+        let heights: Vec<f64> = heights.iter().map(|h| (h - top) / range).collect();
         let flights = flights::cut(&times, &heights).map_err(Refusal::Flights)?;
         let rough = sketch(&flights)?;
         // A unit of time in which G is one.
@@ -123,7 +129,7 @@ impl Candidates {
             turned: series.turned,
             scale,
             samples,
-            wild: 0,
+            wild: wild.iter().filter(|wild| **wild).count(),
             left_out,
             noise,
             sketch,
@@ -132,7 +138,7 @@ impl Candidates {
         };
         candidates.fit_all()?;
         for _ in 0..3 {
-            if !candidates.trim() {
+            if !candidates.trim(repair) {
                 break;
             }
             candidates.fit_all()?;
@@ -265,8 +271,8 @@ impl Candidates {
         (1.4826 * median(&mut sizes).unwrap_or(0.0)).max(1e-9)
     }
 
-    /// Takes out samples that are not of the ball in flight: at both ends where it was held or caught, and wild ones between.
-    fn trim(&mut self) -> bool {
+    /// Takes out samples that are not of the ball in flight: at both ends where it was held or caught, and, if `repair`, wild ones between.
+    fn trim(&mut self, repair: bool) -> bool {
         let Some(best) = self.found.iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma)) else { return false };
         let left = self.left(&best.fitted.shared, best.choice);
         let sigma = best.sigma.max(self.noise);
@@ -282,7 +288,7 @@ impl Candidates {
         let wild = |i: &usize| left[*i].abs() > WILD * sigma;
         let wild_count = kept.clone().filter(wild).count();
         // So many cannot be outliers: the model is wrong there.
-        let drop_wild = wild_count <= kept.len() / 3;
+        let drop_wild = repair && wild_count <= kept.len() / 3;
         self.samples =
             kept.filter(|i| !(drop_wild && wild(i))).map(|i| Sample { weight: 1.0, ..self.samples[i] }).collect();
         self.left_out = (self.left_out.0 + head, self.left_out.1 + tail);
@@ -351,7 +357,7 @@ impl Candidates {
         }
         if self.wild > 0 {
             let n = self.wild;
-            list.push(format!("{n} wild {} left out, {WILD} standard deviations or more away", plural(n)));
+            list.push(format!("{n} wild {} left out, far from every flight through their neighbours", plural(n)));
         }
         list
     }

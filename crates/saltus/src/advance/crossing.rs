@@ -40,13 +40,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let p = powers.as_ref().and_then(Powers::bernstein);
             let bend = if p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-            let guard = |s: f64| {
+            let mut guard = |s: f64| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
             };
             let searched = match &p {
-                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, guard, limit, start),
-                None => first_fall_on_step(guard, limit, start, bend),
+                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut guard, limit, start),
+                None => first_fall_on_step(&mut guard, limit, start, bend),
             };
             let Searched { fall, evidence } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;

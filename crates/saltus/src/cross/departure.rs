@@ -64,7 +64,7 @@ fn is_even(order: f64) -> bool {
     order.round().rem_euclid(2.0) == 0.0
 }
 
-impl<G: FnMut(f64) -> f64> Search<G> {
+impl Search<'_> {
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.
     ///
     /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again. Where rounding hides

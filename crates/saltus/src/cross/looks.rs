@@ -10,7 +10,7 @@ const PER_STEP: usize = 4;
 /// If they change direction no more often than this, they are not rounding and their signs count.
 const MOST_TURNS: usize = 8;
 
-impl<G: FnMut(f64) -> f64> Search<G> {
+impl Search<'_> {
     /// Number by number.
     pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
         let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };

@@ -149,13 +149,13 @@ pub struct Undefined(pub f64);
 ///
 /// # Errors
 /// [`Undefined`] if the guard is not a number somewhere before its first fall.
-pub fn first_fall(guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Result<Searched, Undefined> {
-    Search::new(guard, span, 0.0).first_fall(start, None)
+pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Result<Searched, Undefined> {
+    Search::new(&mut guard, span, 0.0).first_fall(start, None)
 }
 
 /// The same for a guard on the dense output of a step, which bends by `bend` over it.
 pub(crate) fn first_fall_on_step(
-    guard: impl FnMut(f64) -> f64,
+    guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
     start: Start,
     bend: f64,
@@ -168,7 +168,7 @@ pub(crate) fn first_fall_of_polynomial(
     p: &Bernstein,
     margin: f64,
     bend: f64,
-    guard: impl FnMut(f64) -> f64,
+    guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
     start: Start,
 ) -> Result<Searched, Undefined> {

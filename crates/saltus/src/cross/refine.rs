@@ -47,7 +47,7 @@ pub(crate) fn narrowed(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64
     (a, b)
 }
 
-impl<G: FnMut(f64) -> f64> Search<G> {
+impl Search<'_> {
     /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than
     /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
     pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {

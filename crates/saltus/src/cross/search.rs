@@ -23,8 +23,9 @@ const MOST_EVALUATIONS: u32 = 20_000;
 /// A guard that falls from a spent root by this more than its samples leave open does so: that is the fall that was spent.
 const SURELY: f64 = 1024.0;
 
-pub(super) struct Search<G> {
-    pub(super) guard: G,
+/// Compiled once for every guard: it is much code, and a call through a table costs little beside a guard on a dense output.
+pub(super) struct Search<'a> {
+    pub(super) guard: &'a mut dyn FnMut(f64) -> f64,
     pub(super) span: f64,
     /// Whether the root at the start is spent.
     pub(super) spent: bool,
@@ -89,9 +90,9 @@ pub(super) enum Part {
     None(Side),
 }
 
-impl<G: FnMut(f64) -> f64> Search<G> {
+impl<'a> Search<'a> {
     /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it.
-    pub(super) fn new(guard: G, span: f64, bend: f64) -> Self {
+    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64) -> Self {
         Self {
             guard,
             span,

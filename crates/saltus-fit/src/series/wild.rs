@@ -1,0 +1,116 @@
+//! Wild samples of a series: those that no flight through their neighbours passes by.
+//!
+//! All flights bend alike, so two samples of one give its whole parabola. A sample belongs to the motion if a parabola through it and another
+//! one nearby passes most samples around them, on either side of it or on both. What passes so few is wild, wherever it lies, and also where
+//! neighbours are wild too. What was tracked for a while in another place passes this, but cannot be reached from the ball and back.
+
+use crate::statistics::median;
+
+/// Fewer samples than this do not show what is wild.
+const DENSE: usize = 60;
+/// In how many neighbouring samples a parabola is looked for, and how many of them it has to pass: flights may be short.
+const WINDOWS: [(usize, usize); 3] = [(13, 8), (9, 6), (6, 5)];
+/// Samples that together tell how flights bend and scatter.
+const BENT: usize = 11;
+/// A parabola passes a sample within this part of the range, or within so many times the scatter.
+const NEAR: f64 = 0.01;
+const SCATTERS: f64 = 5.0;
+/// A sample this many times further from the one before than usual is of something else.
+const JUMP: f64 = 4.0;
+/// More runs than this are no recording with a few lapses.
+const MOST_RUNS: usize = 1000;
+/// With more wild samples than this part of all, the series is of something else.
+const MOST: f64 = 0.45;
+
+/// Which samples are wild; heights upwards, times ascending.
+pub(super) fn wild(times: &[f64], heights: &[f64]) -> Vec<bool> {
+    let none = vec![false; times.len()];
+    if times.len() < DENSE {
+        return none;
+    }
+    let (curvature, scatter) = bend(times, heights);
+    let mut sorted = heights.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    // Wild samples may lie far beyond the motion.
+    let range = sorted[sorted.len() * 9 / 10] - sorted[sorted.len() / 10];
+    let near = (NEAR * range).max(SCATTERS * scatter);
+    let mut wild: Vec<bool> = (0..times.len()).map(|i| !belongs(times, heights, i, curvature, near)).collect();
+    elsewhere(times, heights, near, &mut wild);
+    #[allow(clippy::cast_precision_loss)] // a count
+    let part = wild.iter().filter(|wild| **wild).count() as f64 / wild.len() as f64;
+    if part > MOST { none } else { wild }
+}
+
+/// Whether a parabola of this curvature through sample `i` passes most samples of a window around it.
+fn belongs(times: &[f64], heights: &[f64], i: usize, curvature: f64, near: f64) -> bool {
+    WINDOWS.iter().any(|&(wide, most)| {
+        [0, wide / 2, wide - 1].into_iter().any(|before| {
+            let from = i.saturating_sub(before).min(times.len() - wide);
+            let window = from..from + wide;
+            window.clone().filter(|&j| j != i).any(|j| {
+                let slope = (heights[j] - heights[i]) / (times[j] - times[i]);
+                let passes = |k: &usize| {
+                    let (s, back) = (times[*k] - times[i], times[*k] - times[j]);
+                    (heights[*k] - heights[i] - s * (slope + 0.5 * curvature * back)).abs() <= near
+                };
+                window.clone().filter(passes).count() >= most
+            })
+        })
+    })
+}
+
+/// Marks the samples of something else that was tracked for a while: all but the longest chain of runs from each of which the next can be reached.
+fn elsewhere(times: &[f64], heights: &[f64], near: f64, wild: &mut [bool]) {
+    let kept: Vec<usize> = (0..times.len()).filter(|&i| !wild[i]).collect();
+    let mut speeds: Vec<f64> =
+        kept.windows(2).map(|w| (heights[w[1]] - heights[w[0]]).abs() / (times[w[1]] - times[w[0]])).collect();
+    speeds.sort_unstable_by(f64::total_cmp);
+    let Some(usual) = speeds.get(speeds.len() * 9 / 10) else { return };
+    let reached =
+        |&i: &usize, &j: &usize| (heights[j] - heights[i]).abs() <= JUMP * (near + usual * (times[j] - times[i]));
+    let runs: Vec<&[usize]> = kept.chunk_by(reached).collect();
+    if runs.len() > MOST_RUNS {
+        return;
+    }
+    // For each run how many samples the best chain that ends with it has, and the run before it there.
+    let mut chains: Vec<(usize, Option<usize>)> = Vec::with_capacity(runs.len());
+    for (n, run) in runs.iter().enumerate() {
+        let before = (0..n).filter(|&m| reached(&runs[m][runs[m].len() - 1], &run[0])).max_by_key(|&m| chains[m].0);
+        chains.push((run.len() + before.map_or(0, |m| chains[m].0), before));
+    }
+    let mut at = (0..runs.len()).max_by_key(|&n| chains[n].0);
+    let mut lost = vec![true; runs.len()];
+    while let Some(n) = at {
+        lost[n] = false;
+        at = chains[n].1;
+    }
+    for (run, _) in runs.iter().zip(lost).filter(|(_, lost)| *lost) {
+        run.iter().for_each(|&i| wild[i] = true);
+    }
+}
+
+/// The curvature of flights, and how far samples scatter about them: by the parabola through three samples of each window that leaves the least
+/// median, and the median over windows (P. Rousseeuw, J. Am. Stat. Assoc. 79 (1984) 871).
+fn bend(times: &[f64], heights: &[f64]) -> (f64, f64) {
+    let (mut curvatures, mut scatters) = (Vec::new(), Vec::new());
+    for (t, h) in times.windows(BENT).zip(heights.windows(BENT)).step_by(3) {
+        let mut best = (0.0, f64::INFINITY);
+        for a in 0..BENT {
+            for b in a + 1..BENT {
+                for c in b + 1..BENT {
+                    let first = (h[b] - h[a]) / (t[b] - t[a]);
+                    let half = ((h[c] - h[b]) / (t[c] - t[b]) - first) / (t[c] - t[a]);
+                    let mut left: [f64; BENT] =
+                        std::array::from_fn(|k| (h[k] - h[a] - (t[k] - t[a]) * (first + half * (t[k] - t[b]))).abs());
+                    let (_, middle, _) = left.select_nth_unstable_by(BENT / 2, f64::total_cmp);
+                    if *middle < best.1 {
+                        best = (2.0 * half, *middle);
+                    }
+                }
+            }
+        }
+        curvatures.push(best.0);
+        scatters.push(best.1);
+    }
+    (median(&mut curvatures).unwrap_or(0.0), median(&mut scatters).unwrap_or(0.0))
+}
