@@ -1,11 +1,11 @@
 //! Linear and quadratic programs by the conic solver, each answer certified before it is believed.
 //!
-//! min ½ xᵀ diag(p) x + qᵀ x subject to A x ≤ b. The certificate is computed here from the problem itself, not taken from the solver:
+//! min ½ xᵀ diag(p) x + qᵀ x subject to A x ≤ b, where the first rows may be equalities. The certificate is computed here from the problem itself, not taken from the solver:
 //! feasibility, stationarity p∘x + q + Aᵀz = 0, signs and complementary slackness; or, for an infeasible program, Farkas' z ≥ 0 with
 //! Aᵀz = 0 and bᵀz < 0. Callers hand over numbers of the order of one.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 
 use crate::least_squares::Failure;
 
@@ -20,12 +20,18 @@ pub(crate) struct Program {
     pub(crate) cost: Vec<f64>,
     /// Rows a·x ≤ b, as the entries of a, and b.
     pub(crate) rows: Vec<(Vec<(usize, f64)>, f64)>,
+    /// So many of the rows, the first, are equalities a·x = b.
+    pub(crate) equal: usize,
 }
 
 /// What a program comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Outcome {
-    Minimum(Vec<f64>),
+    Minimum {
+        x: Vec<f64>,
+        /// The multiplier of each row.
+        z: Vec<f64>,
+    },
     /// No x satisfies the rows.
     Infeasible,
 }
@@ -36,7 +42,11 @@ impl Program {
         let (n, m) = (self.cost.len(), self.rows.len());
         let entries = || self.rows.iter().flat_map(|(row, _)| row.iter().map(|e| e.1));
         let numbers = entries().chain(self.rows.iter().map(|r| r.1)).chain(self.cost.iter().copied());
-        if n == 0 || self.squares.len() != n || numbers.chain(self.squares.iter().copied()).any(|v| !v.is_finite()) {
+        if n == 0
+            || self.squares.len() != n
+            || self.equal > m
+            || numbers.chain(self.squares.iter().copied()).any(|v| !v.is_finite())
+        {
             return Err(Failure::Malformed);
         }
         let (mut at, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -56,7 +66,8 @@ impl Program {
             .verbose(false)
             .build()
             .map_err(|error| Failure::Solver(error.to_string()))?;
-        let mut solver = DefaultSolver::new(&p, &self.cost, &a, &b, &[NonnegativeConeT(m)], settings)
+        let cones = [ZeroConeT(self.equal), NonnegativeConeT(m - self.equal)];
+        let mut solver = DefaultSolver::new(&p, &self.cost, &a, &b, &cones, settings)
             .map_err(|error| Failure::Solver(error.to_string()))?;
         solver.solve();
         let solution = &solver.solution;
@@ -66,7 +77,9 @@ impl Program {
         match solution.status {
             SolverStatus::PrimalInfeasible if self.refuted(&solution.z) => Ok(Outcome::Infeasible),
             SolverStatus::DualInfeasible => Err(Failure::NotIdentified),
-            _ if self.optimal(&solution.x, &solution.z) => Ok(Outcome::Minimum(solution.x.clone())),
+            _ if self.optimal(&solution.x, &solution.z) => {
+                Ok(Outcome::Minimum { x: solution.x.clone(), z: solution.z.clone() })
+            }
             status => Err(Failure::Solver(format!("{status:?}, and the conditions of a minimum do not hold"))),
         }
     }
@@ -86,9 +99,12 @@ impl Program {
         }
         let largest = |v: &mut dyn Iterator<Item = f64>| v.fold(1.0, |a: f64, b| a.max(b.abs()));
         let (size, price) = (largest(&mut x.iter().copied()), largest(&mut z.iter().chain(&self.cost).copied()));
-        let feasible = self.rows.iter().zip(z).all(|((row, b), &z)| {
+        let feasible = self.rows.iter().zip(z).enumerate().all(|(i, ((row, b), &z))| {
             let slack = b - row.iter().map(|&(j, a)| a * x[j]).sum::<f64>();
             let scale = size.max(b.abs());
+            if i < self.equal {
+                return slack.abs() <= CERTAIN * scale;
+            }
             slack >= -CERTAIN * scale && z >= -CERTAIN * price && (slack * z).abs() <= CERTAIN * scale * price
         });
         let pull = self.pull(z);
@@ -100,7 +116,7 @@ impl Program {
         let size = z.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let gain: f64 = self.rows.iter().zip(z).map(|((_, b), z)| b * z).sum();
         size > 0.0
-            && z.iter().all(|&z| z >= -CERTAIN * size)
+            && z[self.equal..].iter().all(|&z| z >= -CERTAIN * size)
             && gain < 0.0
             && self.pull(z).iter().all(|p| p.abs() <= CERTAIN * size.max(gain.abs()))
     }
@@ -114,23 +130,28 @@ mod tests {
     fn known_programs_come_out() {
         // min x + y, x ≥ 1, y ≥ 2.
         let rows = vec![(vec![(0, -1.0)], -1.0), (vec![(1, -1.0)], -2.0)];
-        let program = Program { squares: vec![0.0; 2], cost: vec![1.0; 2], rows };
-        let Ok(Outcome::Minimum(x)) = program.minimise() else { panic!() };
+        let program = Program { squares: vec![0.0; 2], cost: vec![1.0; 2], rows, equal: 0 };
+        let Ok(Outcome::Minimum { x, .. }) = program.minimise() else { panic!() };
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 2.0).abs() < 1e-7);
         // min ½ x² − 3 x, x ≤ 2.
-        let program = Program { squares: vec![1.0], cost: vec![-3.0], rows: vec![(vec![(0, 1.0)], 2.0)] };
-        let Ok(Outcome::Minimum(x)) = program.minimise() else { panic!() };
+        let program = Program { squares: vec![1.0], cost: vec![-3.0], rows: vec![(vec![(0, 1.0)], 2.0)], equal: 0 };
+        let Ok(Outcome::Minimum { x, .. }) = program.minimise() else { panic!() };
         assert!((x[0] - 2.0).abs() < 1e-6);
+        // min ½ (x² + y²), x + y = 2, whose multiplier is −1.
+        let rows = vec![(vec![(0, 1.0), (1, 1.0)], 2.0)];
+        let program = Program { squares: vec![1.0; 2], cost: vec![0.0; 2], rows, equal: 1 };
+        let Ok(Outcome::Minimum { x, z }) = program.minimise() else { panic!() };
+        assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (z[0] + 1.0).abs() < 1e-7);
     }
 
     #[test]
     fn what_has_no_answer_says_so() {
         let crossed = vec![(vec![(0, 1.0)], 0.0), (vec![(0, -1.0)], -1.0)];
-        let program = Program { squares: vec![0.0], cost: vec![1.0], rows: crossed };
+        let program = Program { squares: vec![0.0], cost: vec![1.0], rows: crossed, equal: 0 };
         assert_eq!(program.minimise(), Ok(Outcome::Infeasible));
-        let program = Program { squares: vec![0.0], cost: vec![1.0], rows: vec![(vec![(0, 1.0)], 0.0)] };
+        let program = Program { squares: vec![0.0], cost: vec![1.0], rows: vec![(vec![(0, 1.0)], 0.0)], equal: 0 };
         assert_eq!(program.minimise(), Err(Failure::NotIdentified));
-        let program = Program { squares: vec![0.0], cost: vec![f64::NAN], rows: vec![(vec![(0, 1.0)], 0.0)] };
+        let program = Program { squares: vec![0.0], cost: vec![f64::NAN], rows: vec![(vec![(0, 1.0)], 0.0)], equal: 0 };
         assert_eq!(program.minimise(), Err(Failure::Malformed));
     }
 }

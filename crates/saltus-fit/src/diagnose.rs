@@ -13,6 +13,7 @@ use crate::rivals::{self, Compared, Readings};
 use crate::settings::differ;
 use crate::statistics::NORMAL;
 use crate::table::{Table, Trial};
+use crate::tolerance::losses;
 use crate::weigh;
 
 /// A fit less probable than this by chance is rejected.
@@ -56,6 +57,18 @@ impl Findings<'_> {
             .as_ref()
             .map(|joint| Profile::of("joint", &joint.model, &joint.fitted, joint.fitted.measured(0), |cor| cor));
         [heights, times, joint].into_iter().flatten().collect()
+    }
+
+    /// The estimates of heights and times by other losses.
+    pub(crate) fn losses(&self) -> Result<Vec<Estimate>, FitError> {
+        let mut list = Vec::new();
+        if let Some(kind) = &self.heights {
+            list.extend(losses(self.evidence, kind)?);
+        }
+        if let Some(kind) = &self.times {
+            list.extend(losses(self.evidence, kind)?);
+        }
+        Ok(list)
     }
 
     fn mean(&self, method: &str) -> Option<&Estimate> {

@@ -244,21 +244,11 @@ impl Fit {
             ratio,
         };
         diagnose::judge(&mut report, &findings);
-        if let Some(kind) = &findings.heights {
-            if self.losses {
-                report.estimates.extend(tolerance::losses(&evidence, kind)?);
-            }
-            if let Some(within) = self.tolerance_height {
-                report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
-            }
+        if let Some((kind, within)) = findings.heights.as_ref().zip(self.tolerance_height) {
+            report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
         }
-        if let Some(kind) = &findings.times {
-            if self.losses {
-                report.estimates.extend(tolerance::losses(&evidence, kind)?);
-            }
-            if let Some(within) = self.tolerance_time {
-                report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
-            }
+        if let Some((kind, within)) = findings.times.as_ref().zip(self.tolerance_time) {
+            report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
         }
         if self.profiles {
             report.profiles = findings.profiles();
@@ -276,7 +266,12 @@ impl Fit {
                 report.notes.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
             }
         }
-        report.models = diagnose::models(&mut report, &findings, (sigma_height, sigma_time))?;
+        let (models, losses) = rayon::join(
+            || diagnose::models(&mut report, &findings, (sigma_height, sigma_time)),
+            || if self.losses { findings.losses() } else { Ok(Vec::new()) },
+        );
+        report.models = models?;
+        report.estimates.extend(losses?);
         if let Some(wanted) = self.model {
             weigh::rest_on(&mut report, wanted);
         }

@@ -9,10 +9,9 @@ use crate::successive::{Fitted, Model, fit};
 
 /// One-sided, 95 %: the square of the 95 % point of the normal distribution, 1.645.
 pub(crate) const ONE_SIDED: f64 = 2.705_543_454_095_404;
-/// Doublings on the way out, and halvings on the way back.
-const OUT: usize = 60;
-const HALVINGS: usize = 60;
-/// The limit is found to this part of its distance from the bound.
+/// So many distances are tried at most.
+const TRIES: usize = 60;
+/// The limit is found to this part of its distance from the bound, or of the growth of the cost.
 const FINE: f64 = 1e-4;
 
 /// How the cost of a method grows as the COR is held away from its best, all else fitted anew.
@@ -97,61 +96,70 @@ pub(crate) fn held<M: Model>(model: &M, at: &Fitted, place: usize, value: f64) -
 }
 
 /// How far a shared unknown may be from the bound that holds it until the cost has grown by 2.71; the other end of its range, if it never does.
+///
+/// The cost grows by about a s + b s² over a distance s: two costs on the way give a and b, and they the next distance to try.
 pub(crate) fn limit<M: Model>(model: &M, at: &Fitted, place: usize) -> Result<f64, Failure> {
     let (bounds, reach) = model.ranges()[place];
     let here = at.shared[place];
     let (far, sign) = if here - bounds.low < bounds.high - here { (bounds.high, 1.0) } else { (bounds.low, -1.0) };
-    let allowed = |value: f64, from: &Fitted| -> Result<(bool, Option<Fitted>), Failure> {
-        match held(model, from, place, value) {
-            Ok(found) => Ok((found.chi_square - at.chi_square <= ONE_SIDED, Some(found))),
+    let mut nearest = at.clone();
+    let mut growth = |s: f64| -> Result<f64, Failure> {
+        let value = here + sign * s;
+        match held(model, &nearest, place, value) {
+            Ok(mut found) => {
+                let growth = found.chi_square - at.chi_square;
+                if growth <= ONE_SIDED {
+                    found.shared.insert(place, value);
+                    nearest = found;
+                }
+                Ok(growth)
+            }
             // Where the model has no value there is nothing that the readings would allow.
-            Err(Failure::Malformed | Failure::NotIdentified) => Ok((false, None)),
+            Err(Failure::Malformed | Failure::NotIdentified) => Ok(f64::INFINITY),
             Err(failure) => Err(failure),
         }
     };
     // Small steps first: the cost is steep where the readings are good.
-    let (mut inside, mut step) = (here, 1e-3 * reach.min(1.0));
-    let mut nearest = at.clone();
-    let mut outside = None;
-    for _ in 0..OUT {
-        let next = here + sign * step;
-        if (next - far) * sign >= 0.0 {
-            outside = Some(far);
-            break;
+    let whole = (far - here).abs();
+    let (mut inside, mut outside) = ([0.0, 0.0], None);
+    let mut next = 1e-3 * reach.min(1.0);
+    for _ in 0..TRIES {
+        let s = next.min(whole);
+        let grown = growth(s)?;
+        if (grown - ONE_SIDED).abs() <= FINE * ONE_SIDED {
+            return Ok(here + sign * s);
         }
-        match allowed(next, &nearest)? {
-            (true, found) => (inside, nearest) = (next, restored(found, &nearest, place, next)),
-            (false, _) => {
-                outside = Some(next);
-                break;
+        if grown < ONE_SIDED {
+            inside = [s, grown];
+            if s >= whole {
+                return Ok(far);
             }
+        } else {
+            outside = Some([s, grown]);
         }
-        step *= 2.0;
+        next = match outside {
+            None => s * (ONE_SIDED / grown.max(1e-9)).sqrt().clamp(2.0, 32.0),
+            Some(outside) => {
+                let wide = outside[0] - inside[0];
+                if wide <= FINE * outside[0] {
+                    break;
+                }
+                between(inside, outside).clamp(inside[0] + 1e-3 * wide, outside[0] - 1e-3 * wide)
+            }
+        };
     }
-    let mut outside = outside.unwrap_or(far);
-    if outside == far && allowed(far, &nearest)?.0 {
-        return Ok(far);
-    }
-    for _ in 0..HALVINGS {
-        if (outside - inside).abs() <= FINE * (outside - here).abs() {
-            break;
-        }
-        let middle = 0.5 * (inside + outside);
-        match allowed(middle, &nearest)? {
-            (true, found) => (inside, nearest) = (middle, restored(found, &nearest, place, middle)),
-            (false, _) => outside = middle,
-        }
-    }
-    Ok(inside)
+    Ok(here + sign * inside[0])
 }
 
-/// A fit without the held unknown, as a start for the next.
-fn restored(found: Option<Fitted>, instead: &Fitted, place: usize, value: f64) -> Fitted {
-    found.map_or_else(
-        || instead.clone(),
-        |mut found| {
-            found.shared.insert(place, value);
-            found
-        },
-    )
+/// Where a s + b s² through two distances and their growths is 2.71; the middle between them where that is nowhere.
+fn between(inside: [f64; 2], outside: [f64; 2]) -> f64 {
+    let slope = |[s, grown]: [f64; 2]| grown / s;
+    let (a, b) = if inside[0] > 0.0 {
+        let b = (slope(outside) - slope(inside)) / (outside[0] - inside[0]);
+        (slope(inside) - b * inside[0], b)
+    } else {
+        (0.0, slope(outside) / outside[0])
+    };
+    let s = 2.0 * ONE_SIDED / (a + (a * a + 4.0 * b * ONE_SIDED).sqrt());
+    if s > inside[0] && s < outside[0] { s } else { 0.5 * (inside[0] + outside[0]) }
 }

@@ -3,6 +3,8 @@
 //! All are the motion of [`Flight`] with one thing more set free. They are compared by BIC and `AICc`, and by how they do on trials that
 //! they were not fitted to.
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
 use crate::bounces::Measured;
 use crate::choice::{Limit, ModelChoice, SpeedCor};
 use crate::error::FitError;
@@ -155,7 +157,6 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
         return Ok(compared);
     }
     let Some(constant) = run(&base, &[cor], None) else { return Ok(compared) };
-    let e = constant.shared[0];
     let speeds = impacts(&base, &constant);
     let (slowest, fastest, count) = speeds;
     if count < IMPACTS || fastest / slowest < SPEEDS {
@@ -167,46 +168,9 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     }
     let mut all = vec![Rival { name: "constant", about: "one COR", model: base.clone() }];
     all.extend(rivals(&base, readings.ball, speeds));
-    let mut list = Vec::new();
-    for Rival { name, about, model } in all {
-        let mut start = model.law.start(e);
-        start.extend(model.offset.map(|b| 0.1 * b.high));
-        start.extend(model.drag.then_some(0.01));
-        let Some(fitted) = run(&model, &start, Some(&constant.own)) else { continue };
-        if fitted.freedom < SPARE {
-            continue;
-        }
-        let n = used(&model) as f64;
-        let p = n - fitted.freedom as f64;
-        let misfit = if readings.scattered { n * (fitted.chi_square / n).max(1e-300).ln() } else { fitted.chi_square };
-        let cor = if model.law.of_speed() {
-            at(&model, &fitted, (slowest * fastest).sqrt())
-        } else {
-            mean(&fitted, model.law.unknowns())
-        };
-        let mut choice = ModelChoice::new(name, about, cor, misfit + p * n.ln());
-        choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
-        choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
-        if model.law.of_speed() {
-            let (slowest, fastest, _) = impacts(&model, &fitted);
-            let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);
-            let point = |k| {
-                let Measured { value: cor, standard_error } = at(&model, &fitted, speed(k));
-                SpeedCor { speed: speed(k), cor, standard_error }
-            };
-            choice.speeds = (0..LISTED).map(point).collect();
-        }
-        choice.slope = (name == "linear").then(|| slope(&fitted, (slowest, fastest)));
-        choice.exponent = (name == "power").then(|| fitted.measured(1));
-        choice.offset_m = model.offset_place().map(|j| fitted.measured(j));
-        choice.drag = model.drag_place().map(|j| fitted.measured(j));
-        if let Some(j) = model.offset_place().or(model.drag_place()).filter(|&j| fitted.active[j]) {
-            let found = identified("a limit", limit(&model, &fitted, j))?;
-            choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
-        }
-        choice.chosen = name == "constant";
-        list.push((choice, model, fitted));
-    }
+    let tried: Result<Vec<_>, FitError> =
+        all.into_par_iter().map(|rival| tried(rival, readings, &constant, speeds)).collect();
+    let mut list: Vec<Tried> = tried?.into_iter().flatten().collect();
     let Some(reference) = list.iter().find(|m| m.0.chosen).map(|m| (m.0.bic, m.0.aicc)) else { return Ok(compared) };
     for (choice, ..) in &mut list {
         choice.bic -= reference.0;
@@ -220,6 +184,54 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     }
     compared.models = list.into_iter().map(|m| m.0).collect();
     Ok(compared)
+}
+
+/// A model that was tried: what is said of it, and its fit.
+type Tried = (ModelChoice, Flight, Fitted);
+
+/// Fits a model from the fit of one COR, over the speeds of the impacts that one tells of; `None` where it cannot be compared.
+fn tried(
+    Rival { name, about, model }: Rival,
+    readings: &Readings,
+    constant: &Fitted,
+    (slowest, fastest, _): (f64, f64, usize),
+) -> Result<Option<Tried>, FitError> {
+    let mut start = model.law.start(constant.shared[0]);
+    start.extend(model.offset.map(|b| 0.1 * b.high));
+    start.extend(model.drag.then_some(0.01));
+    let Some(fitted) = run(&model, &start, Some(&constant.own)).filter(|fitted| fitted.freedom >= SPARE) else {
+        return Ok(None);
+    };
+    let n = used(&model) as f64;
+    let p = n - fitted.freedom as f64;
+    let misfit = if readings.scattered { n * (fitted.chi_square / n).max(1e-300).ln() } else { fitted.chi_square };
+    let cor = if model.law.of_speed() {
+        at(&model, &fitted, (slowest * fastest).sqrt())
+    } else {
+        mean(&fitted, model.law.unknowns())
+    };
+    let mut choice = ModelChoice::new(name, about, cor, misfit + p * n.ln());
+    choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
+    choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
+    if model.law.of_speed() {
+        let (slowest, fastest, _) = impacts(&model, &fitted);
+        let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);
+        let point = |k| {
+            let Measured { value: cor, standard_error } = at(&model, &fitted, speed(k));
+            SpeedCor { speed: speed(k), cor, standard_error }
+        };
+        choice.speeds = (0..LISTED).map(point).collect();
+    }
+    choice.slope = (name == "linear").then(|| slope(&fitted, (slowest, fastest)));
+    choice.exponent = (name == "power").then(|| fitted.measured(1));
+    choice.offset_m = model.offset_place().map(|j| fitted.measured(j));
+    choice.drag = model.drag_place().map(|j| fitted.measured(j));
+    if let Some(j) = model.offset_place().or(model.drag_place()).filter(|&j| fitted.active[j]) {
+        let found = identified("a limit", limit(&model, &fitted, j))?;
+        choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
+    }
+    choice.chosen = name == "constant";
+    Ok(Some((choice, model, fitted)))
 }
 
 /// The COR at a speed, under a law.

@@ -1,8 +1,7 @@
 //! The same models under other losses: Huber's, the sum of absolute residuals, and the largest residual.
 //!
-//! Each step linearises the whole model and solves a conic program within a trust region (r is a whitened residual, d a step):
-//! Huber min Σ ½u² + δ t with |r − X d| ≤ u + t; absolute min Σ t with |r − X d| ≤ t; largest min ε with |r − X d| ≤ ε. A step that does not
-//! lower the loss is tried shorter.
+//! Each step linearises the whole model and solves a conic program within a trust region: for the largest residual as it stands, for the other
+//! two its dual, which is smaller. A step that does not lower the loss is tried shorter.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -47,52 +46,79 @@ impl Loss {
         }
     }
 
-    /// The program of one step: unknowns d, scaled, then those of the loss.
+    /// One step: the shift of all unknowns within their limits that makes the loss of the linear model least.
     fn step(self, x: &DMatrix<f64>, left: &DVector<f64>, limits: &[(f64, f64)]) -> Result<Vec<f64>, Failure> {
-        let (m, n) = x.shape();
         let scale = left.amax().max(1e-12);
         let norms: Vec<f64> = x.column_iter().map(|c| c.amax().max(1e-300)).collect();
-        let extra = match self {
-            Self::Absolute => m,
-            Self::Huber => 2 * m,
-            Self::Largest => 1,
+        let scaled = limits.iter().zip(&norms).map(|(&(low, high), norm)| (low * norm / scale, high * norm / scale));
+        // What lies far beyond all readings limits nothing.
+        let limits: Vec<(f64, f64)> = scaled
+            .map(|(low, high)| {
+                (if low > -1e4 { low } else { f64::NEG_INFINITY }, if high < 1e4 { high } else { f64::INFINITY })
+            })
+            .collect();
+        let entry = |i: usize, j: usize| x[(i, j)] / norms[j];
+        let (program, step): (Program, fn(Vec<f64>, Vec<f64>) -> Vec<f64>) = match self {
+            Self::Largest => (largest(x.shape(), entry, left / scale, &limits), |x, _| x),
+            Self::Huber => (dual(x.shape(), entry, left / scale, &limits, HUBER / scale), |_, z| z),
+            Self::Absolute => (dual(x.shape(), entry, left / scale, &limits, 0.0), |_, z| z),
         };
-        let mut program = Program { squares: vec![0.0; n + extra], cost: vec![0.0; n + extra], rows: Vec::new() };
-        let delta = HUBER / scale;
-        for i in 0..m {
-            match self {
-                Self::Absolute => program.cost[n + i] = 1.0,
-                Self::Huber => (program.squares[n + i], program.cost[n + m + i]) = (1.0, delta),
-                Self::Largest => program.cost[n] = 1.0,
-            }
-            for sign in [1.0, -1.0] {
-                let row = (0..n).filter(|&j| x[(i, j)] != 0.0).map(|j| (j, -sign * x[(i, j)] / norms[j]));
-                let mut row: Vec<(usize, f64)> = row.collect();
-                match self {
-                    Self::Absolute => row.push((n + i, -1.0)),
-                    Self::Huber => row.extend([(n + i, -1.0), (n + m + i, -1.0)]),
-                    Self::Largest => row.push((n, -1.0)),
-                }
-                program.rows.push((row, -sign * left[i] / scale));
-            }
-            if self == Self::Huber {
-                program.rows.push((vec![(n + m + i, -1.0)], 0.0));
-            }
-        }
-        for (j, &(low, high)) in limits.iter().enumerate() {
-            let (low, high) = (low * norms[j] / scale, high * norms[j] / scale);
-            if high < 1e4 {
-                program.rows.push((vec![(j, 1.0)], high));
-            }
-            if low > -1e4 {
-                program.rows.push((vec![(j, -1.0)], -low));
-            }
-        }
         match program.minimise()? {
-            Outcome::Minimum(z) => Ok((0..n).map(|j| z[j] * scale / norms[j]).collect()),
+            Outcome::Minimum { x, z } => Ok(step(x, z).iter().zip(&norms).map(|(d, norm)| d * scale / norm).collect()),
             Outcome::Infeasible => Err(Failure::Malformed),
         }
     }
+}
+
+/// min ε with |r − X d| ≤ ε and d within its limits; d are its first unknowns.
+fn largest(
+    (m, n): (usize, usize),
+    x: impl Fn(usize, usize) -> f64,
+    left: DVector<f64>,
+    limits: &[(f64, f64)],
+) -> Program {
+    let mut cost = vec![0.0; n];
+    cost.push(1.0);
+    let mut rows = Vec::with_capacity(2 * (m + n));
+    for i in 0..m {
+        for sign in [1.0, -1.0] {
+            let mut row: Vec<(usize, f64)> =
+                (0..n).map(|j| (j, -sign * x(i, j))).filter(|entry| entry.1 != 0.0).collect();
+            row.push((n, -1.0));
+            rows.push((row, -sign * left[i]));
+        }
+    }
+    for (j, &(low, high)) in limits.iter().enumerate() {
+        let sides = [(1.0, high), (-1.0, -low)];
+        rows.extend(sides.into_iter().filter(|(_, b)| b.is_finite()).map(|(sign, b)| (vec![(j, sign)], b)));
+    }
+    Program { squares: vec![0.0; n + 1], cost, rows, equal: 0 }
+}
+
+/// The dual of min Σ ρ(r − X d), d within its limits, where ρ has the slope λ = w/δ up to |w| = δ and ±1 beyond; ρ is |w| for δ = 0. It has one
+/// unknown for each row and side of a limit, and each row of X once:
+/// min ½ δ λᵀλ − rᵀλ + Σ hⱼ μⱼ − Σ lⱼ νⱼ with Xᵀλ = μ − ν, |λ| ≤ 1, μ, ν ≥ 0. Its first multipliers, those of the equalities, are d.
+fn dual(
+    (m, n): (usize, usize),
+    x: impl Fn(usize, usize) -> f64,
+    left: DVector<f64>,
+    limits: &[(f64, f64)],
+    delta: f64,
+) -> Program {
+    let mut rows: Vec<(Vec<(usize, f64)>, f64)> =
+        (0..n).map(|j| ((0..m).map(|i| (i, x(i, j))).filter(|entry| entry.1 != 0.0).collect(), 0.0)).collect();
+    let mut cost: Vec<f64> = left.iter().map(|r| -r).collect();
+    rows.extend((0..m).flat_map(|i| [1.0, -1.0].map(|sign| (vec![(i, sign)], 1.0))));
+    for (j, &(low, high)) in limits.iter().enumerate() {
+        for (sign, price) in [(-1.0, high), (1.0, -low)].into_iter().filter(|(_, price)| price.is_finite()) {
+            rows[j].0.push((cost.len(), sign));
+            rows.push((vec![(cost.len(), -1.0)], 0.0));
+            cost.push(price);
+        }
+    }
+    let mut squares = vec![delta; m];
+    squares.resize(cost.len(), 0.0);
+    Program { squares, cost, rows, equal: n }
 }
 
 /// The model's rows of all blocks as one matrix in (own | shared), and the residuals.

@@ -1,6 +1,6 @@
 //! How the COR may depend on the bounce, or on the speed of impact.
 
-use super::dual::Dual;
+use super::dual::{Dual, Slopes};
 use crate::least_squares::Bounds;
 
 /// A law for the COR. Speeds are in m/s; beyond the range of speeds it was made for, a law is continued.
@@ -69,8 +69,8 @@ impl CorLaw {
     }
 
     /// The COR of bounce `n` (from 0) at a speed: its value, its derivative by the speed, those by the unknowns.
-    pub(crate) fn at(&self, n: usize, speed: f64, unknowns: &[f64]) -> (f64, f64, Vec<f64>) {
-        let mut by = vec![0.0; unknowns.len()];
+    pub(crate) fn at(&self, n: usize, speed: f64, unknowns: &[f64]) -> (f64, f64, Slopes) {
+        let mut by = Slopes::from_elem(0.0, unknowns.len());
         let (value, slope) = match self {
             Self::Constant | Self::Each(_) => {
                 let which = n.min(unknowns.len() - 1);
@@ -112,9 +112,9 @@ impl CorLaw {
     /// The COR of bounce `n` with derivatives by all unknowns of a fit; those of the law begin at `first`.
     pub(crate) fn through(&self, n: usize, speed: &Dual, unknowns: &[f64], first: usize) -> Dual {
         let (value, slope, own) = self.at(n, speed.value, unknowns);
-        let mut by = &speed.by * slope;
-        own.iter().enumerate().for_each(|(j, d)| by[first + j] += d);
-        Dual { value, by }
+        let mut cor = speed.mapped(value, slope);
+        cor.by[first..].iter_mut().zip(&own).for_each(|(by, d)| *by += d);
+        cor
     }
 }
 

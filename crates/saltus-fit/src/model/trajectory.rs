@@ -94,10 +94,11 @@ impl Trajectory<'_> {
             Law::Each => unknown(first + n),
             Law::Linear => {
                 let excess = arrival.value / self.speed - 1.0;
-                let mut by = &arrival.by * (values[first + 1] / self.speed);
-                by[first] += 1.0;
-                by[first + 1] += excess;
-                Dual { value: values[first] + values[first + 1] * excess, by }
+                let value = values[first] + values[first + 1] * excess;
+                let mut cor = arrival.mapped(value, values[first + 1] / self.speed);
+                cor.by[first] += 1.0;
+                cor.by[first + 1] += excess;
+                cor
             }
         }
     }

@@ -327,20 +327,19 @@ impl Candidates {
         let weights: Vec<f64> =
             impacts.iter().map(|i| self.measured(found, &i.cor).standard_error.max(1e-9).powi(-2)).collect();
         let total: f64 = weights.iter().sum();
-        let mut mean = Dual { value: 0.0, by: nalgebra::DVector::zeros(found.fitted.shared.len()) };
+        let mut mean = Dual::constant(0.0, found.fitted.shared.len());
         for (impact, weight) in impacts.iter().zip(&weights) {
-            mean.value += impact.cor.value * weight / total;
-            mean.by += &impact.cor.by * (weight / total);
+            let part = weight / total;
+            mean = mean.plus(&impact.cor.mapped(part * impact.cor.value, part));
         }
         self.measured(found, &mean)
     }
 
     /// A quantity of the model with its standard error.
     fn measured(&self, found: &Found, x: &Dual) -> Measured {
-        let variance = (x.by.transpose() * &found.fitted.covariance * &x.by)[(0, 0)];
         let free = self.samples.len().saturating_sub(found.fitted.shared.len()).max(1) as f64;
         let scatter = (found.fitted.chi_square / free).max(0.0).sqrt().max(found.sigma);
-        Measured { value: x.value, standard_error: variance.max(0.0).sqrt() * scatter * self.dependence }
+        Measured { value: x.value, standard_error: found.fitted.error_of(&x.by) * scatter * self.dependence }
     }
 
     /// What was left out, for people.
@@ -387,9 +386,7 @@ impl Candidates {
         let values = &chosen.fitted.shared;
         let model = self.model(&self.samples, chosen.choice);
         let unknown = |j: usize, scale: f64, shift: f64| {
-            let mut by = nalgebra::DVector::zeros(values.len());
-            by[j] = 1.0;
-            let m = self.measured(chosen, &Dual { value: values[j], by });
+            let m = self.measured(chosen, &Dual::unknown(values[j], values.len(), j));
             Measured { value: shift + scale * m.value, standard_error: scale * m.standard_error }
         };
         let turn = if self.turned { -1.0 } else { 1.0 };
