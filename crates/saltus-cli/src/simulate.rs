@@ -51,7 +51,9 @@ pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error>
 /// The plan of a scene; what cannot be run is said with the file's name.
 pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error> {
     scene.plan().map_err(|error| match path {
-        Some(path) if path != Path::new("-") => Error::new(format!("{}: {error}", path.display())),
+        Some(path) if path != Path::new("-") && error.in_text().is_none() => {
+            Error::new(format!("{}: {error}", path.display()))
+        }
         _ => Error::new(error),
     })
 }

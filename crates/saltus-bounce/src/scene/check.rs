@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::error::Fault;
+use super::error::{Fault, short};
 use super::{Ball, Contact, Floor, Scene, Shape};
 
 /// How far rounding may let things overlap, relative to the numbers involved.
@@ -23,9 +23,11 @@ pub(super) fn scene(scene: &Scene, place: impl Fn(usize) -> Range<usize>, ends: 
             let (apart, room) = ((ball.centre() - other.centre()).norm(), radius(ball) + radius(other));
             if apart < room * (1.0 - ROUNDING) || apart == 0.0 {
                 let says = format!(
-                    "ball {} starts inside ball {}: their centres are {apart} m apart, move them to {room} m or more",
+                    "ball {} starts inside ball {}: their centres are {} m apart, move them to {} m or more",
                     n + 1,
-                    m + 1
+                    m + 1,
+                    short(apart),
+                    short(room)
                 );
                 return Err(Fault::new(place(n), says));
             }
@@ -53,7 +55,11 @@ fn blocked(ball: &Ball, floor: &Floor) -> Option<String> {
     let slack = ROUNDING * if low == centre { 0.0 } else { centre.z.abs() + r };
     let below = |level: f64, what: &str| {
         (low.z < level - slack).then(|| {
-            format!("the ball starts below the {what}, at a height of {} m: the {what} is at {level} m there, start at or above it", low.z)
+            format!(
+                "the ball starts below the {what}, at a height of {} m: the {what} is at {} m there, start at or above it",
+                short(low.z),
+                short(level)
+            )
         })
     };
     match floor.shape {
@@ -71,13 +77,13 @@ fn blocked(ball: &Ball, floor: &Floor) -> Option<String> {
             let gap = (centre.z - height) * angle.cos() - centre.x * angle.sin();
             let room = r - ROUNDING * (r + centre.norm());
             (gap < room).then(|| {
-                format!("the ball starts inside the incline: its centre is {gap} m from it, move it to {r} m (its radius) or more")
+                format!("the ball starts inside the incline: its centre is {} m from it, move it to {r} m (its radius) or more", short(gap))
             })
         }
         Shape::Wall { across_y, at, .. } => {
             let gap = (if across_y { centre.y } else { centre.x } - at).abs();
             (gap < r * (1.0 - ROUNDING)).then(|| {
-                format!("the ball starts inside the wall: its centre is {gap} m from it, move it to {r} m (its radius) or more")
+                format!("the ball starts inside the wall: its centre is {} m from it, move it to {r} m (its radius) or more", short(gap))
             })
         }
         Shape::Box { size, height, open } => {

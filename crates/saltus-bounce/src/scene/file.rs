@@ -14,6 +14,7 @@ use super::error::Fault;
 use super::floor::FloorTable;
 use super::restitution::{self, FrictionTable, Law, RestitutionTable, Said};
 use super::run::{PictureTable, RunTable};
+use super::source::Source;
 use super::space::Space;
 use super::value::{Acceleration, At, Dimension, OneOrMany, Short};
 use super::{Contact, Scene, check};
@@ -158,6 +159,7 @@ impl File {
             gravity,
             floors: Vec::new(),
             laws: Vec::new(),
+            source: Source::default(),
             effects: self.effects().read(&space, &balls)?,
             contact,
             collision: None,

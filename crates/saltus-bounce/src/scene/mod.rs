@@ -17,6 +17,7 @@ mod read;
 mod restitution;
 mod run;
 mod schema;
+mod source;
 mod space;
 mod template;
 mod value;
@@ -25,6 +26,8 @@ mod value;
 mod tests;
 
 use std::path::Path;
+
+use source::Source;
 
 pub use air::{Decay, Effects, Linear, Quadratic};
 pub use ball::{Ball, Start};
@@ -81,6 +84,7 @@ pub struct Scene {
     pub picture: Picture,
     /// Restitution by floor, then by ball; empty rows where contact takes time.
     laws: Vec<Vec<Law>>,
+    source: Source,
 }
 
 impl Scene {

@@ -1,6 +1,6 @@
 //! From bytes to a scene, and from what the TOML reader says to what a person can use.
 
-use std::fs::File as Source;
+use std::fs;
 use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
@@ -11,6 +11,7 @@ use toml::de::DeTable;
 
 use super::error::{Fault, SceneError};
 use super::file::File;
+use super::source::Source;
 use super::{ReadError, Run, Scene, schema};
 
 /// UTF-8's byte-order mark.
@@ -21,7 +22,7 @@ pub(super) fn from_path(path: &Path) -> Result<Scene, ReadError> {
     let mut bytes = Vec::new();
     // One byte too many is enough to know.
     let most = Scene::LARGEST as u64 + 1;
-    Source::open(path).and_then(|source| source.take(most).read_to_end(&mut bytes)).map_err(file)?;
+    fs::File::open(path).and_then(|source| source.take(most).read_to_end(&mut bytes)).map_err(file)?;
     Scene::parse(&path.to_string_lossy(), &bytes).map_err(ReadError::Scene)
 }
 
@@ -29,7 +30,9 @@ pub(super) fn scene(name: &str, bytes: &[u8], run: Run) -> Result<Scene, SceneEr
     let bytes = unmarked(bytes);
     let inner = || {
         let text = text(bytes)?;
-        made(text, table(text)?, run)
+        let mut scene = made(text, table(text)?, run)?;
+        scene.source = Source::new(name, text);
+        Ok(scene)
     };
     inner().map_err(|fault| SceneError::new(name, bytes, fault))
 }

@@ -250,3 +250,28 @@ fn an_outcome_is_what_the_record_shows() {
     }
     assert!(seen >= 15, "{seen}");
 }
+
+#[test]
+fn what_no_model_can_do_is_said_where_it_stands() {
+    let two = "[[ball]]\nheight = 1\nradius = 0.1\nmass = 1\n[[ball]]\nheight = 2\nradius = 0.1\nmass = 1\n";
+    let cases = [
+        (format!("restitution = 0.8\nbuoyancy = true\n[run]\nuntil = 1\n[air]\ndensity = 1.2\n{two}"), (2, 1)),
+        (
+            "[run]\nuntil = 1\n[[floor]]\nrestitution = 0.9\n[[floor]]\nkind = 'sine'\namplitude = 0.05\nwavelength = 0.2\n\
+             restitution = 0.6\n[ball]\nheight = 0.3\nradius = 0.03\n"
+                .to_owned(),
+            (5, 1),
+        ),
+    ];
+    for (toml, place) in cases {
+        let error = Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap_err();
+        let found = error.in_text().unwrap();
+        assert_eq!((found.line(), found.column()), place, "{error}");
+        assert!(error.to_string().contains("\n  help: "), "{error}");
+    }
+    // A scene changed by hand is no longer what stands in the text, but still says where that key is.
+    let mut scene = Scene::parse("s.toml", format!("restitution = 0.8\n[run]\nuntil = 1\n{two}").as_bytes()).unwrap();
+    scene.effects.buoyancy = true;
+    let error = scene.plan().unwrap_err();
+    assert!(error.in_text().is_none() && error.to_string().starts_with("buoyancy: "), "{error}");
+}

@@ -3,6 +3,7 @@
 use nalgebra::{SVector, Vector2};
 
 use crate::scene::Shape;
+use crate::scene::error::short;
 use crate::walls::{Face, Walls};
 
 /// Ground y = f(x) and the radius of the ball on it.
@@ -23,7 +24,7 @@ impl Curve {
             _ => 0.0,
         };
         if radius * hollow >= 1.0 {
-            let narrow = 1.0 / hollow;
+            let narrow = short(1.0 / hollow);
             return Err(format!(
                 "the ball's radius of {radius} m does not fit into the hollow, whose radius of curvature is {narrow} m: make one smaller or the other wider"
             ));

@@ -5,6 +5,7 @@ use std::fmt;
 use super::Model;
 use crate::effects::{LinearDrag, QuadraticDrag};
 use crate::friction::Friction;
+use crate::scene::error::short;
 use crate::scene::{Ball, Contact, Decay, Linear, Quadratic, Scene};
 
 /// Something that acts on a ball, or on how it bounces, and that a scene may name.
@@ -180,17 +181,6 @@ impl Scene {
             other => other.name().to_owned(),
         }
     }
-}
-
-/// At most six significant digits.
-fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
-    let decimals = (5.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// How a mode is advanced.

@@ -23,7 +23,8 @@ pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
 use super::accuracy::Way;
-use super::{Contact, Floor, Law, Scene, Shape, Stepper};
+use super::source::Source;
+use super::{Contact, Floor, Law, Scene, SceneError, Shape, Stepper};
 use machine::{How, Machine};
 use method::Method;
 
@@ -181,9 +182,10 @@ impl Scene {
     /// The cheapest faithful way to run the scene: an exact arc, else a closed form, else an explicit stepper, else a stiff one.
     ///
     /// # Errors
-    /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do instead.
+    /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do instead; of a scene that was read, with line
+    /// and column.
     pub fn plan(&self) -> Result<Plan, PlanError> {
-        Ok(self.planned(choose(self)?))
+        choose(self).map(|chosen| self.planned(chosen)).map_err(|error| error.found(&self.source))
     }
 
     /// The same scene by a model that steppers can step through, also where the planned one is solved by formulas; `None` if there is none.
@@ -309,8 +311,17 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
         !matches!(effect, Effect::Gravity | Effect::Friction | Effect::Deformation) && scene.names(effect)
     });
     if let Some(effect) = acts {
+        let key = match effect {
+            Effect::LinearDrag | Effect::QuadraticDrag => "drag",
+            Effect::Wind => "[air]",
+            Effect::Buoyancy => "buoyancy",
+            Effect::AddedMass => "added_mass",
+            Effect::Lift => "magnus",
+            Effect::SpinDecay => "spin_decay",
+            Effect::Gravity | Effect::Friction | Effect::Deformation => "[[ball]]",
+        };
         let says = format!("{effect} is simulated for one ball: leave it out, or keep one ball");
-        return Err(PlanError::new("[[ball]]", &says));
+        return Err(PlanError::new(key, &says));
     }
     let vertical = scene.dimensions == 1;
     let rough = scene.floors.iter().position(|floor| floor.friction.coefficient() > 0.0);
@@ -371,19 +382,44 @@ fn failed(error: crate::ParameterError) -> PlanError {
 }
 
 /// Why a scene cannot be run, where in it that is said, and what to do.
+///
+/// ```
+/// use saltus_bounce::scene::Scene;
+/// let toml = b"restitution = 0.8\ndrag = { per_length = '0.1 1/m' }\nrun = { until = 1 }\n\
+///     ball = [{ height = 1, radius = 0.1, mass = 1 }, { height = 2, radius = 0.1, mass = 1 }]\n";
+/// let error = Scene::parse("two.toml", toml)?.plan().unwrap_err();
+/// assert!(error.to_string().starts_with("two.toml:2:1: quadratic drag is simulated for one ball"));
+/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanError {
     place: String,
+    number: Option<usize>,
     says: String,
+    /// The same in the text that the scene was read from.
+    found: Option<Box<SceneError>>,
 }
 
 impl PlanError {
     fn new(place: &str, says: &str) -> Self {
-        Self { place: place.to_owned(), says: says.to_owned() }
+        Self { place: place.to_owned(), number: None, says: says.to_owned(), found: None }
     }
 
     fn floor(owner: usize, says: &str) -> Self {
-        Self::new(&format!("[[floor]] number {}", owner + 1), says)
+        Self { number: Some(owner), ..Self::new(&format!("[[floor]] number {}", owner + 1), says) }
+    }
+
+    /// The same with its line, where it has one.
+    fn found(mut self, source: &Source) -> Self {
+        let key = self.place.trim_start_matches('[').split(']').next().unwrap_or_default();
+        self.found = source.fault(key, self.number, &self.says).map(Box::new);
+        self
+    }
+
+    /// What is wrong, with line and column, where the scene was read from a text that names the place.
+    #[must_use]
+    pub fn in_text(&self) -> Option<&SceneError> {
+        self.found.as_deref()
     }
 
     /// The key or table that asks for it.
@@ -395,7 +431,10 @@ impl PlanError {
 
 impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.says)
+        match &self.found {
+            Some(found) => found.fmt(f),
+            None => write!(f, "{}: {}", self.place, self.says),
+        }
     }
 }
 
