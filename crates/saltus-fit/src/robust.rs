@@ -58,15 +58,15 @@ impl Loss {
             })
             .collect();
         let entry = |i: usize, j: usize| x[(i, j)] / norms[j];
-        let (program, step): (Program, fn(Vec<f64>, Vec<f64>) -> Vec<f64>) = match self {
-            Self::Largest => (largest(x.shape(), entry, left / scale, &limits), |x, _| x),
-            Self::Huber => (dual(x.shape(), entry, left / scale, &limits, HUBER / scale), |_, z| z),
-            Self::Absolute => (dual(x.shape(), entry, left / scale, &limits, 0.0), |_, z| z),
+        let scaled_left = left / scale;
+        let program = match self {
+            Self::Largest => largest(x.shape(), entry, &scaled_left, &limits),
+            Self::Huber => dual(x.shape(), entry, &scaled_left, &limits, HUBER / scale),
+            Self::Absolute => dual(x.shape(), entry, &scaled_left, &limits, 0.0),
         };
-        match program.minimise()? {
-            Outcome::Minimum { x, z } => Ok(step(x, z).iter().zip(&norms).map(|(d, norm)| d * scale / norm).collect()),
-            Outcome::Infeasible => Err(Failure::Malformed),
-        }
+        let Outcome::Minimum { x, z } = program.minimise()? else { return Err(Failure::Malformed) };
+        let step = if self == Self::Largest { x } else { z };
+        Ok(step.iter().zip(&norms).map(|(d, norm)| d * scale / norm).collect())
     }
 }
 
@@ -74,7 +74,7 @@ impl Loss {
 fn largest(
     (m, n): (usize, usize),
     x: impl Fn(usize, usize) -> f64,
-    left: DVector<f64>,
+    left: &DVector<f64>,
     limits: &[(f64, f64)],
 ) -> Program {
     let mut cost = vec![0.0; n];
@@ -101,7 +101,7 @@ fn largest(
 fn dual(
     (m, n): (usize, usize),
     x: impl Fn(usize, usize) -> f64,
-    left: DVector<f64>,
+    left: &DVector<f64>,
     limits: &[(f64, f64)],
     delta: f64,
 ) -> Program {
