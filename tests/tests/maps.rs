@@ -9,7 +9,7 @@ mod wheel;
 use std::f64::consts::TAU;
 
 use saltus::nalgebra::Vector3;
-use saltus::return_map::{Continuation, End, Fate, MapError, ReturnMap, Section};
+use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Section};
 use saltus::{Automaton, Edges, Lift, Linearize, Number, Simulation};
 
 #[test]
@@ -122,4 +122,82 @@ fn fates_of_starts() {
     assert_eq!((fates[0], fates[2]), (Fate::Attracted { to: 0, returns: 0 }, Fate::Lost { returns: 0 }));
     // Half of the excess of ω² is left after each step: 2.8 of it becomes less than 2e-3 ω.
     assert_eq!(fates[1], Fate::Attracted { to: 0, returns: 11 });
+}
+
+/// A population counted once a year, which grows by a factor `a` and is held back by that of the year before (the delayed logistic map of
+/// J. Maynard Smith, Mathematical Ideas in Biology, 1968): (x, y) becomes (a x (1 - y), x).
+#[derive(Clone, Copy, Debug)]
+struct Yearly {
+    a: f64,
+}
+
+impl Linearize for Yearly {
+    type Parameters = [f64; 1];
+
+    fn parameters(&self) -> [f64; 1] {
+        [self.a]
+    }
+    fn flow_over<D: Number>(&self, (): (), _: D, _: [D; 3], _: [D; 1]) -> [D; 3] {
+        [D::zero(), D::zero(), D::one()]
+    }
+    fn guard_over<D: Number>(&self, (): (), _: D, [_, _, s]: [D; 3], _: [D; 1]) -> D {
+        -s + 1.0
+    }
+    fn reset_over<D: Number>(&self, (): (), _: D, [x, y, _]: [D; 3], [a]: [D; 1]) -> [D; 3] {
+        [a * x * (-y + 1.0), x, D::zero()]
+    }
+}
+
+impl Automaton for Yearly {
+    type Mode = ();
+    type State = Vector3<f64>;
+    type Edge = ();
+
+    fn flow(&self, mode: (), t: f64, x: &Vector3<f64>) -> Vector3<f64> {
+        self.flow_at(mode, t, x)
+    }
+    fn edges(&self, (): ()) -> Edges<()> {
+        Edges::from([()])
+    }
+    fn guard(&self, edge: (), t: f64, x: &Vector3<f64>) -> f64 {
+        self.guard_at(edge, t, x)
+    }
+    fn affine(&self, (): ()) -> bool {
+        true
+    }
+    fn reset(&self, edge: (), t: f64, x: &Vector3<f64>) -> ((), Vector3<f64>) {
+        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Count;
+
+impl Section<Yearly, 2> for Count {
+    fn edge(&self) {}
+    fn start(&self) -> ((), Vector3<f64>) {
+        ((), Vector3::zeros())
+    }
+    fn place<D: Number>(&self, [x, y]: [D; 2], _: [D; 1]) -> [D; 3] {
+        [x, y, D::zero()]
+    }
+    fn read<D: Number>(&self, _: D, [x, y, _]: [D; 3], _: [D; 1]) -> [D; 2] {
+        [x, y]
+    }
+}
+
+/// At a = 2 the multipliers of x = y = 1 - 1/a are exp(±iπ/3).
+#[test]
+fn a_circle_branches_off() {
+    let yearly = Yearly { a: 1.5 };
+    let map = ReturnMap::of(Simulation::of(&yearly), Count);
+    let branch = Continuation::of(&map, |a| Yearly { a }, 0).follow([0.3, 0.3], 1.5, 2.2).unwrap();
+    let [found] = &branch.bifurcations[..] else { panic!("{:?}", branch.bifurcations) };
+    assert_eq!(found.kind, Kind::NeimarkSacker);
+    assert!((found.point.parameter - 2.0).abs() < 1e-9, "{:?}", found.point);
+    assert!(found.point.orbit.q.iter().all(|x| (x - 0.5).abs() < 1e-9));
+    for multiplier in &found.point.orbit.multipliers {
+        assert!((multiplier.re - 0.5).abs() < 1e-9 && (multiplier.im.abs() - 0.75_f64.sqrt()).abs() < 1e-9);
+    }
+    assert!(branch.points.iter().all(|point| (point.orbit.q[0] - (1.0 - 1.0 / point.parameter)).abs() < 1e-10));
 }

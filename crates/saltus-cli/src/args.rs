@@ -7,7 +7,7 @@ use saltus_bounce::Cor;
 use saltus_bounce::scene::Kind;
 use saltus_bounce::scene::accuracy::Target;
 use saltus_bounce::units::Quantity;
-use saltus_fit::CorModel;
+use saltus_fit::{CorModel, Loss};
 
 use crate::error::Error;
 
@@ -150,9 +150,9 @@ pub(crate) struct Fit {
     /// The diameter of the ball, such as `4cm`: the zero of the height scale can be off by no more.
     #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
     pub(crate) ball: Option<f64>,
-    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual.
-    #[arg(long)]
-    pub(crate) losses: bool,
+    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them.
+    #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
+    pub(crate) losses: Vec<String>,
     /// Trust every height to within this, such as `5mm`, and say which CORs that allows.
     #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
     pub(crate) tolerance_height: Option<f64>,

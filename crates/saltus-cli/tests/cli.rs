@@ -339,7 +339,7 @@ fn scenes_that_cannot_be_run() {
         "restitution = 0.8\nball = { radius = 1, mass = 1, height = 1 }\nfriction = 0.1\ncontact = { law = 'rigid' }\n[[floor]]\nkind = 'stairs'\ntread = 1\nrise = 1\n[[floor]]\nkind = 'stairs'\ntread = 1\nrise = 1\n[run]\nuntil = 1\n",
     );
     let message = refused(&["simulate", &path]);
-    assert!(message.contains(&format!("{path}: [[floor]] number 2: there are stairs already")), "{message}");
+    assert!(message.contains(&format!("{path}:9:1: there are stairs already\n    9 | [[floor]]\n")), "{message}");
 }
 
 /// Each example scene is drawn; where its picture stands beside it, that is the one.

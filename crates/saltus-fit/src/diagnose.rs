@@ -10,6 +10,7 @@ use crate::model::{Contacts, Heights};
 use crate::profile::Profile;
 use crate::report::{Cor, Report, Verdict};
 use crate::rivals::{self, Compared, Readings};
+use crate::robust::Loss;
 use crate::settings::differ;
 use crate::statistics::NORMAL;
 use crate::table::{Table, Trial};
@@ -60,13 +61,13 @@ impl Findings<'_> {
     }
 
     /// The estimates of heights and times by other losses.
-    pub(crate) fn losses(&self) -> Result<Vec<Estimate>, FitError> {
+    pub(crate) fn losses(&self, wanted: &[Loss]) -> Result<Vec<Estimate>, FitError> {
         let mut list = Vec::new();
         if let Some(kind) = &self.heights {
-            list.extend(losses(self.evidence, kind)?);
+            list.extend(losses(self.evidence, kind, wanted)?);
         }
         if let Some(kind) = &self.times {
-            list.extend(losses(self.evidence, kind)?);
+            list.extend(losses(self.evidence, kind, wanted)?);
         }
         Ok(list)
     }

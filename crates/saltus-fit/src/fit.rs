@@ -13,6 +13,7 @@ use crate::motion;
 use crate::outliers;
 use crate::ratio;
 use crate::report::Report;
+use crate::robust::Loss;
 use crate::series;
 use crate::table::{Event, Reading, Table};
 use crate::tolerance;
@@ -44,7 +45,8 @@ pub struct Fit {
     sigma_time: Option<f64>,
     gravity: Option<f64>,
     no_repair: bool,
-    losses: bool,
+    /// Which of [`Loss::ALL`].
+    losses: [bool; Loss::ALL.len()],
     profiles: bool,
     tolerance_height: Option<f64>,
     tolerance_time: Option<f64>,
@@ -121,10 +123,19 @@ impl Fit {
         self
     }
 
-    /// Also gives the COR by Huber's loss, the sum of absolute residuals, and the largest residual.
+    /// Also gives the COR by these losses, without an error; the names of the estimates end in those of the losses.
+    ///
+    /// ```
+    /// use saltus_fit::{Fit, Loss, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.262, 0.168])?;
+    /// let report = Fit::new().losses(&[Loss::Huber]).run(&table)?;
+    /// let huber = report.estimates().iter().find(|e| e.method == "heights-huber").unwrap();
+    /// assert!((huber.value.unwrap() - 0.8).abs() < 0.005);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
-    pub fn losses(mut self, wanted: bool) -> Self {
-        self.losses = wanted;
+    pub fn losses(mut self, wanted: &[Loss]) -> Self {
+        self.losses = Loss::ALL.map(|loss| wanted.contains(&loss));
         self
     }
 
@@ -231,7 +242,11 @@ impl Fit {
         }
         let means = bounces::means(&evidence, &setting);
         let read_as_zero = evidence.trials.iter().any(|t| !t.zeros.is_empty());
-        let ratio = if read_as_zero || self.losses { ratio::estimate(&evidence, sigma_height.value) } else { None };
+        let ratio = if read_as_zero || self.losses.contains(&true) {
+            ratio::estimate(&evidence, sigma_height.value)
+        } else {
+            None
+        };
         let findings = Findings {
             heights,
             times,
@@ -266,9 +281,11 @@ impl Fit {
                 report.notes.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
             }
         }
+        let losses: Vec<Loss> =
+            Loss::ALL.into_iter().zip(self.losses).filter(|(_, wanted)| *wanted).map(|(loss, _)| loss).collect();
         let (models, losses) = rayon::join(
             || diagnose::models(&mut report, &findings, (sigma_height, sigma_time)),
-            || if self.losses { findings.losses() } else { Ok(Vec::new()) },
+            || findings.losses(&losses),
         );
         report.models = models?;
         report.estimates.extend(losses?);

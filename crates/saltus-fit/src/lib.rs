@@ -60,6 +60,7 @@ pub use motion::{Arc, Motion};
 pub use profile::{Profile, ProfilePoint};
 pub use report::{Cor, Report, Verdict};
 pub use residual::{Measure, Point, Residual};
+pub use robust::Loss;
 pub use series::{Impact, Track, Variant};
 pub use table::{Event, ReadOptions, Reading, Table, Trial};
 pub use tolerance::Allowed;

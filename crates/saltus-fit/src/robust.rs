@@ -15,11 +15,15 @@ pub(crate) const HUBER: f64 = 1.345;
 pub(crate) const ROWS: usize = 3000;
 const STEPS: usize = 25;
 
-/// What is made small.
+/// What a fit makes small, of residuals divided by their standard errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Loss {
+#[non_exhaustive]
+pub enum Loss {
+    /// Squares up to 1.345 standard errors, in proportion beyond: outliers count less (P. Huber, Ann. Math. Statist. 35 (1964) 73).
     Huber,
+    /// The sum of absolute residuals.
     Absolute,
+    /// The largest residual.
     Largest,
 }
 
@@ -35,6 +39,19 @@ pub(crate) struct Robust {
 }
 
 impl Loss {
+    /// Every one.
+    pub const ALL: [Self; 3] = [Self::Huber, Self::Absolute, Self::Largest];
+
+    /// As it ends the names of estimates: `huber`, `absolute`, `largest`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Huber => "huber",
+            Self::Absolute => "absolute",
+            Self::Largest => "largest",
+        }
+    }
+
     fn of(self, left: &DVector<f64>) -> f64 {
         match self {
             Self::Absolute => left.iter().map(|r| r.abs()).sum(),

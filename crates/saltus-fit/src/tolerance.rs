@@ -1,6 +1,6 @@
 //! The COR by other losses, and the CORs that readings allow if each is only trusted to a tolerance.
 
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 
 use crate::error::FitError;
@@ -27,25 +27,29 @@ pub struct Allowed {
     pub range: Option<(f64, f64)>,
 }
 
-/// The estimates by the losses of [`Loss`], without errors: those would need a bootstrap.
-pub(crate) fn losses<M: OneKind + Sync>(evidence: &Evidence, kind: &Kind<M>) -> Result<Vec<Estimate>, FitError> {
+/// The estimates by other losses, without errors: those would need a bootstrap.
+pub(crate) fn losses<M: OneKind + Sync>(
+    evidence: &Evidence,
+    kind: &Kind<M>,
+    wanted: &[Loss],
+) -> Result<Vec<Estimate>, FitError> {
     let model = M::with_sigma(evidence, kind.sigma.value);
-    let one = |(loss, word, about): (Loss, &str, &str)| {
+    let one = |&loss: &Loss| {
+        let about = match loss {
+            Loss::Huber => "Huber's loss: outliers count less",
+            Loss::Absolute => "the least sum of absolute residuals",
+            Loss::Largest => "the least largest residual",
+        };
         let found = robust::fit(&model, loss, &kind.fitted.shared, &kind.fitted.own, false);
         let found = identified(M::METHOD, found)?.flatten();
         Ok(found.map(|found| {
             let cor = M::cor(found.shared[0]).0;
-            let mut estimate = Estimate::new(&format!("{}-{word}", M::METHOD), about, cor, f64::NAN, f64::NAN);
+            let mut estimate = Estimate::new(&format!("{}-{}", M::METHOD, loss.name()), about, cor, f64::NAN, f64::NAN);
             estimate.trials = kind.estimate.trials;
             estimate
         }))
     };
-    let all = [
-        (Loss::Huber, "huber", "Huber's loss: outliers count less"),
-        (Loss::Absolute, "absolute", "the least sum of absolute residuals"),
-        (Loss::Largest, "largest", "the least largest residual"),
-    ];
-    let found: Result<Vec<Option<Estimate>>, FitError> = all.into_par_iter().map(one).collect();
+    let found: Result<Vec<Option<Estimate>>, FitError> = wanted.par_iter().map(one).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 

@@ -5,7 +5,7 @@
 mod noise;
 
 use noise::Noise;
-use saltus_fit::{Fit, ReadOptions, Report, Table};
+use saltus_fit::{Fit, Loss, ReadOptions, Report, Table};
 
 fn parse(text: &str) -> Table {
     Table::parse("planted", text.as_bytes(), &ReadOptions::default()).expect("a table")
@@ -135,7 +135,7 @@ fn tolerances_allow_a_range_or_nothing() {
 fn other_losses_agree_on_clean_readings_and_differ_on_spoilt_ones() {
     let mut heights: Vec<f64> = (0..8).map(|n| 0.8f64.powi(2 * n)).collect();
     let by = |heights: &[f64], method: &str| {
-        let report = Fit::new().sigma_height(0.01).losses(true).repair(false);
+        let report = Fit::new().sigma_height(0.01).losses(&Loss::ALL).repair(false);
         let report = report.run(&Table::from_heights(heights).unwrap()).unwrap();
         report.estimates().iter().find(|e| e.method == method).and_then(|e| e.value).unwrap()
     };

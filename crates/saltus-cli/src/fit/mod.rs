@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use saltus_fit::{CorModel, Fit, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{CorModel, Fit, Loss, ReadOptions, Report, Table, Verdict};
 use saltus_plot::PlotError;
 
 use crate::args::{self, ReportFormat};
@@ -123,7 +123,9 @@ fn options(args: &args::Fit) -> ReadOptions {
 }
 
 fn fit(args: &args::Fit) -> Fit {
-    let mut fit = Fit::new().repair(!args.no_repair).losses(args.losses).profiles(args.plot_profile.is_some());
+    let losses: Vec<Loss> =
+        Loss::ALL.into_iter().filter(|loss| args.losses.iter().any(|wanted| wanted == loss.name())).collect();
+    let mut fit = Fit::new().repair(!args.no_repair).losses(&losses).profiles(args.plot_profile.is_some());
     if let Some(within) = args.tolerance_height {
         fit = fit.tolerance_height(within);
     }

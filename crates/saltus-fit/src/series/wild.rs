@@ -12,6 +12,8 @@ const DENSE: usize = 60;
 const WINDOWS: [(usize, usize); 3] = [(13, 8), (9, 6), (6, 5)];
 /// Samples that together tell how flights bend and scatter.
 const BENT: usize = 11;
+/// More such windows tell nothing new.
+const WINDOWS_BENT: usize = 1000;
 /// A parabola passes a sample within this part of the range, or within so many times the scatter.
 const NEAR: f64 = 0.01;
 const SCATTERS: f64 = 5.0;
@@ -93,7 +95,8 @@ fn elsewhere(times: &[f64], heights: &[f64], near: f64, wild: &mut [bool]) {
 /// median, and the median over windows (P. Rousseeuw, J. Am. Stat. Assoc. 79 (1984) 871).
 fn bend(times: &[f64], heights: &[f64]) -> (f64, f64) {
     let (mut curvatures, mut scatters) = (Vec::new(), Vec::new());
-    for (t, h) in times.windows(BENT).zip(heights.windows(BENT)).step_by(3) {
+    let apart = (times.len() / WINDOWS_BENT).max(3);
+    for (t, h) in times.windows(BENT).zip(heights.windows(BENT)).step_by(apart) {
         let mut best = (0.0, f64::INFINITY);
         for a in 0..BENT {
             for b in a + 1..BENT {
