@@ -2,11 +2,17 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+use std::f64::consts::TAU;
+
+use proptest::prelude::{Just, Strategy};
+use proptest::prop_oneof;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Dop853, Simulation, State, Stop};
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::friction::Friction;
-use saltus_bounce::walls::{Cuboid, Face, Lift, Plane, Round, Stairs, Walls};
+use saltus_bounce::walls::{Cuboid, Face, Lift, Plane, Round, Stairs, Table, Walls};
 use saltus_bounce::{Block, Cor, Event, Flyer, Moving, Rolls, Sphere, Stance};
 
 const FLOOR: Face = Face { cell: 0, index: 0 };
@@ -159,6 +165,44 @@ fn lifts() {
     assert!((lands - 2.0 - 0.5_f64.sqrt()).abs() < 1e-14, "{edges:?}");
     assert_eq!(run.mode, Stance::Slide { face: FLOOR, along: vector![0.0] });
     assert!((run.state.position[0] + 2.5 + 10.0 * 2.5).abs() < 1e-13);
+}
+
+/// Balls on a table that shakes, from the first second to the last of a quarter of an hour: each lands, lies, is let go and lands again, once each time,
+/// and is recorded in a few pieces.
+#[test]
+fn a_shaken_table_from_any_hour() {
+    let (mut runner, turns) = (TestRunner::deterministic(), 20.0);
+    let any = (
+        0.7..5.7_f64,
+        0.3..2.8,
+        prop_oneof![Just(0.0), 0.0..0.95],
+        prop_oneof![Just(0.0), 0.0..10.0],
+        0.0..TAU,
+        0.0..1.0,
+    );
+    for late in [0.0, 1.0, 30.0, 1000.0] {
+        for _ in 0..150 {
+            let (omega, strength, e, mean, phase, height) = any.new_tree(&mut runner).unwrap().current();
+            let (g, omega) = (9.81, omega.exp());
+            let amplitude = strength * g / (omega * omega);
+            let table = Table::new(amplitude, omega).unwrap().shifted(phase, mean).unwrap();
+            let ball = Flyer::new(gravity(g), table, cor(e)).unwrap();
+            let start = Moving::new(vector![mean + amplitude * (1.0 + 5.0 * height)], vector![0.0]);
+            let span = late..late + turns * TAU / omega;
+            let run = Simulation::of(&ball).most_jumps(5000).run(Stance::FLIGHT, start, span).unwrap();
+            let says = format!("omega {omega}, strength {strength}, e {e}, mean {mean}, phase {phase}, from {late} s");
+            assert_eq!(run.stop, Stop::Time, "{says}");
+            assert!(
+                table.margin(FLOOR, run.trajectory.end().seconds(), &run.state.position) > -1e-12 * (1.0 + mean),
+                "{says}"
+            );
+            let jumps = run.trajectory.jumps();
+            let leaves = jumps.iter().filter(|jump| matches!(jump.edge(), Some(Event::Leave(_)))).count();
+            assert!(leaves as f64 <= turns + 1.0, "{leaves} times let go, {says}");
+            let pieces: usize = (0..run.trajectory.arcs().len()).map(|k| run.trajectory.pieces(k).count()).sum();
+            assert!(pieces < 64 * (jumps.len() + 1) + 640, "{pieces} pieces of {} arcs, {says}", jumps.len() + 1);
+        }
+    }
 }
 
 /// A ball comes to rest in the corner of a tilted box, against two walls.

@@ -107,6 +107,7 @@ fn interpolated<A: Automaton>(
     observer: &mut impl Observer<A>,
 ) -> ControlFlow<()> {
     let (mut from, mut length) = (0.0, span);
+    let late = |s: f64| now.seconds().abs() + s;
     while from < span {
         let last = from + length >= span;
         let h = if last { span - from } else { length };
@@ -115,9 +116,9 @@ fn interpolated<A: Automaton>(
             let (exact, fit) = (at(from + h * u), horner(&c, u));
             (0..exact.len()).all(|i| {
                 let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
-                // No nearer than the rounding of time allows, late in an arc that swings, nor than the smallest numbers can say.
+                // No nearer than the rounding of time allows, late in an arc that swings or in a run, nor than the smallest numbers can say.
                 let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
-                let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * (from + h) / h;
+                let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * late(from + h) / h;
                 (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
             })
         });

@@ -26,6 +26,10 @@ pub(super) struct Departure {
 const FAR: f64 = 1024.0;
 /// A guard is seen where it is by this larger than its rounding, which a few samples may show too small.
 const SEEN: f64 = 64.0;
+/// A guard that is zero at the start is seen to rise from there where it is by this larger than it may be off.
+const RISEN: f64 = 4.0;
+/// A guard no larger than this many times its rounding may be hidden by it, where it was seen to rise on a longer stretch.
+const HIDDEN: f64 = 64.0 * RISEN;
 /// A slope down counts as none up to so many times what it may be off by. The jump at a touch may change its sign, and it is not to be lost then.
 const NONE: f64 = 64.0;
 
@@ -65,6 +69,19 @@ fn is_even(order: f64) -> bool {
 }
 
 impl Search<'_> {
+    /// Whether the guard, as `p` known to within `margin` and `least` of its values on `0..=b`, is nothing but rounding there, and was seen to rise on a longer
+    /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a step of rounding.
+    pub(super) fn is_under_a_rise(&mut self, p: &Bernstein, least: f64, margin: f64) -> bool {
+        let nowhere_below = least > -margin;
+        if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * margin {
+            self.rise = Some(margin);
+            return false;
+        }
+        // Of a smooth guard the margin would have shrunk with the stretch.
+        let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
+        self.rise.is_some_and(stays) && nowhere_below && p.end() < HIDDEN * margin
+    }
+
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.
     ///
     /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again. Where rounding hides

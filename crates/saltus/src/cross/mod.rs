@@ -238,6 +238,20 @@ mod tests {
     }
 
     proptest! {
+        /// A floor h = A sin ωt lets go of a ball where h'' = -g: the gap grows as the cube of time, and is no step of rounding for long. It is no fall that
+        /// rounding makes one, however late the clock and near the floor.
+        #[test]
+        fn a_floor_that_lets_go(omega in 5.0..300.0_f64, strength in 1.001..3.0_f64, turns in 0.0..5000.0_f64, window in 0.03..1.0_f64) {
+            let g = 9.81;
+            let amplitude = strength * g / (omega * omega);
+            let t = ((1.0_f64 / strength).asin() + 2.0 * std::f64::consts::PI * turns.floor()) / omega;
+            let (x, v) = (amplitude * (omega * t).sin(), amplitude * omega * (omega * t).cos());
+            let gap = |s: f64| (x + s * (v - 0.5 * g * s)) - amplitude * (omega * (t + s)).sin();
+            prop_assume!(gap(0.0) == 0.0);
+            let found = fall(gap, window / omega);
+            prop_assert!(found.is_none_or(|s| omega * s > 0.02), "{found:?}");
+        }
+
         /// Plant falls and rises in turn, clustered, dyadic or at an end; the first fall is found, as a polynomial and as a function.
         #[test]
         fn planted_roots(mut roots in prop::collection::vec((0_u32..=64, -3_i32..=3), 1..=6)) {

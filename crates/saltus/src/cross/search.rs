@@ -38,6 +38,8 @@ pub(super) struct Search<'a> {
     rough: f64,
     /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros after it are rounding and no plateau.
     falls_smoothly: bool,
+    /// How far a guard that is zero at an open start may have been off on the shortest stretch on which it was seen to rise from there.
+    pub(super) rise: Option<f64>,
     evaluations: u32,
     /// The largest magnitude of the guard met so far.
     largest: f64,
@@ -101,6 +103,7 @@ impl<'a> Search<'a> {
             departure: None,
             rough: ROUGH * bend,
             falls_smoothly: false,
+            rise: None,
             evaluations: 0,
             largest: 0.0,
             flat: None,
@@ -176,7 +179,7 @@ impl<'a> Search<'a> {
             return self.by_sign(a, b, side);
         }
         let proxy = if let Some(p) = known {
-            Proxy { p: *p, margin: whole, start: p.start(), end: p.end() }
+            Proxy { p: *p, margin: whole, start: p.start(), end: p.end(), least: p.start() }
         } else if let Ok(samples) = self.sampled(a, b) {
             if side == Side::Inside && samples.stay_above() {
                 self.flat = None;
@@ -186,7 +189,7 @@ impl<'a> Search<'a> {
         } else {
             return self.halved(stretch, f64::INFINITY, side);
         };
-        let Proxy { p, mut margin, start, end } = proxy;
+        let Proxy { p, mut margin, start, end, least } = proxy;
         let leaving = side == Side::Wall && a == 0.0;
         if leaving && known.is_some() {
             margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
@@ -200,6 +203,9 @@ impl<'a> Search<'a> {
             margin += roughness;
         }
         let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
+        if leaving && !self.spent && known.is_none() && self.is_under_a_rise(&p, least, margin) {
+            return Ok(Part::None(Side::Inside));
+        }
         if leaving && self.spent && known.is_none() {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
         }
@@ -210,7 +216,7 @@ impl<'a> Search<'a> {
         if leaving
             && !self.spent
             && q.start() < -q_margin
-            && (known.is_some() || self.falls_from_start(b, q.start())?)
+            && (known.is_some() || least < -margin && self.falls_from_start(b, q.start())?)
         {
             return Ok(Part::AtStart);
         }
@@ -348,7 +354,8 @@ impl<'a> Search<'a> {
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
         // The nodes themselves are rounded, and the state at them likewise.
-        Ok(Samples { series, off, spacing: (b.next_up() - b) / (b - a), start: values[0], end: values[8] })
+        let least = values.into_iter().fold(f64::INFINITY, f64::min);
+        Ok(Samples { series, off, spacing: (b.next_up() - b) / (b - a), start: values[0], end: values[8], least })
     }
 }
 
@@ -362,6 +369,8 @@ struct Samples {
     /// The guard at both ends.
     start: f64,
     end: f64,
+    /// The least value seen.
+    least: f64,
 }
 
 impl Samples {
@@ -380,7 +389,8 @@ impl Samples {
     fn proxy(&self) -> Proxy {
         let p = Bernstein::new(&chebyshev::bernstein(&self.series));
         let margin = 8.0 * (self.off + p.steepest() * self.spacing) + 16.0 * f64::EPSILON * p.scale();
-        Proxy { p, margin: if margin.is_finite() { margin } else { f64::INFINITY }, start: self.start, end: self.end }
+        let margin = if margin.is_finite() { margin } else { f64::INFINITY };
+        Proxy { p, margin, start: self.start, end: self.end, least: self.least }
     }
 }
 
@@ -391,4 +401,6 @@ struct Proxy {
     /// The guard at both ends.
     start: f64,
     end: f64,
+    /// The least value seen of it.
+    least: f64,
 }
