@@ -10,7 +10,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Dop853, Simulation, State, Stop};
-use saltus_bounce::effects::Gravity;
+use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
 use saltus_bounce::walls::{Cuboid, Face, Lift, Plane, Round, Stairs, Table, Walls};
 use saltus_bounce::{Block, Cor, Event, Flyer, Moving, Rolls, Sphere, Stance};
@@ -110,6 +110,71 @@ fn curved_ground() {
     let run = Simulation::of(&bowl).stepper(Dop853).tolerance(1e-11).run(Stance::FLIGHT, start, 0.0..20.0).unwrap();
     assert!(matches!(run.mode, Stance::Slide { .. }), "{:?}", run.mode);
     assert!((run.state.position.norm() - radius).abs() < 1e-8);
+}
+
+/// On curved ground in space the normal turns on the way: what rolls goes on rolling, and what spins about the normal is turned aside.
+#[test]
+fn rolling_in_a_bowl() {
+    let (g, mu, size, radius) = (9.81, 0.9, 0.5, 0.02);
+    let body = Sphere::hollow(radius, 0.1).unwrap();
+    let grip = Rolls { ball: body, friction: Friction::rigid(mu).unwrap() };
+    let bowl = Round::bowl(vector![0.0, 0.0, 0.0], size).unwrap();
+    let ball = Flyer::gripped(gravity(g), bowl, cor(0.5), grip).unwrap();
+    for about in [0.0, 5.0] {
+        // Along the bowl, level, at a depth at which it neither climbs nor sinks at once; it rolls, and spins besides.
+        let (normal, velocity) = (-vector![0.6, 0.0, -0.8], vector![0.0, 1.2, 0.0]);
+        let spin = normal.cross(&velocity) / radius + normal * about;
+        let start = Moving::new(vector![0.3, 0.0, -0.4], velocity).spinning(spin);
+        let energy = |x: &Moving<3, saltus::nalgebra::Vector3<f64>>| {
+            0.5 * x.velocity.norm_squared()
+                + 0.5 * body.inertia_factor() * radius * radius * x.spin.norm_squared()
+                + g * x.position[2]
+        };
+        let (stance, x) = ball.lying(FLOOR, 0.0, start);
+        assert_eq!(stance, Stance::Hold { face: FLOOR });
+        let run = Simulation::of(&ball).tolerance(1e-12).run(stance, x, 0.0..3.0).unwrap();
+        assert_eq!(run.mode, stance, "{:?}", run.trajectory.jumps());
+        let n = -run.state.position / size;
+        let slip = run.state.velocity - run.state.spin.cross(&n) * radius;
+        assert!(slip.norm() < 1e-8, "slips by {} m/s, spinning by {about}", slip.norm());
+        assert!((energy(&run.state) - energy(&x)).abs() < 1e-9, "{}", energy(&run.state) - energy(&x));
+        assert!((run.state.position.norm() - size).abs() < 1e-9);
+        // No torque about the normal: but that turns, and the spin about it changes with it.
+        assert!((run.state.position[2] + 0.4).abs() > 1e-3);
+    }
+}
+
+/// Wind presses a block on a table that shakes: it holds while μ(g + h'' + k h') > k w, slips from where that ends, and not before.
+#[test]
+fn a_block_that_slips_when_the_table_sinks() {
+    let (g, mu, rate, wind) = (9.81, 0.4, 0.5, 5.0);
+    let (amplitude, omega) = (0.005, 30.0);
+    let blown = Wind::new(vector![wind, 0.0], LinearDrag::new(rate).unwrap()).unwrap();
+    let table = Table::new(amplitude, omega).unwrap();
+    let ball = Flyer::gripped((gravity(g), blown), table, cor(0.0), Block::new(mu).unwrap()).unwrap();
+    let (stance, x) = ball.lying(FLOOR, 0.0, Moving::new(vector![0.0, 0.0], vector![0.0, 0.0]));
+    assert_eq!(stance, Stance::Hold { face: FLOOR });
+    let run = Simulation::of(&ball).tolerance(1e-12).run(stance, x, 0.0..0.2).unwrap();
+    let slip = &run.trajectory.jumps()[0];
+    let most = amplitude * omega * omega.hypot(rate);
+    let known = ((rate / omega).atan() + ((g - rate * wind / mu) / most).asin()) / omega;
+    assert!(matches!(slip.edge(), Some(Event::Slip(_))) && (slip.t() - known).abs() < 1e-12, "{slip:?}, {known}");
+    // x'' = k (w - x') - μ(g + h'' + k h') until the slip ends.
+    let stop = &run.trajectory.jumps()[1];
+    assert!(matches!(stop.edge(), Some(Event::Stop { .. })), "{stop:?}");
+    let (t, mut v) = (stop.t() - slip.t(), 0.0);
+    for k in 0..10_000 {
+        let rates = |t: f64, v: f64| {
+            let (sin, cos) = (omega * (slip.t() + t)).sin_cos();
+            let pressed = g + amplitude * omega * (rate * cos - omega * sin);
+            rate * (wind - v) - mu * pressed
+        };
+        let h = t / 1e4;
+        let now = f64::from(k) * h;
+        v += h * rates(now + 0.5 * h, v + 0.5 * h * rates(now, v));
+    }
+    assert!(v.abs() < 1e-9 && t > 0.01, "{v} m/s after {t} s");
+    assert_eq!(stop.to, Stance::Hold { face: FLOOR });
 }
 
 /// Down the stairs: each impact is on a tread or on a riser where there is one, and nothing is ever inside a step.

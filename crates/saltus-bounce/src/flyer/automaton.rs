@@ -119,14 +119,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 Some(cell) => (Stance::Flight { cell }, *x),
                 None => self.struck(Stance::Flight { cell: face.cell }, face, t, x),
             },
-            Event::Leave(face) => {
-                let mut x = self.on(face, t, x);
-                let (normal, speed) = self.normal(face, t, &x);
-                x.velocity += normal * (speed - x.velocity.dot(&normal));
-                (Stance::Flight { cell: face.cell }, x)
-            }
-            Event::Stop { face, along } => (self.stopped(face, &along, t, x), *x),
-            Event::Slip(face) => (self.without_slip(face, &self.touch(face, t, x)), *x),
+            Event::Leave(face) => (Stance::Flight { cell: face.cell }, self.beside(face, t, x)),
+            Event::Stop { face, along } => self.stopped(face, &along, t, self.beside(face, t, x)),
+            Event::Slip(face) => (self.slipping(face, &self.touch(face, t, x)), *x),
             Event::Change | Event::Turn => (Stance::FLIGHT, *x),
         }
     }

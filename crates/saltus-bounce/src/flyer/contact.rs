@@ -21,7 +21,7 @@ pub(super) struct Touch<const N: usize, S> {
     pub(super) free: SVector<f64, N>,
     /// The change of spin by the effects.
     pub(super) spin_rate: S,
-    /// The change of slip by the effects, without friction.
+    /// The change of slip by the effects and by the turning of the normal, without friction.
     pub(super) slip_rate: SVector<f64, N>,
 }
 
@@ -74,7 +74,28 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         let free = self.effects.acceleration(&motion);
         let spin_rate = self.effects.spin_rate(&motion);
         let force = -(self.walls.bend(face, t, &x.position, &x.velocity) + gradient.dot(&free)) / length;
-        Touch { normal, force, free, spin_rate, slip_rate: self.grip.slip(free, spin_rate, &normal) }
+        let mut slip_rate = self.grip.slip(free, spin_rate, &normal);
+        if N > 2 && !self.walls.straight(face) {
+            let turning = self.grip.slip(SVector::zeros(), x.spin, &(self.turning(face, t, x) / length));
+            slip_rate += turning - normal * turning.dot(&normal);
+        }
+        Touch { normal, force, free, spin_rate, slip_rate }
+    }
+
+    /// How fast the gradient of `face` turns on the way of the ball, across itself: what spins about an axis that stood upright then slips.
+    fn turning(&self, face: Face, t: f64, x: &Moving<N, S>) -> SVector<f64, N> {
+        // Of vᵀHv + 2v·m + c, a difference in each direction tells Hv + m.
+        let size = if x.velocity.norm() > 0.0 { x.velocity.norm() } else { 1.0 };
+        let mut change = SVector::<f64, N>::zeros();
+        for k in 0..N {
+            let mut step = SVector::<f64, N>::zeros();
+            step[k] = size;
+            let [ahead, behind] = [x.velocity + step, x.velocity - step];
+            let bend = |v: &SVector<f64, N>| self.walls.bend(face, t, &x.position, v);
+            change[k] = (bend(&ahead) - bend(&behind)) / (4.0 * size);
+        }
+        let normal = self.walls.gradient(face, t, &x.position).normalize();
+        change - normal * change.dot(&normal)
     }
 
     /// The unit normal of `face` and its speed along it.
@@ -91,6 +112,14 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         let gradient = self.walls.gradient(face, t, &x.position);
         let margin = self.walls.margin(face, t, &x.position);
         Moving { position: x.position - gradient * (margin / gradient.norm_squared()), ..*x }
+    }
+
+    /// The state put on `face`, and no longer moving across it.
+    pub(super) fn beside(&self, face: Face, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+        let mut x = self.on(face, t, x);
+        let (normal, speed) = self.normal(face, t, &x);
+        x.velocity += normal * (speed - x.velocity.dot(&normal));
+        x
     }
 
     /// The slip on `face`.
@@ -129,9 +158,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// A ball on `face` that does not rebound: in contact, or at once in flight if nothing presses it.
     pub(super) fn settled(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
-        let mut x = self.on(face, t, &x);
-        let (normal, speed) = self.normal(face, t, &x);
-        x.velocity += normal * (speed - x.velocity.dot(&normal));
+        let x = self.beside(face, t, &x);
         let touch = self.touch(face, t, &x);
         if touch.force < 0.0 {
             return (Stance::Flight { cell: face.cell }, x);
@@ -139,41 +166,53 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         if self.grip.on(face).coefficient() == 0.0 {
             return (Stance::Slide { face, along: SVector::zeros() }, x);
         }
-        let (slip, _) = self.slip(face, t, &x);
+        let (slip, normal) = self.slip(face, t, &x);
         let along = noted(&slip, &normal);
         (if none(&along) { self.without_slip(face, &touch) } else { Stance::Slide { face, along } }, x)
     }
 
     /// Friction holds it, or it begins to slide.
     pub(super) fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
-        if self.cone(face, touch) >= 0.0 {
-            Stance::Hold { face }
-        } else {
-            Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
-        }
+        if self.cone(face, touch) >= 0.0 { Stance::Hold { face } } else { self.slipping(face, touch) }
     }
 
-    /// The slip has no component left along what it was.
-    pub(super) fn stopped(&self, face: Face, along: &SVector<f64, N>, t: f64, x: &Moving<N, S>) -> Stance<N> {
-        let (slip, normal) = self.slip(face, t, x);
+    /// Friction has given way: what it could not hold begins to slip the way it was pushed.
+    pub(super) fn slipping(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
+        Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
+    }
+
+    /// The slip has no component left along what it was: it goes on another way, or has ended but for rounding, which friction takes.
+    pub(super) fn stopped(
+        &self,
+        face: Face,
+        along: &SVector<f64, N>,
+        t: f64,
+        mut x: Moving<N, S>,
+    ) -> (Stance<N>, Moving<N, S>) {
+        let (slip, normal) = self.slip(face, t, &x);
         let rounding = 64.0 * f64::EPSILON * x.velocity.norm();
         if N > 2 && slip.norm() > (ENDED * along.norm()).max(rounding) {
-            return Stance::Slide { face, along: noted(&slip, &normal) };
+            return (Stance::Slide { face, along: noted(&slip, &normal) }, x);
         }
-        self.without_slip(face, &self.touch(face, t, x))
+        let taken = slip * -self.grip.share();
+        x.velocity += taken;
+        x.spin = x.spin.plus(self.grip.torque(&taken, &normal));
+        (self.without_slip(face, &self.touch(face, t, &x)), x)
     }
 
     /// An impact on `face`, from flight or from contact with other faces.
     pub(super) fn struck(&self, from: Stance<N>, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
-        let mut x = self.on(face, t, x);
+        let faces = self.walls.faces(face.cell);
+        let held = (0..faces).filter(|&index| from.touches(index) && index != face.index);
+        // What it was in contact with, it may leave: from where it is, without the rounding of the way along it.
+        let x = held.clone().fold(*x, |x, index| self.on(Face { index, ..face }, t, &x));
+        let mut x = self.on(face, t, &x);
         let (normal, speed) = self.normal(face, t, &x);
         let relative = x.velocity - normal * speed;
         let law = self.restitution.on(face);
         let after = self.grip.on(face).impact(&law, relative, x.spin, &normal);
         (x.velocity, x.spin) = (after.velocity + normal * speed, after.spin);
         let rebounds = law.rebound((-relative.dot(&normal)).max(0.0)) > 0.0;
-        let faces = self.walls.faces(face.cell);
-        let held = (0..faces).filter(|&index| from.touches(index) && index != face.index);
         let stays = |index: usize, x: &Moving<N, S>| {
             let (normal, speed) = self.normal(Face { index, ..face }, t, x);
             (x.velocity.dot(&normal) - speed).abs() <= 8.0 * f64::EPSILON * (relative.norm() + speed.abs())

@@ -38,7 +38,7 @@ pub trait Grip<const N: usize, S: Turning> {
         0.0
     }
 
-    /// The velocity of the point of contact along the wall, linear in both arguments.
+    /// The velocity of the point of contact along the wall, linear in velocity and spin; and without a velocity linear in `normal`, of any length.
     fn slip(&self, velocity: SVector<f64, N>, spin: S, normal: &SVector<f64, N>) -> SVector<f64, N> {
         let _ = spin;
         velocity - normal * velocity.dot(normal)

@@ -1,5 +1,7 @@
 //! What a mode's guards say as it is entered.
 
+use std::cell::Cell;
+
 use crate::automaton::{Automaton, Entry};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
@@ -34,9 +36,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue; // a zero that falls at once is found like every other crossing
             }
             let slope = self.guard_slope(mode, edge, t, x, g);
-            let on_wall =
-                -g <= 4.0 * (slope.abs() * (t.abs().next_up() - t.abs()) + self.guard_rounding(edge, t, x, g, 1.0));
-            if on_wall {
+            let tick = t.abs().next_up() - t.abs();
+            let rounding =
+                slope.abs() * tick + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
+            if -g <= 4.0 * rounding {
                 if spent.is_none() && slope < 0.0 {
                     return Ok(Some(self.first_of(mode, t, x, zero, edge)));
                 }
@@ -69,33 +72,44 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         sum * (f64::EPSILON / NUDGE)
     }
 
+    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
+    fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const SOME: f64 = 1024.0;
+        self.memory.stats.guards += 1;
+        let ahead = t + SOME * (t.abs().next_up() - t.abs());
+        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
+        if change.is_finite() { change } else { 0.0 }
+    }
+
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
     ///
-    /// The shortest time is taken over which the change of the guard doubles (or quadruples) with time twice in a row: longer than
+    /// The shortest time is taken over which the change of the guard doubles (or, where it never does, quadruples) with time twice in a row: longer than
     /// rounding, shorter than the way to the guard's next root.
     pub(super) fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let longest = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 };
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
-        let mut h = longest / (1_u64 << 60) as f64;
-        loop {
-            let mut change = |h: f64| {
-                self.memory.stats.guards += 1;
-                let bend = h / longest;
-                let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
-                self.automaton.guard(edge, t + h, &ahead) - g
-            };
-            let far = change(h);
-            if h >= longest || h == 0.0 {
-                return far / h.max(f64::MIN_POSITIVE);
+        let (automaton, guards) = (self.automaton, Cell::from_mut(&mut self.memory.stats.guards));
+        let change = |h: f64, bends: f64| {
+            guards.set(guards.get() + 1);
+            let bend = bends * h / longest;
+            let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
+            automaton.guard(edge, t + h, &ahead) - g
+        };
+        // A guard that moves is seen to move by no less than some roundings of time.
+        guards.set(guards.get() + 1);
+        let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { t.abs().next_up() - t.abs() };
+        let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
+        for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
+            let mut h = shortest;
+            while h < longest && h > 0.0 {
+                let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
+                if (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs() {
+                    return far / h;
+                }
+                h *= 8.0;
             }
-            let (half, quarter) = (change(0.5 * h), change(0.25 * h));
-            let grows =
-                |by: f64| (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
-            if grows(2.0) || grows(4.0) {
-                return far / h;
-            }
-            h = (8.0 * h).min(longest);
         }
+        change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
     }
 }

@@ -18,6 +18,8 @@ use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
+/// The part of a step over which the slope of a guard that is not affine is seen.
+const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn stepped(
@@ -56,7 +58,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
             let c = dense.as_ref();
-            if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, clock.now, &slope, c, h)
+            if first
+                && h > f64::EPSILON * clock.now.seconds().abs()
+                && self.contradicted(mode, clock.now, &x, &slope, c, h)
             {
                 self.memory.stats.steps -= 1;
                 self.memory.stats.rejected += 1;
@@ -177,21 +181,39 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether an arc that leaves a wall by the flow returns to it at once by a dense output whose slope at its start is not the flow's: the step is too
     /// long for a motion this slow, and would lose the state behind the wall.
-    fn contradicted(&mut self, mode: A::Mode, now: Time, slope: &A::State, c: &[A::State], h: f64) -> bool {
+    fn contradicted(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        slope: &A::State,
+        c: &[A::State],
+        h: f64,
+    ) -> bool {
         let Some(c1) = c.get(1) else { return false };
         if (0..slope.len()).all(|i| c1.get(i) == h * slope.get(i)) {
             return false;
         }
         let t = now.seconds();
         for edge in self.automaton.edges(mode).iter() {
-            if !self.automaton.affine(edge) || self.memory.spent_as(edge).is_none() {
+            if self.memory.spent_as(edge).is_none() {
                 continue;
             }
-            self.memory.stats.guards += 3;
-            let guard = |x: &A::State| self.automaton.guard(edge, t, x);
-            let constant = guard(&slope.with(|_| 0.0));
-            let rate = h * less_constant(guard, constant, slope);
-            if rate > 0.0 && less_constant(guard, constant, c1) < 0.5 * rate {
+            // What the guard rises by on the way of the flow and on that of the dense output.
+            let [rate, told] = if self.automaton.affine(edge) {
+                self.memory.stats.guards += 3;
+                let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+                let constant = guard(&slope.with(|_| 0.0));
+                [h * less_constant(guard, constant, slope), less_constant(guard, constant, c1)]
+            } else {
+                self.memory.stats.guards += 4;
+                let rise = |s: f64, rate: &A::State, by: f64| {
+                    let at = |part: f64| x.with(|i| x.get(i) + part * by * rate.get(i));
+                    self.automaton.guard(edge, t + s, &at(1.0)) - self.automaton.guard(edge, t - s, &at(-1.0))
+                };
+                [rise(PROBE * h, slope, PROBE * h), rise(PROBE * h, c1, PROBE)]
+            };
+            if rate > 0.0 && told < 0.5 * rate {
                 return true;
             }
         }

@@ -58,6 +58,11 @@ impl Departure {
         self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
     }
 
+    /// The steepest fall that the slope allows.
+    pub(super) fn steepest(&self) -> f64 {
+        self.slope.abs() + self.doubt
+    }
+
     /// Whether it was told by a stretch so long that it knows better than steps of rounding within `0..=b`.
     pub(super) fn is_far(&self, b: f64) -> bool {
         self.length > FAR * b
@@ -71,15 +76,24 @@ fn is_even(order: f64) -> bool {
 impl Search<'_> {
     /// Whether the guard, as `p` known to within `margin` and `least` of its values on `0..=b`, is nothing but rounding there, and was seen to rise on a longer
     /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a step of rounding.
-    pub(super) fn is_under_a_rise(&mut self, p: &Bernstein, least: f64, margin: f64) -> bool {
+    pub(super) fn is_under_a_rise(
+        &mut self,
+        p: &Bernstein,
+        b: f64,
+        least: f64,
+        margin: f64,
+    ) -> Result<bool, Undefined> {
         let nowhere_below = least > -margin;
         if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * margin {
             self.rise = Some(margin);
-            return false;
+            return Ok(false);
         }
-        // Of a smooth guard the margin would have shrunk with the stretch.
+        // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen number by number its steps have an order.
         let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
-        self.rise.is_some_and(stays) && nowhere_below && p.end() < HIDDEN * margin
+        Ok(self.rise.is_some_and(stays)
+            && nowhere_below
+            && p.end() < HIDDEN * margin
+            && self.is_rough(0.0, 0.25 * b)?)
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.

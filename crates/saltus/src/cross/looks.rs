@@ -1,5 +1,6 @@
 //! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
 
+use super::departure::Departure;
 use super::search::{Part, Search, Side};
 use super::{Evidence, Undefined};
 
@@ -42,8 +43,8 @@ impl Search<'_> {
         Ok(false)
     }
 
-    /// Samples of a guard that no polynomial fits.
-    pub(super) fn looked(&mut self, a: f64, b: f64, side: Side) -> Result<Look, Undefined> {
+    /// Many samples, and how often they change direction.
+    fn samples(&mut self, a: f64, b: f64) -> Result<([(f64, f64); LOOKS], usize), Undefined> {
         let mut samples = [(0.0, 0.0); LOOKS];
         let (mut last, mut direction, mut turns) = (self.value(a)?, 0.0, 0);
         for (k, sample) in samples.iter_mut().enumerate() {
@@ -58,6 +59,18 @@ impl Search<'_> {
             }
             last = value;
         }
+        Ok((samples, turns))
+    }
+
+    /// Whether the guard is seen to go up and down without order.
+    pub(super) fn is_rough(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
+        Ok(self.samples(a, b)?.1 > MOST_TURNS)
+    }
+
+    /// Samples of a guard that no polynomial fits.
+    pub(super) fn looked(&mut self, a: f64, b: f64, side: Side) -> Result<Look, Undefined> {
+        let (samples, turns) = self.samples(a, b)?;
+        let last = samples[LOOKS - 1].1;
         let steps = samples.chunk_by(|x, y| x.1 == y.1).count();
         if turns > MOST_TURNS {
             return Ok(Look::Rounding(self.seen_through(&samples, a, b, side)));
@@ -75,12 +88,17 @@ impl Search<'_> {
         }
         if side == Side::Wall && walk.side == Side::Outside {
             // Steps of rounding are of one length where the guard falls with speed; without speed it stands longest on the first.
-            let mut steps = samples.chunk_by(|x, y| x.1 == y.1).map(<[_]>::len);
-            let (first, second) = (steps.next().unwrap_or(0), steps.next().unwrap_or(0));
+            let lengths = || samples.chunk_by(|x, y| x.1 == y.1).map(<[_]>::len);
+            let (first, second) = (lengths().next().unwrap_or(0), lengths().nth(1).unwrap_or(0));
             let (half, at_half) = samples[LOOKS / 2];
             let slow = samples[0].1 == self.base && first > second;
-            // Among ups and downs that is not seen, but a longer stretch may know.
-            let slow = slow || turns > 0 && self.departure.is_some_and(|it| it.touches() && it.is_far(b));
+            // Among ups and downs that is not seen, nor where values are rounded this way and that (of time, the steps are of one length always); but a longer
+            // stretch may know.
+            let whole = || lengths().take(steps - 1);
+            let of_value = whole().max() > whole().min().map(|least| 3 * least);
+            let far = self.departure.filter(|it| it.touches() && it.is_far(b));
+            let without_speed = |it: Departure| of_value && it.steepest() * b < 0.25 * (self.base - last);
+            let slow = slow || far.is_some_and(|it| turns > 0 || without_speed(it));
             let order = if slow { order(at_half - self.base, last - self.base, half, b) } else { 1.0 };
             return Ok(Look::Steps(self.left(Some(order), b)));
         }
