@@ -7,7 +7,7 @@ use std::error::Error;
 use rayon::prelude::*;
 use saltus::nalgebra::Vector3;
 use saltus::return_map::{Continuation, Kind, ReturnMap, Section};
-use saltus::{Automaton, Edges, Entry, Lift, Linearize, Number, Simulation};
+use saltus::{Automaton, Edges, Entry, Linearize, Number, Simulation};
 use saltus_examples::{Figure, gallery};
 
 const INDUCTANCE: f64 = 20e-3; // H
@@ -88,7 +88,7 @@ impl Automaton for Buck {
     }
     fn reset(&self, event: Event, t: f64, x: &Vector3<f64>) -> (Switch, Vector3<f64>) {
         let to = if event == Event::Close { Switch::Closed } else { Switch::Open };
-        (to, self.reset_over(event, t, x.over(), self.parameters()).into())
+        (to, self.reset_at(event, t, x))
     }
 }
 

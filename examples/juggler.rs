@@ -6,7 +6,7 @@ use std::error::Error;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{ReturnMap, Section};
-use saltus::{Automaton, Edges, Lift, Linearize, Number, Polynomial, Simulation};
+use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// g in m/s², the coefficient of restitution, the gain in s²/m², the energy wanted in m²/s².
@@ -66,7 +66,7 @@ impl Automaton for Juggler {
         self.guard_at(edge, t, x)
     }
     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(edge, t, x))
     }
 }
 

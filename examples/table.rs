@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use saltus::nalgebra::Vector2;
 use saltus::return_map::{Continuation, Kind, ReturnMap, Section};
-use saltus::{Automaton, Edges, Lift, Linearize, Number, Polynomial, Simulation};
+use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// The table moves as A sin(ω t).
@@ -57,7 +57,7 @@ impl Automaton for Table {
         self.guard_at(edge, t, x)
     }
     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(edge, t, x))
     }
 }
 

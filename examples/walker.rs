@@ -6,7 +6,7 @@ use std::error::Error;
 
 use saltus::nalgebra::Vector4;
 use saltus::return_map::{Continuation, Kind, Point, ReturnMap, Section};
-use saltus::{Automaton, Edges, Entry, Lift, Linearize, Number, Simulation};
+use saltus::{Automaton, Edges, Entry, Linearize, Number, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// The slope γ; lengths in legs, times in √(leg/g).
@@ -71,7 +71,7 @@ impl Automaton for Walker {
     }
     fn reset(&self, event: Event, t: f64, x: &Vector4<f64>) -> (Swing, Vector4<f64>) {
         let to = if event == Event::MidStance { Swing::Before } else { Swing::Behind };
-        (to, self.reset_over(event, t, x.over(), self.parameters()).into())
+        (to, self.reset_at(event, t, x))
     }
 }
 

@@ -6,7 +6,7 @@ use std::error::Error;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{ReturnMap, Section};
-use saltus::{Automaton, Edges, Lift, Linearize, Number, Simulation};
+use saltus::{Automaton, Edges, Linearize, Number, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// g in m/s², the spokes' length in m, half the angle between them and the slope in rad.
@@ -54,7 +54,7 @@ impl Automaton for Wheel {
         true
     }
     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(edge, t, x))
     }
 }
 

@@ -8,7 +8,7 @@ use proptest::prelude::{Just, Strategy};
 use proptest::prop_oneof;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use saltus::nalgebra::{Vector2, vector};
+use saltus::nalgebra::{Vector2, Vector3, vector};
 use saltus::{Dop853, Simulation, State, Stop};
 use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
@@ -125,7 +125,7 @@ fn rolling_in_a_bowl() {
         let (normal, velocity) = (-vector![0.6, 0.0, -0.8], vector![0.0, 1.2, 0.0]);
         let spin = normal.cross(&velocity) / radius + normal * about;
         let start = Moving::new(vector![0.3, 0.0, -0.4], velocity).spinning(spin);
-        let energy = |x: &Moving<3, saltus::nalgebra::Vector3<f64>>| {
+        let energy = |x: &Moving<3, Vector3<f64>>| {
             0.5 * x.velocity.norm_squared()
                 + 0.5 * body.inertia_factor() * radius * radius * x.spin.norm_squared()
                 + g * x.position[2]

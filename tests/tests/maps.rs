@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use saltus::nalgebra::Vector3;
 use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Section};
-use saltus::{Automaton, Edges, Lift, Linearize, Number, Simulation};
+use saltus::{Automaton, Edges, Linearize, Number, Simulation};
 
 #[test]
 fn questions_without_an_answer() {
@@ -74,7 +74,7 @@ impl Automaton for Oscillator {
         true
     }
     fn reset(&self, meets: Meets, t: f64, x: &Vector3<f64>) -> ((), Vector3<f64>) {
-        ((), self.reset_over(meets, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(meets, t, x))
     }
 }
 
@@ -166,7 +166,7 @@ impl Automaton for Yearly {
         true
     }
     fn reset(&self, edge: (), t: f64, x: &Vector3<f64>) -> ((), Vector3<f64>) {
-        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(edge, t, x))
     }
 }
 

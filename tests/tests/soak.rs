@@ -35,6 +35,9 @@ fn random_scenes_keep_the_laws() {
     let mut broken: Vec<(usize, String)> = Vec::new();
     let run = |k: usize| {
         let made = numbered(k as u64);
+        if count == 1 {
+            println!("{}", made.toml);
+        }
         lived(&made, EVALUATIONS).map_err(|says| format!("{says}\n{}", made.toml))
     };
     let _: ControlFlow<()> = saltus::ensemble(from..from + count, run, |k, lived| {

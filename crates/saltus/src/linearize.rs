@@ -112,7 +112,7 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 ///
 /// ```
 /// use saltus::nalgebra::{Vector2, vector};
-/// use saltus::{Automaton, Edges, Lift, Linearize, Number, saltation};
+/// use saltus::{Automaton, Edges, Linearize, Number, saltation};
 ///
 /// struct Ball {
 ///     gravity: f64,
@@ -151,7 +151,7 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 ///         self.guard_at(edge, t, x)
 ///     }
 ///     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-///         ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+///         ((), self.reset_at(edge, t, x))
 ///     }
 /// }
 ///
@@ -231,6 +231,13 @@ pub trait Linearize: Automaton<State: Lift> {
     #[inline]
     fn guard_at(&self, edge: Self::Edge, t: f64, x: &Self::State) -> f64 {
         self.guard_over(edge, t, x.over(), self.parameters().over())
+    }
+
+    /// The state that [`Automaton::reset`] may answer, where the jump leaves the number of coordinates as it is.
+    #[inline]
+    fn reset_at(&self, edge: Self::Edge, t: f64, x: &Self::State) -> Self::State {
+        let after = self.reset_over(edge, t, x.over(), self.parameters().over());
+        x.with(|i| Self::State::pick(&after, i))
     }
 
     /// What [`Automaton::exact`] may answer.

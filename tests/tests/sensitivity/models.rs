@@ -86,7 +86,7 @@ impl Automaton for Bounce {
         self.ends
     }
     fn reset(&self, edge: Floor, t: f64, x: &Vector2<f64>) -> (Phase, Vector2<f64>) {
-        (Phase::Flight, self.reset_over(edge, t, x.over(), self.parameters()).into())
+        (Phase::Flight, self.reset_at(edge, t, x))
     }
     fn exact(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
         self.exact_at(mode, t, x)
@@ -160,7 +160,7 @@ impl Automaton for Dragged {
         self.guard_at(turn, t, x)
     }
     fn reset(&self, turn: Turn, t: f64, x: &Vector2<f64>) -> (Way, Vector2<f64>) {
-        let after: Vector2<f64> = self.reset_over(turn, t, x.over(), self.parameters()).into();
+        let after: Vector2<f64> = self.reset_at(turn, t, x);
         (if turn == Turn::Floor && after[1] > 0.0 { Way::Up } else { Way::Down }, after)
     }
 }
@@ -305,7 +305,7 @@ impl Automaton for Tossed {
         self.exact_at(mode, t, x)
     }
     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+        ((), self.reset_at(edge, t, x))
     }
 }
 

@@ -120,8 +120,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 None => self.struck(Stance::Flight { cell: face.cell }, face, t, x),
             },
             Event::Leave(face) => (Stance::Flight { cell: face.cell }, self.beside(face, t, x)),
-            Event::Stop { face, along } => self.stopped(face, &along, t, self.beside(face, t, x)),
-            Event::Slip(face) => (self.slipping(face, &self.touch(face, t, x)), *x),
+            Event::Stop { face, along } => self.stopped(face, &along, t, x),
+            Event::Slip(face) => self.slipped(face, t, x),
             Event::Change | Event::Turn => (Stance::FLIGHT, *x),
         }
     }

@@ -122,11 +122,24 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         x
     }
 
-    /// The slip on `face`.
+    /// The slip on `face`, none if it is no more than the rounding of its parts.
     #[inline]
     pub(super) fn slip(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, SVector<f64, N>) {
         let (normal, speed) = self.normal(face, t, x);
-        (self.grip.slip(x.velocity - normal * speed, x.spin, &normal), normal)
+        let along = self.grip.slip(x.velocity - normal * speed, S::NONE, &normal);
+        let slip = self.grip.slip(x.velocity - normal * speed, x.spin, &normal);
+        let rounding = 64.0 * f64::EPSILON * (along.norm() + (slip - along).norm());
+        (if slip.norm() <= rounding { SVector::zeros() } else { slip }, normal)
+    }
+
+    /// The state put on `face`, where it neither moves across it nor slips.
+    fn held(&self, face: Face, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+        let mut x = self.beside(face, t, x);
+        let (slip, normal) = self.slip(face, t, &x);
+        let taken = slip * -self.grip.share();
+        x.velocity += taken;
+        x.spin = x.spin.plus(self.grip.torque(&taken, &normal));
+        x
     }
 
     /// Friction per mass.
@@ -176,9 +189,15 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         if self.cone(face, touch) >= 0.0 { Stance::Hold { face } } else { self.slipping(face, touch) }
     }
 
-    /// Friction has given way: what it could not hold begins to slip the way it was pushed.
-    pub(super) fn slipping(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
+    /// Friction has given way: what it could not hold slips the way it is pushed.
+    fn slipping(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
         Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
+    }
+
+    /// Friction gives way.
+    pub(super) fn slipped(&self, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+        let x = self.held(face, t, x);
+        (self.slipping(face, &self.touch(face, t, &x)), x)
     }
 
     /// The slip has no component left along what it was: it goes on another way, or has ended but for rounding, which friction takes.
@@ -187,16 +206,13 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         face: Face,
         along: &SVector<f64, N>,
         t: f64,
-        mut x: Moving<N, S>,
+        x: &Moving<N, S>,
     ) -> (Stance<N>, Moving<N, S>) {
-        let (slip, normal) = self.slip(face, t, &x);
-        let rounding = 64.0 * f64::EPSILON * x.velocity.norm();
-        if N > 2 && slip.norm() > (ENDED * along.norm()).max(rounding) {
-            return (Stance::Slide { face, along: noted(&slip, &normal) }, x);
+        let (slip, normal) = self.slip(face, t, x);
+        if N > 2 && slip.norm() > ENDED * along.norm() {
+            return (Stance::Slide { face, along: noted(&slip, &normal) }, self.beside(face, t, x));
         }
-        let taken = slip * -self.grip.share();
-        x.velocity += taken;
-        x.spin = x.spin.plus(self.grip.torque(&taken, &normal));
+        let x = self.held(face, t, x);
         (self.without_slip(face, &self.touch(face, t, &x)), x)
     }
 

@@ -67,7 +67,7 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 ///
 /// ```
 /// # use saltus::nalgebra::{Vector2, vector};
-/// # use saltus::{Automaton, Edges, Lift, Linearize, Number};
+/// # use saltus::{Automaton, Edges, Linearize, Number};
 /// # struct Ball { gravity: f64, cor: f64 }
 /// # impl Linearize for Ball {
 /// #     type Parameters = [f64; 2];
@@ -84,7 +84,7 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 /// #     fn edges(&self, _: ()) -> Edges<()> { Edges::from([()]) }
 /// #     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 { self.guard_at(edge, t, x) }
 /// #     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-/// #         ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+/// #         ((), self.reset_at(edge, t, x))
 /// #     }
 /// # }
 /// use saltus::{Sensitive, Simulation, Stop, Wrt};

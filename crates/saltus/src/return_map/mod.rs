@@ -51,7 +51,7 @@ use crate::trajectory::Jump;
 /// use std::f64::consts::{PI, TAU};
 /// use saltus::nalgebra::Vector2;
 /// use saltus::return_map::{ReturnMap, Section};
-/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Over, Simulation};
+/// use saltus::{Automaton, Edges, Linearize, Number, Over, Simulation};
 ///
 /// struct Table { g: f64, amplitude: f64, omega: f64, cor: f64 }
 ///
@@ -78,7 +78,7 @@ use crate::trajectory::Jump;
 /// #     fn edges(&self, _: ()) -> Edges<()> { Edges::from([()]) }
 /// #     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 { self.guard_at(edge, t, x) }
 /// #     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-/// #         ((), self.reset_over(edge, t, x.over(), self.parameters()).into())
+/// #         ((), self.reset_at(edge, t, x))
 /// #     }
 /// # }
 ///
