@@ -76,14 +76,14 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         let force = -(self.walls.bend(face, t, &x.position, &x.velocity) + gradient.dot(&free)) / length;
         let mut slip_rate = self.grip.slip(free, spin_rate, &normal);
         if N > 2 && !self.walls.straight(face) {
-            let turning = self.grip.slip(SVector::zeros(), x.spin, &(self.turning(face, t, x) / length));
+            let turning = self.grip.slip(SVector::zeros(), x.spin, &(self.turning(face, t, x, &normal) / length));
             slip_rate += turning - normal * turning.dot(&normal);
         }
         Touch { normal, force, free, spin_rate, slip_rate }
     }
 
-    /// How fast the gradient of `face` turns on the way of the ball, across itself: what spins about an axis that stood upright then slips.
-    fn turning(&self, face: Face, t: f64, x: &Moving<N, S>) -> SVector<f64, N> {
+    /// How fast the gradient of `face` turns on the way of the ball, across the `normal`.
+    fn turning(&self, face: Face, t: f64, x: &Moving<N, S>, normal: &SVector<f64, N>) -> SVector<f64, N> {
         // Of vᵀHv + 2v·m + c, a difference in each direction tells Hv + m.
         let size = if x.velocity.norm() > 0.0 { x.velocity.norm() } else { 1.0 };
         let mut change = SVector::<f64, N>::zeros();
@@ -94,8 +94,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             let bend = |v: &SVector<f64, N>| self.walls.bend(face, t, &x.position, v);
             change[k] = (bend(&ahead) - bend(&behind)) / (4.0 * size);
         }
-        let normal = self.walls.gradient(face, t, &x.position).normalize();
-        change - normal * change.dot(&normal)
+        change - normal * change.dot(normal)
     }
 
     /// The unit normal of `face` and its speed along it.
