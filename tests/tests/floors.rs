@@ -112,7 +112,7 @@ fn curved_ground() {
     assert!((run.state.position.norm() - radius).abs() < 1e-8);
 }
 
-/// On curved ground in space the normal turns on the way: what rolls goes on rolling, and what spins about the normal is turned aside.
+/// On curved ground in space the normal turns on the way: what rolls goes on rolling, spinning or not.
 #[test]
 fn rolling_in_a_bowl() {
     let (g, mu, size, radius) = (9.81, 0.9, 0.5, 0.02);
@@ -121,7 +121,7 @@ fn rolling_in_a_bowl() {
     let bowl = Round::bowl(vector![0.0, 0.0, 0.0], size).unwrap();
     let ball = Flyer::gripped(gravity(g), bowl, cor(0.5), grip).unwrap();
     for about in [0.0, 5.0] {
-        // Along the bowl, level, at a depth at which it neither climbs nor sinks at once; it rolls, and spins besides.
+        // Along the bowl, level; it rolls, and spins besides.
         let (normal, velocity) = (-vector![0.6, 0.0, -0.8], vector![0.0, 1.2, 0.0]);
         let spin = normal.cross(&velocity) / radius + normal * about;
         let start = Moving::new(vector![0.3, 0.0, -0.4], velocity).spinning(spin);
@@ -139,7 +139,7 @@ fn rolling_in_a_bowl() {
         assert!(slip.norm() < 1e-8, "slips by {} m/s, spinning by {about}", slip.norm());
         assert!((energy(&run.state) - energy(&x)).abs() < 1e-9, "{}", energy(&run.state) - energy(&x));
         assert!((run.state.position.norm() - size).abs() < 1e-9);
-        // No torque about the normal: but that turns, and the spin about it changes with it.
+        // It has not stayed level, where the normal would turn about the vertical only.
         assert!((run.state.position[2] + 0.4).abs() > 1e-3);
     }
 }

@@ -23,6 +23,12 @@ pub struct Time {
     lo: f64,
 }
 
+/// How far apart doubles are next to `t`, towards larger magnitudes: what a time is rounded by.
+#[inline]
+pub(crate) fn resolution(t: f64) -> f64 {
+    t.abs().next_up() - t.abs()
+}
+
 impl Time {
     /// The moment `t`, in seconds.
     #[must_use]

@@ -125,8 +125,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     #[inline]
     pub(super) fn slip(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, SVector<f64, N>) {
         let (normal, speed) = self.normal(face, t, x);
-        let along = self.grip.slip(x.velocity - normal * speed, S::NONE, &normal);
-        let slip = self.grip.slip(x.velocity - normal * speed, x.spin, &normal);
+        let relative = x.velocity - normal * speed;
+        let along = self.grip.slip(relative, S::NONE, &normal);
+        let slip = self.grip.slip(relative, x.spin, &normal);
         let rounding = 64.0 * f64::EPSILON * (along.norm() + (slip - along).norm());
         (if slip.norm() <= rounding { SVector::zeros() } else { slip }, normal)
     }
@@ -184,7 +185,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     /// Friction holds it, or it begins to slide.
-    pub(super) fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
+    fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
         if self.cone(face, touch) >= 0.0 { Stance::Hold { face } } else { self.slipping(face, touch) }
     }
 

@@ -7,7 +7,7 @@ use crate::observe::{Inspection, Observer};
 use crate::poly::{Bernstein, MAX_DEGREE};
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
+use crate::time::{Time, resolution};
 use crate::trajectory::horner;
 
 use super::{Advance, Found};
@@ -145,7 +145,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let rise = self.automaton.guard(edge, now.after(0.5 * duration).seconds(), middle);
         let g = self.automaton.guard(edge, t, end);
         let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
-        let by_time = moved * (t.abs().next_up() - t.abs());
+        let by_time = moved * resolution(t);
         rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0) + 64.0 * by_time
     }
 
@@ -155,8 +155,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn rises(&mut self, edge: A::Edge, now: Time, root: f64, at: impl Fn(f64) -> A::State) -> bool {
         self.memory.stats.guards += 2;
         // So that the rounding of time and what the guard bends by weigh alike.
-        let (longest, t) = (self.memory.longest_duration, now.seconds().abs());
-        let far = 0.3 * longest * ((t.next_up() - t) / longest).cbrt();
+        let (longest, t) = (self.memory.longest_duration, now.seconds());
+        let far = 0.3 * longest * (resolution(t) / longest).cbrt();
         let [before, after] =
             [root - far, root + far].map(|s| self.automaton.guard(edge, now.after(s).seconds(), &at(s)));
         after > before

@@ -6,7 +6,7 @@ use crate::automaton::{Automaton, Entry};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
+use crate::time::{Time, resolution};
 
 use super::Advance;
 
@@ -36,7 +36,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue; // a zero that falls at once is found like every other crossing
             }
             let slope = self.guard_slope(mode, edge, t, x, g);
-            let tick = t.abs().next_up() - t.abs();
+            let tick = resolution(t);
             let rounding =
                 slope.abs() * tick + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
             if -g <= 4.0 * rounding {
@@ -76,7 +76,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const SOME: f64 = 1024.0;
         self.memory.stats.guards += 1;
-        let ahead = t + SOME * (t.abs().next_up() - t.abs());
+        let ahead = t + SOME * resolution(t);
         let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
         if change.is_finite() { change } else { 0.0 }
     }
@@ -98,7 +98,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         // A guard that moves is seen to move by no less than some roundings of time.
         guards.set(guards.get() + 1);
-        let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { t.abs().next_up() - t.abs() };
+        let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { resolution(t) };
         let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;

@@ -10,7 +10,7 @@ use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::Time;
+use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{exceeds, less_constant};
@@ -134,7 +134,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             self.memory.stats.rejected += 1;
             h = size * factor;
-            if h <= 2.0 * (t.abs().next_up() - t.abs()) {
+            if h <= 2.0 * resolution(t) {
                 let kind = if finite { ErrorKind::StepSize } else { ErrorKind::Flow };
                 return Err(Error::new(kind, Place::new(t, mode, None::<A::Edge>, x)));
             }
@@ -207,11 +207,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 [h * less_constant(guard, constant, slope), less_constant(guard, constant, c1)]
             } else {
                 self.memory.stats.guards += 4;
-                let rise = |s: f64, rate: &A::State, by: f64| {
-                    let at = |part: f64| x.with(|i| x.get(i) + part * by * rate.get(i));
-                    self.automaton.guard(edge, t + s, &at(1.0)) - self.automaton.guard(edge, t - s, &at(-1.0))
+                let s = PROBE * h;
+                let rise = |rate: &A::State, by: f64| {
+                    let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
+                    self.automaton.guard(edge, t + s, &at(by)) - self.automaton.guard(edge, t - s, &at(-by))
                 };
-                [rise(PROBE * h, slope, PROBE * h), rise(PROBE * h, c1, PROBE)]
+                [rise(slope, s), rise(c1, PROBE)]
             };
             if rate > 0.0 && told < 0.5 * rate {
                 return true;

@@ -6,6 +6,7 @@ use num_dual::{Dual2_64, Dual64};
 use super::{Lift, Linearize, moving, moving_in, velocity};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
+use crate::time::resolution;
 
 /// A jump to first order: what becomes of a small change of the state x⁻ before it and of the parameters.
 ///
@@ -141,8 +142,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether the state before is outside the guard by more than rounding, as only an edge that fires on entry allows.
     pub(super) fn is_outside(&self) -> bool {
-        let moment = self.t.abs().next_up() - self.t.abs();
-        self.guard < -8.0 * (self.rate.abs() * moment).max(f64::EPSILON * self.size(self.x))
+        self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
     }
 
     /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any, moving.
@@ -160,7 +160,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether an arc of `duration` was too short for time to tell its ends apart, but for rounding.
     pub(super) fn is_at_once(&self, duration: f64) -> bool {
-        duration <= 64.0 * (self.t.abs().next_up() - self.t.abs())
+        duration <= 64.0 * resolution(self.t)
     }
 
     /// `g_x y`, and the sum of its terms' sizes.

@@ -2,6 +2,7 @@
 
 use super::{Stepper, Trial, closing, moved, weighted};
 use crate::state::State;
+use crate::time::resolution;
 
 /// The Rosenbrock–Wanner method of order 5(4) by Steinebach: the stepper for stiff flows.
 ///
@@ -218,7 +219,7 @@ impl Stepper for Rodas5P {
 #[inline]
 fn time_derivative<S: State>(flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S, slope: &S, h: f64) -> S {
     // Within the step, yet far enough for the resolution of time not to matter.
-    let resolution = (t.abs().next_up() - t.abs()) / h;
+    let resolution = resolution(t) / h;
     let reach = if resolution <= 1e-12 { 1e-4 * h } else { h * resolution.cbrt() };
     let (near, far) = (t + reach, t + 2.0 * reach);
     let f1 = flow(near, x);
