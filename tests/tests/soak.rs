@@ -23,8 +23,16 @@ const BROKEN_ONCE: [u64; 7] = [141_099, 331_928, 348_293, 430_915, 836_149, 961_
 fn scenes_that_broke_a_law_keep_it() {
     for number in BROKEN_ONCE {
         let made = numbered(number);
-        assert!(lived(&made, EVALUATIONS).is_ok(), "{:?}\n{}", lived(&made, EVALUATIONS), made.toml);
+        let lived = lived(&made, EVALUATIONS);
+        assert!(lived.is_ok(), "{lived:?}\n{}", made.toml);
     }
+}
+
+#[test]
+#[ignore = "a sphere in space that begins to slip: the direction of its friction is stiff, and Rodas5P takes 2e8 evaluations that the budget ends"]
+fn a_slide_that_begins_in_space() {
+    let lived = lived(&numbered(141_072), 5_000_000).unwrap();
+    assert!(!lived.contains("given up"), "{lived}");
 }
 
 #[test]
