@@ -91,8 +91,28 @@ pub struct ModelChoice {
     pub aicc: Option<f64>,
     /// The chi-square per reading that it leaves in trials it was not fitted to; none with fewer than two trials.
     pub left_out: Option<f64>,
+    /// What it gives under other losses, where they were asked for.
+    pub losses: Vec<UnderLoss>,
     /// Whether the reported COR is its.
     pub chosen: bool,
+}
+
+/// A model fitted under another loss: the same numbers as by least squares, without errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct UnderLoss {
+    /// As [`Loss::name`](crate::Loss::name).
+    pub loss: String,
+    /// As [`ModelChoice::cor`].
+    pub cor: f64,
+    /// As [`ModelChoice::slope`].
+    pub slope: Option<f64>,
+    /// As [`ModelChoice::exponent`].
+    pub exponent: Option<f64>,
+    /// As [`ModelChoice::drag`].
+    pub drag: Option<f64>,
+    /// As [`ModelChoice::offset_m`].
+    pub offset_m: Option<f64>,
 }
 
 /// The COR at one speed of impact.
@@ -133,6 +153,7 @@ impl ModelChoice {
             bic,
             aicc: None,
             left_out: None,
+            losses: Vec::new(),
             chosen: false,
         }
     }

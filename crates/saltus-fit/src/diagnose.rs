@@ -169,6 +169,7 @@ pub(crate) fn models(
     report: &mut Report,
     found: &Findings<'_>,
     (sigma_height, sigma_time): (Sourced, Sourced),
+    losses: &[Loss],
 ) -> Result<Vec<ModelChoice>, FitError> {
     let agree = !report.agreement.as_ref().is_some_and(|a| a.p.is_some_and(|p| p < REJECT));
     let Some(cor) = report.cor.filter(|_| agree) else { return Ok(Vec::new()) };
@@ -187,7 +188,8 @@ pub(crate) fn models(
         return Ok(Vec::new());
     }
     let scattered = source == Source::Scatter;
-    let readings = Readings { trials, gravity: report.gravity.value, scattered, ball: found.ball };
+    let readings =
+        Readings { trials, gravity: report.gravity.value, scattered, ball: found.ball, losses: losses.to_vec() };
     let Compared { models: list, notes } = rivals::compare(&readings, cor.value)?;
     report.notes.extend(notes);
     weigh::models(report, &list);

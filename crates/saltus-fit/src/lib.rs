@@ -51,7 +51,7 @@ mod weigh;
 
 pub use bootstrap::Bootstrap;
 pub use bounces::{BounceCor, Measured};
-pub use choice::{CorModel, Limit, ModelChoice, SpeedCor};
+pub use choice::{CorModel, Limit, ModelChoice, SpeedCor, UnderLoss};
 pub use error::{FitError, TableError};
 pub use estimate::{Estimate, Source, Sourced};
 pub use fit::Fit;

@@ -6,7 +6,7 @@
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::bounces::Measured;
-use crate::choice::{Limit, ModelChoice, SpeedCor};
+use crate::choice::{Limit, ModelChoice, SpeedCor, UnderLoss};
 use crate::error::FitError;
 use crate::estimate::identified;
 use crate::evidence::Evidence;
@@ -14,6 +14,7 @@ use crate::joint::slope;
 use crate::least_squares::Bounds;
 use crate::model::{CorLaw, Flight, FlightTrial, Height};
 use crate::profile::limit;
+use crate::robust::{self, Loss};
 use crate::statistics::chi_square_p;
 use crate::successive::{Fitted, fit};
 
@@ -51,6 +52,8 @@ pub(crate) struct Readings {
     pub(crate) scattered: bool,
     /// The size of the ball, m, where it is known.
     pub(crate) ball: Option<f64>,
+    /// The other losses that each model is fitted under too.
+    pub(crate) losses: Vec<Loss>,
 }
 
 /// The models, and what could not be tried.
@@ -230,8 +233,40 @@ fn tried(
         let found = identified("a limit", limit(&model, &fitted, j))?;
         choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
     }
+    choice.losses = under_losses(&choice, &model, &fitted, (slowest, fastest), &readings.losses)?;
     choice.chosen = name == "constant";
     Ok(Some((choice, model, fitted)))
+}
+
+/// The numbers of a model under other losses.
+fn under_losses(
+    choice: &ModelChoice,
+    model: &Flight,
+    fitted: &Fitted,
+    (slowest, fastest): (f64, f64),
+    losses: &[Loss],
+) -> Result<Vec<UnderLoss>, FitError> {
+    let cors = model.law.unknowns();
+    let mut list = Vec::new();
+    for &loss in losses {
+        let found = robust::fit(model, loss, &fitted.shared, &fitted.own, false);
+        let Some(found) = identified("a model under another loss", found)?.flatten() else { continue };
+        let unknown = |j: usize| found.shared[j];
+        let cor = if model.law.of_speed() {
+            model.law.at(0, (slowest * fastest).sqrt(), &found.shared[..cors]).0
+        } else {
+            shares(fitted, cors).iter().zip(&found.shared).map(|(share, cor)| share * cor).sum()
+        };
+        list.push(UnderLoss {
+            loss: loss.name().to_owned(),
+            cor,
+            slope: choice.slope.map(|_| (unknown(1) - unknown(0)) / (fastest - slowest)),
+            exponent: choice.exponent.map(|_| unknown(1)),
+            drag: model.drag_place().map(unknown),
+            offset_m: model.offset_place().map(unknown),
+        });
+    }
+    Ok(list)
 }
 
 /// The COR at a speed, under a law.
@@ -252,18 +287,18 @@ fn used(model: &Flight) -> usize {
     (0..model.trials.len()).map(|b| model.size(b)).filter(|(m, q)| m > q).map(|(m, _)| m).sum()
 }
 
-/// The mean of the CORs, each weighing by its own variance.
-fn mean(fitted: &Fitted, cors: usize) -> Measured {
+/// The shares of the CORs in their mean, where each weighs by its own variance.
+fn shares(fitted: &Fitted, cors: usize) -> Vec<f64> {
     let weights: Vec<f64> = (0..cors).map(|j| 1.0 / fitted.covariance[(j, j)].max(1e-24)).collect();
     let total: f64 = weights.iter().sum();
-    let value = (0..cors).map(|j| weights[j] * fitted.shared[j]).sum::<f64>() / total;
-    let mut variance = 0.0;
-    for i in 0..cors {
-        for j in 0..cors {
-            variance += weights[i] * weights[j] * fitted.covariance[(i, j)] / (total * total);
-        }
-    }
-    Measured { value, standard_error: variance.max(0.0).sqrt() }
+    weights.into_iter().map(|weight| weight / total).collect()
+}
+
+/// The mean of the CORs.
+fn mean(fitted: &Fitted, cors: usize) -> Measured {
+    let shares = shares(fitted, cors);
+    let value = shares.iter().zip(&fitted.shared).map(|(share, cor)| share * cor).sum();
+    Measured { value, standard_error: fitted.error_of(&shares) }
 }
 
 /// The chi-square per reading of each trial under the model fitted to the others.

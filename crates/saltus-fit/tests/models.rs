@@ -6,7 +6,7 @@ mod noise;
 
 use noise::Noise;
 use saltus_bounce::restitution::{Cor, Plastic, Viscoelastic};
-use saltus_fit::{CorModel, Fit, ModelChoice, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{CorModel, Fit, Loss, ModelChoice, ReadOptions, Report, Table, UnderLoss, Verdict};
 
 const G: f64 = 9.81;
 
@@ -101,6 +101,43 @@ fn a_viscoelastic_sphere() {
             assert!(found.p.unwrap() > 1e-4 && found.bic < -CLEAR, "{report}");
         }
     }
+}
+
+#[test]
+fn laws_of_speed_under_other_losses() {
+    let run = |law: &dyn Fn(f64) -> f64, spoilt: f64| {
+        let mut text = "trial,bounce,height_m\n".to_owned();
+        for trial in 0..4 {
+            let mut h = 1.5 + 0.1 * f64::from(trial);
+            for n in 0..7 {
+                let read = if (trial, n) == (2, 3) { h + spoilt } else { h };
+                text += &format!("{trial},{n},{read:.9}\n");
+                let v = (2.0 * G * h).sqrt();
+                h = (law(v) * v).powi(2) / (2.0 * G);
+            }
+        }
+        Fit::new().sigma_height(0.002).losses(&Loss::ALL).repair(false).run(&parse(&text)).unwrap()
+    };
+    let under = |report: &Report, name: &str, loss: Loss| -> UnderLoss {
+        model(report, name).losses.iter().find(|under| under.loss == loss.name()).unwrap().clone()
+    };
+    let linear = |v: f64| 0.9 - 0.04 * v;
+    let plastic = |v: f64| 0.8 * v.powf(-0.25);
+    let slope = |report: &Report, loss| under(report, "linear", loss).slope.unwrap();
+    let exponent = |report: &Report, loss| under(report, "power", loss).exponent.unwrap();
+    for loss in Loss::ALL {
+        assert!((slope(&run(&linear, 0.0), loss) + 0.04).abs() < 1e-5, "{loss:?}");
+        assert!((exponent(&run(&plastic, 0.0), loss) - 0.25).abs() < 1e-4, "{loss:?}");
+    }
+    // One of 28 readings is wrong: the sum of absolute residuals passes by it, Huber's loss nearly does.
+    let (straight, bent) = (run(&linear, 0.1), run(&plastic, 0.1));
+    let off = |loss| (slope(&straight, loss) + 0.04).abs();
+    let squares = (model(&straight, "linear").slope.unwrap().value + 0.04).abs();
+    assert!(off(Loss::Absolute) < 1e-5 && off(Loss::Huber) < 0.3 * squares, "{} {squares}", off(Loss::Huber));
+    assert!(off(Loss::Largest) > squares, "{} {squares}", off(Loss::Largest));
+    assert!((exponent(&bent, Loss::Absolute) - 0.25).abs() < 1e-4, "{}", exponent(&bent, Loss::Absolute));
+    assert!(straight.to_string().contains("by Huber's loss"), "{straight}");
+    assert!(model(&heights(linear, (0.001, 0.0), 6, 1), "linear").losses.is_empty());
 }
 
 const CLEAR: f64 = 6.0;

@@ -121,3 +121,27 @@ fn series_whose_tracker_jumps_elsewhere_and_back() {
     });
     assert!(part > 0.85, "{part}");
 }
+
+/// Drops of two balls in one table, so many of them of the other ball.
+fn two_balls(others: u32) -> Report {
+    let mut noise = Noise(5);
+    let mut text = "trial,bounce,height_m\n".to_owned();
+    for trial in 0..10 {
+        let e: f64 = if trial < others { 0.6 } else { 0.8 };
+        for n in 0..6 {
+            text += &format!("{trial},{n},{:.5}\n", e.powi(2 * n) + noise.normal(0.002));
+        }
+    }
+    Fit::new().sigma_height(0.002).run(&parse(&text)).unwrap()
+}
+
+#[test]
+fn one_odd_drop_is_left_out_and_three_are_not() {
+    let one = two_balls(1);
+    assert!(!one.repairs().is_empty() && (one.cor().unwrap().value - 0.8).abs() < 0.003, "{one}");
+    // Three drops in ten that fall together are no misreadings: the drops differ, and the interval says so.
+    let three = two_balls(3);
+    assert!(three.repairs().is_empty() && three.reason().contains("drops that differ"), "{three}");
+    let cor = three.cor().unwrap();
+    assert!(cor.low < 0.74 && cor.high > 0.74 && cor.high - cor.low > 0.05, "{three}");
+}

@@ -4,7 +4,7 @@ use std::fmt::{self, Formatter};
 
 use super::Report;
 use super::text::{figures, pair};
-use crate::choice::ModelChoice;
+use crate::choice::{ModelChoice, UnderLoss};
 use crate::series::Track;
 
 /// More impacts than this are left to the JSON.
@@ -37,12 +37,35 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
             let chosen = if model.chosen { "   chosen" } else { "" };
             let cor = pair(model.cor.value, model.cor.standard_error);
             writeln!(f, "  {:<44}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
+            for under in &model.losses {
+                let line = format!("    {:<42}{:>9.4}{:>12}{}", loss(&under.loss), under.cor, "", beside(under));
+                writeln!(f, "{}", line.trim_end())?;
+            }
         }
     }
     if let [track] = report.series.as_slice() {
         motion(report, track, f)?;
     }
     Ok(())
+}
+
+fn loss(name: &str) -> &str {
+    match name {
+        "huber" => "by Huber's loss",
+        "absolute" => "by the sum of |r|",
+        _ => "by the largest |r|",
+    }
+}
+
+/// What a model gives beside a COR under another loss.
+fn beside(under: &UnderLoss) -> String {
+    let all = [
+        under.slope.map(|slope| format!("{slope:+.4} per m/s")),
+        under.exponent.map(|p| format!("v^-{p:.3}")),
+        under.drag.map(|drag| format!("drag {drag:.4}/m")),
+        under.offset_m.map(|offset| format!("zero off by {:.1} mm", 1000.0 * offset)),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 fn metres(report: &Report, track: &Track) -> bool {
