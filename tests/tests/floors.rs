@@ -9,7 +9,7 @@ use proptest::prop_oneof;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use saltus::nalgebra::{Vector2, Vector3, vector};
-use saltus::{Dop853, Simulation, State, Stop};
+use saltus::{Dop853, Rodas5P, Simulation, State, Stop, Tsit5};
 use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
 use saltus_bounce::walls::{Cuboid, Face, Lift, Plane, Round, Stairs, Table, Walls};
@@ -142,6 +142,53 @@ fn rolling_in_a_bowl() {
         // It has not stayed level, where the normal would turn about the vertical only.
         assert!((run.state.position[2] + 0.4).abs() > 1e-3);
     }
+}
+
+/// A ball that rolls off a hill begins to slip before it leaves. In space as in the plane, where a slip has one direction; and elsewhere by any stepper alike.
+#[test]
+fn a_ball_that_rolls_off_a_hill() {
+    let (g, mu, size, radius) = (9.81, 0.3, 1.0, 0.02);
+    let grip = Rolls { ball: Sphere::solid(radius, 0.1).unwrap(), friction: Friction::rigid(mu).unwrap() };
+    let plane = {
+        let hill = Round::obstacle(vector![0.0, 0.0], size).unwrap();
+        let ball = Flyer::gripped(gravity(g), hill, cor(0.5), grip).unwrap();
+        let start = Moving::new(vector![0.0, size], vector![0.4, 0.0]).spinning(-0.4 / radius);
+        let (stance, x) = ball.lying(FLOOR, 0.0, start);
+        Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap()
+    };
+    let hill = Round::obstacle(vector![0.0, 0.0, 0.0], size).unwrap();
+    let ball = Flyer::gripped(gravity(g), hill, cor(0.5), grip).unwrap();
+    let across = |at: Vector3<f64>, v: Vector3<f64>| {
+        let start = Moving::new(at, v).spinning((at / size).cross(&v) / radius);
+        ball.lying(FLOOR, 0.0, start)
+    };
+    // Down a meridian that no axis knows.
+    let down = vector![0.6, 0.8, 0.0];
+    let (stance, x) = across(vector![0.0, 0.0, size], down * 0.4);
+    let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap();
+    let is = |event: Option<&Event<3>>, wanted: &str| event.is_some_and(|e| format!("{e:?}").starts_with(wanted));
+    let when = |wanted: &str| run.trajectory.jumps().iter().find(|j| is(j.edge().as_ref(), wanted)).unwrap().t();
+    let flat = |wanted: &str| {
+        let jumps = plane.trajectory.jumps();
+        jumps.iter().find(|j| j.edge().is_some_and(|e| format!("{e:?}").starts_with(wanted))).unwrap().t()
+    };
+    assert!((when("Slip") - flat("Slip")).abs() < 1e-10 && (when("Leave") - flat("Leave")).abs() < 1e-10);
+    assert!(when("Slip") < when("Veer") && when("Veer") < when("Leave"));
+    assert!((run.state.velocity.dot(&down) - plane.state.velocity[0]).abs() < 1e-9);
+    assert!((run.state.velocity[2] - plane.state.velocity[1]).abs() < 1e-9);
+    assert!((run.state.spin.norm() - plane.state.spin.abs()).abs() < 1e-7, "{:?}", run.state.spin);
+
+    // Across the hill the push turns on the way.
+    let (stance, x) = across(vector![0.6, 0.0, 0.8], vector![-0.3, 0.9, 0.225]);
+    let best = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..0.8).unwrap();
+    assert!(matches!(best.mode, Stance::Flight { .. }) && best.trajectory.jumps().len() == 3, "{:?}", best.mode);
+    let off = |x: &Moving<3, Vector3<f64>>| {
+        (x.velocity - best.state.velocity).norm() + (x.spin - best.state.spin).norm() * radius
+    };
+    let explicit = Simulation::of(&ball).stepper(Tsit5).tolerance(1e-10).run(stance, x, 0.0..0.8).unwrap();
+    let stiff = Simulation::of(&ball).stepper(Rodas5P).tolerance(1e-8).run(stance, x, 0.0..0.8).unwrap();
+    assert!(off(&explicit.state) < 1e-8 && off(&stiff.state) < 1e-6, "{} {}", off(&explicit.state), off(&stiff.state));
+    assert!(explicit.stats.steps < 2000 && stiff.stats.steps < 2000, "{} {}", explicit.stats.steps, stiff.stats.steps);
 }
 
 /// Wind presses a block on a table that shakes: it holds while μ(g + h'' + k h') > k w, slips from where that ends, and not before.

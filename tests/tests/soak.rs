@@ -28,10 +28,10 @@ fn scenes_that_broke_a_law_keep_it() {
     }
 }
 
+/// A ball that rolls off a hill in space: the direction of a slip that begins is stiff.
 #[test]
-#[ignore = "a sphere in space that begins to slip: the direction of its friction is stiff, and Rodas5P takes 2e8 evaluations that the budget ends"]
-fn a_slide_that_begins_in_space() {
-    let lived = lived(&numbered(141_072), 5_000_000).unwrap();
+fn a_slide_that_begins_in_space_takes_few_steps() {
+    let lived = lived(&numbered(141_072), 200_000).unwrap();
     assert!(!lived.contains("given up"), "{lived}");
 }
 

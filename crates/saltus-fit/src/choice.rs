@@ -91,7 +91,8 @@ pub struct ModelChoice {
     pub aicc: Option<f64>,
     /// The chi-square per reading that it leaves in trials it was not fitted to; none with fewer than two trials.
     pub left_out: Option<f64>,
-    /// What it gives under other losses, where they were asked for.
+    /// What it gives under other losses, where those were asked for, and the model itself was or its BIC is less than six above the least. One COR from
+    /// heights alone or times alone is an [`Estimate`](crate::Estimate) then.
     pub losses: Vec<UnderLoss>,
     /// Whether the reported COR is its.
     pub chosen: bool,

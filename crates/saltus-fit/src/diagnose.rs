@@ -1,7 +1,7 @@
 //! The verdict: what the fits amount to, and what speaks against them.
 
 use crate::bounces::Measured;
-use crate::choice::ModelChoice;
+use crate::choice::{CorModel, ModelChoice};
 use crate::error::FitError;
 use crate::estimate::{Estimate, Kind, OneKind, Source, Sourced};
 use crate::evidence::Evidence;
@@ -169,7 +169,7 @@ pub(crate) fn models(
     report: &mut Report,
     found: &Findings<'_>,
     (sigma_height, sigma_time): (Sourced, Sourced),
-    losses: &[Loss],
+    (losses, wanted): (&[Loss], Option<CorModel>),
 ) -> Result<Vec<ModelChoice>, FitError> {
     let agree = !report.agreement.as_ref().is_some_and(|a| a.p.is_some_and(|p| p < REJECT));
     let Some(cor) = report.cor.filter(|_| agree) else { return Ok(Vec::new()) };
@@ -188,8 +188,15 @@ pub(crate) fn models(
         return Ok(Vec::new());
     }
     let scattered = source == Source::Scatter;
-    let readings =
-        Readings { trials, gravity: report.gravity.value, scattered, ball: found.ball, losses: losses.to_vec() };
+    let readings = Readings {
+        trials,
+        gravity: report.gravity.value,
+        scattered,
+        ball: found.ball,
+        joint: found.joint.is_some(),
+        losses: losses.to_vec(),
+        wanted,
+    };
     let Compared { models: list, notes } = rivals::compare(&readings, cor.value)?;
     report.notes.extend(notes);
     weigh::models(report, &list);

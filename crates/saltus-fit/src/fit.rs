@@ -123,8 +123,8 @@ impl Fit {
         self
     }
 
-    /// Also gives the COR by these losses, without an error: of heights and of times as estimates whose names end in those of the losses, of every
-    /// other model as [`ModelChoice::losses`](crate::ModelChoice::losses).
+    /// Also gives the COR by these losses, without an error: of heights and of times as estimates whose names end in those of the losses, of the
+    /// models that are not out of the question as [`ModelChoice::losses`](crate::ModelChoice::losses).
     ///
     /// ```
     /// use saltus_fit::{Fit, Loss, Table};
@@ -285,7 +285,7 @@ impl Fit {
         let losses: Vec<Loss> =
             Loss::ALL.into_iter().zip(self.losses).filter(|(_, wanted)| *wanted).map(|(loss, _)| loss).collect();
         let (models, losses) = rayon::join(
-            || diagnose::models(&mut report, &findings, (sigma_height, sigma_time), &losses),
+            || diagnose::models(&mut report, &findings, (sigma_height, sigma_time), (&losses, self.model)),
             || findings.losses(&losses),
         );
         report.models = models?;

@@ -3,10 +3,10 @@
 //! All are the motion of [`Flight`] with one thing more set free. They are compared by BIC and `AICc`, and by how they do on trials that
 //! they were not fitted to.
 
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use crate::bounces::Measured;
-use crate::choice::{Limit, ModelChoice, SpeedCor, UnderLoss};
+use crate::choice::{CorModel, Limit, ModelChoice, SpeedCor, UnderLoss};
 use crate::error::FitError;
 use crate::estimate::identified;
 use crate::evidence::Evidence;
@@ -17,6 +17,7 @@ use crate::profile::limit;
 use crate::robust::{self, Loss};
 use crate::statistics::chi_square_p;
 use crate::successive::{Fitted, fit};
+use crate::weigh::CLEAR;
 
 /// A table with more readings is left to the models of one COR.
 const READINGS: usize = 5000;
@@ -52,8 +53,12 @@ pub(crate) struct Readings {
     pub(crate) scattered: bool,
     /// The size of the ball, m, where it is known.
     pub(crate) ball: Option<f64>,
-    /// The other losses that each model is fitted under too.
+    /// They are heights and times together.
+    pub(crate) joint: bool,
+    /// The other losses that models are fitted under too that are not out of the question,
     pub(crate) losses: Vec<Loss>,
+    /// and this one in any case.
+    pub(crate) wanted: Option<CorModel>,
 }
 
 /// The models, and what could not be tried.
@@ -185,6 +190,15 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     for (choice, model, fitted) in list.iter_mut().filter(|m| disputed && m.0.bic < DISPUTED) {
         choice.left_out = left_out(model, fitted)?;
     }
+    let best = list.first().map_or(0.0, |m| m.0.bic);
+    let wanted = |choice: &ModelChoice| {
+        let asked = readings.wanted.is_some_and(|wanted| wanted.name() == choice.name);
+        asked || choice.bic < best + CLEAR && (!choice.chosen || readings.joint)
+    };
+    list.par_iter_mut().filter(|m| wanted(&m.0)).try_for_each(|(choice, model, fitted)| {
+        choice.losses = under_losses(choice, model, fitted, (slowest, fastest), &readings.losses)?;
+        Ok(())
+    })?;
     compared.models = list.into_iter().map(|m| m.0).collect();
     Ok(compared)
 }
@@ -233,7 +247,6 @@ fn tried(
         let found = identified("a limit", limit(&model, &fitted, j))?;
         choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
     }
-    choice.losses = under_losses(&choice, &model, &fitted, (slowest, fastest), &readings.losses)?;
     choice.chosen = name == "constant";
     Ok(Some((choice, model, fitted)))
 }

@@ -14,6 +14,10 @@ pub(crate) const HUBER: f64 = 1.345;
 /// A problem with more rows is left to least squares.
 pub(crate) const ROWS: usize = 3000;
 const STEPS: usize = 25;
+/// A loss that differs by less, relatively, is the same.
+const SAME: f64 = 1e-9;
+/// A loss that comes out as near as this to what the linear model foresaw has no more to lose: what is left is of higher order still.
+const LINEAR: f64 = 1e-6;
 
 /// What a fit makes small, of residuals divided by their standard errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,6 +208,7 @@ pub(crate) fn fit(
         };
         step.resize(unknowns, 0.0);
         let here = loss.of(&left);
+        let foreseen = loss.of(&(&left - &x * DVector::from_column_slice(&step)));
         let mut accepted = false;
         let mut fraction = 1.0;
         while fraction > 1e-3 {
@@ -227,7 +232,10 @@ pub(crate) fn fit(
             }
             fraction *= 0.5;
         }
-        if !accepted || here - loss.of(&left) <= 1e-9 * (1e-9 + here) {
+        // Another step would change nothing: this one did not, or it did what the linear model had foreseen, within the trust region.
+        let there = loss.of(&left);
+        let free = fraction == 1.0 && (0..shared.len()).all(|j| step[owned + j].abs() < 0.5 * trust * ranges[j].1);
+        if !accepted || here - there <= SAME * (SAME + here) || free && (there - foreseen).abs() <= LINEAR {
             break;
         }
         if fraction < 1.0 {

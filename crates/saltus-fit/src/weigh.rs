@@ -6,7 +6,7 @@ use crate::report::{Cor, Report, Verdict, pair};
 use crate::statistics::NORMAL;
 
 /// A BIC this much less decides.
-const CLEAR: f64 = 6.0;
+pub(crate) const CLEAR: f64 = 6.0;
 /// CORs that differ by less are the same for any purpose.
 const SAME: f64 = 0.002;
 /// A COR that changes by less over all speeds may be called one.

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use saltus::{Automaton, Edges, Entry, ErrorKind, Polynomial};
 
-use super::contact::{forwards, none};
+use super::contact::{VEERS, forwards, none};
 use super::{Event, Flyer, Grip, Moving, Stance, Turning};
 use crate::effects::Effect;
 use crate::restitution::Restitution;
@@ -18,10 +18,13 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 let motion = x.at(t);
                 (self.effects.acceleration(&motion), self.effects.spin_rate(&motion))
             }
-            Stance::Slide { face, .. } | Stance::Hold { face } => {
+            Stance::Slide { face, .. } | Stance::Yield { face, .. } | Stance::Hold { face } => {
                 let touch = self.touch(face, t, x);
-                let (slip, _) = if N > 2 { self.slip(face, t, x) } else { (SVector::zeros(), touch.normal) };
-                let friction = self.friction(stance, &touch, &slip);
+                let friction = match stance {
+                    Stance::Yield { since, .. } => self.yielding(face, since, t, x, &touch),
+                    _ if N > 2 => self.friction(stance, &touch, &self.slip(face, t, x).0),
+                    _ => self.friction(stance, &touch, &SVector::zeros()),
+                };
                 let spin = touch.spin_rate.plus(self.grip.torque(&friction, &touch.normal));
                 (touch.free + touch.normal * touch.force + friction, spin)
             }
@@ -42,7 +45,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 Stance::Flight { .. } | Stance::Corner { .. } => true,
                 // In space friction turns with the slip.
                 Stance::Slide { face, along } => (N <= 2 || none(&along)) && self.walls.straight(face),
-                Stance::Hold { face } => self.walls.straight(face),
+                Stance::Yield { face, .. } | Stance::Hold { face } => self.walls.straight(face),
             }
     }
 
@@ -82,6 +85,10 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 let stops = (!none(&along)).then_some(Event::Stop { face, along });
                 meets.chain(leaves).chain(stops).collect()
             }
+            Stance::Yield { face, push, since } => {
+                let turns = [Event::Leave(face), Event::Stop { face, along: push }, Event::Veer { face, push, since }];
+                meets.chain(turns.into_iter().filter(|_| !self.steady(face))).collect()
+            }
             Stance::Hold { face } => {
                 let moves = !self.steady(face);
                 meets.chain(moves.then_some(Event::Leave(face))).chain(moves.then_some(Event::Slip(face))).collect()
@@ -99,6 +106,10 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 forwards(&slip, &along, &normal)
             }
             Event::Slip(face) => self.cone(face, &self.touch(face, t, x)),
+            Event::Veer { face, push, since } => {
+                let (slip, normal) = self.slip(face, t, x);
+                VEERS * push.norm() * (t - since) - forwards(&slip, &push, &normal)
+            }
             Event::Change => 1.0, // the clock takes it
             Event::Turn => self.effects.kink(&x.at(t)).unwrap_or(1.0),
         }
@@ -107,7 +118,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     #[inline]
     fn affine(&self, event: Event<N>) -> bool {
         match event {
-            Event::Meet(face) | Event::Stop { face, .. } => self.walls.straight(face),
+            Event::Meet(face) | Event::Stop { face, .. } | Event::Veer { face, .. } => self.walls.straight(face),
             Event::Turn => true,
             Event::Leave(_) | Event::Slip(_) | Event::Change => false,
         }
@@ -122,6 +133,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             Event::Leave(face) => (Stance::Flight { cell: face.cell }, self.beside(face, t, x)),
             Event::Stop { face, along } => self.stopped(face, &along, t, x),
             Event::Slip(face) => self.slipped(face, t, x),
+            Event::Veer { face, .. } => {
+                (Stance::Slide { face, along: self.slip(face, t, x).0 }, self.beside(face, t, x))
+            }
             Event::Change | Event::Turn => (Stance::FLIGHT, *x),
         }
     }
@@ -135,12 +149,14 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         x: &Moving<N, S>,
     ) -> Result<(Stance<N>, Moving<N, S>), ErrorKind> {
         Ok(match (event, stance) {
-            (Event::Meet(face), Stance::Slide { .. } | Stance::Hold { .. } | Stance::Corner { .. })
-                if self.walls.leads(face, t, &x.position).is_none() =>
+            (Event::Meet(face), stance)
+                if !matches!(stance, Stance::Flight { .. }) && self.walls.leads(face, t, &x.position).is_none() =>
             {
                 self.struck(stance, face, t, x)
             }
-            (Event::Change, Stance::Slide { face, .. } | Stance::Hold { face }) => self.changed(stance, face, t, x),
+            (Event::Change, Stance::Slide { face, .. } | Stance::Yield { face, .. } | Stance::Hold { face }) => {
+                self.changed(stance, face, t, x)
+            }
             (Event::Change | Event::Turn, _) => (stance, *x),
             _ => self.reset(event, t, x),
         })
@@ -149,7 +165,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     fn entry(&self, event: Event<N>) -> Entry {
         match event {
             Event::Meet(_) => Entry::Refuse,
-            Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Change => Entry::Fire,
+            Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Veer { .. } | Event::Change => Entry::Fire,
             Event::Turn => Entry::Wait,
         }
     }

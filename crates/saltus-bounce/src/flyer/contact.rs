@@ -9,6 +9,8 @@ use crate::walls::{Face, Walls};
 
 /// A slip this much smaller than it began has ended, but for rounding and the tolerance of steps; in space it turns on the way.
 const ENDED: f64 = 1e-6;
+/// A slip that began along the push has a direction of its own from this share of what the push would have made of it.
+pub(super) const VEERS: f64 = 3e-3;
 /// How far from a second wall, relative to the scene's size, a ball may be whose bounces have accumulated at a corner.
 const NEAR: f64 = 1e-9;
 
@@ -161,6 +163,47 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         }
     }
 
+    /// Friction per mass on a slip that has only begun, in space.
+    ///
+    /// Of s' = p - c s/|s| the direction is as stiff as |p|/|s|, and drawn to that of p. It lies behind it by c|s|/|p|² times its turning, to second
+    /// order in s and |p| - c: that is what friction is against here, and |s| is all that is left to find.
+    pub(super) fn yielding(
+        &self,
+        face: Face,
+        since: f64,
+        t: f64,
+        x: &Moving<N, S>,
+        touch: &Touch<N, S>,
+    ) -> SVector<f64, N> {
+        let most = self.grip.on(face).coefficient() * touch.force;
+        let towards = |touch: &Touch<N, S>| {
+            let size = touch.slip_rate.norm();
+            if size > 0.0 { touch.slip_rate / size } else { SVector::zeros() }
+        };
+        let push = towards(touch);
+        let against = push * -most;
+        let slip = self.slip(face, t, x).0.dot(&push);
+        // No look ahead: the motion of walls may change there.
+        let h = 0.125 * (t - since);
+        if slip == 0.0 || h <= 0.0 {
+            return against;
+        }
+        let velocity = touch.free + touch.normal * touch.force + against;
+        let spin = touch.spin_rate.plus(self.grip.torque(&against, &touch.normal));
+        let before = |h: f64| {
+            let back = Moving {
+                position: x.position - x.velocity * h,
+                velocity: x.velocity - velocity * h,
+                spin: x.spin.plus(spin.times(-h)),
+            };
+            towards(&self.touch(face, t - h, &back))
+        };
+        let turning = (push * 3.0 - before(h) * 4.0 + before(2.0 * h)) / (2.0 * h);
+        let lag = most / self.grip.share() * slip / touch.slip_rate.norm_squared();
+        let behind = push - turning * lag;
+        behind * (-most / behind.norm())
+    }
+
     /// How far friction is from giving way: μ²λ|λ| - |f|².
     #[inline]
     pub(super) fn cone(&self, face: Face, touch: &Touch<N, S>) -> f64 {
@@ -181,23 +224,31 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         }
         let (slip, normal) = self.slip(face, t, &x);
         let along = noted(&slip, &normal);
-        (if none(&along) { self.without_slip(face, &touch) } else { Stance::Slide { face, along } }, x)
+        (if none(&along) { self.without_slip(face, t, &touch) } else { Stance::Slide { face, along } }, x)
     }
 
     /// Friction holds it, or it begins to slide.
-    fn without_slip(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
-        if self.cone(face, touch) >= 0.0 { Stance::Hold { face } } else { self.slipping(face, touch) }
+    fn without_slip(&self, face: Face, t: f64, touch: &Touch<N, S>) -> Stance<N> {
+        if self.cone(face, touch) >= 0.0 { Stance::Hold { face } } else { self.slipping(face, t, touch) }
     }
 
     /// Friction has given way: what it could not hold slips the way it is pushed.
-    fn slipping(&self, face: Face, touch: &Touch<N, S>) -> Stance<N> {
-        Stance::Slide { face, along: noted(&touch.slip_rate, &touch.normal) }
+    ///
+    /// In space that direction is stiff while the slip is small: see [`Self::yielding`].
+    fn slipping(&self, face: Face, t: f64, touch: &Touch<N, S>) -> Stance<N> {
+        let push = touch.slip_rate;
+        let held = self.grip.on(face).coefficient() * touch.force / self.grip.share();
+        if N > 2 && push.norm() - held < VEERS * push.norm() {
+            Stance::Yield { face, push, since: t }
+        } else {
+            Stance::Slide { face, along: noted(&push, &touch.normal) }
+        }
     }
 
     /// Friction gives way.
     pub(super) fn slipped(&self, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let x = self.held(face, t, x);
-        (self.slipping(face, &self.touch(face, t, &x)), x)
+        (self.slipping(face, t, &self.touch(face, t, &x)), x)
     }
 
     /// The slip has no component left along what it was: it goes on another way, or has ended but for rounding, which friction takes.
@@ -213,7 +264,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             return (Stance::Slide { face, along: noted(&slip, &normal) }, self.beside(face, t, x));
         }
         let x = self.held(face, t, x);
-        (self.without_slip(face, &self.touch(face, t, &x)), x)
+        (self.without_slip(face, t, &self.touch(face, t, &x)), x)
     }
 
     /// An impact on `face`, from flight or from contact with other faces.

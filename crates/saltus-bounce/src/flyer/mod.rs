@@ -31,6 +31,8 @@ pub use stance::{Event, Stance};
 /// holds:    f = -(slip's change by a) α/(1 + α)     until |f| > μ λ and it slides, or λ falls to zero and it leaves
 /// ```
 ///
+/// In space a slip that begins slowly is along the push at first ([`Stance::Yield`]), for its direction would be stiff.
+///
 /// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::uniform`]) flights, and contacts with
 /// planes at rest, are exact parabolas, and rides on floors that move are known by formula: no step is taken. Else they are stepped.
 ///

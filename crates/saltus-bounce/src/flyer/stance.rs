@@ -19,6 +19,15 @@ pub enum Stance<const N: usize> {
         /// The slip when it began, in m/s: in the plane its first entry, along the tangent (n₁, -n₀). Zero where there is no friction.
         along: SVector<f64, N>,
     },
+    /// In space, in contact with a face on which friction has just given way: the slip is along the push, for it has no direction of its own yet.
+    Yield {
+        /// The face.
+        face: Face,
+        /// The push when friction gave way, the change of slip without friction, in m/s².
+        push: SVector<f64, N>,
+        /// When it gave way, in s.
+        since: f64,
+    },
     /// In contact with a face without slip: it lies, is carried, or rolls.
     Hold {
         /// The face.
@@ -42,7 +51,7 @@ impl<const N: usize> Stance<N> {
     pub const fn cell(&self) -> usize {
         match self {
             Self::Flight { cell } | Self::Corner { cell, .. } => *cell,
-            Self::Slide { face, .. } | Self::Hold { face } => face.cell,
+            Self::Slide { face, .. } | Self::Yield { face, .. } | Self::Hold { face } => face.cell,
         }
     }
 
@@ -51,7 +60,7 @@ impl<const N: usize> Stance<N> {
     pub const fn touches(&self, index: usize) -> bool {
         match self {
             Self::Flight { .. } => false,
-            Self::Slide { face, .. } | Self::Hold { face } => face.index == index,
+            Self::Slide { face, .. } | Self::Yield { face, .. } | Self::Hold { face } => face.index == index,
             Self::Corner { faces, .. } => *faces >> index & 1 == 1,
         }
     }
@@ -68,11 +77,20 @@ pub enum Event<const N: usize> {
     Stop {
         /// The face.
         face: Face,
-        /// As in [`Stance::Slide`].
+        /// As in [`Stance::Slide`], or the push of [`Stance::Yield`].
         along: SVector<f64, N>,
     },
     /// Friction no longer holds it.
     Slip(Face),
+    /// A slip that began along the push is large enough for a direction of its own.
+    Veer {
+        /// The face.
+        face: Face,
+        /// As in [`Stance::Yield`].
+        push: SVector<f64, N>,
+        /// As in [`Stance::Yield`].
+        since: f64,
+    },
     /// A wall changes its motion, at a time of its schedule.
     Change,
     /// A flight turns where its acceleration has a kink ([`Effect::kink`](crate::effects::Effect::kink)): nothing jumps, a step ends here.

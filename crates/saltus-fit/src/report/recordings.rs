@@ -3,7 +3,7 @@
 use std::fmt::{self, Formatter};
 
 use super::Report;
-use super::text::{figures, pair};
+use super::text::{digits, figures, pair};
 use crate::choice::{ModelChoice, UnderLoss};
 use crate::series::Track;
 
@@ -38,7 +38,17 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
             let cor = pair(model.cor.value, model.cor.standard_error);
             writeln!(f, "  {:<44}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
             for under in &model.losses {
-                let line = format!("    {:<42}{:>9.4}{:>12}{}", loss(&under.loss), under.cor, "", beside(under));
+                let places = digits(model.cor.standard_error);
+                let value = format!("{:.places$}", under.cor);
+                // Below the value of the line above, whose error takes so much more.
+                let gap = places + 5;
+                let line = format!(
+                    "    {:<42}{value:>width$}{:gap$}   {}",
+                    loss(&under.loss),
+                    "",
+                    beside(under),
+                    width = 18 - gap
+                );
                 writeln!(f, "{}", line.trim_end())?;
             }
         }

@@ -67,7 +67,7 @@ fn headline(report: &Report, cor: &Cor) -> String {
 }
 
 /// Decimals that show an error to two digits if it begins with a one, else to one; from three to nine.
-fn digits(error: f64) -> usize {
+pub(super) fn digits(error: f64) -> usize {
     (3..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
 }
 

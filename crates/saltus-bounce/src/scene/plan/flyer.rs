@@ -275,7 +275,7 @@ where
     fn mode(&self, stance: Stance<N>, _: usize) -> &'static str {
         match stance {
             Stance::Flight { .. } => "flight",
-            Stance::Slide { .. } => "slide",
+            Stance::Slide { .. } | Stance::Yield { .. } => "slide",
             Stance::Hold { .. } => "hold",
             Stance::Corner { .. } => "corner",
         }
@@ -308,6 +308,7 @@ where
             Event::Leave(_) => one("lift-off"),
             Event::Stop { .. } => one("stop"),
             Event::Slip(_) => one("slip"),
+            Event::Veer { .. } => one("veer"),
             Event::Change => one("schedule"),
             Event::Turn => one("apex"),
         }
@@ -332,6 +333,7 @@ where
             Event::Leave(_) => "lift-off: the floor no longer presses".to_owned(),
             Event::Stop { .. } => "stop: the slip has come to an end".to_owned(),
             Event::Slip(_) => "slip: friction no longer holds".to_owned(),
+            Event::Veer { .. } => "veer: the slip has a direction of its own".to_owned(),
             Event::Change => "schedule".to_owned(),
             Event::Turn => "apex: the velocity through the air falls through zero".to_owned(),
         }
