@@ -6,7 +6,7 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use saltus::nalgebra::Vector3;
-use saltus::return_map::{Continuation, Kind, ReturnMap, Section};
+use saltus::return_map::{Continuation, Kind, MapError, ReturnMap, Selection};
 use saltus::{Automaton, Edges, Entry, Linearize, Number, Simulation};
 use saltus_examples::{Figure, gallery};
 
@@ -18,11 +18,8 @@ const RAMP: (f64, f64) = (3.8, 8.2); // V, from its foot to its top
 const WANTED: f64 = 11.3; // V
 const GAIN: f64 = 8.4;
 
-/// The voltage that comes in.
 #[derive(Clone, Copy, Debug)]
-struct Buck {
-    supply: f64,
-}
+struct Buck(f64); // the voltage that comes in
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Switch {
@@ -34,30 +31,26 @@ enum Switch {
 enum Event {
     Close,
     Open,
-    /// The ramp falls back to its foot, and the switch opens.
-    Period,
-}
-
-/// By how much the amplified error exceeds the ramp; the state is the voltage, the current, and the time since the ramp's start.
-fn error<D: Number>([v, _, s]: [D; 3]) -> D {
-    (v - WANTED) * GAIN - s * ((RAMP.1 - RAMP.0) / PERIOD) - RAMP.0
+    Period, // the ramp falls back to its foot, and the switch opens
 }
 
 impl Linearize for Buck {
     type Parameters = [f64; 1];
 
     fn parameters(&self) -> [f64; 1] {
-        [self.supply]
+        [self.0]
     }
+    /// The state is the voltage, the current, and the time since the ramp's start.
     fn flow_over<D: Number>(&self, switch: Switch, _t: D, [v, i, _]: [D; 3], [supply]: [D; 1]) -> [D; 3] {
         let driven = if switch == Switch::Closed { supply - v } else { -v };
         [(i - v / LOAD) / CAPACITY, driven / INDUCTANCE, D::one()]
     }
-    fn guard_over<D: Number>(&self, event: Event, _t: D, x: [D; 3], _: [D; 1]) -> D {
+    fn guard_over<D: Number>(&self, event: Event, _t: D, [v, _, s]: [D; 3], _: [D; 1]) -> D {
+        let excess = (v - WANTED) * GAIN - s * ((RAMP.1 - RAMP.0) / PERIOD) - RAMP.0;
         match event {
-            Event::Close => error(x),
-            Event::Open => -error(x),
-            Event::Period => -x[2] + PERIOD,
+            Event::Close => excess,
+            Event::Open => -excess,
+            Event::Period => -s + PERIOD,
         }
     }
     fn reset_over<D: Number>(&self, event: Event, _t: D, [v, i, s]: [D; 3], _: [D; 1]) -> [D; 3] {
@@ -82,9 +75,8 @@ impl Automaton for Buck {
     fn affine(&self, _: Event) -> bool {
         true
     }
-    /// If the ramp starts above the error, the switch closes again at once.
     fn entry(&self, _: Event) -> Entry {
-        Entry::Fire
+        Entry::Fire // if the ramp starts above the error, the switch closes again at once
     }
     fn reset(&self, event: Event, t: f64, x: &Vector3<f64>) -> (Switch, Vector3<f64>) {
         let to = if event == Event::Close { Switch::Closed } else { Switch::Open };
@@ -92,47 +84,27 @@ impl Automaton for Buck {
     }
 }
 
-/// Voltage and current at the start of a period.
-#[derive(Clone, Copy, Debug)]
-struct Start;
-
-impl Section<Buck, 2> for Start {
-    fn edge(&self) -> Event {
-        Event::Period
-    }
-    fn start(&self) -> (Switch, Vector3<f64>) {
-        (Switch::Open, Vector3::zeros())
-    }
-    fn place<D: Number>(&self, [v, i]: [D; 2], _: [D; 1]) -> [D; 3] {
-        [v, i, D::zero()]
-    }
-    fn read<D: Number>(&self, _t: D, [v, i, _]: [D; 3], _: [D; 1]) -> [D; 2] {
-        [v, i]
-    }
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
-    let attractor = |&supply: &f64| -> Result<Vec<[f64; 2]>, saltus::return_map::MapError> {
-        let buck = Buck { supply };
-        let map = ReturnMap::of(Simulation::of(&buck), Start);
+    // Voltage and current at the start of a period.
+    let start = Selection::of(Event::Period, (Switch::Open, Vector3::zeros()), [0, 1])?;
+    let attractor = |supply: f64| -> Result<Vec<[f64; 2]>, MapError> {
+        let buck = Buck(supply);
+        let map = ReturnMap::of(Simulation::of(&buck), start);
         let mut q = [12.0, 0.55];
-        let mut voltages = Vec::new();
-        for period in 0..500 {
+        let mut period = || -> Result<[f64; 2], MapError> {
             q = map.apply(q)?.q;
-            if period >= 300 {
-                voltages.push([supply, q[0]]);
-            }
-        }
-        Ok(voltages)
+            Ok([supply, q[0]])
+        };
+        (0..300).try_for_each(|_| period().map(drop))?;
+        (0..200).map(|_| period()).collect()
     };
-    let supplies: Vec<f64> = (0..600).map(|k| 20.0 + 0.025 * f64::from(k)).collect();
-    let points = supplies.par_iter().map(attractor).collect::<Result<Vec<_>, _>>()?.concat();
+    let supplies = (0..600).into_par_iter().map(|k| 20.0 + 0.025 * f64::from(k));
+    let points = supplies.map(attractor).collect::<Result<Vec<_>, _>>()?.concat();
 
-    let buck = Buck { supply: 20.0 };
-    let map = ReturnMap::of(Simulation::of(&buck).tolerance(1e-12), Start);
-    let branch = Continuation::of(&map, |supply| Buck { supply }, 0).follow([12.0, 0.55], 20.0, 35.0)?;
-    let doubling =
-        branch.bifurcations.iter().find(|found| found.kind == Kind::PeriodDoubling).ok_or("no period doubling")?;
+    let buck = Buck(20.0);
+    let map = ReturnMap::of(Simulation::of(&buck).tolerance(1e-12), start);
+    let branch = Continuation::of(&map, Buck, 0).follow([12.0, 0.55], 20.0, 35.0)?;
+    let doubling = branch.bifurcations.iter().find(|b| b.kind == Kind::PeriodDoubling).ok_or("no period doubling")?;
     let picture = Figure::new("A buck converter", "voltage in (V)", "voltage out, once a period (V)")
         .cloud("attractor", points)
         .line("once a period, stable or not", branch.points.iter().map(|point| [point.parameter, point.orbit.q[0]]))

@@ -5,7 +5,7 @@
 use std::error::Error;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::return_map::{ReturnMap, Section};
+use saltus::return_map::{ReturnMap, Selection};
 use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Simulation};
 use saltus_examples::{Figure, gallery};
 
@@ -70,26 +70,11 @@ impl Automaton for Juggler {
     }
 }
 
-/// Ball and paddle meet at height zero: the ball's velocity after it says everything.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hit;
-
-impl Section<Juggler, 1> for Hit {
-    fn edge(&self) {}
-    fn start(&self) -> ((), Vector2<f64>) {
-        ((), Vector2::zeros())
-    }
-    fn place<D: Number>(&self, [v]: [D; 1], _: [D; 0]) -> [D; 2] {
-        [D::zero(), v]
-    }
-    fn read<D: Number>(&self, _t: D, [_, v]: [D; 2], _: [D; 0]) -> [D; 1] {
-        [v]
-    }
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let juggler = Juggler { g: 9.81, cor: 0.7, gain: 0.02, wanted: 15.0 };
-    let steady = ReturnMap::of(Simulation::of(&juggler), Hit).fixed_point([5.0])?;
+    // Ball and paddle meet at height zero: the ball's velocity after it says everything.
+    let hit = Selection::of((), ((), vector![0.0, 0.0]), [1])?;
+    let steady = ReturnMap::of(Simulation::of(&juggler), hit).fixed_point([5.0])?;
 
     let trajectory = Simulation::of(&juggler).run((), vector![0.5, 0.0], 0.0..6.0)?.trajectory;
     let at = |f: fn(&Juggler, [f64; 2]) -> f64| {

@@ -1,7 +1,7 @@
 //! Hoppers, runners, walkers, a wheel and a juggler: runs, and the fixed points of their return maps with multipliers.
 
 use saltus::nalgebra::vector;
-use saltus::return_map::{ReturnMap, Section};
+use saltus::return_map::{ReturnMap, Section, Selection};
 use saltus::{Automaton, Coords, Dop853, Hybrid, Jump, Linearize, Run, Simulation, Stop};
 
 use crate::report::Report;
@@ -58,7 +58,7 @@ fn slip_runner(case: &mut Report) {
     case.check("stance_time", jumps[1].time.since(jumps[0].time));
 
     let [x, y, speed, fall, _]: [f64; 5] = apex.place([y0], runner.parameters());
-    let apexes = walks(case, &runner, slip::Phase::Fall, [x, y, speed, fall].into(), slip::Event::Apex, 10.0);
+    let apexes = walks(case, &runner, slip::Phase::Fall, [x, y, speed, fall].into(), slip::Phase::Rise, 10.0);
     for n in [1, 2, 10] {
         case.check(&format!("y_{n}"), apexes[n - 1].after[1]);
         case.check(&format!("t_apex_{n}"), apexes[n - 1].t());
@@ -134,7 +134,8 @@ fn simplest_walker(case: &mut Report) {
 fn mirror_juggling(case: &mut Report) {
     let [g, cor, gain, wanted] = case.params(["g", "e", "kap1", "eta_s"]);
     let juggler = juggler::Juggler { g, cor, gain, wanted };
-    let steady = ReturnMap::of(Simulation::of(&juggler), juggler::Hit).fixed_point([5.0]).unwrap();
+    let hit = Selection::of((), ((), vector![0.0, 0.0]), [1]).unwrap();
+    let steady = ReturnMap::of(Simulation::of(&juggler), hit).fixed_point([5.0]).unwrap();
     case.check("v_fixed", steady.q[0]);
     case.check("multiplier", steady.multipliers[0].re);
     case.check("period", steady.period);

@@ -9,7 +9,7 @@ mod wheel;
 use std::f64::consts::TAU;
 
 use saltus::nalgebra::Vector3;
-use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Section};
+use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Selection};
 use saltus::{Automaton, Edges, Linearize, Number, Simulation};
 
 #[test]
@@ -78,29 +78,13 @@ impl Automaton for Oscillator {
     }
 }
 
-struct Strobe;
-
-impl Section<Oscillator, 2> for Strobe {
-    fn edge(&self) -> Meets {
-        Meets::Period
-    }
-    fn start(&self) -> ((), Vector3<f64>) {
-        ((), Vector3::zeros())
-    }
-    fn place<D: Number>(&self, [x, v]: [D; 2], _: [D; 1]) -> [D; 3] {
-        [x, v, D::zero()]
-    }
-    fn read<D: Number>(&self, _: D, [x, v, _]: [D; 3], _: [D; 1]) -> [D; 2] {
-        [x, v]
-    }
-}
-
 /// The wall comes nearer until the free swing touches it: at the swing's amplitude.
 #[test]
 fn a_wall_that_is_grazed() {
     let oscillator = Oscillator { wall: 3.0, omega: 0.8, damping: 0.1 };
     let Oscillator { omega, damping, .. } = oscillator;
-    let map = ReturnMap::of(Simulation::of(&oscillator).tolerance(1e-12), Strobe);
+    let strobe = Selection::of(Meets::Period, ((), Vector3::zeros()), [0, 1]).unwrap();
+    let map = ReturnMap::of(Simulation::of(&oscillator).tolerance(1e-12), strobe);
     let family = |wall| Oscillator { wall, ..oscillator };
     let branch = Continuation::of(&map, family, 0).follow([1.0, 1.0], 3.0, 1.0).unwrap();
     assert_eq!(branch.end, End::Grazing { edge: Meets::Wall });
@@ -170,27 +154,12 @@ impl Automaton for Yearly {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Count;
-
-impl Section<Yearly, 2> for Count {
-    fn edge(&self) {}
-    fn start(&self) -> ((), Vector3<f64>) {
-        ((), Vector3::zeros())
-    }
-    fn place<D: Number>(&self, [x, y]: [D; 2], _: [D; 1]) -> [D; 3] {
-        [x, y, D::zero()]
-    }
-    fn read<D: Number>(&self, _: D, [x, y, _]: [D; 3], _: [D; 1]) -> [D; 2] {
-        [x, y]
-    }
-}
-
 /// At a = 2 the multipliers of x = y = 1 - 1/a are exp(±iπ/3).
 #[test]
 fn a_circle_branches_off() {
     let yearly = Yearly { a: 1.5 };
-    let map = ReturnMap::of(Simulation::of(&yearly), Count);
+    let count = Selection::of((), ((), Vector3::zeros()), [0, 1]).unwrap();
+    let map = ReturnMap::of(Simulation::of(&yearly), count);
     let branch = Continuation::of(&map, |a| Yearly { a }, 0).follow([0.3, 0.3], 1.5, 2.2).unwrap();
     let [found] = &branch.bifurcations[..] else { panic!("{:?}", branch.bifurcations) };
     assert_eq!(found.kind, Kind::NeimarkSacker);

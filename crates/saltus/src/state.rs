@@ -143,11 +143,11 @@ impl<'de, const CAP: usize> serde::Deserialize<'de> for Coords<CAP> {
     }
 }
 
-impl<const CAP: usize> std::ops::Index<usize> for Coords<CAP> {
-    type Output = f64;
-    /// Coordinate `i`; like a slice, panics when `i` is not below the length.
-    fn index(&self, i: usize) -> &f64 {
-        &self.values[..self.len][i]
+/// The coordinates as a slice.
+impl<const CAP: usize> std::ops::Deref for Coords<CAP> {
+    type Target = [f64];
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.len]
     }
 }
 

@@ -6,6 +6,7 @@
 //!
 //! | | |
 //! |---|---|
+//! | [`Selection`] | the section that keeps some of the state's own coordinates |
 //! | [`ReturnMap::apply`], [`ReturnMap::jacobian`] | P(q) and ∂P/∂q, exact to the tolerance of the run: saltation matrices at each jump |
 //! | [`ReturnMap::fixed_point`] | Newton's method: a periodic run with its multipliers |
 //! | [`Continuation`] | a branch of periodic runs as a parameter changes: folds, period doublings, grazing |
@@ -19,11 +20,13 @@ mod continuation;
 mod fixed_point;
 mod grazing;
 mod newton;
+mod selection;
 
 pub use basin::Fate;
 pub use continuation::{Bifurcation, Branch, Continuation, End, Kind, Point};
 pub use fixed_point::FixedPoint;
 pub use newton::MapError;
+pub use selection::Selection;
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -43,7 +46,7 @@ use crate::trajectory::Jump;
 ///
 /// Coordinates leave out what a return need not repeat or cannot change: a position along the road, an energy that is kept, a velocity that is zero at an
 /// apex. [`place`](Self::place) gives the state that belongs to q, [`read`](Self::read) the q of a state; `read(place(q)) = q`. Both are
-/// written once over numbers that carry derivatives, like the model itself ([`Linearize`]).
+/// written once over numbers that carry derivatives, like the model itself ([`Linearize`]). Where some coordinates of the state are q, [`Selection`] does it.
 ///
 /// A ball on a table that moves as A sin(ω t), just after it was hit: the table's phase and the ball's velocity.
 ///
