@@ -24,11 +24,11 @@ pub fn lived(made: &Made, most_evaluations: u64) -> Result<String, String> {
     Ok(format!("{}: {}{doubts}", plan.explain().model, ending(record.end())))
 }
 
-/// A message without its numbers and names.
+/// The first line of a message, without its place and numbers.
 fn kind(message: &str) -> String {
-    let message = message.lines().next().unwrap_or_default();
-    let plain: String = message.chars().map(|c| if c.is_ascii_digit() { '#' } else { c }).collect();
-    plain.split([',', ':', '`', '\'']).next().unwrap_or_default().trim().to_owned()
+    let line = message.lines().next().unwrap_or_default();
+    let says = line.rsplit_once(": ").map_or(line, |(_, says)| says);
+    says.chars().map(|c| if c.is_ascii_digit() { '#' } else { c }).collect()
 }
 
 const fn ending(end: End) -> &'static str {

@@ -5,9 +5,10 @@
 #[path = "sensitivity/models.rs"]
 mod models;
 
-use models::{Bounce, Coin, Dragged, Hopper, Phase, Tossed};
+use models::{Bounce, Coin, Dosed, Dragged, Hopper, Phase, Tossed};
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
+use saltus::return_map::{ReturnMap, Selection};
 use saltus::step::{Dop853, Stepper};
 use saltus::{Coords, ErrorKind, Linearize, Run, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt, saltation};
 
@@ -38,6 +39,33 @@ fn by_the_time_of_an_event_and_of_it() {
     let run = self::run(&sensitive, Tsit5, Phase::Flight, vector![1.0, 0.0], 2.0);
     assert!(matches!(run.stop, Stop::Terminal { .. }));
     assert!((run.state.dt[0] - 0.225_876_975_726_312_81).abs() < 1e-15);
+}
+
+/// What the clock does moves nobody's time: a dose each second, and the level that repeats itself.
+#[test]
+fn edges_of_the_clock() {
+    let (rate, dose, x0) = (0.7_f64, 2.0, 1.5);
+    let dosed = Dosed { rate, dose };
+    let sensitive = Sensitive::of(&dosed, [Initial(0), Parameter(0), Parameter(1)]);
+    let run = run(&sensitive, Dop853, (), x0, 3.5);
+    assert_eq!(run.trajectory.jumps().len(), 3);
+    // x(3.5) = x₀ q^3.5 + dose (q^2.5 + q^1.5 + q^0.5), q = exp(-rate).
+    let after = |s: f64| (-rate * s).exp();
+    let (by_dose, by_rate) = ([0.5, 1.5, 2.5].map(after), [0.5, 1.5, 2.5].map(|s| -s * after(s)));
+    assert!((run.state.x - (x0 * after(3.5) + dose * by_dose.iter().sum::<f64>())).abs() < 1e-12);
+    assert!((run.state.columns[0] - after(3.5)).abs() < 1e-12);
+    assert!((run.state.columns[1] - (-3.5 * x0 * after(3.5) + dose * by_rate.iter().sum::<f64>())).abs() < 1e-12);
+    assert!((run.state.columns[2] - by_dose.iter().sum::<f64>()).abs() < 1e-12);
+    assert_eq!(run.state.dt, [0.0; 3]);
+
+    let jump = saltation(&dosed, (), (), 1.0, &0.8).unwrap();
+    assert_eq!((jump.state[(0, 0)], jump.time_by_state[0]), (1.0, 0.0));
+    assert_eq!((jump.parameters[(0, 0)], jump.parameters[(0, 1)], jump.time_by_parameters[1]), (0.0, 1.0, 0.0));
+
+    let section = Selection::of((), ((), 0.0), [0]).unwrap();
+    let steady = ReturnMap::of(Simulation::of(&dosed).tolerance(1e-13), section).fixed_point([1.0]).unwrap();
+    assert!((steady.q[0] - dose / (1.0 - after(1.0))).abs() < 1e-11 && (steady.period - 1.0).abs() < 1e-15);
+    assert!((steady.multipliers[0].re - after(1.0)).abs() < 1e-11);
 }
 
 /// D3: two events at one instant, the second from the state that the first leaves.

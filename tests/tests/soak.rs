@@ -1,7 +1,7 @@
 //! Random scenes, of everything a scene file may say: each is refused with a reason or runs to a named end, and keeps the laws it has to keep.
 //!
 //! A few thousand run with the tests; a soak is `SOAK=1000000 cargo test --release -p saltus-tests --test soak -- --nocapture`, which ends in a
-//! summary and takes a quarter of an hour to an hour on two cores. `SOAK_FROM` is the number of the first scene: any that fails is run again by
+//! summary and takes some five minutes on two cores. `SOAK_FROM` is the number of the first scene: any that fails is run again by
 //! `SOAK=1 SOAK_FROM=<its number>`.
 
 #![allow(clippy::print_stdout)] // a soak is watched

@@ -393,3 +393,49 @@ impl Automaton for Hopper {
         }
     }
 }
+
+/// What decays at `rate` and is raised by `dose` each second, by the clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dosed {
+    pub(crate) rate: f64,
+    pub(crate) dose: f64,
+}
+
+impl Linearize for Dosed {
+    type Parameters = [f64; 2];
+
+    fn parameters(&self) -> [f64; 2] {
+        [self.rate, self.dose]
+    }
+    fn flow_over<D: Number>(&self, (): (), _t: D, x: D, [rate, _]: [D; 2]) -> D {
+        -rate * x
+    }
+    fn guard_over<D: Number>(&self, (): (), _t: D, _: D, _: [D; 2]) -> D {
+        unreachable!("the clock takes the only edge")
+    }
+    fn reset_over<D: Number>(&self, (): (), _t: D, x: D, [_, dose]: [D; 2]) -> D {
+        x + dose
+    }
+}
+
+impl Automaton for Dosed {
+    type Mode = ();
+    type State = f64;
+    type Edge = ();
+
+    fn flow(&self, mode: (), t: f64, x: &f64) -> f64 {
+        self.flow_at(mode, t, x)
+    }
+    fn edges(&self, (): ()) -> Edges<()> {
+        Edges::none()
+    }
+    fn guard(&self, edge: (), t: f64, x: &f64) -> f64 {
+        self.guard_at(edge, t, x)
+    }
+    fn reset(&self, edge: (), t: f64, x: &f64) -> ((), f64) {
+        ((), self.reset_at(edge, t, x))
+    }
+    fn scheduled(&self, (): (), t: f64) -> Option<(f64, ())> {
+        Some((t.floor() + 1.0, ()))
+    }
+}

@@ -20,6 +20,7 @@ use crate::time::resolution;
 /// | `time_by_parameters` | 1 × P | `-g_p / ġ` |
 ///
 /// where g is the guard, R the reset, f⁻ and f⁺ the flows at both sides, and `ġ = g_t + g_x f⁻ < 0` the rate at which the guard falls.
+/// An edge that the clock takes has no guard and a time that nothing moves: `Ξ = R_x`, `R_p`, and zeros.
 /// Units are those of the quotients: a coordinate after by a coordinate before, seconds by a coordinate, and so on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saltation {
@@ -102,6 +103,8 @@ pub(super) struct Passage<'a, A: Linearize> {
     gradient: A::State,
     rate: f64,
     bend: f64,
+    /// The clock takes it, at a time that nothing moves.
+    scheduled: bool,
 }
 
 impl<'a, A: Linearize> Passage<'a, A> {
@@ -115,6 +118,12 @@ impl<'a, A: Linearize> Passage<'a, A> {
         let (to, after) = automaton.take(mode, edge, t, x)?;
         let flows = (automaton.flow(mode, t, x), automaton.flow(to, t, &after));
         let p = automaton.parameters();
+        // What is not among the edges of its mode is taken by the clock.
+        if !automaton.edges(mode).iter().any(|other| other == edge) {
+            let gradient = x.with(|_| 0.0);
+            let (guard, rate, bend) = (0.0, 0.0, 0.0);
+            return Ok(Self { automaton, edge, t, x, to, after, flows, guard, gradient, rate, bend, scheduled: true });
+        }
         // Along the flow x moves with velocity f and acceleration df/dt.
         let f = &flows.0;
         let changing = automaton.flow_over(mode, Dual64::new(t, 1.0), moving(x, f), moving_in(&p, None));
@@ -123,7 +132,8 @@ impl<'a, A: Linearize> Passage<'a, A> {
         let guard = automaton.guard_over(edge, Dual2_64::new(t, 1.0, 0.0), along, fixed);
         let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;
         let gradient = x.with(slope);
-        Ok(Self { automaton, edge, t, x, to, after, flows, guard: guard.re, gradient, rate: guard.v1, bend: guard.v2 })
+        let (guard, rate, bend) = (guard.re, guard.v1, guard.v2);
+        Ok(Self { automaton, edge, t, x, to, after, flows, guard, gradient, rate, bend, scheduled: false })
     }
 
     /// Whether the crossing has no speed, but for rounding, at the end of an arc of `duration`.
@@ -132,6 +142,9 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// unless g̈ has had just the arc to build it up (as in the last of a ball's bounces, however low), the guard must have fallen from further
     /// away than its rounding, ġ²/2g̈.
     pub(super) fn grazes(&self, duration: f64) -> bool {
+        if self.scheduled {
+            return false;
+        }
         let (rate, bend) = (self.rate.abs(), self.bend.abs());
         let low = rate * rate <= 2.0 * bend * 4.0 * f64::EPSILON * self.size(self.x);
         self.rate >= 0.0
@@ -142,16 +155,20 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether the state before is outside the guard by more than rounding, as only an edge that fires on entry allows.
     pub(super) fn is_outside(&self) -> bool {
-        self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
+        !self.scheduled
+            && self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
     }
 
     /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any, moving.
     pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> f64 {
-        -(self.along(dx) + self.by_parameter(p)) / self.rate
+        if self.scheduled { 0.0 } else { -(self.along(dx) + self.by_parameter(p)) / self.rate }
     }
 
     /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the rounding of the guard's terms can tell.
     pub(super) fn keeps(&self, last: f64, dx: &A::State, p: Option<usize>) -> bool {
+        if self.scheduled {
+            return false;
+        }
         let by_parameter = self.by_parameter(p);
         let off = self.along(dx) + by_parameter + self.rate * last;
         let terms = self.size(dx) + by_parameter.abs() + self.size(&self.flows.0) * last.abs();

@@ -271,6 +271,14 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         Some((to, beyond))
     }
 
+    fn scheduled(&self, mode: A::Mode, t: f64) -> Option<(f64, A::Edge)> {
+        self.automaton.scheduled(mode, t)
+    }
+
+    fn flaw(&self, mode: A::Mode) -> Option<String> {
+        self.automaton.flaw(mode)
+    }
+
     fn has_mode(&self, mode: A::Mode) -> bool {
         self.automaton.has_mode(mode)
     }
