@@ -279,6 +279,21 @@ fn lifts() {
     assert!((run.state.position[0] + 2.5 + 10.0 * 2.5).abs() < 1e-13);
 }
 
+/// On a lift that rises a ball that hardly rebounds soon does so by less than its velocity can tell: it has come to lie there.
+#[test]
+fn a_rebound_below_the_rounding_of_velocity() {
+    let lift = Lift::new(0.0, 0.0, &[(0.0, 0.5), (0.2, 0.0)]).unwrap();
+    for e in [1e-7, 1e-8, 1e-9, 1e-10, 1e-12] {
+        let ball = Flyer::new(gravity(24.8), lift.clone(), cor(e)).unwrap();
+        for speed in (1..60).map(|k| 0.1 * f64::from(k)) {
+            let start = Moving::new(vector![0.0], vector![-speed]);
+            let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..0.15).unwrap();
+            assert!(matches!(run.mode, Stance::Slide { .. }), "{e} {speed}: {:?}", run.mode);
+            assert!((run.state.position[0] - 0.075).abs() < 1e-14, "{e} {speed}: {:?}", run.state);
+        }
+    }
+}
+
 /// Balls on a table that shakes, from the first second to the last of a quarter of an hour: each lands, lies, is let go and lands again, once each time,
 /// and is recorded in a few pieces.
 #[test]

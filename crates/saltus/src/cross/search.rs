@@ -206,7 +206,8 @@ impl<'a> Search<'a> {
         if leaving && !self.spent && known.is_none() && self.is_under_a_rise(&p, b, least, margin)? {
             return Ok(Part::None(Side::Inside));
         }
-        if leaving && self.spent && known.is_none() {
+        // A stretch of zeros tells nothing, and least of all that it is sure of it.
+        if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
