@@ -103,7 +103,7 @@ fn an_initial_state_that_is_not_finite() {
 fn an_entry_refused() {
     let (kind, text) = message(&ball(), "flight", vector![-0.1, 0.0], 1.0);
     assert_eq!(kind, ErrorKind::Entry);
-    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset that led to it, or let Automaton::entry or Hybrid::entry say Wait or Fire (t = 0, mode "flight", state [-0.1, 0.0])"#);
+    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let Automaton::entry or Hybrid::entry say Wait or Fire (t = 0, mode "flight", state [-0.1, 0.0])"#);
 }
 
 #[test]
@@ -163,6 +163,8 @@ fn names_misspelt() {
     insta::assert_snapshot!(text, @r#"edge heat -> Cool (edge 0) leads to mode "Cool", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
     let text = flaw(&heater().terminal("heating", |_t, x| 22.0 - x));
     insta::assert_snapshot!(text, @r#"mode "heating" has an edge but is not declared: declare it with Hybrid::mode"#);
+    let text = flaw(&heater().mode("heat", |_t, _x| 2.0));
+    insta::assert_snapshot!(text, @r#"Hybrid::mode says twice what holds in mode "heat": say it once, or give one of them its own name"#);
     let text = flaw(&heater().beyond("het", "cool", |_t, x| *x));
     insta::assert_snapshot!(text, @r#"mode "het" is named but is not declared: did you mean "heat"? If not, declare it with Hybrid::mode"#);
 }
@@ -310,7 +312,7 @@ fn every_ending_is_a_sentence() {
     let zeno = stop(Simulation::of(&ball), 2.0);
     let (text, rest) = zeno.split_once("1.3552618543").unwrap();
     insta::assert_snapshot!(text, @"jumps accumulate at t =");
-    insta::assert_snapshot!(rest.trim_start_matches(char::is_numeric), @": say by Automaton::beyond (Hybrid::beyond) what lies there, to go on");
+    insta::assert_snapshot!(rest.trim_start_matches(char::is_numeric), @": say what lies there, to go on, by Automaton::beyond or Hybrid::beyond, in each mode of the jumps (and for derivatives by Linearize::beyond_over)");
 
     let heater = heater().terminal("heat", |_t, x| 22.0 - x);
     insta::assert_snapshot!(Simulation::of(&heater).run("heat", 20.0, 0.0..5.0).unwrap().stop, @"the terminal edge heat -> heat (edge 0) was taken");

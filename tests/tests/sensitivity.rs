@@ -68,6 +68,27 @@ fn edges_of_the_clock() {
     assert!((steady.multipliers[0].re - after(1.0)).abs() < 1e-11);
 }
 
+#[test]
+fn what_a_section_or_a_derivative_asks_in_vain_is_said() {
+    let dosed = Dosed { rate: 0.7, dose: 2.0 };
+    let sensitive = Sensitive::of(&dosed, [Parameter(2)]);
+    let error = Simulation::of(&sensitive).run((), sensitive.start(0.0, 1.0), 0.0..2.0).unwrap_err();
+    assert_eq!(error.to_string(), "there is no parameter 2: the model has 2, counted from 0");
+
+    let hopper = Hopper::default();
+    let stance: Coords<4> = [0.0, -0.3, 3.0].into();
+    let section = Selection::of(models::Step::Liftoff, (models::Gait::Stance, stance), [2]).unwrap();
+    let error = ReturnMap::of(Simulation::of(&hopper), section).apply([3.0]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "edge Liftoff leads to mode Flight, the section starts in Stance: give it the mode just after its edge"
+    );
+    let ball = Bounce::new(9.8, 0.5);
+    let section = Selection::of(models::Floor, (Phase::Flight, vector![0.5, 0.0]), [1]).unwrap();
+    let moved = ReturnMap::of(Simulation::of(&ball), section).apply([1.0]).unwrap_err().to_string();
+    assert!(moved.starts_with("after edge Floor coordinate 0 is 0, not 0.5 as the section holds it"), "{moved}");
+}
+
 /// D3: two events at one instant, the second from the state that the first leaves.
 #[test]
 fn two_events_at_one_instant() {
@@ -257,11 +278,11 @@ fn a_jump_between_dimensions() {
 #[test]
 fn a_parameter_that_there_is_not() {
     let ball = Bounce::new(9.8, 0.5);
-    for wrt in [Initial(2), Parameter(9)] {
+    for (wrt, kind) in [(Initial(2), ErrorKind::InitialState), (Parameter(9), ErrorKind::Model)] {
         let sensitive = Sensitive::of(&ball, [wrt]);
         let start = sensitive.start(0.0, vector![1.0, 0.0]);
         let failed = Simulation::of(&sensitive).run(Phase::Flight, start, 0.0..1.0).unwrap_err();
-        assert_eq!(failed.error.kind(), ErrorKind::InitialState);
+        assert_eq!(failed.error.kind(), kind);
     }
 }
 

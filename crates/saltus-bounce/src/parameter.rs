@@ -9,7 +9,7 @@ use std::fmt;
 /// let error = LinearDrag::new(-1.0).unwrap_err();
 /// assert_eq!(error.to_string(), "-1 is not a drag rate in 1/s: give a finite number, zero or more");
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct ParameterError {
     what: &'static str,
     value: f64,
@@ -31,6 +31,13 @@ impl ParameterError {
 impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} is not {}: give {}", self.value, self.what, self.give)
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

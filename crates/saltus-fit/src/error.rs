@@ -20,7 +20,7 @@ use std::fmt;
 /// ];
 /// assert_eq!(error.to_string(), shown.join("\n"));
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct TableError {
     name: String,
     place: Option<Box<Place>>,
@@ -116,12 +116,19 @@ impl fmt::Display for TableError {
     }
 }
 
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
 impl std::error::Error for TableError {}
 
 /// A fit that could not be started: an option out of its range, or a solver that failed.
 ///
 /// A table that simply does not determine a COR is no error: it gives a report whose verdict is *refused*.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {
     /// An option is not a positive finite number.
@@ -148,6 +155,13 @@ impl fmt::Display for FitError {
                 write!(f, "the fit of {what} failed: {reason}; please report it together with the table")
             }
         }
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::state::State;
 
-/// Why a run failed, with the time, mode, edge and state where it did. Written with `{}`, it is a sentence that says what to do.
+/// Why a run failed, with the time, mode, edge and state where it did. Written with `{}` or `{:?}`, it is a sentence that says what to do.
 ///
 /// ```
 /// use saltus::{ErrorKind, Hybrid, Simulation};
@@ -15,7 +15,7 @@ use crate::state::State;
 /// assert_eq!((error.kind(), error.t(), error.state()), (ErrorKind::Entry, 0.0, &[-0.1, 0.0][..]));
 /// assert!(error.to_string().starts_with("the guard of edge flight -> flight (edge 0) is already negative"));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Error(Box<Failure>);
 
 /// Boxed, so that what goes well is not moved about in the room that a failure would need.
@@ -181,7 +181,7 @@ impl fmt::Display for Error {
             )?,
             ErrorKind::Entry => write!(
                 f,
-                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or let Automaton::entry or Hybrid::entry say Wait or Fire"
+                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let Automaton::entry or Hybrid::entry say Wait or Fire"
             )?,
             ErrorKind::Grazing => write!(
                 f,
@@ -192,6 +192,13 @@ impl fmt::Display for Error {
             )?,
         }
         write!(f, " (t = {t}, mode {mode}, state {state:?})")
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error; `{:#?}` shows the parts.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() { self.0.fmt(f) } else { write!(f, "{self}") }
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
     /// What was said of edges that were not there, and of which.
     misses: Vec<(&'static str, &'static str, &'static str)>,
+    /// By which method something was said twice of a mode, and of which.
+    twice: Option<(&'static str, &'static str)>,
 }
 
 struct Mode<'a, S> {
@@ -121,7 +123,7 @@ pub fn every(period: f64) -> impl Fn(f64) -> Option<f64> + Copy + Send + Sync {
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), misses: Vec::new() }
+        Self { modes: Vec::new(), misses: Vec::new(), twice: None }
     }
 }
 
@@ -139,10 +141,11 @@ impl<'a, S: State> Hybrid<'a, S> {
         Self::default()
     }
 
-    /// Declares a mode and its flow f of x' = f(t, x). Declared again, the flow is replaced.
+    /// Declares a mode and its flow f of x' = f(t, x). From an automaton that declares one twice no run starts.
     #[must_use]
     pub fn mode(mut self, name: &'static str, flow: impl Fn(f64, &S) -> S + Send + Sync + 'a) -> Self {
-        self.entry_of(name).flow = Some(Box::new(flow));
+        let before = self.entry_of(name).flow.replace(Box::new(flow));
+        self.twice = self.twice.or(before.map(|_| ("mode", name)));
         self
     }
 
@@ -160,7 +163,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// ```
     #[must_use]
     pub fn exact(mut self, name: &'static str, solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a) -> Self {
-        self.entry_of(name).exact = Some(Box::new(solution));
+        let before = self.entry_of(name).exact.replace(Box::new(solution));
+        self.twice = self.twice.or(before.map(|_| ("exact", name)));
         self
     }
 
@@ -279,7 +283,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         to: &'static str,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        self.entry_of(from).beyond = Some((to, Box::new(reset)));
+        let before = self.entry_of(from).beyond.replace((to, Box::new(reset)));
+        self.twice = self.twice.or(before.map(|_| ("beyond", from)));
         self
     }
 
@@ -405,6 +410,11 @@ impl<S: State> Automaton for Hybrid<'_, S> {
     fn flaw(&self, mode: &'static str) -> Option<String> {
         if !self.declares(mode) {
             return Some(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
+        }
+        if let Some((method, name)) = self.twice {
+            return Some(format!(
+                "Hybrid::{method} says twice what holds in mode {name:?}: say it once, or give one of them its own name"
+            ));
         }
         for mode in &self.modes {
             let (name, most) = (mode.name, Edges::<Link>::INLINE);

@@ -167,6 +167,10 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 /// The numbers that decide events are those of [`Automaton`]; of the methods here the derivatives count. The two must describe the same
 /// model. What a mode or edge carries frozen (`Stance { foot }`) counts as constant: if it depends on the state, make it a coordinate
 /// that stands still.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be differentiated",
+    note = "write the model as a type that implements `Automaton` and `Linearize`: the closures of a `Hybrid` carry no derivatives"
+)]
 pub trait Linearize: Automaton<State: Lift> {
     /// The parameters, `[f64; P]` for P of them (P may be zero).
     type Parameters: Lift;

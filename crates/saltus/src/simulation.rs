@@ -283,12 +283,12 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
         } else if !(longest_step > 0.0 && first_step.is_none_or(|h| h > 0.0 && h.is_finite())) {
             (ErrorKind::StepLimit, None)
-        } else if !state.is_finite() {
-            (ErrorKind::InitialState, None)
         } else if !self.automaton.has_mode(mode) {
             (ErrorKind::UnknownMode, self.automaton.flaw(mode))
         } else if let Some(flaw) = self.automaton.flaw(mode) {
             (ErrorKind::Model, Some(flaw))
+        } else if !state.is_finite() {
+            (ErrorKind::InitialState, None)
         } else {
             return Ok(());
         };
@@ -366,7 +366,7 @@ impl<E: fmt::Debug> fmt::Display for Stop<E> {
             Self::Zeno { limit } => {
                 write!(
                     f,
-                    "jumps accumulate at t = {limit}: say by Automaton::beyond (Hybrid::beyond) what lies there, to go on"
+                    "jumps accumulate at t = {limit}: say what lies there, to go on, by Automaton::beyond or Hybrid::beyond, in each mode of the jumps (and for derivatives by Linearize::beyond_over)"
                 )
             }
             Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
@@ -493,7 +493,6 @@ pub struct Failed<A: Automaton> {
 
 shown!(Run { stop, mode, state, stats, trajectory });
 shown!(Ending { stop, time, jumps, mode, state, stats });
-shown!(Failed { error, stats, trajectory });
 
 impl<A: Automaton> From<Box<Failed<A>>> for Error {
     fn from(failed: Box<Failed<A>>) -> Self {
@@ -504,6 +503,13 @@ impl<A: Automaton> From<Box<Failed<A>>> for Error {
 impl<A: Automaton> fmt::Display for Failed<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.error.fmt(f)
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl<A: Automaton> fmt::Debug for Failed<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.error, f)
     }
 }
 

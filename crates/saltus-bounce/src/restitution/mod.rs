@@ -120,7 +120,7 @@ impl fmt::Display for Cor {
 }
 
 /// A number that is no coefficient of restitution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct CorError {
     value: f64,
 }
@@ -132,6 +132,13 @@ impl fmt::Display for CorError {
             "{} is not a coefficient of restitution: give a number from 0 (stays where it lands) to 1 (loses nothing)",
             self.value
         )
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for CorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

@@ -20,7 +20,7 @@ use std::ops::Range;
 /// ];
 /// assert_eq!(error.to_string(), shown.join("\n"));
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct SceneError {
     name: String,
     line: usize,
@@ -96,6 +96,13 @@ impl fmt::Display for SceneError {
             Some(help) => write!(f, "\n  help: {help}"),
             None => Ok(()),
         }
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

@@ -130,8 +130,8 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
 
     /// The start of a run from `x` at time `t`: unit columns for initial values, zeros for parameters.
     ///
-    /// Where the initial state depends on a parameter, add that to the column. A coordinate or parameter that there is not
-    /// gives a column of NaN, from which a run refuses to start.
+    /// Where the initial state depends on a parameter, add that to the column. From a coordinate or parameter that there
+    /// is not, whose column is NaN, a run refuses to start.
     pub fn start(&self, t: f64, x: A::State) -> Tangent<A::State, K> {
         let parameters = self.automaton.parameters().len();
         let columns = self.wrt.map(|wrt| match wrt {
@@ -276,7 +276,10 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
     }
 
     fn flaw(&self, mode: A::Mode) -> Option<String> {
-        self.automaton.flaw(mode)
+        let count = self.automaton.parameters().len();
+        let beyond = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count);
+        let beyond = beyond.map(|p| format!("there is no parameter {p}: the model has {count}, counted from 0"));
+        beyond.or_else(|| self.automaton.flaw(mode))
     }
 
     fn has_mode(&self, mode: A::Mode) -> bool {

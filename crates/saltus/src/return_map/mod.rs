@@ -133,6 +133,13 @@ pub trait Section<A: Linearize, const K: usize> {
     /// It enters its mode like the start of any run: no guard may fall from zero there.
     fn place<D: Number>(&self, q: [D; K], p: Over<A::Parameters, D>) -> Over<A::State, D>;
 
+    /// Why the state `x` just after the edge, from which `q` was read, is none that [`place`](Self::place) gives: then there is no return map, and it says
+    /// what to do. The default finds nothing.
+    fn flaw(&self, x: &A::State) -> Option<String> {
+        let _ = x;
+        None
+    }
+
     /// The coordinates of the state `x` just after the edge, taken at `t`. Where a system is periodic in time, take the periods off.
     fn read<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> [D; K];
 }
@@ -191,10 +198,12 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
     /// P(q): runs from `q` until the section's edge is taken.
     ///
     /// # Errors
-    /// [`MapError::Run`] if the run fails, [`MapError::NoReturn`] if it ends before it is back.
+    /// [`MapError::Run`] if the run fails, [`MapError::NoReturn`] if it ends before it is back, [`MapError::Question`] if the edge leads to another mode than
+    /// the section's, or its [`Section::flaw`] finds one.
     pub fn apply(&self, q: [f64; K]) -> Result<Return<K>, MapError> {
         let (mode, t, x) = self.place(&q);
         let jump = self.jump(&self.simulation, mode, x, t, &mut Vec::new()).map_err(|error| error.starting(&q))?;
+        self.fits(jump.to, &jump.after)?;
         let p = self.simulation.automaton().parameters().over();
         Ok(Return { q: self.section.read(jump.t(), jump.after.over(), p), duration: jump.t() - t })
     }
@@ -242,6 +251,7 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         let mut edges = Vec::new();
         let simulation = self.simulation.over(&sensitive);
         let jump = self.jump(&simulation, mode, start, t, &mut edges).map_err(|error| error.starting(q))?;
+        self.fits(jump.to, &jump.after.x)?;
 
         let after = sensitive.after(&jump);
         let columns = std::array::from_fn(|c| {
@@ -250,6 +260,18 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         });
         let q = self.section.read(jump.t(), jump.after.x.over(), parameters.over());
         Ok(Linear { image: Return { q, duration: jump.t() - t }, columns, edges })
+    }
+
+    /// Whether what the edge led to is on the section.
+    fn fits(&self, to: A::Mode, x: &A::State) -> Result<(), MapError> {
+        let (start, edge) = (self.section.start().0, self.section.edge());
+        let led = || {
+            format!(
+                "edge {edge:?} leads to mode {to:?}, the section starts in {start:?}: give it the mode just after its edge"
+            )
+        };
+        let flaw = if to == start { self.section.flaw(x) } else { Some(led()) };
+        flaw.map_or(Ok(()), |flaw| Err(MapError::Question(flaw)))
     }
 
     /// Runs from `x` until the edge has been taken as often as asked for, noting the edges on the way.
@@ -286,6 +308,9 @@ impl<A: Linearize, X: Section<A, K>, const K: usize> Section<A, K> for &X {
     }
     fn place<D: Number>(&self, q: [D; K], p: Over<A::Parameters, D>) -> Over<A::State, D> {
         (**self).place(q, p)
+    }
+    fn flaw(&self, x: &A::State) -> Option<String> {
+        (**self).flaw(x)
     }
     fn read<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> [D; K] {
         (**self).read(t, x, p)

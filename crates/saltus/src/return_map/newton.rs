@@ -6,14 +6,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 
-/// Why a return map could not be evaluated, or a fixed point not be found. Written with `{}`, it is a sentence that says what to do.
+/// Why a return map could not be evaluated, or a fixed point not be found. Written with `{}` or `{:?}`, it is a sentence that says what to do.
 ///
 /// ```
 /// use saltus::return_map::MapError;
 /// let error = MapError::Singular { q: vec![0.5] };
 /// assert!(error.to_string().contains("a multiplier is 1"));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MapError {
     /// A run failed.
@@ -39,7 +39,7 @@ pub enum MapError {
         /// P(q) - q there.
         residual: Vec<f64>,
     },
-    /// A continuation was asked for that cannot be made.
+    /// What was asked for cannot be.
     Question(String),
 }
 
@@ -65,7 +65,7 @@ impl fmt::Display for MapError {
             Self::Run(error) => error.fmt(f),
             Self::NoReturn { why, t, q } => write!(
                 f,
-                "a run from {q:?} on the section did not return to it: at t = {t}, {why}; start closer to the periodic run, or choose an edge that each period takes"
+                "a run from {q:?} on the section did not return to it: choose an edge that each period takes, or start closer to the periodic run (at t = {t}, {why})"
             ),
             Self::Singular { q } => write!(
                 f,
@@ -77,6 +77,13 @@ impl fmt::Display for MapError {
             ),
             Self::Question(what) => f.write_str(what),
         }
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for MapError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 

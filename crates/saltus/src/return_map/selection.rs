@@ -6,7 +6,11 @@ use super::{MapError, Section};
 use crate::linearize::{Lift, Linearize, Number, Over};
 use crate::state::State;
 
-/// A [`Section`] whose coordinates q are K of the state's own; the others are always those of one given state just after the edge.
+/// How far a coordinate may be off that the section holds, relative to the largest.
+const HELD: f64 = 1e-6;
+
+/// A [`Section`] whose coordinates q are K of the state's own; the others are always those of one given state just after the edge, and a return on which
+/// they are not, but for rounding (10⁻⁶ of the largest coordinate), is an error.
 ///
 /// Of a ball that rises from the floor only the velocity is left:
 ///
@@ -48,7 +52,7 @@ pub struct Selection<M, S, E, const K: usize> {
 }
 
 impl<M: Debug, S: State, E, const K: usize> Selection<M, S, E, K> {
-    /// The section by `edge` into this mode, with the coordinates `which` of this state, counted from 0.
+    /// The section by `edge` into this mode, with the coordinates `which` of this state just after it, counted from 0.
     ///
     /// # Errors
     /// [`MapError::Question`] if the state has no such coordinate, or one is named twice.
@@ -75,6 +79,15 @@ impl<A: Linearize, const K: usize> Section<A, K> for Selection<A::Mode, A::State
     fn place<D: Number>(&self, q: [D; K], _: Over<A::Parameters, D>) -> Over<A::State, D> {
         let chosen = |i: usize| self.which.iter().position(|&which| which == i);
         self.state.lift(|i| chosen(i).map_or_else(|| D::from(self.state.get(i)), |k| q[k]))
+    }
+    fn flaw(&self, x: &A::State) -> Option<String> {
+        let others = || (0..x.len()).filter(|i| !self.which.contains(i));
+        let size = (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max);
+        let moved = others().find(|&i| (x.get(i) - self.state.get(i)).abs() > HELD * size.max(self.state.get(i).abs()));
+        moved.map(|i| {
+            let (edge, held, came) = (self.edge, self.state.get(i), x.get(i));
+            format!("after edge {edge:?} coordinate {i} is {came}, not {held} as the section holds it: give it what the edge leaves, or select it too")
+        })
     }
     fn read<D: Number>(&self, _t: D, x: Over<A::State, D>, _: Over<A::Parameters, D>) -> [D; K] {
         self.which.map(|i| A::State::pick(&x, i))
