@@ -280,3 +280,22 @@ fn a_drop_without_a_bounce_is_not_fitted() {
     assert_eq!(report.verdict(), Verdict::Refused);
     assert!(report.reason().contains("no bounce"), "{}", report.reason());
 }
+
+/// Phones film at 24 to 240 frames a second, from before the release to long after the ball lies: every such film gives its COR.
+#[test]
+fn films_of_every_rate_and_length() {
+    let mut noise = Noise(9);
+    let cors: [(f64, fn(f64) -> f64); 3] = [(0.6, |_| 0.6), (0.78, |_| 0.78), (0.88, |_| 0.88)];
+    for rate in [24.0, 30.0, 60.0, 240.0] {
+        for (e, cor) in cors {
+            for (k, seconds) in [2.4, 2.7, 3.0, 9.0].into_iter().enumerate() {
+                let ball = Ball { drop: 0.9 + 0.13 * k as f64, release: 0.05 + 0.011 * k as f64, cor, ..steel() };
+                let report = report(&csv(&noisy(&ball.film(rate, seconds), &mut noise, 8e-4)));
+                let what = format!("{rate} frames a second, COR {e}, {seconds} s: {report}");
+                assert_eq!(report.verdict(), Verdict::Trusted, "{what}");
+                assert!((report.cor().unwrap().value - e).abs() < 0.01, "{what}");
+                assert!(!report.warnings().iter().any(|w| w.contains("are due")), "{what}");
+            }
+        }
+    }
+}

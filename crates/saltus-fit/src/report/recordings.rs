@@ -92,8 +92,9 @@ fn speed(report: &Report, speed: f64) -> String {
 /// Gravity, drag and what is left between motion and samples, for a single recording.
 fn motion(report: &Report, track: &Track, f: &mut Formatter<'_>) -> fmt::Result {
     let unit = if metres(report, track) { "m/s\u{b2}" } else { "per s\u{b2}" };
-    let digits = if track.gravity.value < 100.0 { 2 } else { 0 };
     let (g, error) = (track.gravity.value, track.gravity.standard_error);
+    // As many decimals as show the error.
+    let digits = (0..9usize).find(|n| error * 10f64.powf(*n as f64) >= 1.95).unwrap_or(9);
     write!(f, "\n  {} samples; gravity {g:.digits$} ± {error:.digits$} {unit}", track.samples)?;
     if let Some(drag) = track.drag {
         let per = if metres(report, track) { "/m" } else { " per unit of height" };

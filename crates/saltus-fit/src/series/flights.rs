@@ -124,8 +124,8 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
         return Err(if single { NoFlights::TooFew } else { NoFlights::NoBounce });
     };
     let sampling = |i: usize| {
-        // Between two frames a ball may be this far from the floor at the lower of them.
-        let near = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|j| smooth.get(j));
+        // Between two frames a ball may be this far from the floor at the lower of them; the median of three has taken the lowest of both sides away.
+        let near = [i.checked_sub(2), Some(i + 2)].into_iter().flatten().filter_map(|j| smooth.get(j));
         near.map(|h| (h - smooth[i]).abs()).fold(0.0, f64::max)
     };
     let high = |i: usize| smooth[i] - floor > (FLOOR * (top - bottom)).max(sampling(i));

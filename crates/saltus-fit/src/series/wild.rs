@@ -24,8 +24,40 @@ const MOST_RUNS: usize = 1000;
 /// With more wild samples than this part of all, the series is of something else.
 const MOST: f64 = 0.45;
 
-/// Which samples are wild; heights upwards, times ascending.
+/// A ball that stays within this part of the range lies, or is held.
+const STILL: f64 = 0.02;
+
+/// Which samples are wild; heights upwards, times ascending. None is where the ball is held before it falls, or lies when all is over.
 pub(super) fn wild(times: &[f64], heights: &[f64]) -> Vec<bool> {
+    let mut all = vec![false; times.len()];
+    let moving = moving(heights);
+    let wild = of_moving(&times[moving.clone()], &heights[moving.clone()]);
+    all[moving].copy_from_slice(&wild);
+    all
+}
+
+/// The samples between those at either end that stay where they are, and some of these.
+fn moving(heights: &[f64]) -> std::ops::Range<usize> {
+    let count = heights.len();
+    if count < DENSE {
+        return 0..count;
+    }
+    let mut sorted = heights.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let still = STILL * (sorted[count - 1 - count / 100] - sorted[count / 100]);
+    // The median of five passes by wild samples.
+    let smooth: Vec<f64> = heights.windows(5).filter_map(|near| median(&mut near.to_vec())).collect();
+    let level = |ends: &[f64]| median(&mut ends[..9].to_vec()).unwrap_or(0.0);
+    let backwards: Vec<f64> = smooth.iter().rev().copied().collect();
+    let length = |from: &[f64]| {
+        let stays = from.iter().take_while(|h| (**h - level(from)).abs() <= still).count();
+        stays.saturating_sub(BENT)
+    };
+    let (held, lies) = (length(&smooth), length(&backwards));
+    if held + lies < count { held..count - lies } else { 0..count }
+}
+
+fn of_moving(times: &[f64], heights: &[f64]) -> Vec<bool> {
     let none = vec![false; times.len()];
     if times.len() < DENSE {
         return none;

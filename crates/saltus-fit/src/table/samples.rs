@@ -4,12 +4,13 @@ use super::header::Columns;
 use super::sheet::Sheet;
 use super::{ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
-use crate::statistics::median;
 
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
 const RECORDING: usize = 5;
 /// Rows this far apart are compared to tell which way the ball falls.
 const STRIDE: usize = 2;
+/// And so far apart to tell how fast.
+const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
 /// The part of the bends of a series that must agree before it is said to fall either way.
 const AGREE: f64 = 0.65;
 
@@ -65,9 +66,16 @@ pub(super) fn series(
 
 /// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says so too.
 fn falls(table: &mut Table) {
-    let mut found: Vec<f64> = table.trials.iter().flat_map(|trial| accelerations(&trial.readings)).collect();
     let gravity = table.metadata.gravity.unwrap_or(9.81);
-    let Some(median) = median(&mut found).filter(|_| found.len() >= 8) else { return };
+    let agreed = |stride: &usize| {
+        let found = table.trials.iter().flat_map(|trial| accelerations(&trial.readings, *stride));
+        let mut found: Vec<f64> = found.collect();
+        found.sort_unstable_by(f64::total_cmp);
+        let part = |n: usize| found.get(found.len() * n / 4).copied().unwrap_or(f64::NAN);
+        (found.len() >= 8 && part(3) - part(1) < 0.35 * part(2)).then_some(part(2))
+    };
+    // Close samples show their noise: the nearest are taken on which the bends agree.
+    let Some(median) = STRIDES.iter().find_map(agreed) else { return };
     if (0.7 * gravity..1.4 * gravity).contains(&median) {
         return;
     }
@@ -83,17 +91,17 @@ fn falls(table: &mut Table) {
 }
 
 /// The downward accelerations where a series moves and bends downwards, from second differences.
-fn accelerations(readings: &[Reading]) -> Vec<f64> {
+fn accelerations(readings: &[Reading], stride: usize) -> Vec<f64> {
     let points: Vec<(f64, f64)> = readings.iter().filter_map(|r| Some((r.time?, r.height?))).collect();
     let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.1), h.max(p.1)));
     let moves = 0.02 * (high - low);
     let bend = |w: &[(f64, f64)]| {
-        let (a, b, c) = (w[0], w[STRIDE], w[2 * STRIDE]);
+        let (a, b, c) = (w[0], w[stride], w[2 * stride]);
         let slopes = ((b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0));
         let acceleration = 2.0 * (slopes.0 - slopes.1) / (c.0 - a.0);
         ((b.1 - a.1).abs().max((c.1 - b.1).abs()) > moves && acceleration > 0.0).then_some(acceleration)
     };
-    points.windows(2 * STRIDE + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
+    points.windows(2 * stride + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
 }
 
 /// Recordings one below the other, told apart by a clock that starts again.
