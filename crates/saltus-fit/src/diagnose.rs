@@ -13,7 +13,7 @@ use crate::rivals::{self, Compared, Readings};
 use crate::robust::Loss;
 use crate::settings::differ;
 use crate::statistics::NORMAL;
-use crate::table::{Table, Trial};
+use crate::table::{Event, Table, Trial};
 use crate::tolerance::losses;
 use crate::weigh;
 
@@ -21,6 +21,10 @@ use crate::weigh;
 pub(crate) const REJECT: f64 = 0.01;
 /// A rebound so many standard errors high is not read as zero.
 const TOO_HIGH: f64 = 5.0;
+/// Readings whose scatter is more than this part of the largest of them hardly show a bounce.
+const LOUD: f64 = 0.1;
+/// A 95 % interval wider than this says hardly anything.
+const VAGUE: f64 = 0.5;
 /// A fit more probable than this has reading errors that were stated too large.
 const TOO_GOOD: f64 = 0.999;
 
@@ -121,6 +125,7 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
         chosen = Some(single(report, kind, found.table.trials(), &mut doubts));
     }
     doubts.extend(contradicted(found));
+    doubts.extend(mostly_left_out(found));
     if let Some(kind) = &found.times {
         let times = single(report, kind, found.table.trials(), &mut doubts);
         chosen = Some(match chosen {
@@ -149,6 +154,12 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     match (chosen, found.mean("first-flight")) {
         (Some(cor), _) => {
             report.cor = cor;
+            if let Some(cor) = cor.filter(|cor| cor.high - cor.low > VAGUE) {
+                doubts.push(format!(
+                    "the COR is hardly known: from {:.2} to {:.2}; are the units and the reading errors right?",
+                    cor.low, cor.high
+                ));
+            }
             report.verdict = if doubts.is_empty() { Verdict::Trusted } else { Verdict::Doubtful };
             report.reason = doubts.first().cloned().unwrap_or_else(|| fits(found));
         }
@@ -258,6 +269,33 @@ fn spanning(report: &Report) -> Option<Cor> {
 }
 
 /// The COR of one kind of reading, with what speaks against it.
+/// Whether fewer than half of the times belong to the bounces that were found: among so many, some agree by chance.
+fn mostly_left_out(found: &Findings<'_>) -> Option<String> {
+    let readings = found.table.trials().iter().flat_map(|trial| trial.readings());
+    let read = readings.filter(|reading| reading.event == Event::Contact && reading.time.is_some()).count();
+    let used: usize = found.evidence.trials.iter().map(|trial| trial.moments.iter().filter(|m| !m.1).count()).sum();
+    let few = found.times.is_some() && 2 * used < read;
+    few.then(|| format!("of {read} times only {used} follow from each other, which may be chance: cut the table to the bounces, or measure again"))
+}
+
+/// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated their error: the tallest height, the longest interval.
+fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> Option<f64> {
+    let scatter = kind.scatter.or_else(|| (kind.sigma.source == Source::Scatter).then_some(0.0))?;
+    let heights = || trials.iter().flat_map(|trial| trial.readings()).filter_map(|reading| reading.height);
+    let between = |trial: &Trial| {
+        let mut times: Vec<f64> = trial.readings().iter().filter_map(|reading| reading.time).collect();
+        times.sort_unstable_by(f64::total_cmp);
+        times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max)
+    };
+    let largest = if M::METHOD == Heights::METHOD {
+        heights().fold(0.0, f64::max)
+    } else {
+        trials.iter().map(between).fold(0.0, f64::max)
+    };
+    let sigma = if kind.sigma.source == Source::Scatter { kind.sigma.value / largest } else { 0.0 };
+    Some(sigma.max(scatter))
+}
+
 fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], doubts: &mut Vec<String>) -> Option<Cor> {
     let estimate = &kind.estimate;
     let what = M::METHOD;
@@ -307,6 +345,12 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
                 "the {what} scatter {birge:.2} times as much as their reading errors say: those are probably too large"
             ));
         }
+    }
+    if let Some(part) = loudness(kind, trials).filter(|part| *part > LOUD) {
+        doubts.push(format!(
+            "the {what} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
+            100.0 * part
+        ));
     }
     let mut settings_differ = false;
     if let Some(differ) = differ(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT) {

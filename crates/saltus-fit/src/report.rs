@@ -60,6 +60,16 @@ pub struct Cor {
     pub high: f64,
 }
 
+/// The COR and its standard error, with as many digits as that leaves it: `0.7812 ± 0.0009`.
+impl fmt::Display for Cor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.standard_error {
+            Some(error) => f.write_str(&pair(self.value, error)),
+            None => write!(f, "{:.3}", self.value),
+        }
+    }
+}
+
 /// What a fit found: see [`Fit::run`](crate::Fit::run). `Display` writes it for people, serde for programs.
 ///
 /// ```

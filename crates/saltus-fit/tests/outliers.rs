@@ -145,3 +145,33 @@ fn one_odd_drop_is_left_out_and_three_are_not() {
     let cor = three.cor().unwrap();
     assert!(cor.low < 0.74 && cor.high > 0.74 && cor.high - cor.low > 0.05, "{three}");
 }
+
+/// Numbers that are no bounces at all are not trusted, but for a few that agree by chance.
+#[test]
+fn noise_is_not_trusted() {
+    let mut noise = Noise(31);
+    for count in [8, 12, 20, 100] {
+        let (mut heights, mut times) = (0, 0);
+        for _ in 0..30 {
+            let mut text = "bounce,height_cm\n".to_owned();
+            (0..count).for_each(|n| text += &format!("{n},{:.1}\n", 5.0 + 95.0 * noise.uniform()));
+            heights += usize::from(Fit::new().run(&parse(&text)).is_ok_and(|r| r.verdict() == Verdict::Trusted));
+            let (mut text, mut t) = ("time_s\n".to_owned(), 0.0);
+            for _ in 0..count {
+                t += 0.1 + 0.9 * noise.uniform();
+                text += &format!("{t:.3}\n");
+            }
+            times += usize::from(Fit::new().run(&parse(&text)).is_ok_and(|r| r.verdict() == Verdict::Trusted));
+        }
+        assert!(heights <= 1 && times <= 4, "of 30 tables of {count} numbers {heights} and {times} are trusted");
+    }
+}
+
+#[test]
+fn a_cor_that_may_be_anything_is_not_trusted() {
+    // Metres under a header in centimetres, read to a centimetre.
+    let table = parse("bounce,height_cm\n0,1.00\n1,0.64\n2,0.41\n3,0.26\n");
+    let report = Fit::new().run(&table).unwrap();
+    assert_eq!(report.verdict(), Verdict::Doubtful, "{report}");
+    assert!(report.reason().contains("hardly known"), "{report}");
+}

@@ -83,7 +83,7 @@ pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     let marked = if read.is_empty() { "" } else { "Marks: heights as they were read, ± one standard error" };
     let chart = Chart::new(&report.title(), ("Bounce", Scale::Count), ("Apex", Scale::Length))
         .logarithmic()
-        .line(&format!("one COR of {:.3}", motion.cor), Stroke::polygon(&fitted))
+        .line(&course(report, motion), Stroke::polygon(&fitted))
         .marks(read.iter().map(|(n, point)| [*n, point.height]))
         .jumps(bars)
         .background(Background::Adaptive)
@@ -147,7 +147,13 @@ fn speed(report: &Report, bounce: usize) -> Option<f64> {
 fn label(report: &Report, motion: &Motion) -> String {
     let trials = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
     let whose = if trials > 1 { format!("first of {trials} trials: ") } else { String::new() };
-    format!("{whose}free flight with one COR of {:.3}", motion.cor)
+    let free = if report.series().is_empty() { "free flight with " } else { "" };
+    format!("{whose}{free}{}", course(report, motion))
+}
+
+/// What the fitted motion supposes: of a series possibly drag, and a COR for every impact.
+fn course(report: &Report, motion: &Motion) -> String {
+    if report.series().is_empty() { format!("one COR of {:.3}", motion.cor) } else { "the fitted motion".to_owned() }
 }
 
 fn arcs(motion: &Motion) -> impl Iterator<Item = Arc> {
@@ -167,7 +173,7 @@ fn caption(report: &Report) -> String {
     match report.cor() {
         None => format!("No COR: {}", report.reason()),
         Some(cor) => match (report.verdict(), cor.standard_error) {
-            (Verdict::Trusted, Some(error)) => format!("COR {:.4} ± {error:.4}", cor.value),
+            (Verdict::Trusted, Some(_)) => format!("COR {cor}"),
             (verdict, _) => format!("COR between {:.2} and {:.2}, {verdict}: {}", cor.low, cor.high, report.reason()),
         },
     }

@@ -38,14 +38,7 @@ impl Report {
         let mut scene = format!("# Fitted to {}.\n", line(&self.table));
         let _ = match self.cor {
             Some(cor) if self.verdict == Verdict::Trusted => {
-                let error = cor.standard_error.map_or(String::new(), |error| format!(" ± {}", figures(error, 2)));
-                writeln!(
-                    scene,
-                    "# COR {}{error}, 95 %: {} to {}.",
-                    figures(cor.value, 4),
-                    figures(cor.low, 4),
-                    figures(cor.high, 4)
-                )
+                writeln!(scene, "# COR {cor}, 95 %: {} to {}.", figures(cor.low, 4), figures(cor.high, 4))
             }
             Some(cor) => {
                 let says = format!("a COR between {:.2} and {:.2}", cor.low, cor.high);
