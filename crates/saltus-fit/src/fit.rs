@@ -279,7 +279,7 @@ impl Fit {
             };
             report.bootstrap = bootstrap::run(&evidence, &setting, draws, progress)?;
             if report.bootstrap.is_none() {
-                report.notes.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
+                report.warnings.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
             }
         }
         let losses: Vec<Loss> =

@@ -168,5 +168,5 @@ fn a_bootstrap_repeats_itself_and_agrees_with_the_jackknife() {
     assert!((0.6..1.5).contains(&(drawn.standard_error / error)), "{report}");
     assert!(drawn.low < value && value < drawn.high && report.to_string().contains("seed 7"), "{report}");
     let few = Fit::new().bootstrap(100, 1).run(&Table::from_heights(&[1.0, 0.64, 0.41]).unwrap()).unwrap();
-    assert!(few.bootstrap().is_none() && few.notes().iter().any(|n| n.contains("at least five")), "{few}");
+    assert!(few.bootstrap().is_none() && few.warnings().iter().any(|n| n.contains("at least five")), "{few}");
 }

@@ -161,6 +161,8 @@ const IGNORED: &[&str] = &[
     "force",
     "step",
     "flag",
+    "jumps",
+    "mode",
     // What is to be found, worked out by somebody already.
     "cor",
     "e",

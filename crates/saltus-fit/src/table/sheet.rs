@@ -325,7 +325,7 @@ impl Row<'_> {
         };
         match value {
             Ok(value) if value.is_finite() => Ok(Some(value)),
-            Ok(_) => wrong(format!("'{shown}' is not a finite number"), "take the row out, or leave the cell empty"),
+            Ok(_) => wrong(format!("'{shown}' is not a finite number"), "take the row out"),
             Err(_) => wrong(format!("'{shown}' is not a number"), plain),
         }
     }
