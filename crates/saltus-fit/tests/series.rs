@@ -285,9 +285,10 @@ fn a_drop_without_a_bounce_is_not_fitted() {
 #[test]
 fn films_of_every_rate_and_length() {
     let mut noise = Noise(9);
-    let cors: [(f64, fn(f64) -> f64); 3] = [(0.6, |_| 0.6), (0.78, |_| 0.78), (0.88, |_| 0.88)];
+    let bounces: [fn(f64) -> f64; 3] = [|_| 0.6, |_| 0.78, |_| 0.88];
     for rate in [24.0, 30.0, 60.0, 240.0] {
-        for (e, cor) in cors {
+        for cor in bounces {
+            let e = cor(1.0);
             for (k, seconds) in [2.4, 2.7, 3.0, 9.0].into_iter().enumerate() {
                 let ball = Ball { drop: 0.9 + 0.13 * k as f64, release: 0.05 + 0.011 * k as f64, cor, ..steel() };
                 let report = report(&csv(&noisy(&ball.film(rate, seconds), &mut noise, 8e-4)));
