@@ -120,7 +120,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,
     /// Names for the columns, in place of those in the file, such as `bounce,height_cm`; `-` leaves a column aside.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) header: Option<Vec<String>>,
     /// How many frames were filmed in a second, where the table counts frames.
     #[arg(long, value_name = "NUMBER", value_parser = rate)]
@@ -150,7 +150,7 @@ pub(crate) struct Fit {
     /// The diameter of the ball, such as `4cm`: the zero of the height scale can be off by no more.
     #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
     pub(crate) ball: Option<f64>,
-    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them.
+    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them, with '=': `--losses=huber`.
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
     /// Trust every height to within this, such as `5mm`, and say which CORs that allows.

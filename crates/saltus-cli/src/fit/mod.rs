@@ -22,6 +22,7 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         check_picture(picture.as_deref())?;
     }
     check_new(args.scene.as_deref(), args.force)?;
+    one_to_standard_output(args)?;
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     // What takes long is a bootstrap.
@@ -42,7 +43,12 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     for (path, draw, none) in pictures {
         let Some(path) = path else { continue };
         match draw(&report).transpose().map_err(Error::new)? {
-            Some(picture) => write(Some(path), picture.as_bytes())?,
+            Some(picture) => {
+                write(Some(path), picture.as_bytes())?;
+                if path != Path::new("-") {
+                    say(quiet, &format!("picture: {}", path.display()));
+                }
+            }
             None => say(quiet, none),
         }
     }
@@ -55,11 +61,21 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
             say(quiet, &format!("scene: {scene}; to see it move: saltus export {scene} -o {}", moving.display()));
         }
     }
-    if let Some(path) = args.plot.as_ref().filter(|path| path.exists() && *path != Path::new("-")) {
-        say(quiet, &format!("picture: {}", path.display()));
-    }
     let passed = !args.strict || report.verdict() == Verdict::Trusted;
     Ok(if passed { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// Refuses a report and a picture, or two pictures, in one stream, where neither could be used.
+fn one_to_standard_output(args: &args::Fit) -> Result<(), Error> {
+    let files = [&args.plot, &args.plot_cor, &args.plot_ladder, &args.plot_profile, &args.scene];
+    let pictures = files.into_iter().flatten().filter(|path| *path == Path::new("-")).count();
+    let report = args.output.as_ref().is_none_or(|path| path == Path::new("-"));
+    if pictures + usize::from(report) < 2 {
+        return Ok(());
+    }
+    Err(Error::new(
+        "only one of them can go to standard output: name a file for the report by -o, or one for the picture or scene instead of '-'",
+    ))
 }
 
 fn read(args: &args::Fit) -> Result<Table, Error> {

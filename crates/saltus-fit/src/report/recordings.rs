@@ -100,5 +100,6 @@ fn motion(report: &Report, track: &Track, f: &mut Formatter<'_>) -> fmt::Result 
         let per = if metres(report, track) { "/m" } else { " per unit of height" };
         write!(f, "; drag k = {} ± {}{per}", figures(drag.value), figures(drag.standard_error))?;
     }
-    writeln!(f, "; rms {} (from sample to sample {})", figures(track.rms), figures(track.noise))
+    let unit = if metres(report, track) { " m" } else { " in the unit of heights" };
+    writeln!(f, "; rms {}{unit} (from sample to sample {})", figures(track.rms), figures(track.noise))
 }
