@@ -121,20 +121,30 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     let joint = found.joint.as_ref().map(|j| &j.estimate);
     let mut doubts = Vec::new();
     let mut chosen = None;
+    // By heights alone and by times alone, from more trials than have both.
+    let mut wider = Vec::new();
+    let both = found.joint.as_ref().map_or(0, |joint| joint.trials.len());
     if let Some(kind) = &found.heights {
-        chosen = Some(single(report, kind, found.table.trials(), &mut doubts));
+        let heights = single(report, kind, found.table.trials(), &mut doubts);
+        wider.extend((kind.estimate.trials > both).then(|| ("heights", kind.estimate.trials, heights)));
+        chosen = Some(heights);
     }
     doubts.extend(contradicted(found));
     doubts.extend(mostly_left_out(found));
     if let Some(kind) = &found.times {
         let times = single(report, kind, found.table.trials(), &mut doubts);
+        wider.extend((kind.estimate.trials > both).then(|| ("times", kind.estimate.trials, times)));
         chosen = Some(match chosen {
-            Some(heights) if joint.is_none() => either(&heights, &times, &mut doubts),
+            Some(heights) if joint.is_none() => either(("heights", &heights), ("times", &times), &mut doubts),
             _ => times,
         });
     }
     if let Some(joint) = &found.joint {
-        chosen = Some(of(&joint.estimate));
+        let whole = of(&joint.estimate);
+        chosen = Some(wider.iter().fold(whole, |whole, (what, trials, alone)| {
+            let (what, both) = (format!("{what} of {trials} trials"), format!("heights with times, read of {both},"));
+            either((&what, alone), (&both, &whole), &mut doubts)
+        }));
         if let Some(spread) = joint.spread {
             report.warnings.push(differing(spread, joint.trials.len()));
         }
@@ -268,7 +278,6 @@ fn spanning(report: &Report) -> Option<Cor> {
     Some(Cor { value: middle.clamp(low, high), standard_error: Some((high - low) / (2.0 * NORMAL)), low, high })
 }
 
-/// The COR of one kind of reading, with what speaks against it.
 /// Whether fewer than half of the times belong to the bounces that were found: among so many, some agree by chance.
 fn mostly_left_out(found: &Findings<'_>) -> Option<String> {
     let readings = found.table.trials().iter().flat_map(|trial| trial.readings());
@@ -296,6 +305,7 @@ fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> Option<f64> {
     Some(sigma.max(scatter))
 }
 
+/// The COR of one kind of reading, with what speaks against it.
 fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], doubts: &mut Vec<String>) -> Option<Cor> {
     let estimate = &kind.estimate;
     let what = M::METHOD;
@@ -430,12 +440,12 @@ pub(crate) fn chance(p: f64) -> String {
 }
 
 /// Heights and times from different trials: the sharper of the two, if they agree.
-fn either(heights: &Option<Cor>, times: &Option<Cor>, doubts: &mut Vec<String>) -> Option<Cor> {
-    let (Some(a), Some(b)) = (heights, times) else { return heights.or(*times) };
+fn either(first: (&str, &Option<Cor>), second: (&str, &Option<Cor>), doubts: &mut Vec<String>) -> Option<Cor> {
+    let (Some(a), Some(b)) = (first.1, second.1) else { return first.1.or(*second.1) };
     let (s, t) = (a.standard_error.unwrap_or(f64::INFINITY), b.standard_error.unwrap_or(f64::INFINITY));
     // 2.576 standard errors: one chance in a hundred.
     if (a.value - b.value).abs() > 2.576 * s.hypot(t) {
-        doubts.push(format!("heights give {:.3} and times give {:.3}", a.value, b.value));
+        doubts.push(format!("{} give {:.3} and {} give {:.3}", first.0, a.value, second.0, b.value));
         let (low, high) = (a.low.min(b.low), a.high.max(b.high));
         let error = Some((high - low) / (2.0 * NORMAL));
         return Some(Cor { value: 0.5 * (a.value + b.value), standard_error: error, low, high });
@@ -449,6 +459,13 @@ fn fits(found: &Findings<'_>) -> String {
     if let Some(joint) = &found.joint {
         return match joint.spread {
             Some(_) => "heights and times agree in every drop; the COR is the mean over drops that differ".to_owned(),
+            None if joint.trials.len() < found.evidence.trials.len() => {
+                format!(
+                    "heights and times agree on one COR, in {} of {} trials",
+                    joint.trials.len(),
+                    found.evidence.trials.len()
+                )
+            }
             None => "heights and times agree on one COR".to_owned(),
         };
     }

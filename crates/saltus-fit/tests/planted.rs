@@ -5,7 +5,7 @@
 mod noise;
 
 use noise::Noise;
-use saltus_fit::{Fit, Loss, ReadOptions, Report, Table};
+use saltus_fit::{Fit, Loss, ReadOptions, Report, Table, Verdict};
 
 fn parse(text: &str) -> Table {
     Table::parse("planted", text.as_bytes(), &ReadOptions::default()).expect("a table")
@@ -169,4 +169,33 @@ fn a_bootstrap_repeats_itself_and_agrees_with_the_jackknife() {
     assert!(drawn.low < value && value < drawn.high && report.to_string().contains("seed 7"), "{report}");
     let few = Fit::new().bootstrap(100, 1).run(&Table::from_heights(&[1.0, 0.64, 0.41]).unwrap()).unwrap();
     assert!(few.bootstrap().is_none() && few.warnings().iter().any(|n| n.contains("at least five")), "{few}");
+}
+
+/// Six drops of which only heights were read outvote the one whose times were read too, or are contradicted by it: it does not speak for all.
+#[test]
+fn one_drop_does_not_speak_for_seven() {
+    let table = |e: f64| {
+        let mut noise = Noise(3);
+        let mut text = "trial,event,time_s,height_m\n0,release,0,1.0\n".to_owned();
+        let (mut t, mut v) = ((2.0f64 / 9.81).sqrt(), (2.0f64 * 9.81).sqrt());
+        for n in 1..=4 {
+            text += &format!("0,contact,{:.4},\n0,apex,,{:.4}\n", t, 0.8f64.powi(2 * n));
+            v *= 0.8;
+            t += 2.0 * v / 9.81;
+        }
+        for trial in 1..=6 {
+            for n in 0..5 {
+                let height = e.powi(2 * n) + noise.normal(0.002);
+                text += &format!("{trial},{},,{height:.4}\n", if n == 0 { "release" } else { "apex" });
+            }
+        }
+        Fit::new().sigma_height(0.002).sigma_time(0.001).run(&parse(&text)).unwrap()
+    };
+    let same = table(0.8);
+    assert_eq!(same.verdict(), Verdict::Trusted, "{same}");
+    assert!(same.reason().contains("1 of 7 trials"), "{same}");
+    let other = table(0.76);
+    assert_eq!(other.verdict(), Verdict::Doubtful, "{other}");
+    let cor = other.cor().unwrap();
+    assert!(cor.low < 0.77 && cor.high > 0.79, "{other}");
 }
