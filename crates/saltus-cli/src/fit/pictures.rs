@@ -45,7 +45,11 @@ pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
         .marks(bounces.iter().map(|(v, e)| [*v, e.value]))
         .jumps(bounces.iter().map(|(v, e)| [-1.0, 1.0].map(|side| [*v, e.value + side * e.standard_error])))
         .background(Background::Adaptive)
-        .caption("Marks: each bounce by itself, ± one standard error");
+        .caption(if report.bounces().iter().any(|b| b.heights.is_some()) {
+            "Marks: each bounce by itself, from heights where it has them, ± one standard error"
+        } else {
+            "Marks: each bounce by itself, from times, ± one standard error"
+        });
     if let Some(law) = law {
         let at = |side: f64| {
             let shifted = law.speeds.iter().map(|s| [s.speed, s.cor + side * 1.96 * s.standard_error]);
@@ -53,10 +57,10 @@ pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
         };
         picture = picture.line(&law.about, at(0.0)).line("95 % band", at(-1.0).into_iter().chain(at(1.0)));
     }
-    if let Some(one) =
-        report.models().iter().find(|m| m.name == "constant").map(|m| m.cor.value).or(report.cor().map(|c| c.value))
-    {
-        picture = picture.line("one COR", Stroke::polygon(&[[slowest, one], [fastest, one]]));
+    // Where heights contradict times there is none.
+    let settled = report.verdict() == Verdict::Trusted || !report.models().is_empty();
+    if let Some(one) = report.cor().map(|cor| cor.value).filter(|_| settled) {
+        picture = picture.line(&format!("one COR of {one:.3}"), Stroke::polygon(&[[slowest, one], [fastest, one]]));
     }
     Some(picture.caption(&caption(report)).svg())
 }
@@ -80,16 +84,32 @@ pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
         let sigma = point.sigma_height.filter(|sigma| *sigma < point.height)?;
         Some([[*n, point.height - sigma], [*n, point.height + sigma]])
     });
-    let marked = if read.is_empty() { "" } else { "Marks: heights as they were read, ± one standard error" };
+    let intervals = if read.is_empty() { intervals(report) } else { Vec::new() };
+    let marked = match (read.is_empty(), intervals.is_empty()) {
+        (false, _) => "Marks: heights as they were read, ± one standard error",
+        (true, false) => "Marks: g Δ²/8 of the intervals Δ between contacts",
+        (true, true) => "",
+    };
     let chart = Chart::new(&report.title(), ("Bounce", Scale::Count), ("Apex", Scale::Length))
         .logarithmic()
         .line(&course(report, motion), Stroke::polygon(&fitted))
-        .marks(read.iter().map(|(n, point)| [*n, point.height]))
+        .marks(read.iter().map(|(n, point)| [*n, point.height]).chain(intervals))
         .jumps(bars)
         .background(Background::Adaptive)
         .caption(marked)
         .caption(&caption(report));
     Some(chart.svg())
+}
+
+/// The number of each flight between two contacts that were read, and the height that its duration means without air.
+fn intervals(report: &Report) -> Vec<[f64; 2]> {
+    let contact = |label: &str| label.strip_prefix("contact ")?.parse::<f64>().ok();
+    let pairs = report.points().windows(2).filter(|w| w[0].trial == w[1].trial);
+    let next = pairs.filter_map(|w| {
+        let (n, m) = (contact(&w[0].label)?, contact(&w[1].label)?);
+        (m == n + 1.0).then(|| [n, report.gravity().value * (w[1].time - w[0].time).powi(2) / 8.0])
+    });
+    next.collect()
 }
 
 /// A cost above its least by this is outside the 95 % interval: the chi-square distribution of one degree of freedom.
