@@ -126,14 +126,14 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     let both = found.joint.as_ref().map_or(0, |joint| joint.trials.len());
     if let Some(kind) = &found.heights {
         let heights = single(report, kind, found.table.trials(), &mut doubts);
-        wider.extend((kind.estimate.trials > both).then(|| ("heights", kind.estimate.trials, heights)));
+        wider.extend((kind.estimate.trials > both).then_some(("heights", kind.estimate.trials, heights)));
         chosen = Some(heights);
     }
     doubts.extend(contradicted(found));
     doubts.extend(mostly_left_out(found));
     if let Some(kind) = &found.times {
         let times = single(report, kind, found.table.trials(), &mut doubts);
-        wider.extend((kind.estimate.trials > both).then(|| ("times", kind.estimate.trials, times)));
+        wider.extend((kind.estimate.trials > both).then_some(("times", kind.estimate.trials, times)));
         chosen = Some(match chosen {
             Some(heights) if joint.is_none() => either(("heights", &heights), ("times", &times), &mut doubts),
             _ => times,
