@@ -288,21 +288,22 @@ fn mostly_left_out(found: &Findings<'_>) -> Option<String> {
 }
 
 /// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated their error: the tallest height, the longest interval.
-fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> Option<f64> {
-    let scatter = kind.scatter.or_else(|| (kind.sigma.source == Source::Scatter).then_some(0.0))?;
-    let heights = || trials.iter().flat_map(|trial| trial.readings()).filter_map(|reading| reading.height);
+fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {
+    let of_bounces = kind.scatter.unwrap_or(0.0);
+    if kind.sigma.source != Source::Scatter {
+        return of_bounces;
+    }
     let between = |trial: &Trial| {
         let mut times: Vec<f64> = trial.readings().iter().filter_map(|reading| reading.time).collect();
         times.sort_unstable_by(f64::total_cmp);
         times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max)
     };
     let largest = if M::METHOD == Heights::METHOD {
-        heights().fold(0.0, f64::max)
+        trials.iter().flat_map(|trial| trial.readings()).filter_map(|reading| reading.height).fold(0.0, f64::max)
     } else {
         trials.iter().map(between).fold(0.0, f64::max)
     };
-    let sigma = if kind.sigma.source == Source::Scatter { kind.sigma.value / largest } else { 0.0 };
-    Some(sigma.max(scatter))
+    of_bounces.max(kind.sigma.value / largest)
 }
 
 /// The COR of one kind of reading, with what speaks against it.
@@ -356,7 +357,8 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
             ));
         }
     }
-    if let Some(part) = loudness(kind, trials).filter(|part| *part > LOUD) {
+    let part = loudness(kind, trials);
+    if part > LOUD {
         doubts.push(format!(
             "the {what} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
             100.0 * part

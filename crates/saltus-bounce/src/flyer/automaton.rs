@@ -86,8 +86,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 meets.chain(leaves).chain(stops).collect()
             }
             Stance::Yield { face, push, since } => {
-                let turns = [Event::Leave(face), Event::Stop { face, along: push }, Event::Veer { face, push, since }];
-                meets.chain(turns.into_iter().filter(|_| !self.steady(face))).collect()
+                let ends = [Event::Leave(face), Event::Stop { face, along: push }, Event::Veer { face, push, since }];
+                meets.chain((!self.steady(face)).then_some(ends).into_iter().flatten()).collect()
             }
             Stance::Hold { face } => {
                 let moves = !self.steady(face);

@@ -3,7 +3,7 @@
 use std::fmt::{self, Formatter};
 
 use super::Report;
-use super::text::{digits, figures, pair};
+use super::text::{decimals, digits, figures, pair};
 use crate::choice::{ModelChoice, UnderLoss};
 use crate::series::Track;
 
@@ -93,8 +93,7 @@ fn speed(report: &Report, speed: f64) -> String {
 fn motion(report: &Report, track: &Track, f: &mut Formatter<'_>) -> fmt::Result {
     let unit = if metres(report, track) { "m/s\u{b2}" } else { "per s\u{b2}" };
     let (g, error) = (track.gravity.value, track.gravity.standard_error);
-    // As many decimals as show the error.
-    let digits = (0..9usize).find(|n| error * 10f64.powf(*n as f64) >= 1.95).unwrap_or(9);
+    let digits = decimals(0, error);
     write!(f, "\n  {} samples; gravity {g:.digits$} ± {error:.digits$} {unit}", track.samples)?;
     if let Some(drag) = track.drag {
         let per = if metres(report, track) { "/m" } else { " per unit of height" };

@@ -68,7 +68,12 @@ fn headline(report: &Report, cor: &Cor) -> String {
 
 /// Decimals that show an error to two digits if it begins with a one, else to one; from three to nine.
 pub(super) fn digits(error: f64) -> usize {
-    (3..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
+    decimals(3, error)
+}
+
+/// The same from fewer decimals on.
+pub(super) fn decimals(least: i32, error: f64) -> usize {
+    (least..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
 }
 
 pub(crate) fn pair(value: f64, error: f64) -> String {

@@ -26,6 +26,8 @@ const MOST: f64 = 0.45;
 
 /// A ball that stays within this part of the range lies, or is held.
 const STILL: f64 = 0.02;
+/// So many samples at an end tell where that is.
+const ENDS: usize = 9;
 
 /// Which samples are wild; heights upwards, times ascending. None is where the ball is held before it falls, or lies when all is over.
 pub(super) fn wild(times: &[f64], heights: &[f64]) -> Vec<bool> {
@@ -47,13 +49,13 @@ fn moving(heights: &[f64]) -> std::ops::Range<usize> {
     let still = STILL * (sorted[count - 1 - count / 100] - sorted[count / 100]);
     // The median of five passes by wild samples.
     let smooth: Vec<f64> = heights.windows(5).filter_map(|near| median(&mut near.to_vec())).collect();
-    let level = |ends: &[f64]| median(&mut ends[..9].to_vec()).unwrap_or(0.0);
-    let backwards: Vec<f64> = smooth.iter().rev().copied().collect();
-    let length = |from: &[f64]| {
-        let stays = from.iter().take_while(|h| (**h - level(from)).abs() <= still).count();
-        stays.saturating_sub(BENT)
+    let stays = |end: &[f64]| {
+        let level = median(&mut end.to_vec()).unwrap_or(0.0);
+        move |h: &&f64| (**h - level).abs() <= still
     };
-    let (held, lies) = (length(&smooth), length(&backwards));
+    let (first, last) = (stays(&smooth[..ENDS]), stays(&smooth[smooth.len() - ENDS..]));
+    let held = smooth.iter().take_while(first).count().saturating_sub(BENT);
+    let lies = smooth.iter().rev().take_while(last).count().saturating_sub(BENT);
     if held + lies < count { held..count - lies } else { 0..count }
 }
 

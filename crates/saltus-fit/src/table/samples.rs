@@ -11,6 +11,8 @@ const RECORDING: usize = 5;
 const STRIDE: usize = 2;
 /// And so far apart to tell how fast.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
+/// They agree how fast if the middle half of the bends lies within this part of their median.
+const ALIKE: f64 = 0.35;
 /// The part of the bends of a series that must agree before it is said to fall either way.
 const AGREE: f64 = 0.65;
 
@@ -72,7 +74,7 @@ fn falls(table: &mut Table) {
         let mut found: Vec<f64> = found.collect();
         found.sort_unstable_by(f64::total_cmp);
         let part = |n: usize| found.get(found.len() * n / 4).copied().unwrap_or(f64::NAN);
-        (found.len() >= 8 && part(3) - part(1) < 0.35 * part(2)).then_some(part(2))
+        (found.len() >= 8 && part(3) - part(1) < ALIKE * part(2)).then_some(part(2))
     };
     // Close samples show their noise: the nearest are taken on which the bends agree.
     let Some(median) = STRIDES.iter().find_map(agreed) else { return };
