@@ -45,7 +45,7 @@ fn slip_runner(case: &mut Report) {
     let [mass, stiffness, leg, angle, g, energy, y0] = case.params(["m", "k", "l0", "al", "g", "E", "y0"]);
     let runner = slip::Runner { mass, stiffness, leg, angle, g };
     let apex = slip::Apex(runner, energy);
-    let map = ReturnMap::of(Simulation::of(&runner).tolerance(1e-13), apex);
+    let map = ReturnMap::of(Simulation::of(&runner).tolerance(1e-13), &apex);
     let stride = map.fixed_point([0.95]).unwrap();
     case.check("y_apex_fixed", stride.q[0]);
     case.check("stride_time", stride.period);
