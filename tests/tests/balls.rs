@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Jump, Polynomial, Run, Simulation, Stats};
+use saltus::{Automaton, Edges, Fall, Jump, Polynomial, Run, Simulation, Stats};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
 use saltus_bounce::restitution::{Knots, Linear, Plastic, Viscoelastic};
 use saltus_bounce::{Ball, Cor, Floor, Mode, Phase, Restitution, Turn};
@@ -132,6 +132,11 @@ impl Automaton for Plain {
             Mode::Flight => Polynomial::from([*x, vector![x[1], -self.g], vector![-0.5 * self.g, 0.0]]),
             Mode::Rest => Polynomial::from([*x]),
         })
+    }
+    fn falls(&self, _: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
+        let speed = if x[0] == 0.0 { x[1] } else { (x[1] * x[1] + 2.0 * self.g * x[0]).sqrt() };
+        let time = if x[1] > 0.0 { (x[1] + speed) / self.g } else { 2.0 * x[0] / (speed - x[1]) };
+        Fall::In(time, vector![0.0, -speed])
     }
     fn beyond(&self, _: Mode, _t: f64, _: &Vector2<f64>) -> Option<(Mode, Vector2<f64>)> {
         Some((Mode::Rest, vector![0.0, 0.0]))

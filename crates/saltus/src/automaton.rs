@@ -117,8 +117,8 @@ pub trait Automaton {
         None
     }
 
-    /// When the guard of `edge` first falls through zero on the solution [`flown`](Self::flown) from `x` at `t`, where a formula says so.
-    /// The default has it searched for.
+    /// When the guard of `edge` first falls through zero on the solution from `x` at `t` that [`exact`](Self::exact) or [`flown`](Self::flown) gives, where a
+    /// formula says so. The default has it searched for.
     ///
     /// A wrong answer is believed: it breaks the guarantee that no crossing is missed.
     fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {

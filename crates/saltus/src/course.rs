@@ -174,11 +174,15 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// # Errors
     /// See [`Error`]; the observer has been told of everything before it, and the course stays where it was.
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<Ending<A>, Error> {
-        let stop = loop {
-            if let Some(stop) = self.advance(observer)? {
-                break stop;
-            }
+        let stop = match self.at.stop {
+            Some(stop) => stop,
+            None => loop {
+                if let Some(stop) = self.arc_and_jump(observer)? {
+                    break stop;
+                }
+            },
         };
+        self.at.stop = Some(stop);
         let Checkpoint { mode, state, clock, jumps, .. } = self.at;
         Ok(Ending { stop, stats: self.stats(), time: clock.now, jumps, mode, state })
     }

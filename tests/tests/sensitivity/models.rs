@@ -1,7 +1,7 @@
 //! The systems of the tests, each written once over numbers that carry derivatives.
 
-use saltus::nalgebra::Vector2;
-use saltus::{Automaton, Coords, Edges, Entry, Lift, Linearize, Number, Polynomial};
+use saltus::nalgebra::{Vector2, vector};
+use saltus::{Automaton, Coords, Edges, Entry, Fall, Lift, Linearize, Number, Polynomial};
 
 /// A ball that bounces on a table at rest or moving as A sin(w t), flying or lying.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,8 @@ pub(crate) struct Bounce {
     pub(crate) amplitude: f64,
     pub(crate) frequency: f64,
     pub(crate) exact: bool,
+    /// Whether a formula tells its impacts.
+    pub(crate) told: bool,
     pub(crate) lies: bool,
     pub(crate) ends: bool,
 }
@@ -27,7 +29,7 @@ pub(crate) struct Floor;
 
 impl Bounce {
     pub(crate) fn new(g: f64, e: f64) -> Self {
-        Self { g, e, floor: 0.0, amplitude: 0.0, frequency: 0.0, exact: true, lies: true, ends: false }
+        Self { g, e, floor: 0.0, amplitude: 0.0, frequency: 0.0, exact: true, told: false, lies: true, ends: false }
     }
     fn table<D: Number>(&self, t: D) -> D {
         (t * self.frequency).sin() * self.amplitude + self.floor
@@ -90,6 +92,13 @@ impl Automaton for Bounce {
     }
     fn exact(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
         self.exact_at(mode, t, x)
+    }
+    fn falls(&self, _: Phase, _: Floor, _: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
+        if !self.told {
+            return Fall::Unknown;
+        }
+        let speed = (x[1] * x[1] + 2.0 * self.g * (x[0] - self.floor)).sqrt();
+        Fall::In((x[1] + speed) / self.g, vector![self.floor, -speed])
     }
     fn beyond(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Option<(Phase, Vector2<f64>)> {
         self.beyond_over(mode, t, x.over(), self.parameters()).map(|x| (Phase::Rest, x.into()))

@@ -96,9 +96,6 @@ impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
 
     #[inline]
     fn falls(&self, _mode: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
-        if self.flight.polynomial(x).is_some() {
-            return Fall::Unknown; // the engine knows its way on a parabola
-        }
         self.flight.impact(x).map_or(Fall::Never, |impact| Fall::In(impact.time, vector![0.0, -impact.speed]))
     }
 

@@ -1,5 +1,7 @@
 //! Vertical flight with quadratic drag: two smooth modes, rising and falling.
 
+use std::f64::consts::LN_2;
+
 use nalgebra::{Vector2, vector};
 
 use super::{Apex, Impact, VerticalFlight};
@@ -117,9 +119,16 @@ impl VerticalFlight for QuadraticDragFlight {
             return Some(Impact { time: 0.0, speed });
         }
         let through = -2.0 * k * depth;
-        let left = through.exp();
-        // h φ = (1 - e^(-2kh))/(2k)
-        let reach = depth * phi1(through);
+        // e^(-2kh) and the same less one, neither by cancellation
+        let (left, lost) = if through > -LN_2 {
+            let lost = through.exp_m1();
+            (1.0 + lost, lost)
+        } else {
+            let left = through.exp();
+            (left, left - 1.0)
+        };
+        // (1 - e^(-2kh))/(2k)
+        let reach = if through == 0.0 { depth } else { depth * (lost / through) };
         let end = (u * u * left + 2.0 * g * reach).sqrt();
         if g == 0.0 {
             return (u > 0.0).then(|| Impact { time: depth / u * phi1(k * depth), speed: u * (-k * depth).exp() });

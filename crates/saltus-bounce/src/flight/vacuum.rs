@@ -61,4 +61,16 @@ impl VerticalFlight for VacuumFlight {
         }
         (w > 0.0).then(|| Impact { time: 2.0 * depth / (speed + w), speed: w })
     }
+
+    /// As for every flight; on the way up too without the apex in between.
+    #[inline]
+    fn impact(&self, x: &Vector2<f64>) -> Option<Impact> {
+        let (y, v, g) = (x[0], x[1], self.gravity);
+        if v <= 0.0 {
+            return if y >= 0.0 { self.fall(y, -v) } else { None };
+        }
+        let square = v * v + 2.0 * g * y;
+        let w = if y == 0.0 { v } else { square.sqrt() };
+        (g > 0.0 && square >= 0.0).then(|| Impact { time: (v + w) / g, speed: w })
+    }
 }

@@ -2,18 +2,18 @@
 
 use std::ops::ControlFlow;
 
-use crate::automaton::{Automaton, Fall};
-use crate::cross::{Crossing, Searched, Undefined, chebyshev};
+use crate::automaton::Automaton;
+use crate::cross::{Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::{Inspection, Observer};
+use crate::observe::Observer;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, earlier};
-use super::exact::{natural, past};
-use super::{Advance, ArcEnd, Clock, Found};
+use super::crossing::Close;
+use super::exact::natural;
+use super::{Advance, ArcEnd, Clock};
 
 /// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
 const AS_GOOD_AS_EXACT: f64 = 1e-12;
@@ -33,41 +33,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (now, t) = (clock.now, clock.now.seconds());
         let at = |s: f64| automaton.flown(mode, t, x, s).unwrap_or_else(|| x.with(|_| f64::NAN));
         let remaining = clock.end.since(now);
-        let mut found: Found<A> = None;
-        let mut by_formula = false;
-        let mut arrival: Option<Arrival<A>> = None;
-        for edge in automaton.edges(mode).iter() {
-            let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
-            let start = self.start(edge, true);
-            let formula = automaton.falls(mode, edge, t, x);
-            let Searched { fall, evidence } = match formula {
-                Fall::Unknown => {
-                    let natural = natural(&[*x, self.flow(mode, t, x)]);
-                    self.fall_in_windows(edge, now, natural, at, limit, start)
-                        .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &at(s)))?
-                }
-                Fall::In(s, state) if self.arrives(edge, now, s, &state, limit) => {
-                    arrival = Some((edge, s, state));
-                    Searched::solved(Some(Crossing::after(s)))
-                }
-                formula => Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)),
-            };
-            observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
-            found = earlier(found, edge, fall);
-            if found.is_some_and(|(first, _)| first == edge) {
-                by_formula = !matches!(formula, Fall::Unknown);
-            }
-        }
-        let close = match (found, arrival) {
-            (Some((first, crossing)), Some((edge, s, state)))
-                if edge == first && crossing.inside == s && s < remaining =>
-            {
-                self.memory.slack = 0.0;
-                (self.memory.hidden, self.memory.spurious) = (0, false);
-                Close { span: s, time: now.after(s), state }
-            }
-            (Some(found), _) => self.close(found, now, at, remaining, by_formula),
-            (None, _) => Close { span: remaining, time: clock.end, state: at(remaining) },
+        let search = |this: &mut Self, edge, limit, start| {
+            let natural = natural(&[*x, this.flow(mode, t, x)]);
+            this.fall_in_windows(edge, now, natural, at, limit, start)
+                .map(|searched| (searched, false))
+                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+        };
+        let first = self.first_on_solution(mode, x, now, remaining, at, search, observer)?;
+        let close = match &first {
+            Some(first) => self.close_on_solution(first, now, at, remaining),
+            None => Close { span: remaining, time: clock.end, state: at(remaining) },
         };
         if !close.state.is_finite() {
             return Err(Error::new(
@@ -81,22 +56,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             ControlFlow::Continue(())
         };
         clock.now = close.time;
-        Ok(ArcEnd::after(found, told, close.state))
-    }
-
-    /// Whether a formula's state a time `s` ahead is on its guard.
-    #[inline]
-    fn arrives(&mut self, edge: A::Edge, now: Time, s: f64, state: &A::State, limit: f64) -> bool {
-        if !(s > 0.0 && s <= limit && state.is_finite()) {
-            return false;
-        }
-        self.memory.stats.guards += 1;
-        self.automaton.guard(edge, now.after(s).seconds(), state) == 0.0
+        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.state))
     }
 }
-
-/// An edge, when its guard falls, and in which state.
-type Arrival<A> = (<A as Automaton>::Edge, f64, <A as Automaton>::State);
 
 /// Tells `observer` of the solution in pieces of degree eight, as long as they are as good as exact.
 fn interpolated<A: Automaton>(

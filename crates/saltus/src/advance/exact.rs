@@ -2,18 +2,18 @@
 
 use std::cell::LazyCell;
 
-use crate::automaton::{Automaton, Fall, Polynomial};
+use crate::automaton::{Automaton, Polynomial};
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
 use crate::error::Error;
-use crate::observe::{Inspection, Observer};
+use crate::observe::Observer;
 use crate::poly::{quadratic_fall, quadratic_touch};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, earlier, less_constant};
-use super::{Advance, ArcEnd, Clock, Found};
+use super::crossing::{Close, less_constant};
+use super::{Advance, ArcEnd, Clock};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
@@ -26,35 +26,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
         let c = solution.coefficients();
-        let remaining = clock.end.since(clock.now);
-        let mut found: Found<A> = None;
-        let mut by_formula = false;
+        let (now, remaining) = (clock.now, clock.end.since(clock.now));
         let natural = LazyCell::new(|| natural(c));
-        for edge in self.automaton.edges(mode).iter() {
-            let limit = found.map_or(past(remaining), |(_, crossing)| crossing.outside);
-            let start = self.start(edge, true);
-            let formula = self.automaton.falls(mode, edge, clock.now.seconds(), &c[0]);
-            let parabola = c.len() <= 3 && self.automaton.affine(edge);
-            let Searched { fall, evidence } = match formula {
-                Fall::Unknown if parabola => self.fall_of_parabola(edge, clock.now, c, limit, start),
-                Fall::Unknown => self
-                    .fall_in_windows(edge, clock.now, *natural, |s| horner(c, s), limit, start)
-                    .map_err(|Undefined(s)| self.undefined(mode, edge, clock.now, s, &horner(c, s)))?,
-                formula => Searched::solved(self.fall_by_formula(edge, clock.now, formula, |s| horner(c, s), limit)),
-            };
-            observer.inspection(&Inspection { mode, edge, start: clock.now, span: limit, evidence });
-            found = earlier(found, edge, fall);
-            if found.is_some_and(|(first, _)| first == edge) {
-                by_formula = parabola || !matches!(formula, Fall::Unknown);
+        let at = |s: f64| horner(c, s);
+        let search = |this: &mut Self, edge, limit, start| {
+            if c.len() <= 3 && this.automaton.affine(edge) {
+                return Ok((this.fall_of_parabola(edge, now, c, limit, start), true));
             }
-        }
-        let close = match found {
-            Some(found) => self.close(found, clock.now, |s| horner(c, s), remaining, by_formula),
+            this.fall_in_windows(edge, now, *natural, at, limit, start)
+                .map(|searched| (searched, false))
+                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+        };
+        let first = self.first_on_solution(mode, &c[0], now, remaining, at, search, observer)?;
+        let close = match &first {
+            Some(first) => self.close_on_solution(first, now, at, remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
-        let told = observer.piece(mode, &Piece::new(clock.now, close.span, 1.0, c));
+        let span = match &first {
+            Some(first) if observer.wants_pieces() => self.span_inside(first.edge, now, at, close.span),
+            _ => close.span,
+        };
+        let told = observer.piece(mode, &Piece::new(now, span, 1.0, c));
         clock.now = close.time;
-        Ok(ArcEnd::after(found, told, close.state))
+        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.state))
     }
 
     /// An affine guard along a parabola is a parabola.
@@ -82,30 +76,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             },
             near,
         ))
-    }
-
-    /// The fall that the model's own formula gives, at a time at which the guard is not negative.
-    pub(super) fn fall_by_formula(
-        &mut self,
-        edge: A::Edge,
-        now: Time,
-        formula: Fall<A::State>,
-        at: impl Fn(f64) -> A::State,
-        limit: f64,
-    ) -> Option<Crossing> {
-        let (Fall::After(s) | Fall::In(s, _)) = formula else { return None };
-        if s > limit {
-            return None;
-        }
-        if s <= 0.0 {
-            return Some(Crossing::at_start(f64::MIN_POSITIVE));
-        }
-        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-        let mut guard = |s: f64| {
-            *count += 1;
-            automaton.guard(edge, now.after(s).seconds(), &at(s))
-        };
-        if guard(s) >= 0.0 { Some(Crossing::after(s)) } else { settle(guard, s) }
     }
 
     /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.
@@ -176,10 +146,4 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
 /// The state at the end of a piece that may last for ever.
 fn end_of<S: State>(c: &[S], span: f64) -> S {
     if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0] }
-}
-
-/// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken at it.
-#[inline]
-pub(super) fn past(remaining: f64) -> f64 {
-    remaining * (1.0 + 4.0 * f64::EPSILON)
 }

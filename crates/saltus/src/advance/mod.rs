@@ -4,6 +4,7 @@ mod closed;
 mod crossing;
 mod enter;
 mod exact;
+mod solved;
 mod stepped;
 
 use std::ops::ControlFlow;
@@ -37,10 +38,10 @@ pub(crate) enum ArcEnd<A: Automaton> {
 impl<A: Automaton> ArcEnd<A> {
     /// At `state`, after a piece to whose end this was found and of which the observer was told.
     #[inline]
-    fn after(found: Found<A>, told: ControlFlow<()>, state: A::State) -> Self {
+    fn after(found: Option<A::Edge>, told: ControlFlow<()>, state: A::State) -> Self {
         match found {
             _ if told.is_break() => Self::Stop { stop: Stop::Observer, state },
-            Some((edge, _)) => Self::Crossing { edge, before: state },
+            Some(edge) => Self::Crossing { edge, before: state },
             None => Self::Stop { stop: Stop::Time, state },
         }
     }

@@ -92,7 +92,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 ControlFlow::Continue(())
             };
             clock.now = close.time;
-            return Ok(ArcEnd::after(Some(found), told, close.state));
+            return Ok(ArcEnd::after(Some(found.0), told, close.state));
         }
     }
 

@@ -4,7 +4,7 @@ use num_dual::Dual64;
 
 use super::passage::Passage;
 use super::{Linearize, moving, moving_in, velocity};
-use crate::automaton::{Automaton, Edges, Entry, Polynomial};
+use crate::automaton::{Automaton, Edges, Entry, Fall, Polynomial};
 use crate::error::ErrorKind;
 use crate::state::State;
 use crate::trajectory::Jump;
@@ -253,6 +253,19 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
             });
             Tangent { x: *c, columns, ..*x }
         }))
+    }
+
+    /// Where the solution is exact, its columns are known at every time.
+    fn falls(&self, mode: A::Mode, edge: A::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {
+        match self.automaton.falls(mode, edge, t, &x.x) {
+            Fall::Unknown => Fall::Unknown,
+            Fall::Never => Fall::Never,
+            Fall::After(s) => Fall::After(s),
+            Fall::In(s, state) => match self.exact(mode, t, x) {
+                Some(solution) => Fall::In(s, Tangent { x: state, ..solution.at(s) }),
+                None => Fall::Unknown,
+            },
+        }
     }
 
     /// At a limit the jumps' times t*ₙ have converged, and so have their derivatives.
