@@ -23,6 +23,7 @@ pub(super) fn text(accuracy: &Accuracy, target: Target, all: bool) -> String {
     }
     let solved = accuracy.reference().0 == Way::Formulas;
     let which = match left_out {
+        0 if solved && !all => "formulas".to_owned(),
         0 => "all settings".to_owned(),
         left_out if solved => {
             format!("formulas (--all shows {left_out} settings of steppers, which this scene does not need)")
