@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use saltus_bounce::flight::{LinearDragFlight, VerticalFlight};
 use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Target, Way};
+use saltus_bounce::scene::accuracy::{Accuracy, Outcome, Target, Way};
 
 /// A ball thrown sideways through a wind, held back in proportion to its speed: no formula of the planner solves it, yet there is one.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +99,8 @@ fn example(name: &str) -> Scene {
 fn frames_are_a_foil() {
     let accuracy = Accuracy::counted(&example("squash")).unwrap();
     let (way, _) = accuracy.reference();
-    assert_eq!((way, *accuracy.doubt()), (Way::Formulas, Difference::default()));
+    assert_eq!(way, Way::Formulas);
+    assert!(accuracy.doubt().position < 1e-14 && accuracy.doubt().missed == 0, "{:?}", accuracy.doubt());
     let position = |wanted: fn(&Way) -> bool| -> Vec<f64> {
         let of = accuracy.trials().iter().filter(|trial| wanted(&trial.way));
         of.map(|trial| trial.outcome.as_ref().unwrap().difference.position).collect()
@@ -109,6 +110,41 @@ fn frames_are_a_foil() {
     let frames = position(|way| matches!(way, Way::Frames { .. }));
     assert!(frames.len() == 5 && frames.iter().all(|off| *off > 5e-3), "{frames:?}");
     assert!(matches!(accuracy.cheapest(Target::DEFAULT).unwrap().way, Way::Formulas));
+}
+
+/// No formula is more exact than the numbers it is given: three balls in a box lose a digit every ten impacts, and nobody can promise a micrometre.
+#[test]
+fn formulas_promise_no_more_than_rounding_leaves() {
+    let accuracy = Accuracy::counted(&example("box")).unwrap();
+    assert!(accuracy.doubt().position > 1e-7, "{:?}", accuracy.doubt());
+    assert!(accuracy.cheapest(Target { length: Some(1e-9), time: None }).is_none());
+    let falling = Accuracy::counted(&example("squash")).unwrap();
+    assert!(falling.cheapest(Target { length: Some(1e-9), time: None }).is_some());
+    assert!(falling.cheapest(Target { length: Some(1e-20), time: None }).is_none());
+}
+
+/// What is shown costs more for being more exact, and the advice is among it.
+#[test]
+fn the_frontier_has_the_advice_on_it() {
+    let accuracy = Accuracy::counted(&example("topspin")).unwrap();
+    for length in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let target = Target { length: Some(length), time: None };
+        let points: Vec<_> =
+            accuracy.frontier(target).into_iter().map(|trial| trial.outcome.clone().unwrap()).collect();
+        assert!(points.len() > 4 && points.len() < 15, "{}", points.len());
+        for pair in points.windows(2) {
+            assert!(pair[0].evaluations() < pair[1].evaluations());
+            assert!(
+                pair[0].difference.share(target, accuracy.doubt()) > pair[1].difference.share(target, accuracy.doubt())
+            );
+        }
+        let best = accuracy.cheapest(target).unwrap();
+        assert!(accuracy.frontier(target).contains(&best));
+        let cost = best.outcome.as_ref().unwrap().evaluations();
+        let meets = |outcome: &&Outcome| outcome.difference.meets(target, accuracy.doubt());
+        let met = accuracy.trials().iter().filter_map(|trial| trial.outcome.as_ref().ok()).filter(meets);
+        assert!(met.map(Outcome::evaluations).all(|evaluations| evaluations >= cost), "{length}");
+    }
 }
 
 /// Steps that end on the apex, where v|v| has a kink, keep their order: impact times from six digits to twelve.
@@ -124,12 +160,20 @@ fn digits_are_cheap_where_modes_are_smooth() {
     assert!(per_digit < 1.25, "{per_digit}");
 }
 
-/// Stiff contact, friction in space and several balls: there is an answer, or a reason.
+/// Stiff contact, friction in space and several balls: there is an answer. Three balls in a box lose it to rounding before their five seconds are over.
 #[test]
 fn every_example_has_an_answer() {
-    for name in ["steel-hertz", "topspin", "wind", "stacked", "box", "stairs"] {
+    let coarse = Target { length: Some(1e-2), time: Some(1e-2) };
+    for (name, target) in [
+        ("steel-hertz", Target::DEFAULT),
+        ("topspin", Target::DEFAULT),
+        ("wind", Target::DEFAULT),
+        ("stacked", Target::DEFAULT),
+        ("stairs", Target::DEFAULT),
+        ("box", coarse),
+    ] {
         let accuracy = Accuracy::counted(&example(name)).unwrap();
-        let best = accuracy.cheapest(Target::DEFAULT).unwrap_or_else(|| panic!("{name}"));
+        let best = accuracy.cheapest(target).unwrap_or_else(|| panic!("{name}"));
         assert!(best.outcome.as_ref().unwrap().difference.missed == 0, "{name}");
     }
 }

@@ -92,7 +92,7 @@ pub(crate) struct Fit {
     /// Write the scene anew where it exists.
     #[arg(long, requires = "scene")]
     pub(crate) force: bool,
-    /// How to write the report.
+    /// How to write the report; docs/fitting.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
     /// Write the report to a file; `-` for standard output.
@@ -213,7 +213,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
     /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact, such as `1mm`, `0.1ms`, or `1mm,1ms`.
-    #[arg(long, value_name = "LENGTH,TIME", value_parser = target)]
+    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
     pub(crate) target: Option<Target>,
     /// What is drawn; without it what the scene says, or else height.
     #[arg(long, value_enum)]
@@ -234,29 +234,33 @@ pub(crate) struct Explain {
     /// When to stop these runs, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-    /// How to write it.
+    /// How to write it; docs/simulating.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
 }
 
 /// Show what accuracy costs in a scene.
 ///
-/// Runs it by each stepper to ten tolerances, and frame by frame at 24 to 240 frames per second, and compares every run with a reference: by formulas where they
-/// solve the scene, or else a run to a tolerance two orders tighter, whose own error is estimated. Ends in advice: the cheapest setting that meets the target.
+/// Says which setting to take: the cheapest that meets the target, how exact it is, what it costs. To know, it runs the scene by each stepper to ten tolerances, and
+/// frame by frame at 24 to 240 frames per second, and compares every run with a reference: by formulas where they solve the scene, or else a run to a tolerance two
+/// orders tighter, whose own error is estimated.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Accuracy {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or `1mm,1ms`, which is meant without it.
-    #[arg(long, value_name = "LENGTH,TIME", value_parser = target)]
+    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or both; `1mm,1ms` unless given.
+    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
     pub(crate) target: Option<Target>,
-    /// Draw error against time as SVG.
+    /// Show every setting that was tried, not only those that cost least for what they give; JSON has them all.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Draw time against error as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
     /// When to stop, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-    /// How to write it.
+    /// How to write it; docs/accuracy.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
 }
@@ -304,7 +308,7 @@ pub(crate) enum ReportFormat {
     /// For people.
     #[default]
     Text,
-    /// For programs; see docs/fitting.md and docs/simulating.md.
+    /// For programs: a contract.
     Json,
 }
 
@@ -366,7 +370,11 @@ fn target(text: &str) -> Result<Target, String> {
         match (length, time) {
             (Ok(length), _) if target.length.is_none() => target.length = Some(length),
             (_, Ok(time)) if target.time.is_none() => target.time = Some(time),
-            _ => return Err(format!("'{text}' is no accuracy: give a length, a time, or both, such as 1mm,1ms")),
+            _ => {
+                return Err(format!(
+                    "'{text}' is no accuracy: give a length, a time, or both, above zero, such as 1mm,1ms"
+                ));
+            }
         }
     }
     Ok(target)

@@ -8,7 +8,7 @@ use saltus_bounce::scene::plan::Effect;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::row::{Came, Row, Seconds};
+use crate::row::{Came, Row, Seconds, plainly};
 
 /// How many impacts and apexes are compared.
 const FIRST: usize = 5;
@@ -75,7 +75,7 @@ pub(crate) fn table(rows: &[Row<Measured>]) -> String {
         let came = match &row.came {
             Came::Measured(came) => came,
             Came::Refused { refused } => {
-                let _ = writeln!(text, "\n{:<32} not run: {refused}", row.run);
+                let _ = writeln!(text, "\n{:<32} not run: {}", row.run, plainly(refused));
                 continue;
             }
         };

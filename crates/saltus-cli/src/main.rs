@@ -39,7 +39,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Fit(fit) => fit::run(fit, args.quiet),
         args::Command::Simulate(simulate) => simulate::run(simulate, args.quiet),
         args::Command::Explain(explain) => explain::run(explain),
-        args::Command::Accuracy(accuracy) => accuracy::run(accuracy),
+        args::Command::Accuracy(accuracy) => accuracy::run(accuracy, args.quiet),
         args::Command::Export(export) => export::run(export, args.quiet),
         args::Command::Library(library) => library::run(library, args.quiet),
         args::Command::Check(check) => check::run(check, args.quiet),

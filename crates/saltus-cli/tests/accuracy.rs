@@ -22,20 +22,61 @@ fn done(arguments: &[&str]) -> (String, String) {
 const TOPSPIN: &str = "examples/scenes/topspin.toml";
 
 #[test]
-fn it_ends_in_advice() {
+fn the_advice_comes_first() {
     let (text, _) = done(&["accuracy", TOPSPIN]);
-    assert!(text.contains("Errors are differences from a run by Dop853 1e-14, which is itself off by about"), "{text}");
-    assert!(text.contains("\n24 frames/s "), "{text}");
-    assert!(text.contains("\n1 mm and 1 ms everywhere: tolerance 1e-"), "{text}");
-    assert!(text.contains("\nIn the scene: `stepper = \""), "{text}");
-    assert!(text.contains("\nwithout lift by spin         matters "), "{text}");
+    assert!(text.starts_with("What accuracy costs: topspin\n\n1 mm and 1 ms everywhere: tolerance 1e-"), "{text}");
+    assert!(text.contains("measured against a run by Dop853 1e-14, itself off by about"), "{text}");
+    assert!(text.contains("\n  a further digit  costs × 1."), "{text}");
+    assert!(text.contains("\n  in the scene     `stepper = \""), "{text}");
+    assert!(text.contains("\n  24 frames/s ") && text.contains("\nwithout lift by spin         matters "), "{text}");
+    // The advice is marked in the table, which has what is worth taking, or all.
+    let rows = |text: &str| {
+        text.lines().filter(|line| line.contains(" µs (") && line.contains("e-") && line.contains(" 1e-")).count()
+    };
+    assert_eq!(text.lines().filter(|line| line.starts_with("> ")).count(), 2, "{text}");
+    let (all, _) = done(&["accuracy", TOPSPIN, "--all"]);
+    assert!(rows(&text) < 15 && rows(&all) >= 30, "{text}{all}");
+    let shows: usize = text.split("(--all shows ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(all.lines().count() - text.lines().count(), shows + 2, "two gaps between three steppers");
 }
 
 #[test]
 fn a_scene_that_formulas_solve_needs_no_advice() {
     let (text, _) = done(&["accuracy", "examples/scenes/squash.toml"]);
-    assert!(text.contains("Errors are differences from the solution by formulas."), "{text}");
-    assert!(text.contains("formulas solve this scene, and nothing is to be chosen"), "{text}");
+    assert!(text.starts_with("What accuracy costs: A squash ball on cement\n"), "{text}");
+    assert!(text.contains("Errors against the solution by formulas. Shown are formulas (--all shows 30 "), "{text}");
+    assert!(
+        text.contains("formulas solve this scene, and nothing is to be chosen.\n  off by           about 2e-16 m"),
+        "{text}"
+    );
+}
+
+#[test]
+fn reasons_are_lines_without_places_in_a_scene_that_nobody_wrote() {
+    for arguments in [&["accuracy", "examples/scenes/box.toml"][..], &["explain", "examples/scenes/box.toml", "--cost"]]
+    {
+        let (text, _) = done(arguments);
+        assert!(
+            text.contains("several balls are simulated smooth: leave `friction` out, or keep one ball\n"),
+            "{text}"
+        );
+        assert!(!text.contains("box.toml:") && !text.contains("^^^") && !text.contains("added_mass:"), "{text}");
+    }
+}
+
+/// Three balls in a box hit each other so often that the last bit of gravity moves them by millimetres.
+#[test]
+fn chaos_is_said() {
+    let (text, _) = done(&["accuracy", "examples/scenes/box.toml", "--target", "1um"]);
+    assert!(
+        text.contains("no setting is known to meet 1 µm: rounding puts even the solution by formulas off by about"),
+        "{text}"
+    );
+    // Frames of which no impact is where it should be have no time to compare.
+    assert!(text.contains("\n  24 frames/s              -         - "), "{text}");
+    let output = saltus(&["simulate", "examples/scenes/box.toml", "--target", "1um"]);
+    assert_eq!(output.status.code(), Some(2));
+    done(&["simulate", "examples/scenes/box.toml", "--target", "1um", "--until", "1s"]);
 }
 
 #[test]
@@ -52,13 +93,64 @@ fn programs_get_the_same_as_json() {
     assert!(recommended["cost_of_a_digit"].as_f64().unwrap() > 1.0);
 }
 
+/// The names of all fields, however deep.
+fn names(json: &Value) -> Vec<String> {
+    match json {
+        Value::Object(fields) => {
+            fields.iter().flat_map(|(name, value)| [vec![name.clone()], names(value)].concat()).collect()
+        }
+        Value::Array(values) => values.iter().flat_map(names).collect(),
+        _ => Vec::new(),
+    }
+}
+
+#[test]
+fn every_field_of_json_is_in_the_page_that_help_names() {
+    for command in [&["accuracy", TOPSPIN][..], &["explain", TOPSPIN, "--cost"]] {
+        let (help, _) = done(&[command[0], "--help"]);
+        let page = help.split_whitespace().find(|word| word.starts_with("docs/")).unwrap();
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(page);
+        let page = std::fs::read_to_string(page).unwrap();
+        let (text, _) = done(&[command, &["--format", "json"]].concat());
+        for name in names(&serde_json::from_str(&text).unwrap()) {
+            assert!(page.contains(&format!("`{name}`")), "{}: {name}", command[0]);
+        }
+    }
+}
+
 #[test]
 fn a_picture_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("accuracy.svg");
-    done(&["accuracy", TOPSPIN, "--plot", path.to_str().unwrap()]);
-    let svg = std::fs::read_to_string(path).unwrap();
-    assert!(svg.contains("Farthest place off (m)") && svg.contains("frame by frame") && svg.contains("10⁻"), "{svg}");
+    let drawn = |scene: &str, target: &str| {
+        let (_, said) = done(&["accuracy", scene, "--target", target, "--plot", path.to_str().unwrap()]);
+        assert_eq!(said, format!("picture: {}\n", path.display()));
+        std::fs::read_to_string(&path).unwrap()
+    };
+    let svg = drawn(TOPSPIN, "1mm");
+    for words in [
+        "What accuracy costs: topspin",
+        "Farthest place off (m)",
+        "frame by frame",
+        "10⁻",
+        ">target 1 mm<",
+        ">Tsit5 1e-3: ",
+    ] {
+        assert!(svg.contains(words), "{words}: {svg}");
+    }
+    assert!(!svg.contains("≤ 10⁻¹⁵"), "nothing is that exact here: {svg}");
+    let svg = drawn(TOPSPIN, "1us");
+    assert!(svg.contains("Worst impact time off (s)") && svg.contains(">target 1 µs<"), "{svg}");
+    // The solution by formulas is exact but for rounding, and the axis says what it cannot show.
+    let svg = drawn("examples/scenes/squash.toml", "1mm");
+    assert!(svg.contains(">≤ 10⁻¹⁵<") && svg.contains(">formulas: "), "{svg}");
+}
+
+#[test]
+fn the_picture_and_the_report_do_not_share_a_stream() {
+    let output = saltus(&["accuracy", TOPSPIN, "--plot", "-"]);
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("name a file for the picture instead of '-'"));
 }
 
 #[test]
@@ -72,7 +164,13 @@ fn simulate_meets_a_target() {
 
 #[test]
 fn bad_targets_are_refused() {
-    for (target, says) in [("1kg", "is no accuracy"), ("1mm,2mm", "is no accuracy"), ("0mm", "is no accuracy")] {
+    for (target, says) in [
+        ("1kg", "is no accuracy"),
+        ("1mm,2mm", "is no accuracy"),
+        ("0mm", "is no accuracy"),
+        ("-1mm", "above zero"),
+        ("banana", "is no accuracy"),
+    ] {
         let output = saltus(&["accuracy", TOPSPIN, "--target", target]);
         let err = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2));
@@ -82,4 +180,8 @@ fn bad_targets_are_refused() {
     let err = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(err.contains("no setting is known to meet 1e-15 m: the reference itself is off by"), "{err}");
+    // Formulas round, too.
+    let output = saltus(&["simulate", "--drop", "1m", "--cor", "0.5", "--target", "1e-20m"]);
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert!(err.contains("rounding puts even the solution by formulas off by about"), "{err}");
 }

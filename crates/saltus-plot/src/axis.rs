@@ -20,18 +20,27 @@ pub(crate) struct Axis {
     step: f64,
     /// Whether the values are powers of ten.
     decades: bool,
+    /// Where everything stands that is no more than this.
+    least: Option<f64>,
 }
 
 impl Axis {
     /// An axis from `low` to `high` with at most `most` ticks, all inside `ticked`.
     pub(crate) fn new(low: f64, high: f64, ticked: (f64, f64), most: usize) -> Self {
         let span = ticked.1 - ticked.0;
-        Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false }
+        Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false, least: None }
     }
 
     /// An axis of powers of ten from 10^`low` to 10^`high`.
     pub(crate) fn decades(low: f64, high: f64) -> Self {
-        Self { low, high, ticked: (low, high), step: ((high - low) / 8.0).ceil().max(1.0), decades: true }
+        let step = ((high - low) / 8.0).ceil().max(1.0);
+        Self { low, high, ticked: (low, high), step, decades: true, least: None }
+    }
+
+    /// The same axis with a tick at `least` that says that what stands there is no more.
+    pub(crate) const fn at_least(mut self, least: Option<f64>) -> Self {
+        self.least = least;
+        self
     }
 
     /// The same axis with ticks at whole numbers only.
@@ -58,6 +67,13 @@ impl Axis {
     }
 
     pub(crate) fn ticks(&self) -> Vec<f64> {
+        let Some(least) = self.least else { return self.regular() };
+        // Its words are longer than others: the next tick keeps its distance.
+        let others = self.regular().into_iter().filter(|tick| tick - least > 0.99 * self.step);
+        std::iter::once(least).chain(others).collect()
+    }
+
+    fn regular(&self) -> Vec<f64> {
         let slack = 1e-9;
         let first = (self.ticked.0 / self.step - slack).ceil();
         let last = (self.ticked.1 / self.step + slack).floor();
@@ -83,6 +99,11 @@ impl Axis {
 
     /// The number as it is written beside its tick: no more decimals than the step needs.
     pub(crate) fn text(&self, value: f64) -> String {
+        let text = self.plain(value);
+        if self.least == Some(value) { format!("≤ {text}") } else { text }
+    }
+
+    fn plain(&self, value: f64) -> String {
         if self.decades && self.high - self.low > MANY_DECADES {
             return format!("10{}", superscript(value.round() as i32));
         }
@@ -198,6 +219,13 @@ mod tests {
         let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
         assert_eq!(texts, ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
         assert_eq!(Axis::decades(-2.0, 1.0).text(-1.0), "0.1");
+    }
+
+    #[test]
+    fn the_least_is_marked_as_such_and_the_next_tick_keeps_its_distance() {
+        let axis = Axis::decades(-15.2, -1.0).at_least(Some(-15.0));
+        let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
+        assert_eq!(texts, ["≤ 10⁻¹⁵", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
     }
 
     #[test]

@@ -56,6 +56,10 @@ pub struct Chart {
     pub(crate) captions: Vec<String>,
     pub(crate) axes: [(String, Measure); 2],
     pub(crate) lines: Vec<(String, Vec<Stroke>)>,
+    /// Points of the line so numbered.
+    pub(crate) dots: Vec<(usize, [f64; 2])>,
+    pub(crate) limits: Vec<(String, f64)>,
+    pub(crate) callouts: Vec<(String, [f64; 2])>,
     pub(crate) jumps: Vec<[[f64; 2]; 2]>,
     pub(crate) arrows: Vec<[[f64; 2]; 2]>,
     pub(crate) marks: Vec<[f64; 2]>,
@@ -64,6 +68,8 @@ pub struct Chart {
     pub(crate) to_scale: bool,
     /// Which axes go by powers of ten, across and up.
     pub(crate) logarithmic: [bool; 2],
+    /// What is less across is drawn here.
+    pub(crate) least: Option<f64>,
     pub(crate) background: Background,
 }
 
@@ -76,6 +82,9 @@ impl Chart {
             captions: Vec::new(),
             axes: [across, up].map(|(name, measure)| (name.to_owned(), measure)),
             lines: Vec::new(),
+            dots: Vec::new(),
+            limits: Vec::new(),
+            callouts: Vec::new(),
             jumps: Vec::new(),
             arrows: Vec::new(),
             marks: Vec::new(),
@@ -83,6 +92,7 @@ impl Chart {
             ground: Vec::new(),
             to_scale: false,
             logarithmic: [false; 2],
+            least: None,
             background: Background::None,
         }
     }
@@ -98,6 +108,28 @@ impl Chart {
     #[must_use]
     pub fn line(mut self, label: &str, strokes: impl IntoIterator<Item = Stroke>) -> Self {
         self.lines.push((label.to_owned(), strokes.into_iter().collect()));
+        self
+    }
+
+    /// Adds points to the line added last, in its colour.
+    #[must_use]
+    pub fn dotted(mut self, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let line = self.lines.len().saturating_sub(1);
+        self.dots.extend(points.into_iter().map(|point| (line, point)));
+        self
+    }
+
+    /// Adds a limit on the axis across: an upright line from edge to edge, named in the legend.
+    #[must_use]
+    pub fn limit(mut self, label: &str, at: f64) -> Self {
+        self.limits.push((label.to_owned(), at));
+        self
+    }
+
+    /// Puts a ring around a point, and words beside it where there is room.
+    #[must_use]
+    pub fn callout(mut self, words: &str, at: [f64; 2]) -> Self {
+        self.callouts.push((words.to_owned(), at));
         self
     }
 
@@ -157,6 +189,21 @@ impl Chart {
         self
     }
 
+    /// Draws what is less than `least` across, zero for one, at `least`, whose tick then says so: what a logarithmic axis cannot show otherwise.
+    ///
+    /// ```
+    /// use saltus_plot::{Chart, Measure};
+    /// let chart = Chart::new("Errors", ("Error", Measure::Length), ("Time", Measure::Time)).both_logarithmic();
+    /// let svg = chart.at_least(1e-15).marks([[0.0, 1e-3], [1e-3, 1e-5]]).svg()?;
+    /// assert!(svg.contains("≤ 10⁻¹⁵"));
+    /// # Ok::<(), saltus_plot::PlotError>(())
+    /// ```
+    #[must_use]
+    pub const fn at_least(mut self, least: f64) -> Self {
+        self.least = Some(least);
+        self
+    }
+
     /// What the picture lies on; nothing without it.
     #[must_use]
     pub const fn background(mut self, background: Background) -> Self {
@@ -175,7 +222,9 @@ impl Chart {
     /// Checks every number, and gathers how far the data reach.
     fn reach(&self) -> Result<[(f64, f64); 2], PlotError> {
         let mut reach = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+        let least = self.least.unwrap_or(f64::NEG_INFINITY);
         let mut include = |k: usize, value: f64| {
+            let value = if k == 0 { value.max(least) } else { value };
             reach[k] = (reach[k].0.min(value), reach[k].1.max(value));
         };
         let lines = self.lines.iter().flat_map(|(_, strokes)| strokes).chain(&self.ground);
@@ -185,11 +234,16 @@ impl Chart {
                 include(k, high);
             }
         }
-        let points = self.jumps.iter().flatten().chain(&self.marks);
+        let dots = self.dots.iter().map(|(_, point)| point);
+        let called = self.callouts.iter().map(|(_, point)| point);
+        let points = self.jumps.iter().flatten().chain(&self.marks).chain(dots).chain(called);
         for (n, point) in points.enumerate() {
             for (k, &value) in point.iter().enumerate() {
                 include(k, finite(value, || format!("a coordinate of point {}", n + 1))?);
             }
+        }
+        for (label, at) in &self.limits {
+            include(0, finite(*at, || format!("the limit '{label}'"))?);
         }
         for (n, disc) in self.discs.iter().enumerate() {
             let radius = magnitude(disc.radius, || format!("the radius of disc {}", n + 1))?;

@@ -9,6 +9,7 @@ use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
 use crate::axis::{Axis, MANY_DECADES};
+use crate::callout;
 use crate::chart::{Chart, Measure};
 use crate::curve::Affine;
 use crate::error::PlotError;
@@ -80,7 +81,10 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         Axis::new(across.0, across.1, across, 12)
     };
     let x = if chart.axes[0].1 == Measure::Count { x.whole() } else { x };
-    let x = x.thinned(panel, 1.6 * b, |text| width(text, b, false));
+    // Said only where something stands there.
+    let least = chart.least.filter(|least| chart.logarithmic[0] && reach[0].0 <= *least);
+    let least = least.map(|least| (least / units[0].size).log10());
+    let x = x.thinned(panel, 1.6 * b, |text| width(text, b, false)).at_least(least);
     let y = y_axis(up);
 
     let h = (fixed + high).ceil();
@@ -107,8 +111,10 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         .map_err(failed)?;
     mesh(&mut panel, ty, Some(&title(0)))?;
     let (x, y) = maps(&panel);
+    let edges = ([x.at(across.0), x.at(across.1)], [y.at(up.1), y.at(up.0)]);
     let [x, y] = [(x, 0), (y, 1)].map(|(map, k)| if chart.logarithmic[k] { map } else { map.per_unit(units[k].size) });
-    for trace in traces(chart, x, y, [units[0].size, units[1].size], ty) {
+    let place = Place { chart, x, y, sizes: [units[0].size, units[1].size] };
+    for trace in traces(&place, edges.1, ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
     for (data, full) in discs(chart, x, y) {
@@ -116,6 +122,7 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         canvas.glaze(&data, Ink::Series(0), if full { 1.0 } else { 0.35 });
     }
     panel.draw_series([EmptyElement::at((across.0, up.0))]).map_err(failed)?;
+    callout::draw(&place, edges, &root, ty)?;
     let description = described(chart, &units, reach);
     let sheet =
         Sheet { title: &chart.title, description: &description, adaptive: chart.background != Background::White };
@@ -125,7 +132,16 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
 
 fn legend(chart: &Chart) -> Vec<(Sign, String)> {
     let named = chart.lines.iter().enumerate().filter(|(_, (label, _))| !label.is_empty());
-    named.map(|(i, (label, _))| (Sign::Line(Ink::series(i), Dash::series(i)), label.clone())).collect()
+    let sign = |i: usize| {
+        let dots = chart.dots.iter().filter(|(line, _)| *line == i).count();
+        if dots > 0 {
+            Sign::Dots(Ink::series(i), Dash::series(i), dots)
+        } else {
+            Sign::Line(Ink::series(i), Dash::series(i))
+        }
+    };
+    let lines = named.map(|(i, (label, _))| (sign(i), label.clone()));
+    lines.chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
 }
 
 fn unit(measure: Measure, (low, high): (f64, f64)) -> Unit {
@@ -159,13 +175,37 @@ fn decades((low, high): (f64, f64), size: f64) -> (f64, f64) {
     if high - low < 0.3 { (low - 0.3, high + 0.3) } else { (low, high) }
 }
 
-/// Everything that is drawn with a pen, back to front.
-fn traces(chart: &Chart, x: Affine, y: Affine, sizes: [f64; 2], ty: Type) -> Vec<Trace> {
+/// Where the data of a chart stand on the page.
+pub(crate) struct Place<'a> {
+    pub(crate) chart: &'a Chart,
+    x: Affine,
+    y: Affine,
+    /// Of the units across and up.
+    sizes: [f64; 2],
+}
+
+impl Place<'_> {
+    /// In px.
+    pub(crate) fn at(&self, [a, b]: [f64; 2]) -> (f64, f64) {
+        let a = self.chart.least.map_or(a, |least| a.max(least));
+        let scaled =
+            |k: usize, value: f64| if self.chart.logarithmic[k] { (value / self.sizes[k]).log10() } else { value };
+        (self.x.at(scaled(0, a)), self.y.at(scaled(1, b)))
+    }
+}
+
+/// Everything that is drawn with a pen, back to front, in a panel with these edges above and below.
+fn traces(on: &Place<'_>, [top, bottom]: [f64; 2], ty: Type) -> Vec<Trace> {
+    let &Place { chart, x, y, .. } = on;
+    let place = |point: [f64; 2]| on.at(point);
     let trace = |data: String, ink: Ink, width: f64, dash: Dash, alpha: f64| Trace { data, ink, width, dash, alpha };
-    let placed = |k: usize, value: f64| if chart.logarithmic[k] { (value / sizes[k]).log10() } else { value };
-    let place = |[a, b]: [f64; 2]| (x.at(placed(0, a)), y.at(placed(1, b)));
     let mut traces = Vec::new();
     traces.push(trace(path(&chart.ground, x, y), Ink::Floor, 1.6 * ty.hairline(), Dash::Solid, 1.0));
+    for (_, limit) in &chart.limits {
+        let px = place([*limit, 0.0]).0;
+        let data = format!("M{} {}V{}", number(px, 2), number(top, 2), number(bottom, 2));
+        traces.push(trace(data, Ink::Text, ty.rule(), Dash::Dashed, 1.0));
+    }
     let mut jumps = String::new();
     for &[from, to] in &chart.jumps {
         let ((ax, ay), (bx, by)) = (place(from), place(to));
@@ -190,6 +230,8 @@ fn traces(chart: &Chart, x: Affine, y: Affine, sizes: [f64; 2], ty: Type) -> Vec
             path(strokes, x, y)
         };
         traces.push(trace(data, Ink::series(i), ty.line(), Dash::series(i), 1.0));
+        let dots: String = chart.dots.iter().filter(|(line, _)| *line == i).map(|(_, at)| dot(place(*at))).collect();
+        traces.push(trace(dots, Ink::series(i), 2.0 * ty.mark(), Dash::Solid, 1.0));
     }
     let mut heads = String::new();
     for &[at, towards] in &chart.arrows {
@@ -205,14 +247,14 @@ fn traces(chart: &Chart, x: Affine, y: Affine, sizes: [f64; 2], ty: Type) -> Vec
         heads.push_str(&format!("M{lx} {ly}L{ax} {ay}L{rx} {ry}"));
     }
     traces.push(trace(heads, Ink::Text, ty.line(), Dash::Solid, 1.0));
-    let mut dots = String::new();
-    for &mark in &chart.marks {
-        // A stroke of no length with round caps is a dot.
-        let (px, py) = place(mark);
-        dots.push_str(&format!("M{} {}h0", number(px, 2), number(py, 2)));
-    }
+    let dots = chart.marks.iter().map(|&mark| dot(place(mark))).collect();
     traces.push(trace(dots, Ink::Text, 1.6 * ty.mark(), Dash::Solid, 1.0));
     traces
+}
+
+/// A stroke of no length with round caps is a dot.
+pub(crate) fn dot((x, y): (f64, f64)) -> String {
+    format!("M{} {}h0", number(x, 2), number(y, 2))
 }
 
 /// Discs as paths, pale ones first.
@@ -241,6 +283,13 @@ fn described(chart: &Chart, units: &[Unit; 2], reach: [(f64, f64); 2]) -> String
     let labels: Vec<_> = chart.lines.iter().map(|(label, _)| label.as_str()).filter(|l| !l.is_empty()).collect();
     if !labels.is_empty() {
         text.push_str(&format!(" Lines: {}.", labels.join("; ")));
+    }
+    for (label, at) in &chart.limits {
+        let at = format!("{:.3e}", at / units[0].size);
+        text.push_str(&format!(" Limit: {label}, at {at} {}.", units[0].label));
+    }
+    for (words, _) in &chart.callouts {
+        text.push_str(&format!(" Marked: {words}."));
     }
     for caption in &chart.captions {
         text.push_str(&format!(" {caption}."));

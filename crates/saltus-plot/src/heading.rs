@@ -3,6 +3,7 @@
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
+use crate::chart_page::dot;
 use crate::data::Mark;
 use crate::error::PlotError;
 use crate::height_time::HeightTime;
@@ -15,6 +16,10 @@ use crate::theme::{CAPITAL, Dash, Ink, Type, room, words, wrapped};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Sign {
     Line(Ink, Dash),
+    /// A line with dots on it; of a single dot there is no line.
+    Dots(Ink, Dash, usize),
+    /// An upright line.
+    Limit,
     Spot(Mark),
     Contact,
     /// Words alone: what the marks after them have in common.
@@ -24,9 +29,10 @@ pub(crate) enum Sign {
 impl Sign {
     fn width(self, ty: Type) -> f64 {
         match self {
-            Self::Line(..) => 2.2 * ty.base,
+            Self::Dots(_, _, 1) => 0.7 * ty.base,
+            Self::Line(..) | Self::Dots(..) => 2.2 * ty.base,
             Self::Spot(_) => 0.7 * ty.base,
-            Self::Contact => 0.5 * ty.base,
+            Self::Contact | Self::Limit => 0.5 * ty.base,
             Self::Nothing => 0.0,
         }
     }
@@ -35,8 +41,8 @@ impl Sign {
     fn lead(self, ty: Type) -> f64 {
         match self {
             Self::Nothing => 0.0,
-            Self::Line(..) => self.width(ty) + 0.55 * ty.base,
-            Self::Spot(_) | Self::Contact => self.width(ty) + 0.38 * ty.base,
+            Self::Line(..) | Self::Dots(..) => self.width(ty) + 0.55 * ty.base,
+            Self::Spot(_) | Self::Contact | Self::Limit => self.width(ty) + 0.38 * ty.base,
         }
     }
 
@@ -44,8 +50,8 @@ impl Sign {
     fn gap(self, ty: Type) -> f64 {
         match self {
             Self::Nothing => 0.4 * ty.base,
-            Self::Line(..) => ty.base,
-            Self::Spot(_) | Self::Contact => 0.9 * ty.base,
+            Self::Line(..) | Self::Dots(..) => ty.base,
+            Self::Spot(_) | Self::Contact | Self::Limit => 0.9 * ty.base,
         }
     }
 }
@@ -194,6 +200,19 @@ impl Heading {
             Sign::Line(ink, dash) => {
                 let data = format!("M{} {}H{}", number(x, 2), number(y, 2), number(x + broad, 2));
                 area.draw(&Trace { data, ink, width: ty.line(), dash, alpha: 1.0 }).map_err(failed)
+            }
+            Sign::Dots(ink, dash, dots) => {
+                if dots > 1 {
+                    self.sign(area, Sign::Line(ink, dash), x, y)?;
+                }
+                let data = dot((x + 0.5 * broad, y));
+                area.draw(&Trace { data, ink, width: 2.0 * ty.mark(), dash: Dash::Solid, alpha: 1.0 }).map_err(failed)
+            }
+            Sign::Limit => {
+                let (top, bottom) = (number(y - 0.5 * ty.base, 2), number(y + 0.5 * ty.base, 2));
+                let data = format!("M{} {top}V{bottom}", number(x + 0.5 * broad, 2));
+                area.draw(&Trace { data, ink: Ink::Text, width: ty.rule(), dash: Dash::Dashed, alpha: 1.0 })
+                    .map_err(failed)
             }
             Sign::Spot(mark) => {
                 let at = (grains(x + 0.5 * broad), grains(y));

@@ -28,6 +28,7 @@
 //! labels come close. Arcs that together are narrower than 0.3 px are drawn as one stroke.
 
 mod axis;
+mod callout;
 mod chart;
 mod chart_page;
 mod curve;

@@ -172,6 +172,11 @@ impl Type {
         2.3 * self.hairline()
     }
 
+    /// Of a limit, of a ring around a point.
+    pub(crate) fn rule(self) -> f64 {
+        1.5 * self.hairline()
+    }
+
     /// Half the breadth of a mark.
     pub(crate) fn mark(self) -> f64 {
         3.7 * self.hairline()

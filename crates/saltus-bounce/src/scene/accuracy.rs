@@ -6,6 +6,7 @@ use saltus::Timing;
 
 use super::plan::{Cost, Effect, Impact, Plan, PlanError, Record, RunError};
 use super::{Scene, Stepper};
+use crate::effects::Gravity;
 
 /// The tolerances tried.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
@@ -121,11 +122,18 @@ impl Difference {
     /// Whether it is within `target`, even if the reference is off by `doubt`.
     #[must_use]
     pub fn meets(&self, target: Target, doubt: &Self) -> bool {
-        let time = target.time.is_none_or(|most| self.impacts + doubt.impacts <= most);
-        let length = target
-            .length
-            .is_none_or(|most| self.position + doubt.position <= most && self.apexes + doubt.apexes <= most);
-        self.missed == 0 && time && length
+        self.share(target, doubt) <= 1.0
+    }
+
+    /// How much of `target` it takes up, if the reference is off by `doubt`: up to 1 it is within it. Infinite where an impact is missed.
+    #[must_use]
+    pub fn share(&self, target: Target, doubt: &Self) -> f64 {
+        if self.missed > 0 {
+            return f64::INFINITY;
+        }
+        let time = target.time.map_or(0.0, |most| (self.impacts + doubt.impacts) / most);
+        let off = (self.position + doubt.position).max(self.apexes + doubt.apexes);
+        time.max(target.length.map_or(0.0, |most| off / most))
     }
 }
 
@@ -256,7 +264,10 @@ impl Accuracy {
         let stepper = planned.stepper().exact();
         let tight = |tolerance: f64| Way::Steps { stepper, tolerance };
         let (way, reference, doubt) = if solved {
-            (Way::Formulas, base, Difference::default())
+            // A hair longer, for what happens at the very end.
+            let nudged = nudged(scene).plan()?.until(until * (1.0 + 1e-9)).run()?;
+            let doubt = Difference::between(scene, &base, &nudged);
+            (Way::Formulas, base, doubt)
         } else {
             let reference = by(tight(REFERENCE))?;
             let doubt = Difference::between(scene, &reference, &by(tight(SECOND))?);
@@ -303,7 +314,8 @@ impl Accuracy {
         (self.by, &self.reference)
     }
 
-    /// How far off the reference itself may be: its difference from a run to ten times its tolerance. Zero, but for rounding, where formulas made it.
+    /// How far off the reference itself may be: its difference from a run to ten times its tolerance. Where formulas made it, what rounding leaves of it: its
+    /// difference from the scene whose gravity and velocities are a unit in the last place larger. That is next to nothing, but for balls that hit each other often.
     #[must_use]
     pub const fn doubt(&self) -> &Difference {
         &self.doubt
@@ -313,6 +325,35 @@ impl Accuracy {
     #[must_use]
     pub fn trials(&self) -> &[Trial] {
         &self.trials
+    }
+
+    /// The ways that cost least for what they give, from the cheapest to the most exact: none of the others comes as near to `target` for as few
+    /// evaluations. Frames are left aside; where formulas solve the scene, they alone are on it.
+    #[must_use]
+    pub fn frontier(&self, target: Target) -> Vec<&Trial> {
+        let framed = |trial: &&Trial| matches!(trial.way, Way::Frames { .. });
+        if let Some(formulas) = self.trials.iter().find(|trial| matches!(trial.way, Way::Formulas)) {
+            return vec![formulas];
+        }
+        let point = |trial: &'_ Trial| {
+            let outcome = trial.outcome.as_ref().ok()?;
+            Some((outcome.evaluations(), outcome.difference.share(target, &self.doubt)))
+        };
+        let mut points: Vec<_> = self
+            .trials
+            .iter()
+            .filter(|trial| !framed(trial))
+            .filter_map(|trial| Some((point(trial)?, trial)))
+            .collect();
+        points.sort_by(|((a, off), _), ((b, than), _)| a.cmp(b).then(off.total_cmp(than)));
+        let mut least = f64::INFINITY;
+        points.retain(|((_, off), _)| {
+            *off < least && {
+                least = *off;
+                true
+            }
+        });
+        points.into_iter().map(|(_, trial)| trial).collect()
     }
 
     /// The way that meets `target` with the fewest evaluations, frames left aside; `None` if none does. Where formulas solve the scene, they do: a run takes
@@ -327,8 +368,7 @@ impl Accuracy {
         if let Some(formulas) = self.trials.iter().find(formulas).filter(good) {
             return Some(formulas);
         }
-        let evaluations = |trial: &&Trial| trial.outcome.as_ref().map_or(u64::MAX, Outcome::evaluations);
-        self.trials.iter().filter(good).min_by_key(evaluations)
+        self.frontier(target).into_iter().find(good)
     }
 
     /// What a further digit costs by a stepper: the factor by which the evaluations grow as the error falls to a tenth, by least squares of the logarithms
@@ -368,6 +408,19 @@ impl Accuracy {
         };
         Effect::ALL.into_iter().map(toggle).collect()
     }
+}
+
+/// The same scene with the rounding of its numbers changed.
+fn nudged(scene: &Scene) -> Scene {
+    let up = 1.0 + f64::EPSILON;
+    let mut nudged = scene.clone();
+    if let Ok(gravity) = Gravity::new(up * scene.gravity.value()) {
+        nudged.gravity = gravity;
+    }
+    for ball in &mut nudged.balls {
+        ball.velocity *= up;
+    }
+    nudged
 }
 
 /// Why there is no answer.

@@ -1,0 +1,136 @@
+//! A point that is pointed at: a ring around it, and words beside it where they cover least.
+
+use plotters::element::Rectangle;
+use plotters::style::FontStyle;
+use plotters_backend::text_anchor::{HPos, VPos};
+
+use crate::chart_page::Place;
+use crate::error::PlotError;
+use crate::height_time::Background;
+use crate::marks::Trace;
+use crate::page::{Area, failed};
+use crate::svg::{grains, number};
+use crate::theme::{CAPITAL, Dash, Ink, Type, room, words};
+
+type Point = (f64, f64);
+
+/// A part of the page in px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rect {
+    left: f64,
+    top: f64,
+    right: f64,
+    bottom: f64,
+}
+
+impl Rect {
+    fn holds(&self, (x, y): Point) -> bool {
+        (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
+    }
+
+    fn wider(self, by: f64) -> Self {
+        Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+    }
+
+    /// The same size, pushed into `frame`.
+    fn inside(self, frame: Self) -> Self {
+        let by = |low: f64, high: f64, from: f64, to: f64| (from - low).max(0.0) + (to - high).min(0.0);
+        let x = by(self.left, self.right, frame.left, frame.right);
+        let y = by(self.top, self.bottom, frame.top, frame.bottom);
+        Self { left: self.left + x, top: self.top + y, right: self.right + x, bottom: self.bottom + y }
+    }
+}
+
+/// Draws every callout of the chart; the panel reaches from left to right and from top to bottom.
+pub(crate) fn draw(
+    place: &Place<'_>,
+    ([left, right], [top, bottom]): ([f64; 2], [f64; 2]),
+    area: &Area,
+    ty: Type,
+) -> Result<(), PlotError> {
+    let b = ty.base;
+    let frame = Rect { left, top, right, bottom };
+    let mut taken = ink(place, frame);
+    for (text, at) in &place.chart.callouts {
+        let (x, y) = place.at(*at);
+        let r = 2.0 * ty.mark();
+        let [x0, cy, r2, d] = [x - r, y, r, 2.0 * r].map(|v| number(v, 2));
+        let data = format!("M{x0} {cy}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z");
+        area.draw(&Trace { data, ink: Ink::Text, width: ty.rule(), dash: Dash::Solid, alpha: 1.0 }).map_err(failed)?;
+        taken.extend([(x - r, y), (x + r, y), (x, y - r), (x, y + r)]);
+        let spot = freest((x, y), (room(text, b, false), CAPITAL * b), frame.wider(-0.3 * b), &taken, b);
+        if place.chart.background != Background::None {
+            // The grid does not run through words.
+            let Rect { left, top, right, bottom } = spot.wider(0.25 * b);
+            let corners = [(grains(left), grains(top)), (grains(right), grains(bottom))];
+            area.draw(&Rectangle::new(corners, Ink::Paper.wash(1.0))).map_err(failed)?;
+        }
+        let style = words(Ink::Text, b, FontStyle::Normal, HPos::Left, VPos::Bottom);
+        area.draw_text(text, &style, (grains(spot.left), grains(spot.bottom))).map_err(failed)?;
+        taken.extend([(spot.left, spot.bottom), (spot.right, spot.top)]);
+    }
+    Ok(())
+}
+
+/// Where the next words would cover something: points along every line and limit, and every dot.
+fn ink(place: &Place<'_>, frame: Rect) -> Vec<Point> {
+    let chart = place.chart;
+    let dots = chart.dots.iter().map(|(_, at)| at).chain(&chart.marks);
+    let mut ink: Vec<Point> = dots.map(|&at| place.at(at)).collect();
+    let along = |from: Point, to: Point| {
+        let part = move |k: u8| f64::from(k) / 24.0;
+        (0..=24).map(part).map(move |s| (from.0 + s * (to.0 - from.0), from.1 + s * (to.1 - from.1)))
+    };
+    for stroke in chart.lines.iter().flat_map(|(_, strokes)| strokes) {
+        let [from, to] = [stroke.start(), stroke.end()].map(|(x, y)| place.at([x, y]));
+        ink.extend(along(from, to));
+    }
+    for (_, limit) in &chart.limits {
+        let x = place.at([*limit, 1.0]).0;
+        ink.extend(along((x, frame.top), (x, frame.bottom)));
+    }
+    ink
+}
+
+/// Of the places around a point, inside a frame, the one that covers least; of two the nearer one.
+fn freest((x, y): Point, (width, height): (f64, f64), frame: Rect, ink: &[Point], b: f64) -> Rect {
+    let mut best: Option<(f64, Rect)> = None;
+    for away in [0.9_f64, 1.4, 2.0, 2.8, 3.8, 5.0] {
+        for (over, down) in [(1, 0), (1, -1), (1, 1), (-1, 0), (-1, -1), (-1, 1), (0, -1), (0, 1)]
+            .map(|(a, b)| (f64::from(a), f64::from(b)))
+        {
+            let left = x + over * away * b - 0.5 * (1.0 - over) * width;
+            let top = y + down * away * b - 0.5 * height;
+            let rect = Rect { left, top, right: left + width, bottom: top + height }.inside(frame);
+            let covered = ink.iter().filter(|point| rect.wider(0.35 * b).holds(**point)).count();
+            #[allow(clippy::cast_precision_loss)] // a count
+            let cost = covered as f64 + 0.4 * away;
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, rect));
+            }
+        }
+    }
+    best.map_or(Rect { left: x, top: y - height, right: x + width, bottom: y }, |(_, rect)| rect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Rect = Rect { left: 0.0, top: 0.0, right: 400.0, bottom: 300.0 };
+
+    #[test]
+    fn words_stand_to_the_right_where_nothing_else_does() {
+        let rect = freest((100.0, 100.0), (80.0, 12.0), FRAME, &[], 16.0);
+        assert!(rect.left > 110.0 && rect.top < 100.0 && rect.bottom > 100.0, "{rect:?}");
+    }
+
+    #[test]
+    fn words_keep_off_what_is_drawn_and_inside_the_frame() {
+        // A line to the right, and the frame's edge to the left.
+        let line: Vec<Point> = (0..40).map(|k| (20.0 + 10.0 * f64::from(k), 100.0)).collect();
+        let rect = freest((20.0, 100.0), (80.0, 12.0), FRAME, &line, 16.0);
+        assert!(!line.iter().any(|at| rect.holds(*at)), "{rect:?}");
+        assert!(rect.left >= 0.0 && rect.right <= 400.0 && rect.top >= 0.0 && rect.bottom <= 300.0, "{rect:?}");
+    }
+}
