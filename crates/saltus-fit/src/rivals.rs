@@ -164,8 +164,8 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
     let base = Flight { trials: readings.trials.clone(), gravity: readings.gravity, ..Flight::default() };
     if rows > READINGS || !(0.01..1.0).contains(&cor) {
-        let why = if rows > READINGS { "there are more than 5000" } else { "one COR is not between 0.01 and 1" };
-        compared.untried = Some(why.to_owned());
+        let large = format!("there are more than {READINGS}");
+        compared.untried = Some(if rows > READINGS { large } else { "one COR is not between 0.01 and 1".to_owned() });
         return Ok(compared);
     }
     let Some(constant) = run(&base, &[cor], None) else { return Ok(compared) };

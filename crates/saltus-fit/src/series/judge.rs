@@ -155,3 +155,22 @@ fn gravity(report: &mut Report, tracks: &[Track]) {
         ));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drag_and_a_cor_of_speed_may_be_alike() {
+        let cor = Measured { value: 0.8, standard_error: 0.01 };
+        let open = |choice: Choice, other: Choice, worse: f64| {
+            let rivals = vec![(choice, cor, 0.0), (other, cor, worse)];
+            cause_is_open(&Pooled { choice, cor, quantile: 2.0, rivals, impacts: Vec::new() })
+        };
+        let (drag, linear, plain) = ((Law::Constant, true), (Law::Linear, false), (Law::Constant, false));
+        assert!(open(drag, linear, 2.4) && open(linear, drag, 2.4) && open(drag, (Law::Each, false), 5.9));
+        // Another model is out of the question, or supposes both or neither of them.
+        assert!(!open(drag, linear, 6.1) && !open(plain, drag, 1.0) && !open(drag, plain, 1.0));
+        assert!(!open(drag, (Law::Linear, true), 1.0) && !open(linear, (Law::Linear, true), 1.0));
+    }
+}

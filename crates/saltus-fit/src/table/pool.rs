@@ -21,7 +21,8 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
         let of = |line: String| format!("{label}: {line}");
         pooled.repairs.extend(part.repairs.into_iter().map(of));
         // What names its place names the file.
-        let placed = |line: String| if line.contains(label.as_str()) { line } else { of(line) };
+        let named = [format!("{label}:"), format!("sheet '{label}'")];
+        let placed = |line: String| if named.iter().any(|name| line.contains(name)) { line } else { of(line) };
         pooled.warnings.extend(part.warnings.into_iter().map(placed));
         pooled.rows += part.rows;
         pooled.zero_rebounds += part.zero_rebounds;
