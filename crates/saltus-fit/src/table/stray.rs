@@ -16,6 +16,8 @@ const UNLIKE: f64 = 30.0;
 const ALIKE: f64 = 3.0;
 /// and no height is greater than the one before by more than this.
 const RISE: f64 = 1.1;
+/// Lower heights are mostly reading error, whose falls mean nothing, m.
+const LOW: f64 = 0.01;
 /// So many are named.
 const NAMED: usize = 5;
 
@@ -127,7 +129,8 @@ fn in_trial(heights: &[(usize, usize, f64)], usual: Option<f64>, size: f64) -> O
             let (least, most) = range(&changed, usual);
             // Differences that are rounding alone must not decide.
             let how = (((most - least) * 1e6).round(), (changed[place].2 - size).abs());
-            if most - least < ALIKE.ln() && most < RISE.ln() && best.is_none_or(|b| how < b.0) {
+            let read = changed.iter().all(|h| h.2 >= LOW.ln());
+            if read && most - least < ALIKE.ln() && most < RISE.ln() && best.is_none_or(|b| how < b.0) {
                 best = Some((how, heights[place].0, factor));
             }
         }
@@ -159,6 +162,8 @@ mod tests {
             &[1.0, 0.01],
             &[1.0, 0.1, 0.01, 0.003, 0.001, 0.002],
             &[1.0, 0.3, 0.05, 0.01],
+            // A ball that hardly bounces, read to a centimetre.
+            &[1.0, 0.009, 0.008],
             &[1.0, 0.0, 0.0],
             &[0.5, 1.0, 0.2, 0.9],
         ] {
