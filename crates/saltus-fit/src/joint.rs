@@ -265,7 +265,7 @@ pub(crate) fn agreement(joint: &Joint, evidence: &Evidence, gravity: f64, frame_
     let mut conflicts = Vec::new();
     let mut flights = Vec::new();
     let mut total = None;
-    for trial in evidence.trials.iter().filter(|t| joint.trials.contains(&t.trial)) {
+    for trial in evidence.trials.iter().filter(|t| joint.trials.binary_search(&t.trial).is_ok()) {
         let height = |n: usize| trial.heights.iter().find(|h| h.0 == n).map(|h| h.1);
         let fall = height(0).map(|h| (2.0 * h / gravity).sqrt());
         let mut clock = match (trial.release_time, fall) {
