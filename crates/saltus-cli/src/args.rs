@@ -19,7 +19,7 @@ use crate::error::Error;
 #[command(name = "saltus", version, propagate_version = true, arg_required_else_help = true)]
 pub(crate) struct Args {
     /// Say nothing on standard error but errors.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, display_order = 900)]
     pub(crate) quiet: bool,
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -32,10 +32,12 @@ const LAYOUTS: &str = "Layouts of tables, for example:
   bounce,time (s)            one time per contact
   trial,bounce,time_ms       several trials
   time_s,height_m            a series from a film or a motion sensor
-Read as they are: what Tracker, ImageJ, Vernier's and phyphox' programs write, workbooks (.xlsx, .xls),
-zipped CSV, and tracks of bare pixels with --fps. The report says what was recognised.
-Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30'
-in the table, from the scatter, or are assumed; the report says which.";
+
+Read as they are: what Tracker, ImageJ, Vernier's and phyphox' programs write, workbooks (.xlsx, .xls), zipped CSV, and tracks of bare pixels with --fps. \
+The report says what was recognised.
+
+Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30' in the table, from the scatter, or are assumed (1 cm, \
+10 ms); the report says which.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -83,7 +85,7 @@ pub(crate) struct Fit {
     /// Draw the heights of apexes, bounce by bounce, as SVG: with one COR they are on a straight line.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_ladder: Option<PathBuf>,
-    /// Draw how well each method could do with other CORs, as SVG.
+    /// Draw how much worse the readings are explained by other CORs, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_profile: Option<PathBuf>,
     /// Write the fitted motion as a scene, to simulate, to change and to export; a scene that exists is kept, unless --force is given.
@@ -99,18 +101,19 @@ pub(crate) struct Fit {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The standard error of a height reading, such as `5mm`.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"))]
     pub(crate) sigma_height: Option<f64>,
     /// The standard error of a time reading, such as `10ms`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
     pub(crate) sigma_time: Option<f64>,
     /// Gravity, such as `9.81m/s^2`; used only where heights meet times.
     #[arg(long, value_name = "ACCELERATION", value_parser = positive(Quantity::Acceleration))]
     pub(crate) gravity: Option<f64>,
-    /// The unit of heights where the header names none, such as `cm`, or `px` for pixels.
+    /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where every column names another, this one holds, with a
+    /// warning.
     #[arg(long, value_name = "UNIT", value_parser = height_unit)]
     pub(crate) height_unit: Option<String>,
-    /// The unit of times where the header names none, such as `ms`.
+    /// The unit of times where the header names none, such as `ms`; where every column names another, this one holds, with a warning.
     #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Time))]
     pub(crate) time_unit: Option<String>,
     /// The column or the track to fit, where several hold readings of the same thing.
@@ -134,7 +137,7 @@ pub(crate) struct Fit {
     /// The height scale counts downwards, as in pictures; without it, a series tells by the way it falls.
     #[arg(long)]
     pub(crate) y_down: bool,
-    /// The height scale counts upwards.
+    /// The height scale counts upwards, whichever way a series falls.
     #[arg(long, conflicts_with = "y_down")]
     pub(crate) y_up: bool,
     /// Keep only the rows in which this column has this value; may be repeated.
@@ -148,16 +151,16 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "MODEL", value_parser = clap::builder::PossibleValuesParser::new(CorModel::ALL.map(CorModel::name)))]
     pub(crate) model: Option<String>,
     /// The diameter of the ball, such as `4cm`: the zero of the height scale can be off by no more.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "cm"))]
     pub(crate) ball: Option<f64>,
     /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them, with '=': `--losses=huber`.
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
     /// Trust every height to within this, such as `5mm`, and say which CORs that allows.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"))]
     pub(crate) tolerance_height: Option<f64>,
     /// Trust every time to within this, such as `1ms`, and say which CORs that allows.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
     pub(crate) tolerance_time: Option<f64>,
     /// Also find the error by drawing whole trials anew so many times; needs five trials.
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(2..))]
@@ -332,6 +335,23 @@ pub(crate) fn positive(quantity: Quantity) -> impl Fn(&str) -> Result<f64, Strin
         Ok(value) if value > 0.0 => Ok(value),
         Ok(_) => Err(format!("'{text}' is not above zero")),
         Err(error) => Err(error.to_string()),
+    }
+}
+
+/// What is above zero and small: a bare number that is not is hardly in the SI unit, and the unit that it may be in is offered.
+fn small(
+    quantity: Quantity,
+    usual: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    let positive = positive(quantity);
+    move |text| match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => {
+            let unit = if value < 0.1 { quantity.si() } else { usual };
+            let known: Vec<&str> = quantity.units().iter().map(|&(name, _)| name).collect();
+            let (text, known) = (text.trim(), known.join(", "));
+            Err(format!("'{text}' has no unit: give a unit of {quantity} ({known}), such as '{text} {unit}'"))
+        }
+        _ => positive(text),
     }
 }
 

@@ -23,15 +23,25 @@ mod staging;
 mod sweep;
 mod vary;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
 
 fn main() -> ExitCode {
-    match run(&args::Args::parse()) {
+    match run(&args::Args::parse_from(asked())) {
         Ok(code) => code,
         Err(error) => error.report(),
     }
+}
+
+/// The arguments; `saltus help --help`, which looks for a command of that name, is `saltus help`.
+fn asked() -> Vec<OsString> {
+    let mut asked: Vec<OsString> = std::env::args_os().collect();
+    if asked.get(1).is_some_and(|first| first == "help") {
+        asked.retain(|argument| argument != "--help" && argument != "-h");
+    }
+    asked
 }
 
 fn run(args: &args::Args) -> Result<ExitCode, error::Error> {

@@ -1,7 +1,7 @@
 //! The verdict: what the fits amount to, and what speaks against them.
 
 use crate::bounces::Measured;
-use crate::choice::{CorModel, ModelChoice};
+use crate::choice::CorModel;
 use crate::error::FitError;
 use crate::estimate::{Estimate, Kind, OneKind, Source, Sourced};
 use crate::evidence::Evidence;
@@ -191,22 +191,24 @@ pub(crate) fn models(
     found: &Findings<'_>,
     (sigma_height, sigma_time): (Sourced, Sourced),
     (losses, wanted): (&[Loss], Option<CorModel>),
-) -> Result<Vec<ModelChoice>, FitError> {
+) -> Result<Compared, FitError> {
+    // Why there is nothing to compare.
+    let none = |why: &str| Ok(Compared { untried: Some(why.to_owned()), ..Compared::default() });
     let agree = !report.agreement.as_ref().is_some_and(|a| a.p.is_some_and(|p| p < REJECT));
-    let Some(cor) = report.cor.filter(|_| agree) else { return Ok(Vec::new()) };
+    let Some(cor) = report.cor.filter(|_| agree) else { return none("they do not settle on one COR to begin with") };
     let scattering = found.times.as_ref().is_some_and(|k| k.scatter.is_some());
     let (trials, source) = match (&found.joint, &found.heights, &found.times) {
         (Some(joint), _, _) => (joint.model.trials.clone(), sigma_time.source),
         (None, Some(_), None) => (Readings::heights(found.evidence, sigma_height.value), sigma_height.source),
         // Where bounces scatter, times have errors that add up: ratios are compared instead.
         (None, None, Some(_)) if !scattering => (Readings::times(found.evidence, sigma_time.value), sigma_time.source),
-        _ => return Ok(Vec::new()),
+        (None, None, Some(_)) => return none("the bounces scatter, and with times their errors add up"),
+        _ => return none("heights and times are of different trials, or there is one flight only"),
     };
     if found.drops_differ(cor.value) {
-        report
-            .notes
-            .push("other models are not compared: where drops differ, they would take that for their own".to_owned());
-        return Ok(Vec::new());
+        let why = "where drops differ, other models would take that for their own";
+        report.notes.push(format!("other models are not compared: {why}"));
+        return none(why);
     }
     let scattered = source == Source::Scatter;
     let readings = Readings {
@@ -218,10 +220,10 @@ pub(crate) fn models(
         losses: losses.to_vec(),
         wanted,
     };
-    let Compared { models: list, notes } = rivals::compare(&readings, cor.value)?;
-    report.notes.extend(notes);
-    weigh::models(report, &list);
-    Ok(list)
+    let mut compared = rivals::compare(&readings, cor.value)?;
+    report.notes.append(&mut compared.notes);
+    weigh::models(report, &compared.models);
+    Ok(compared)
 }
 
 fn estimates(report: &mut Report, found: &Findings<'_>) {
@@ -375,6 +377,7 @@ fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], dou
             chance(differ.p)
         ));
         settings_differ = true;
+        report.widened = Some("it takes in each of the balls, floors or drop heights".to_owned());
         (cor.low, cor.high) = (cor.low.min(differ.low.1), cor.high.max(differ.high.1));
         cor.standard_error = Some((cor.high - cor.low) / (2.0 * NORMAL));
         report.warnings.push(

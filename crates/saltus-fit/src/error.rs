@@ -68,6 +68,15 @@ impl TableError {
         self
     }
 
+    /// Where it is and what is wrong, without the line itself.
+    pub(crate) fn sentence(&self) -> String {
+        let place = self.place.as_ref().map_or_else(String::new, |place| match &place.cell {
+            Some((sheet, index)) => format!(", sheet '{sheet}', cell {}", place.address(*index)),
+            None => format!(":{}:{}", place.line, place.column),
+        });
+        format!("{}{place}: {}", self.name, self.message)
+    }
+
     /// The line the problem is in (the row, in a workbook), counted from 1; `None` when it is the file as a whole.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
@@ -86,14 +95,7 @@ const SHOWN: usize = 90;
 
 impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.name)?;
-        if let Some(place) = &self.place {
-            match &place.cell {
-                Some((sheet, index)) => write!(f, ", sheet '{sheet}', cell {}", place.address(*index))?,
-                None => write!(f, ":{}:{}", place.line, place.column)?,
-            }
-        }
-        write!(f, ": {}", self.message)?;
+        f.write_str(&self.sentence())?;
         if let Some(place) = &self.place {
             let at = place.column.saturating_sub(1);
             let from = if at + place.width > SHOWN { at.saturating_sub(SHOWN / 2) } else { 0 };

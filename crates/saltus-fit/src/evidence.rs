@@ -202,9 +202,15 @@ impl TrialEvidence {
             .collect()
     }
 
+    /// The moment after so many flights, of a contact or the apex after it: they are in order.
+    pub(crate) fn moment(&self, flights: usize, apex: bool) -> Option<&(usize, bool, f64, Option<f64>)> {
+        let place = self.moments.binary_search_by_key(&(flights, apex), |m| (m.0, m.1)).ok()?;
+        self.moments.get(place)
+    }
+
     /// The time of a contact by number.
     pub(crate) fn contact(&self, number: usize) -> Option<f64> {
-        self.moments.iter().find(|m| !m.1 && m.0 + 1 == number).map(|m| m.2)
+        self.moment(number.checked_sub(1)?, false).map(|m| m.2)
     }
 
     /// The flights between neighbouring contacts: the number of the contact before, the time it takes.

@@ -209,6 +209,8 @@ impl Fit {
 
         let mut report = Report::new(table.name(), gravity);
         report.ball = self.ball;
+        report.pixels = table.metadata.pixels;
+        report.files.clone_from(&table.files);
         let has = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
         report.sigma_height =
             (table.zero_rebounds > 0 || has(|r| r.event == Event::Apex && r.height.is_some())).then_some(sigma_height);
@@ -227,6 +229,11 @@ impl Fit {
             series::judge(&mut report, &found);
             (report.motion, report.points, report.residuals) = found.picture();
             report.series = found.tracks;
+            if self.model.is_some() {
+                report
+                    .warnings
+                    .push("a series chooses its model by itself: what was asked for is not heeded".to_owned());
+            }
             return Ok(report);
         }
 
@@ -288,10 +295,11 @@ impl Fit {
             || diagnose::models(&mut report, &findings, (sigma_height, sigma_time), (&losses, self.model)),
             || findings.losses(&losses),
         );
-        report.models = models?;
+        let compared = models?;
+        report.models = compared.models;
         report.estimates.extend(losses?);
         if let Some(wanted) = self.model {
-            weigh::rest_on(&mut report, wanted);
+            weigh::rest_on(&mut report, wanted, compared.untried.as_deref());
         }
 
         let (motions, release_is_fitted) = match (&findings.joint, &findings.times, &findings.heights) {

@@ -9,7 +9,7 @@ use crate::estimate::{Estimate, Source, identified, with_spread};
 use crate::evidence::Evidence;
 use crate::least_squares::Bounds;
 use crate::model::{CorLaw, Flight, FlightTrial};
-use crate::rivals::Readings;
+use crate::rivals::{READINGS, Readings};
 use crate::spread::{Apart, across};
 use crate::statistics::{NORMAL, chi_square_p};
 use crate::successive::{Fitted, fit};
@@ -265,7 +265,7 @@ pub(crate) fn agreement(joint: &Joint, evidence: &Evidence, gravity: f64, frame_
     let mut conflicts = Vec::new();
     let mut flights = Vec::new();
     let mut total = None;
-    for trial in evidence.trials.iter().filter(|t| joint.trials.contains(&t.trial)) {
+    for trial in evidence.trials.iter().filter(|t| joint.trials.binary_search(&t.trial).is_ok()) {
         let height = |n: usize| trial.heights.iter().find(|h| h.0 == n).map(|h| h.1);
         let fall = height(0).map(|h| (2.0 * h / gravity).sqrt());
         let mut clock = match (trial.release_time, fall) {
@@ -459,6 +459,9 @@ pub(crate) fn height_zero(
     (cor, gravity, sigma): (f64, f64, f64),
 ) -> Result<Option<Hypothesis>, FitError> {
     let trials = Readings::heights(evidence, sigma);
+    if trials.iter().map(|t| t.heights.len()).sum::<usize>() > READINGS {
+        return Ok(None);
+    }
     let suppose = Suppose { offset: true, ..Suppose::default() };
     let Some((_, fitted)) = run(&trials, gravity, suppose, &[cor])? else { return Ok(None) };
     if fitted.freedom == 0 {

@@ -142,11 +142,8 @@ pub(crate) fn beside(
         for &(n, height, sigma) in &trial.heights {
             let sigma = sigma.unwrap_or(sigma_height);
             let label = if n == 0 { "release".to_owned() } else { format!("apex {n}") };
-            let read = if n == 0 {
-                trial.release_time
-            } else {
-                trial.moments.iter().find(|m| m.1 && m.0 + 1 == n).map(|m| m.2)
-            };
+            let apex = n.checked_sub(1).and_then(|flights| trial.moment(flights, true));
+            let read = if n == 0 { trial.release_time } else { apex.map(|m| m.2) };
             let midway = || {
                 let measured = trial.contact(n).zip(trial.contact(n + 1)).map(|(a, b)| 0.5 * (a + b));
                 let fitted = motion.contact(n).zip(motion.contact(n + 1)).map(|(a, b)| 0.5 * (a + b));
@@ -154,13 +151,12 @@ pub(crate) fn beside(
             };
             let time = if n == 0 { read.or(motion.release_time) } else { read.or_else(midway) };
             let Some(time) = time.map(|t| t + shift) else { continue };
-            let sigma_read = (n > 0).then(|| trial.moments.iter().find(|m| m.1 && m.0 + 1 == n)).flatten();
             points.push(Point {
                 trial: *place,
                 label: label.clone(),
                 time,
                 height,
-                sigma_time: sigma_read.map(|m| m.3.unwrap_or(sigma_time)),
+                sigma_time: apex.map(|m| m.3.unwrap_or(sigma_time)),
                 sigma_height: Some(sigma),
             });
             let predicted = match n {

@@ -46,8 +46,10 @@ pub(crate) fn estimate(evidence: &Evidence, sigma: f64) -> Option<Estimate> {
     let (mut kappa, mut active) = (0.5, false);
     for _ in 0..ROUNDS {
         let weight = |p: &Pair| 1.0 / (p.after.1 + kappa * kappa * p.before.1).sqrt();
-        let x = DMatrix::from_iterator(pairs.len(), 1, pairs.iter().map(|p| weight(p) * p.before.0));
-        let y = DVector::from_iterator(pairs.len(), pairs.iter().map(|p| weight(p) * p.after.0));
+        // A rotation leaves one row of those of all pairs that says anything of κ.
+        let long = pairs.iter().map(|p| (weight(p) * p.before.0).powi(2)).sum::<f64>().sqrt();
+        let along = pairs.iter().map(|p| weight(p).powi(2) * p.before.0 * p.after.0).sum::<f64>() / long;
+        let (x, y) = (DMatrix::from_element(1, 1, long), DVector::from_element(1, along));
         // Numbers so large that their squares overflow give no estimate.
         let Ok(found) = solve(&x, &y, &[Bounds { low: 0.0, high: 1.0 }]) else { return None };
         // All rebounds zero: the minimum is on the bound without pressing against it.

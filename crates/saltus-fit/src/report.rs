@@ -1,5 +1,6 @@
 //! The report: the verdict, the COR, and everything it rests on; serialised, it is the JSON contract.
 
+mod numbers;
 mod recordings;
 mod scene;
 mod text;
@@ -9,7 +10,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-pub(crate) use self::text::pair;
+pub(crate) use self::numbers::pair;
 use crate::bootstrap::Bootstrap;
 use crate::bounces::BounceCor;
 use crate::choice::ModelChoice;
@@ -107,6 +108,15 @@ pub struct Report {
     pub(crate) warnings: Vec<String>,
     pub(crate) repairs: Vec<String>,
     pub(crate) notes: Vec<String>,
+    /// The files of the table, where there are several.
+    #[serde(skip)]
+    pub(crate) files: Vec<String>,
+    /// Heights are in pixels.
+    #[serde(skip)]
+    pub(crate) pixels: bool,
+    /// What the interval takes in beside the error of the COR, in words.
+    #[serde(skip)]
+    pub(crate) widened: Option<String>,
     #[serde(skip)]
     pub(crate) ball: Option<f64>,
     #[serde(skip)]
@@ -142,6 +152,9 @@ impl Report {
             warnings: Vec::new(),
             repairs: Vec::new(),
             notes: Vec::new(),
+            files: Vec::new(),
+            pixels: false,
+            widened: None,
             ball: None,
             motion: None,
             residuals: Vec::new(),
@@ -155,12 +168,22 @@ impl Report {
         &self.table
     }
 
-    /// What the table is about, after its name: `squash-on-cement.csv` is about "Squash on cement".
+    /// What the table is about, after its name: `squash-on-cement.csv` is about "Squash on cement". Up to three files are listed, more are counted.
     #[must_use]
     pub fn title(&self) -> String {
-        let stem = Path::new(&self.table).file_stem().map_or(self.table.as_str().into(), |stem| stem.to_string_lossy());
-        let words = stem.replace(['-', '_'], " ");
-        let mut letters = words.chars();
+        let words = |name: &str| {
+            let stem = Path::new(name).file_stem().map_or(name.into(), |stem| stem.to_string_lossy());
+            stem.replace(['-', '_'], " ")
+        };
+        let title = match self.files.as_slice() {
+            [] | [_] => words(&self.table),
+            [most @ .., last] if most.len() < 3 => {
+                let most: Vec<String> = most.iter().map(|name| words(name)).collect();
+                format!("{} and {}", most.join(", "), words(last))
+            }
+            more => format!("{} files", more.len()),
+        };
+        let mut letters = title.chars();
         letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
     }
 

@@ -20,7 +20,7 @@ use crate::successive::{Fitted, fit};
 use crate::weigh::CLEAR;
 
 /// A table with more readings is left to the models of one COR.
-const READINGS: usize = 5000;
+pub(crate) const READINGS: usize = 5000;
 /// So many spare readings a model must leave to be worth comparing.
 const SPARE: usize = 3;
 /// Speeds must differ by this factor, over so many bounces, before a dependence on speed can be told from one COR.
@@ -66,6 +66,8 @@ pub(crate) struct Readings {
 pub(crate) struct Compared {
     pub(crate) models: Vec<ModelChoice>,
     pub(crate) notes: Vec<String>,
+    /// Why the model that was asked for is not among them.
+    pub(crate) untried: Option<String>,
 }
 
 impl Readings {
@@ -162,11 +164,14 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
     let base = Flight { trials: readings.trials.clone(), gravity: readings.gravity, ..Flight::default() };
     if rows > READINGS || !(0.01..1.0).contains(&cor) {
+        let large = format!("there are more than {READINGS}");
+        compared.untried = Some(if rows > READINGS { large } else { "one COR is not between 0.01 and 1".to_owned() });
         return Ok(compared);
     }
     let Some(constant) = run(&base, &[cor], None) else { return Ok(compared) };
     let speeds = impacts(&base, &constant);
     let (slowest, fastest, count) = speeds;
+    compared.untried = readings.wanted.map(|wanted| needs(wanted, &base, speeds));
     if count < IMPACTS || fastest / slowest < SPEEDS {
         compared.notes.push(format!(
             "a COR that depends on speed was not tried: that takes {IMPACTS} bounces (here {count}) at speeds that differ by a factor of \
@@ -201,6 +206,29 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     })?;
     compared.models = list.into_iter().map(|m| m.0).collect();
     Ok(compared)
+}
+
+/// What a model needs that the readings do not give.
+fn needs(wanted: CorModel, base: &Flight, (slowest, fastest, count): (f64, f64, usize)) -> String {
+    let factor = (fastest / slowest).max(1.0);
+    let here = format!("here are {count}, at speeds that differ by {factor:.2}");
+    let heights = base.trials.iter().any(|t| !t.heights.is_empty());
+    match wanted {
+        CorModel::Each | CorModel::Offset if !heights => "it needs heights".to_owned(),
+        CorModel::Each if base.bounces() > BOUNCES => format!("it is for up to {BOUNCES} bounces"),
+        CorModel::Drag if fastest / slowest <= DRAG_SPEEDS => {
+            format!("it needs bounces at speeds that differ by a factor of {DRAG_SPEEDS}; {here}")
+        }
+        CorModel::Offset if fastest / slowest < OFFSET_SPEEDS || count < OFFSET_IMPACTS => {
+            format!("it needs {OFFSET_IMPACTS} bounces at speeds that differ by a factor of {OFFSET_SPEEDS:.2}; {here}")
+        }
+        CorModel::Linear | CorModel::Viscoelastic | CorModel::Plastic | CorModel::Power | CorModel::Knots
+            if fastest / slowest < SPEEDS || count < IMPACTS =>
+        {
+            format!("it needs {IMPACTS} bounces at speeds that differ by a factor of {SPEEDS}; {here}")
+        }
+        _ => format!("it needs {SPARE} readings more than it has unknowns"),
+    }
 }
 
 /// A model that was tried: what is said of it, and its fit.

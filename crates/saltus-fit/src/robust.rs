@@ -56,7 +56,31 @@ impl Loss {
         }
     }
 
-    fn of(self, left: &DVector<f64>) -> f64 {
+    /// As a line of the report has it.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Huber => "Huber's loss",
+            Self::Absolute => "the sum of |r|",
+            Self::Largest => "the largest |r|",
+        }
+    }
+
+    /// What is made small, for people.
+    pub(crate) const fn about(self) -> &'static str {
+        match self {
+            Self::Huber => "Huber's loss: outliers count less",
+            Self::Absolute => "the least sum of absolute residuals",
+            Self::Largest => "the least largest residual",
+        }
+    }
+
+    /// What the name of an estimate, such as `heights-huber`, says before its loss, and that loss.
+    pub(crate) fn of(method: &str) -> Option<(&str, Self)> {
+        let ending = |loss: Self| Some((method.strip_suffix(loss.name())?.strip_suffix('-')?, loss));
+        Self::ALL.into_iter().find_map(ending)
+    }
+
+    fn cost(self, left: &DVector<f64>) -> f64 {
         match self {
             Self::Absolute => left.iter().map(|r| r.abs()).sum(),
             Self::Largest => left.amax(),
@@ -207,8 +231,8 @@ pub(crate) fn fit(
             loss.step(&x, &left, &limits)?
         };
         step.resize(unknowns, 0.0);
-        let here = loss.of(&left);
-        let foreseen = loss.of(&(&left - &x * DVector::from_column_slice(&step)));
+        let here = loss.cost(&left);
+        let foreseen = loss.cost(&(&left - &x * DVector::from_column_slice(&step)));
         let mut accepted = false;
         let mut fraction = 1.0;
         while fraction > 1e-3 {
@@ -225,7 +249,7 @@ pub(crate) fn fit(
                 })
                 .collect();
             let (there_x, there) = whole(model, &sizes, &next_own, &next);
-            if there.iter().chain(there_x.iter()).all(|v| v.is_finite()) && loss.of(&there) <= here {
+            if there.iter().chain(there_x.iter()).all(|v| v.is_finite()) && loss.cost(&there) <= here {
                 (shared, own, x, left) = (next, next_own, there_x, there);
                 accepted = true;
                 break;
@@ -233,7 +257,7 @@ pub(crate) fn fit(
             fraction *= 0.5;
         }
         // Another step would change nothing: this one did not, or it did what the linear model had foreseen, within the trust region.
-        let there = loss.of(&left);
+        let there = loss.cost(&left);
         let free = fraction == 1.0 && (0..shared.len()).all(|j| step[owned + j].abs() < 0.5 * trust * ranges[j].1);
         if !accepted || here - there <= SAME * (SAME + here) || free && (there - foreseen).abs() <= LINEAR {
             break;
@@ -249,5 +273,5 @@ pub(crate) fn fit(
         block.to_vec()
     });
     let left_blocks = blocks.collect();
-    Ok(Some(Robust { shared, own, left: left_blocks, loss: loss.of(&left) }))
+    Ok(Some(Robust { shared, own, left: left_blocks, loss: loss.cost(&left) }))
 }

@@ -24,6 +24,9 @@ use flights::NoFlights;
 pub(crate) use judge::judge;
 pub(crate) use pool::Pooled;
 
+/// More samples of one recording than this are thinned.
+const SAMPLES: usize = 50_000;
+
 /// A recording of one drop, as a motion fitted through its samples.
 ///
 /// Lengths are in the unit of the table's heights (metres, unless the scale is wrong), times in seconds.
@@ -52,6 +55,22 @@ pub struct Track {
     pub models: Vec<Variant>,
     #[serde(skip)]
     pub(crate) course: track::Course,
+}
+
+/// Gravity within this part of the expected means metres and seconds.
+const METRES: f64 = 0.2;
+
+impl Track {
+    /// Whether lengths are in metres and times in seconds, going by the recording's gravity where `gravity` is expected, m/s².
+    #[must_use]
+    pub fn in_metres(&self, gravity: f64) -> bool {
+        in_metres(self.gravity.value, gravity)
+    }
+}
+
+/// The same of a gravity that was found.
+pub(crate) fn in_metres(found: f64, expected: f64) -> bool {
+    (found / expected - 1.0).abs() <= METRES
 }
 
 /// One impact of a recorded ball.
@@ -102,7 +121,7 @@ pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitErro
     let mut seen = false;
     let mut candidates = Vec::new();
     for (n, trial) in table.trials().iter().enumerate() {
-        let Some((samples, mut repairs)) = samples(trial) else { continue };
+        let Some((samples, mut repairs)) = samples(trial, table.metadata.oriented) else { continue };
         seen = true;
         let of = match (trial.label(), table.trials().len()) {
             (_, 1) => String::new(),
@@ -147,8 +166,8 @@ pub(crate) struct Samples {
     pub(crate) turned: bool,
 }
 
-/// The series of a trial, put in order, and what had to be done for it; `None` if it has none.
-fn samples(trial: &Trial) -> Option<(Samples, Vec<String>)> {
+/// The series of a trial, put in order and the right way up unless that was stated, and what had to be done for it; `None` if it has none.
+fn samples(trial: &Trial, oriented: bool) -> Option<(Samples, Vec<String>)> {
     let mut rows: Vec<(f64, f64, u64)> = trial
         .readings()
         .iter()
@@ -166,9 +185,17 @@ fn samples(trial: &Trial) -> Option<(Samples, Vec<String>)> {
         let many = before - rows.len();
         repairs.push(format!("{many} samples at a time that another sample has: the first of each was used"));
     }
+    let every = rows.len().div_ceil(SAMPLES);
+    if every > 1 {
+        repairs.push(format!(
+            "of {} samples one in {every} is used: more would hardly make the COR more certain",
+            rows.len()
+        ));
+        rows = rows.into_iter().step_by(every).collect();
+    }
     let times: Vec<f64> = rows.iter().map(|r| r.0).collect();
     let mut heights: Vec<f64> = rows.iter().map(|r| r.1).collect();
-    let turned = flights::upside_down(&times, &heights);
+    let turned = !oriented && flights::upside_down(&times, &heights);
     if turned {
         heights.iter_mut().for_each(|h| *h = -*h);
         repairs

@@ -11,8 +11,10 @@ mod pool;
 mod read;
 mod samples;
 mod sheet;
+mod stray;
 mod text;
 mod units;
+mod vocabulary;
 mod workbook;
 
 use std::io::Read;
@@ -106,6 +108,8 @@ pub struct Table {
     pub(crate) metadata: Metadata,
     pub(crate) zero_rebounds: usize,
     pub(crate) rows: usize,
+    /// The names of the files, where there are several.
+    pub(crate) files: Vec<String>,
 }
 
 /// A file larger than this holds no table of bounces, bytes.
@@ -120,6 +124,8 @@ pub(crate) struct Metadata {
     pub(crate) sigma_time: Option<f64>,
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.
     pub(crate) pixels: bool,
+    /// Which way the heights count was stated, and is not to be recognised.
+    pub(crate) oriented: bool,
 }
 
 impl Table {
@@ -155,7 +161,8 @@ impl Table {
         }
         let more = if parts.len() > 1 { format!(" and {} more", parts.len() - 1) } else { String::new() };
         let name = format!("{}{more}", parts[0].0);
-        Ok(pool::join(&name, parts)?.checked())
+        let files = if parts.len() > 1 { parts.iter().map(|part| part.0.clone()).collect() } else { Vec::new() };
+        Ok(Self { files, ..pool::join(&name, parts)? }.checked())
     }
 
     /// Reads a table from bytes; `name` stands in messages.
@@ -163,6 +170,9 @@ impl Table {
     /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's and phyphox' programs export;
     /// bare numbers, if the options say what they are), workbooks (`.xlsx`, `.xls`) and zip archives of CSV. `docs/fitting.md`
     /// shows every layout.
+    ///
+    /// The reader of workbooks may panic over a damaged one. That becomes an error like any other, but the program's panic hook hears of it first
+    /// and, as it is by default, prints a line to standard error; it belongs to the program, and is left as it is.
     ///
     /// # Errors
     /// [`TableError`], with line and column, for a cell that is not a finite number, a height below the floor, a column

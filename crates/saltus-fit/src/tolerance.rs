@@ -35,16 +35,12 @@ pub(crate) fn losses<M: OneKind + Sync>(
 ) -> Result<Vec<Estimate>, FitError> {
     let model = M::with_sigma(evidence, kind.sigma.value);
     let one = |&loss: &Loss| {
-        let about = match loss {
-            Loss::Huber => "Huber's loss: outliers count less",
-            Loss::Absolute => "the least sum of absolute residuals",
-            Loss::Largest => "the least largest residual",
-        };
         let found = robust::fit(&model, loss, &kind.fitted.shared, &kind.fitted.own, false);
         let found = identified(M::METHOD, found)?.flatten();
         Ok(found.map(|found| {
             let cor = M::cor(found.shared[0]).0;
-            let mut estimate = Estimate::new(&format!("{}-{}", M::METHOD, loss.name()), about, cor, f64::NAN, f64::NAN);
+            let mut estimate =
+                Estimate::new(&format!("{}-{}", M::METHOD, loss.name()), loss.about(), cor, f64::NAN, f64::NAN);
             estimate.trials = kind.estimate.trials;
             estimate
         }))

@@ -38,32 +38,37 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
     let Some(one) = list.iter().find(|m| m.chosen) else { return };
     let least = list.first().map_or(0.0, |m| m.bic);
     let mut seen = Vec::new();
-    let mut better: Vec<(Kind, &ModelChoice)> = Vec::new();
+    // What matters, beside one COR: if one of these is better, whatever comes close to the best may be the cause.
+    let mut close: Vec<(Kind, &ModelChoice)> = Vec::new();
     // A model that another beats clearly is out of the question.
     for model in list.iter().filter(|m| !m.chosen && m.bic < least + CLEAR) {
         let Some(kind) = kind(model).filter(|k| !seen.contains(k)) else { continue };
         seen.push(kind);
         let apart = (model.cor.value - one.cor.value).abs();
         let differ = apart > 2.0 * model.cor.standard_error.hypot(one.cor.standard_error) && apart > SAME;
-        let last_resort = kind == Kind::Each && !better.is_empty();
+        let last_resort = kind == Kind::Each && !close.is_empty();
         if !last_resort && (model.bic < -CLEAR || differ) {
             let how = if model.bic < -CLEAR { "better than" } else { "about as well as" };
             let text = format!("{} fits {how} one COR (BIC {:+.1}), with {}", model.about, model.bic, gives(model));
             report.warnings.push(text);
         }
-        if model.bic < -CLEAR && (differ || changes(model) > LEVEL || kind == Kind::Each) {
-            better.push((kind, model));
+        if differ || changes(model) > LEVEL || kind == Kind::Each {
+            close.push((kind, model));
         }
         if differ && let Some(cor) = &mut report.cor {
             cor.low = cor.low.min(model.cor.value - NORMAL * model.cor.standard_error).max(0.0);
             cor.high = cor.high.max(model.cor.value + NORMAL * model.cor.standard_error);
+            report.widened = Some("it reaches out to models that fit as well, with another COR".to_owned());
         }
     }
+    let decided = close.iter().any(|(_, model)| model.bic < -CLEAR);
+    let mut better = if decided { close } else { Vec::new() };
     // What is no one number is given as the range that it takes.
     for (_, model) in &better {
         if let Some(cor) = &mut report.cor {
             cor.low = model.speeds.iter().map(|s| s.cor).fold(cor.low, f64::min);
             cor.high = model.speeds.iter().map(|s| s.cor).fold(cor.high, f64::max);
+            report.widened = Some("it takes in all that the COR may be under the models that fit".to_owned());
         }
     }
     // A COR of its own for every bounce explains nothing where something else does.
@@ -93,17 +98,22 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
 }
 
 /// Lets the report rest on the model that was asked for; says so where it could not be fitted.
-pub(crate) fn rest_on(report: &mut Report, wanted: CorModel) {
+pub(crate) fn rest_on(report: &mut Report, wanted: CorModel, untried: Option<&str>) {
     let best = report.models.first().map_or(0.0, |m| m.bic);
     let Some(model) = report.models.iter_mut().find(|m| m.name == wanted.name()) else {
+        if wanted == CorModel::Constant && report.cor.is_some() {
+            return;
+        }
         report.verdict = if report.cor.is_some() { Verdict::Doubtful } else { Verdict::Refused };
-        report.reason =
-            format!("the model '{}' cannot be fitted to these readings; the COR is that of one COR", wanted.name());
+        let why = untried.map_or_else(String::new, |why| format!(": {why}"));
+        let (name, instead) = (wanted.name(), if report.cor.is_some() { "; the COR is that of one COR" } else { "" });
+        report.reason = format!("the model '{name}' cannot be fitted to these readings{why}{instead}");
         return;
     };
     let (about, holds, as_good) = (gives(model), model.p.is_none_or(|p| p >= REJECT), model.bic < best + CLEAR);
     let (e, error, of_speed) = (model.cor.value, model.cor.standard_error, !model.speeds.is_empty());
     model.chosen = true;
+    report.widened = None;
     report.cor = Some(Cor {
         value: e,
         standard_error: Some(error),
@@ -146,5 +156,40 @@ fn cause(kind: Kind, model: &ModelChoice) -> String {
             format!("the height scale reads {offset:.1} cm too high (COR {})", gives(model))
         }
         Kind::Each => "it differs from bounce to bounce".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounces::Measured;
+    use crate::choice::SpeedCor;
+    use crate::estimate::{Source, Sourced};
+
+    fn model(name: &str, cor: f64, bic: f64, speeds: &[(f64, f64)]) -> ModelChoice {
+        let mut model = ModelChoice::new(name, name, Measured { value: cor, standard_error: 0.002 }, bic);
+        model.speeds = speeds.iter().map(|&(speed, cor)| SpeedCor { speed, cor, standard_error: 0.002 }).collect();
+        model.chosen = name == "constant";
+        model
+    }
+
+    /// Drag is clearly better than one COR, and a COR of speed within 2.4 of drag.
+    #[test]
+    fn what_comes_close_to_the_best_is_named_beside_it() {
+        let speeds = [(1.0, 0.85), (5.0, 0.75)];
+        let mut report = Report::new("t", Sourced { value: 9.81, source: Source::Assumed });
+        report.cor = Some(Cor { value: 0.8, standard_error: Some(0.002), low: 0.796, high: 0.804 });
+        let list = |speed: f64| {
+            [model("drag", 0.83, -7.0, &[]), model("linear", 0.8, speed, &speeds), model("constant", 0.8, 0.0, &[])]
+        };
+        let mut alone = report.clone();
+        models(&mut report, &list(-4.6));
+        assert!(report.reason.contains("air drag slows the ball"), "{}", report.reason);
+        assert!(report.reason.contains("or it depends on the speed of impact"), "{}", report.reason);
+        assert!(report.reason.ends_with("the readings cannot tell which"), "{}", report.reason);
+        let cor = report.cor.expect("a COR");
+        assert!(cor.low <= 0.75 && cor.high >= 0.85 && report.widened.is_some());
+        models(&mut alone, &list(-0.6));
+        assert!(!alone.reason.contains("cannot tell"), "{}", alone.reason);
     }
 }

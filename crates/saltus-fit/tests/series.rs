@@ -300,3 +300,19 @@ fn films_of_every_rate_and_length() {
         }
     }
 }
+
+/// Drag that one of several films does not show is none there, and no reason to leave it out of all.
+#[test]
+fn a_film_without_drag_beside_films_with_drag() {
+    let mut noise = Noise(23);
+    let mut text = "trial,time_s,height_m\n".to_owned();
+    for (trial, drag) in [0.0, 0.12, 0.12].into_iter().enumerate() {
+        let ball = Ball { drop: 1.0 + 0.2 * trial as f64, drag, ..steel() };
+        for (t, h) in noisy(&ball.film(120.0, 2.2), &mut noise, 0.0005) {
+            text += &format!("{trial},{t},{h}\n");
+        }
+    }
+    let report = report(&text);
+    assert!((report.cor().expect("a COR").value - 0.8).abs() < 0.005, "{report}");
+    assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
+}

@@ -5,6 +5,7 @@ mod pictures;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Once;
 
 use saltus_fit::{CorModel, Fit, Loss, ReadOptions, Report, Table, Verdict};
 use saltus_plot::PlotError;
@@ -36,7 +37,11 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     };
     let pictures: [(_, Draw, _); 4] = [
         (&args.plot, pictures::motion, "no picture: the table has no motion to draw"),
-        (&args.plot_cor, pictures::cor, "no picture of the COR: the table does not give it at several speeds"),
+        (
+            &args.plot_cor,
+            pictures::cor,
+            "no picture of the COR: the table does not give it at several speeds, which takes two bounces; --plot draws one",
+        ),
         (&args.plot_ladder, pictures::ladder, "no ladder: the table gives no two heights of apexes"),
         (&args.plot_profile, pictures::profile, "no profile: no COR was fitted to heights or times of bounces"),
     ];
@@ -80,6 +85,7 @@ fn one_to_standard_output(args: &args::Fit) -> Result<(), Error> {
 
 fn read(args: &args::Fit) -> Result<Table, Error> {
     let options = options(args);
+    silence_workbooks();
     if args.tables == [Path::new("-")] {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
@@ -93,14 +99,21 @@ fn read(args: &args::Fit) -> Result<Table, Error> {
 
 /// The trials of files, together.
 pub(crate) fn tables(paths: &[PathBuf], options: &ReadOptions) -> Result<Table, Error> {
-    // The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
-    let usual = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        if !info.location().is_some_and(|place| place.file().contains("calamine")) {
-            usual(info);
-        }
-    }));
+    silence_workbooks();
     Table::read_all(paths, options).map_err(Error::new)
+}
+
+/// The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
+fn silence_workbooks() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if !info.location().is_some_and(|place| place.file().contains("calamine")) {
+                usual(info);
+            }
+        }));
+    });
 }
 
 fn options(args: &args::Fit) -> ReadOptions {

@@ -32,6 +32,9 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
 
 /// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed with its 95 % band.
 pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
+    if !report.series().is_empty() {
+        return impacts(report);
+    }
     let bounces: Vec<(f64, saltus_fit::Measured)> =
         report.bounces().iter().filter_map(|b| Some((speed(report, b.bounce)?, b.heights.or(b.times)?))).collect();
     let law = report.models().iter().find(|m| !m.speeds.is_empty());
@@ -60,6 +63,33 @@ pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
     // Where heights contradict times there is none.
     let settled = report.verdict() == Verdict::Trusted || !report.models().is_empty();
     if let Some(one) = report.cor().map(|cor| cor.value).filter(|_| settled) {
+        picture = picture.line(&format!("one COR of {one:.3}"), Stroke::polygon(&[[slowest, one], [fastest, one]]));
+    }
+    Some(picture.caption(&caption(report)).svg())
+}
+
+/// The COR of every impact of the recordings against its speed, and one COR where one does.
+fn impacts(report: &Report) -> Option<Result<String, PlotError>> {
+    let metres = report.series().iter().all(|track| track.in_metres(report.gravity().value));
+    let impacts = || report.series().iter().flat_map(|track| &track.impacts);
+    let speeds = || impacts().map(|impact| impact.speed);
+    let (slowest, fastest) = (speeds().reduce(f64::min)?, speeds().reduce(f64::max)?);
+    if fastest <= slowest {
+        return None;
+    }
+    let speed = if metres {
+        ("Speed of impact", Scale::Speed)
+    } else {
+        ("Speed of impact, in the unit of heights per second", Scale::Number)
+    };
+    let bar =
+        |side: f64, impact: &saltus_fit::Impact| [impact.speed, impact.cor.value + side * impact.cor.standard_error];
+    let mut picture = Chart::new(&report.title(), speed, ("COR", Scale::Number))
+        .marks(impacts().map(|impact| bar(0.0, impact)))
+        .jumps(impacts().map(|impact| [-1.0, 1.0].map(|side| bar(side, impact))))
+        .background(Background::Adaptive)
+        .caption("Marks: each impact by itself, \u{b1} one standard error");
+    if let Some(one) = report.cor().map(|cor| cor.value).filter(|_| report.verdict() == Verdict::Trusted) {
         picture = picture.line(&format!("one COR of {one:.3}"), Stroke::polygon(&[[slowest, one], [fastest, one]]));
     }
     Some(picture.caption(&caption(report)).svg())
@@ -165,7 +195,8 @@ fn speed(report: &Report, bounce: usize) -> Option<f64> {
 }
 
 fn label(report: &Report, motion: &Motion) -> String {
-    let trials = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
+    let read = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
+    let trials = report.series().len().max(read);
     let whose = if trials > 1 { format!("first of {trials} trials: ") } else { String::new() };
     let free = if report.series().is_empty() { "free flight with " } else { "" };
     format!("{whose}{free}{}", course(report, motion))

@@ -3,28 +3,30 @@
 use std::fmt::{self, Formatter};
 
 use super::Report;
-use super::text::{decimals, digits, figures, pair};
+use super::numbers::{digits, figures, measured, pair};
+use super::text::paragraph;
 use crate::choice::{ModelChoice, UnderLoss};
+use crate::robust::Loss;
 use crate::series::Track;
 
 /// More impacts than this are left to the JSON.
 const IMPACTS: usize = 12;
 /// More models than this are left to the JSON.
 const MODELS: usize = 6;
-/// Gravity within this part of the expected means that heights are in metres and times in seconds.
-pub(super) const METRES: f64 = 0.2;
+/// An error that differs by more, as a part of it, is another.
+const ANOTHER: f64 = 0.1;
 
 /// Writes the impacts of each recording and the models.
 pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     let several = report.series.len() > 1;
-    let impacts = || report.series.iter().flat_map(|t| t.impacts.iter().map(|i| (t.trial, i)));
+    let impacts = || report.series.iter().flat_map(|t| t.impacts.iter().map(move |i| (t, i)));
     if impacts().next().is_some() {
         writeln!(f, "\n  impact        speed   COR")?;
     }
-    for (trial, impact) in impacts().take(IMPACTS) {
-        let of = if several { format!("(trial {})", trial + 1) } else { String::new() };
+    for (track, impact) in impacts().take(IMPACTS) {
+        let of = if several { format!("(trial {})", track.trial + 1) } else { String::new() };
         let cor = pair(impact.cor.value, impact.cor.standard_error);
-        let line = format!("  {:<8}{:>11}   {cor:<16} {of}", impact.bounce, speed(report, impact.speed));
+        let line = format!("  {:<8}{:>11}   {cor:<16} {of}", impact.bounce, speed(report, track, impact.speed));
         writeln!(f, "{}", line.trim_end())?;
     }
     if let more @ 1.. = impacts().count().saturating_sub(IMPACTS) {
@@ -36,15 +38,15 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         for (_, model) in report.models.iter().enumerate().filter(shown) {
             let chosen = if model.chosen { "   chosen" } else { "" };
             let cor = pair(model.cor.value, model.cor.standard_error);
-            writeln!(f, "  {:<44}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
+            writeln!(f, "  {:<46}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
             for under in &model.losses {
                 let places = digits(model.cor.standard_error);
                 let value = format!("{:.places$}", under.cor);
                 // Below the value of the line above, whose error takes so much more.
                 let gap = places + 5;
                 let line = format!(
-                    "    {:<42}{value:>width$}{:gap$}   {}",
-                    loss(&under.loss),
+                    "    {:<44}{value:>width$}{:gap$}   {}",
+                    by(&under.loss),
                     "",
                     beside(under),
                     width = 18 - gap
@@ -53,18 +55,33 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
             }
         }
     }
-    if let [track] = report.series.as_slice() {
-        motion(report, track, f)?;
+    if report.models.len() > 1 && errors_differ(report) {
+        let text = "(The \u{b1} of a model follows from the reading errors alone; that of the COR above also from how far trials or readings \
+                        are apart beyond them.)";
+        paragraph(f, 2, 2, text)?;
+    }
+    if !report.series.is_empty() {
+        writeln!(f)?;
+    }
+    for track in report.series.iter().take(IMPACTS) {
+        paragraph(f, 2, 4, &motion(report, track, several))?;
+    }
+    if let more @ 1.. = report.series.len().saturating_sub(IMPACTS) {
+        writeln!(f, "  and {more} more recordings: see --format json")?;
     }
     Ok(())
 }
 
-fn loss(name: &str) -> &str {
-    match name {
-        "huber" => "by Huber's loss",
-        "absolute" => "by the sum of |r|",
-        _ => "by the largest |r|",
-    }
+/// Whether the chosen model has another error than the COR that is reported.
+fn errors_differ(report: &Report) -> bool {
+    let chosen = report.models.iter().find(|m| m.chosen).map(|m| m.cor.standard_error);
+    let reported = report.cor.and_then(|cor| cor.standard_error);
+    chosen.zip(reported).is_some_and(|(a, b)| (a - b).abs() > ANOTHER * a.max(b))
+}
+
+fn by(loss: &str) -> String {
+    let words = Loss::ALL.into_iter().find(|known| known.name() == loss).map_or(loss, |known| known.words());
+    format!("by {words}")
 }
 
 /// What a model gives beside a COR under another loss.
@@ -78,27 +95,32 @@ fn beside(under: &UnderLoss) -> String {
     all.into_iter().flatten().collect()
 }
 
-fn metres(report: &Report, track: &Track) -> bool {
-    (track.gravity.value / report.gravity.value - 1.0).abs() < METRES
-}
-
-fn speed(report: &Report, speed: f64) -> String {
-    match report.series.first() {
-        Some(track) if metres(report, track) => format!("{speed:.2} m/s"),
-        _ => format!("{} /s", figures(speed)),
+/// What the recording's lengths are measured in.
+fn unit(report: &Report, track: &Track) -> &'static str {
+    match (track.in_metres(report.gravity.value), report.pixels) {
+        (true, _) => "m",
+        (false, true) => "px",
+        (false, false) => "units",
     }
 }
 
-/// Gravity, drag and what is left between motion and samples, for a single recording.
-fn motion(report: &Report, track: &Track, f: &mut Formatter<'_>) -> fmt::Result {
-    let unit = if metres(report, track) { "m/s\u{b2}" } else { "per s\u{b2}" };
-    let (g, error) = (track.gravity.value, track.gravity.standard_error);
-    let digits = decimals(0, error);
-    write!(f, "\n  {} samples; gravity {g:.digits$} ± {error:.digits$} {unit}", track.samples)?;
-    if let Some(drag) = track.drag {
-        let per = if metres(report, track) { "/m" } else { " per unit of height" };
-        write!(f, "; drag k = {} ± {}{per}", figures(drag.value), figures(drag.standard_error))?;
+fn speed(report: &Report, track: &Track, speed: f64) -> String {
+    match unit(report, track) {
+        "m" => format!("{speed:.2} m/s"),
+        unit => format!("{} {unit}/s", figures(speed)),
     }
-    let unit = if metres(report, track) { " m" } else { " in the unit of heights" };
-    writeln!(f, "; rms {}{unit} (from sample to sample {})", figures(track.rms), figures(track.noise))
+}
+
+/// Gravity, drag and what is left between motion and samples.
+fn motion(report: &Report, track: &Track, several: bool) -> String {
+    let unit = unit(report, track);
+    let of = if several { format!("Trial {}: ", track.trial + 1) } else { String::new() };
+    let gravity = measured(track.gravity.value, track.gravity.standard_error);
+    let drag = track.drag.map_or_else(String::new, |drag| {
+        let drag = measured(drag.value, drag.standard_error);
+        if unit == "units" { format!("; drag k = {drag} per unit") } else { format!("; drag k = {drag} /{unit}") }
+    });
+    let (samples, rms) = (track.samples, figures(track.rms));
+    let noise = if several { String::new() } else { format!(" (from sample to sample {})", figures(track.noise)) };
+    format!("{of}{samples} samples; gravity {gravity} {unit}/s\u{b2}{drag}; rms {rms} {unit}{noise}")
 }

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::recordings::METRES;
 use super::{Report, Verdict};
 use crate::choice::ModelChoice;
 use crate::motion::Motion;
+use crate::series::in_metres;
 
 /// A scene has so many points of a COR over speed at most.
 const KNOTS: usize = 16;
@@ -30,7 +30,7 @@ impl Report {
     #[must_use]
     pub fn scene(&self) -> Option<String> {
         let motion = self.motion.as_ref().filter(|_| self.verdict != Verdict::Refused)?;
-        let metres = (motion.gravity / self.gravity.value - 1.0).abs() <= METRES;
+        let metres = in_metres(motion.gravity, self.gravity.value);
         let scale = if metres { 1.0 } else { self.gravity.value / motion.gravity };
         let law = self.law(scale);
         let [height, velocity] = self.start(motion, !law.is_empty())?;

@@ -2,16 +2,20 @@
 
 use std::fmt::{self, Formatter};
 
+use super::numbers::{digits, duration, figures, length, measured, number, pair, signed};
 use super::{Cor, Report};
 use crate::bounces::{BounceCor, Measured};
 use crate::diagnose::{REJECT, chance};
 use crate::estimate::{Estimate, Source, Sourced};
 use crate::joint::{Agreement, Generous, Hypothesis};
+use crate::robust::Loss;
 
 /// Lines are broken before this column.
 const WIDTH: usize = 96;
 /// Tables of more bounces than this are left to the JSON.
 const BOUNCES: usize = 12;
+/// An interval whose sides differ by less, as a part of it, is even enough.
+const LOPSIDED: f64 = 0.1;
 /// So many conflicting contacts are shown.
 const CONFLICTS: usize = 6;
 
@@ -21,6 +25,9 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     paragraph(f, 2, 2, &format!("{}.", capital(&report.reason)))?;
     if let Some(cor) = &report.cor {
         writeln!(f, "\n  COR  {}", headline(report, cor))?;
+        if let Some(text) = lopsided(report, cor) {
+            paragraph(f, 7, 7, &text)?;
+        }
     }
     bounces(report, f)?;
     super::recordings::write(report, f)?;
@@ -66,26 +73,23 @@ fn headline(report: &Report, cor: &Cor) -> String {
     }
 }
 
-/// Decimals that show an error to two digits if it begins with a one, else to one; from three to nine.
-pub(super) fn digits(error: f64) -> usize {
-    decimals(3, error)
+fn cell(cor: Option<Measured>) -> String {
+    cor.map_or_else(|| "-".to_owned(), |m| pair(m.value, m.standard_error))
 }
 
-/// The same from fewer decimals on.
-pub(super) fn decimals(least: i32, error: f64) -> usize {
-    (least..9).find(|&n| error * 10f64.powi(n) >= 1.95).and_then(|n| usize::try_from(n).ok()).unwrap_or(9)
-}
-
-pub(crate) fn pair(value: f64, error: f64) -> String {
-    let digits = digits(error);
-    if error < 0.5e-9 {
-        return format!("{value:.digits$} ± {error:.0e}");
+/// Why the interval reaches further to one side of the COR, where it does.
+fn lopsided(report: &Report, cor: &Cor) -> Option<String> {
+    let (below, above) = (cor.value - cor.low, cor.high - cor.value);
+    let settled = cor.standard_error.is_some() && !report.agreement.as_ref().is_some_and(rejected);
+    if !settled || (above - below).abs() < LOPSIDED * (above + below) {
+        return None;
     }
-    format!("{value:.digits$} ± {error:.digits$}")
-}
-
-fn measured(measured: Option<Measured>) -> String {
-    measured.map_or_else(|| "-".to_owned(), |m| pair(m.value, m.standard_error))
+    let side = if above > below { "upwards" } else { "downwards" };
+    match &report.widened {
+        Some(why) => Some(format!("The interval is longer {side}: {why}.")),
+        None if cor.low <= 0.0 => Some("The interval ends at 0, below which there is no COR.".to_owned()),
+        None => None,
+    }
 }
 
 /// The COR bounce by bounce, for small tables.
@@ -109,7 +113,7 @@ fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     };
     row("COR of", "from heights", "from times")?;
     for BounceCor { bounce, heights, times } in list {
-        row(&format!("bounce {bounce}"), &measured(*heights), &measured(*times))?;
+        row(&format!("bounce {bounce}"), &cell(*heights), &cell(*times))?;
     }
     let mean = |method: &str| {
         let found = report.estimates.iter().find(|e| e.method == method)?;
@@ -117,7 +121,7 @@ fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     };
     let (h, t) = (mean("heights-mean"), mean("times-mean"));
     if h.is_some() || t.is_some() {
-        row("mean", &measured(h), &measured(t))?;
+        row("mean", &cell(h), &cell(t))?;
     }
     if list.iter().any(|b| b.bounce == 1 && b.times.is_some()) {
         writeln!(f, "  (bounce 1 from times: the first flight over twice the fall from the release height)")?;
@@ -138,19 +142,13 @@ fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
             "first-flight" => "drop height, first flight",
             "heights-unbounded" => "heights, COR > 1 allowed",
             "times-unbounded" => "times, COR > 1 allowed",
-            "heights-huber" => "heights, Huber",
-            "heights-absolute" => "heights, sum of |r|",
-            "heights-largest" => "heights, largest |r|",
-            "times-huber" => "times, Huber",
-            "times-absolute" => "times, sum of |r|",
-            "times-largest" => "times, largest |r|",
             other => other,
         };
+        let loss = Loss::of(name);
+        let name = loss.map_or_else(|| name.to_owned(), |(readings, loss)| format!("{readings}, {}", loss.words()));
         let value = match (estimate.value, estimate.standard_error) {
             (Some(value), Some(error)) => pair(value, error),
-            (Some(value), None) if estimate.about.contains("residual") || estimate.about.contains("loss") => {
-                format!("{value:.4}")
-            }
+            (Some(value), None) if loss.is_some() => format!("{value:.4}"),
             (Some(value), None) => format!("{value:.3}, at its bound"),
             _ => "-".to_owned(),
         };
@@ -196,15 +194,6 @@ fn allowed(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         })
         .collect();
     section(f, "At the stated precision", &lines)
-}
-
-/// A number to three digits, without decimals from 100 on.
-fn number(x: f64) -> String {
-    match x {
-        x if x >= 20.0 => format!("{x:.0}"),
-        x if x >= 0.05 => format!("{x:.1}"),
-        x => format!("{x:.2}"),
-    }
 }
 
 /// What a joint fit shows when it fails.
@@ -309,29 +298,20 @@ fn explanation(hypothesis: &Hypothesis) -> String {
         (Some(offset), _) => {
             let way = if offset.value > 0.0 { "high" } else { "low" };
             format!(
-                "The zero of the height scale may be off: if every height is read {:.1} ± {:.1} cm too {way}",
-                100.0 * offset.value.abs(),
-                100.0 * offset.standard_error
+                "The zero of the height scale may be off: if every height is read {} cm too {way}",
+                measured(100.0 * offset.value.abs(), 100.0 * offset.standard_error)
             )
         }
         (None, Some(lag)) => {
-            format!("The clock may be off at the release, by {:+.3} ± {:.3} s", lag.value, lag.standard_error)
+            format!("The clock may be off at the release, by {} s", signed(lag.value, lag.standard_error))
         }
         (None, None) if hypothesis.cors.is_empty() => {
             let mut text = capital(&hypothesis.about).replacen(" is ", " may be ", 1);
             if let Some(drag) = hypothesis.drag {
-                text = format!(
-                    "Air drag may slow the ball: with k = {} ± {}/m",
-                    figures(drag.value),
-                    figures(drag.standard_error)
-                );
+                text = format!("Air drag may slow the ball: with k = {} /m", measured(drag.value, drag.standard_error));
             }
             if let Some(slope) = hypothesis.slope {
-                text = format!(
-                    "The COR may depend on speed: by {} ± {:.3} per m/s",
-                    signed(slope.value),
-                    slope.standard_error
-                );
+                text = format!("The COR may depend on speed: by {} per m/s", signed(slope.value, slope.standard_error));
             }
             text
         }
@@ -362,10 +342,6 @@ fn explanation(hypothesis: &Hypothesis) -> String {
     text
 }
 
-fn signed(x: f64) -> String {
-    format!("{x:+.3}")
-}
-
 fn generously(generous: &Generous) -> String {
     format!(
         ", and if the readings are only good to {} and {}, {} on {} (p {})",
@@ -375,29 +351,6 @@ fn generously(generous: &Generous) -> String {
         generous.degrees_of_freedom,
         chance(generous.p.unwrap_or(0.0))
     )
-}
-
-fn length(metres: f64) -> String {
-    if metres >= 0.001 { format!("{} cm", figures(100.0 * metres)) } else { format!("{} mm", figures(1000.0 * metres)) }
-}
-
-fn duration(seconds: f64) -> String {
-    if seconds < 1.0 { format!("{} ms", figures(1000.0 * seconds)) } else { format!("{} s", figures(seconds)) }
-}
-
-/// A number to two significant figures, without trailing zeros.
-pub(super) fn figures(x: f64) -> String {
-    let text = match x {
-        x if x >= 9.95 => format!("{x:.0}"),
-        x if x >= 0.995 => format!("{x:.1}"),
-        x if x >= 0.0995 => format!("{x:.2}"),
-        x => format!("{x:.1e}"),
-    };
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }
 
 /// What must not be concluded from a table whose columns contradict each other.
@@ -470,7 +423,7 @@ fn capital(text: &str) -> String {
 }
 
 /// Writes a paragraph broken at spaces, with its own indent for the first line.
-fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: &str) -> fmt::Result {
+pub(super) fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: &str) -> fmt::Result {
     let mut line = " ".repeat(first);
     let mut used = first;
     let mut fresh = true;

@@ -9,6 +9,10 @@ const PROMINENT: f64 = 0.01;
 const ABOVE_NOISE: f64 = 8.0;
 /// A minimum further above the floor than this part of the range is no contact with it.
 const FLOOR: f64 = 0.05;
+/// The part of the bends that must agree which way is up, before samples farther apart are asked,
+const AGREE: f64 = 0.65;
+/// and the part of a series that those are apart at most, one in so many.
+const FARTHEST: usize = 50;
 /// A flight with fewer samples than this says nothing of its own.
 const FEWEST: usize = 4;
 
@@ -51,14 +55,21 @@ pub(super) fn noise_by_thirds(times: &[f64], heights: &[f64]) -> f64 {
 
 /// Whether heights are counted downwards: then the series is round below and pointed above.
 pub(super) fn upside_down(times: &[f64], heights: &[f64]) -> bool {
-    let (Some(top), Some(bottom)) =
-        (heights.iter().copied().reduce(f64::max), heights.iter().copied().reduce(f64::min))
-    else {
-        return false;
-    };
-    // Nearly all of a bounce is curved one way: the sign of second differences over a few samples, where anything moves.
-    let reach = (times.len() / 100).clamp(1, 5);
-    let (mut up, mut down) = (0usize, 0usize);
+    // Close samples show their noise: the nearest are taken on which the bends agree, or else the nearest of all.
+    let nearest = (times.len() / 100).clamp(1, 5);
+    let farther = std::iter::successors(Some(nearest), |reach| Some(2 * reach));
+    let reaches = farther.take_while(|&reach| reach == nearest || FARTHEST * reach <= times.len());
+    let votes: Vec<(usize, usize)> = reaches.map(|reach| bends(times, heights, reach)).collect();
+    #[allow(clippy::cast_precision_loss)] // counts of samples
+    let agree = |&&(up, down): &&(usize, usize)| up.max(down) as f64 > AGREE * (up + down) as f64;
+    votes.iter().find(agree).or(votes.first()).is_some_and(|(up, down)| up > down)
+}
+
+/// How many samples bend upwards and downwards between those `reach` away. Nearly all of a bounce is curved one way, where anything moves.
+fn bends(times: &[f64], heights: &[f64], reach: usize) -> (usize, usize) {
+    let top = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let bottom = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let (mut up, mut down) = (0, 0);
     for i in reach..times.len().saturating_sub(reach) {
         let (a, b, c) = (heights[i - reach], heights[i], heights[i + reach]);
         let (s, t) = (times[i] - times[i - reach], times[i + reach] - times[i]);
@@ -68,7 +79,7 @@ pub(super) fn upside_down(times: &[f64], heights: &[f64]) -> bool {
         }
         if bend > 0.0 { up += 1 } else { down += 1 }
     }
-    up > down
+    (up, down)
 }
 
 /// Single wild samples taken back between their neighbours, for finding extremes only.

@@ -1,6 +1,8 @@
 //! What the recordings amount to, and what speaks against it.
 
-use super::{Series, Track};
+use super::track::Choice;
+use super::{Pooled, Series, Track, in_metres};
+use crate::bounces::Measured;
 use crate::choice::ModelChoice;
 use crate::estimate::Estimate;
 use crate::model::Law;
@@ -49,15 +51,22 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
         report.models.push(ModelChoice::of_series(choice, cor, worse, choice == pooled.choice));
         let apart = (cor.value - pooled.cor.value).abs();
         if worse < CLEAR && apart > 2.0 * cor.standard_error.hypot(pooled.cor.standard_error) && apart > 0.005 {
+            let about = |choice| ModelChoice::of_series(choice, cor, worse, false).about;
             doubts.push(format!(
-                "two models fit the samples alike (BIC apart by {worse:.1}) and give a COR of {:.3} or {:.3}",
-                pooled.cor.value, cor.value
+                "two models fit the samples alike (BIC apart by {worse:.1}): {} gives a COR of {:.3}, {} one of {:.3}",
+                about(pooled.choice),
+                pooled.cor.value,
+                about(choice),
+                cor.value
             ));
+            report.widened = Some("it takes in both models".to_owned());
             low = low.min(cor.value - pooled.quantile * cor.standard_error).max(0.0);
             high = high.max(cor.value + pooled.quantile * cor.standard_error);
         }
     }
-    varying(series, law, &mut doubts, (&mut low, &mut high));
+    if varying(series, law, &mut doubts, (&mut low, &mut high)) {
+        report.widened = Some("it takes in the COR of every impact".to_owned());
+    }
     roughness(report, series, &mut doubts);
     gravity(report, &series.tracks);
     let e = pooled.cor;
@@ -71,23 +80,36 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
     }
     report.cor = Some(Cor { value: e.value, standard_error: Some(e.standard_error), low, high });
     report.verdict = if doubts.is_empty() { Verdict::Trusted } else { Verdict::Doubtful };
-    report.reason = doubts.first().cloned().unwrap_or_else(|| match (series.tracks.len(), drag) {
-        (1, false) => "one motion fits the series".to_owned(),
-        (1, true) => "one motion with air drag fits the series".to_owned(),
-        (n, drag) => format!("one COR fits {n} series{}", if drag { ", with air drag" } else { "" }),
+    let air = match (drag, cause_is_open(pooled)) {
+        (_, true) => ", with air drag or with a COR that depends on speed: the samples cannot tell which",
+        (true, false) => ", with air drag",
+        (false, false) => "",
+    };
+    report.reason = doubts.first().cloned().unwrap_or_else(|| match series.tracks.len() {
+        1 => format!("one motion fits the series{air}"),
+        n => format!("one COR fits {n} series{air}"),
     });
     report.warnings.extend(doubts.into_iter().skip(1));
 }
 
-/// Whether the COR differs from impact to impact by more than errors and a hundredth.
-fn varying(series: &Series, law: Law, doubts: &mut Vec<String>, (low, high): (&mut f64, &mut f64)) {
-    let Some(pooled) = series.pooled.as_ref().filter(|_| law != Law::Constant) else { return };
-    let by = |a: &&crate::bounces::Measured, b: &&crate::bounces::Measured| a.value.total_cmp(&b.value);
+/// Whether air drag, and no drag but a COR that depends on speed, fit alike.
+fn cause_is_open(pooled: &Pooled) -> bool {
+    let one_of_two = |(law, drag): Choice| drag == (law == Law::Constant);
+    let other =
+        |rival: &(Choice, Measured, f64)| rival.0.1 != pooled.choice.1 && one_of_two(rival.0) && rival.2 < CLEAR;
+    one_of_two(pooled.choice) && pooled.rivals.iter().any(other)
+}
+
+/// Whether the COR differs from impact to impact by more than errors and a hundredth; then the interval takes that in.
+fn varying(series: &Series, law: Law, doubts: &mut Vec<String>, (low, high): (&mut f64, &mut f64)) -> bool {
+    let Some(pooled) = series.pooled.as_ref().filter(|_| law != Law::Constant) else { return false };
+    let by = |a: &&Measured, b: &&Measured| a.value.total_cmp(&b.value);
     let (Some(least), Some(most)) = (pooled.impacts.iter().min_by(by), pooled.impacts.iter().max_by(by)) else {
-        return;
+        return false;
     };
     let apart = most.value - least.value;
-    if apart > 0.01 && apart > 3.0 * most.standard_error.hypot(least.standard_error) {
+    let varies = apart > 0.01 && apart > 3.0 * most.standard_error.hypot(least.standard_error);
+    if varies {
         doubts.push(format!(
             "the COR is not the same at every impact: from {:.3} to {:.3} (see the impacts)",
             least.value, most.value
@@ -95,6 +117,7 @@ fn varying(series: &Series, law: Law, doubts: &mut Vec<String>, (low, high): (&m
         *low = low.min(least.value - 2.0 * least.standard_error).max(0.0);
         *high = high.max(most.value + 2.0 * most.standard_error);
     }
+    varies
 }
 
 fn roughness(report: &mut Report, series: &Series, doubts: &mut Vec<String>) {
@@ -120,10 +143,34 @@ fn roughness(report: &mut Report, series: &Series, doubts: &mut Vec<String>) {
 fn gravity(report: &mut Report, tracks: &[Track]) {
     let found = tracks.iter().map(|t| t.gravity.value).sum::<f64>() / tracks.len() as f64;
     let expected = report.gravity.value;
-    if (found / expected - 1.0).abs() > 0.2 {
+    if !in_metres(found, expected) {
         report.warnings.push(format!(
-            "the recording's gravity is {found:.3} per s² in the unit of the heights, not {expected}: heights are in pixels or in another \
-             unit, or the frame rate is another. The COR does not depend on it; speeds, drag and heights do"
+            "the recording's gravity is {found:.3} per s² in the unit of the heights, not {expected}: {}. The COR does not depend on it; \
+             speeds, drag and heights do",
+            if report.pixels {
+                "heights are in pixels (--scale says how large one is)"
+            } else {
+                "heights are in another unit, or the frame rate is another"
+            }
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drag_and_a_cor_of_speed_may_be_alike() {
+        let cor = Measured { value: 0.8, standard_error: 0.01 };
+        let open = |choice: Choice, other: Choice, worse: f64| {
+            let rivals = vec![(choice, cor, 0.0), (other, cor, worse)];
+            cause_is_open(&Pooled { choice, cor, quantile: 2.0, rivals, impacts: Vec::new() })
+        };
+        let (drag, linear, plain) = ((Law::Constant, true), (Law::Linear, false), (Law::Constant, false));
+        assert!(open(drag, linear, 2.4) && open(linear, drag, 2.4) && open(drag, (Law::Each, false), 5.9));
+        // Another model is out of the question, or supposes both or neither of them.
+        assert!(!open(drag, linear, 6.1) && !open(plain, drag, 1.0) && !open(drag, plain, 1.0));
+        assert!(!open(drag, (Law::Linear, true), 1.0) && !open(linear, (Law::Linear, true), 1.0));
     }
 }

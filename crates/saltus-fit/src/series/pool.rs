@@ -28,8 +28,7 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
         let found = across(&cors)?;
         Some((found.mean, found.quantile, own.iter().map(|v| v.bic).sum::<f64>()))
     };
-    let fitted = |t: &Track| variant(t, choice).is_some();
-    let choice = if tracks.iter().all(fitted) { choice } else { (choice.0, false) };
+    let drag = tracks.iter().any(|t| t.models.iter().any(|m| m.drag));
     let (cor, quantile, bic) = under(choice)?;
     let most = tracks.iter().map(|t| t.impacts.len()).max().unwrap_or(0);
     let impacts = (0..most).filter_map(|n| {
@@ -39,15 +38,15 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
     let several = |c: &Choice| tracks.iter().any(|t| t.impacts.len() > usize::from(c.0 == Law::Linear) + 1);
     let rivals = CHOICES
         .iter()
-        .filter(|c| c.0 == Law::Constant || several(c))
+        .filter(|c| (c.0 == Law::Constant || several(c)) && (drag || !c.1))
         .filter_map(|&c| under(c).map(|(cor, _, other)| (c, cor, other - bic)));
     let mut rivals: Vec<(Choice, Measured, f64)> = rivals.collect();
     rivals.sort_by(|a, b| a.2.total_cmp(&b.2));
     Some(Pooled { choice, cor, quantile, rivals, impacts: impacts.collect() })
 }
 
-/// The model as a recording has it: one with few impacts has one law only.
+/// The model as a recording has it: one with few impacts has one law only, and drag that was not found is none.
 fn variant(track: &Track, (law, drag): Choice) -> Option<&Variant> {
-    let of = |law: Law| track.models.iter().find(|m| m.law == name(law) && m.drag == drag);
-    of(law).or_else(|| of(Law::Constant))
+    let of = |law: Law, drag: bool| track.models.iter().find(|m| m.law == name(law) && m.drag == drag);
+    of(law, drag).or_else(|| of(Law::Constant, drag)).or_else(|| of(law, false)).or_else(|| of(Law::Constant, false))
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{Event, Reading, Table, Trial};
+use super::{Event, Reading, Table, Trial, sheet};
 
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
@@ -32,11 +32,10 @@ fn size(table: &mut Table) {
 fn zeros(table: &mut Table) {
     let zero = |r: &&Reading| r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
     let lines: Vec<u64> = table.trials.iter().flat_map(|t| &t.readings).filter(zero).map(|r| r.line).collect();
-    if let Some(first) = lines.first() {
-        let where_ =
-            if lines.len() == 1 { format!("line {first}") } else { format!("{} lines from {first}", lines.len()) };
+    if !lines.is_empty() {
+        let named = sheet::lines(&lines);
         table.warnings.push(format!(
-            "{where_}: a rebound of zero height is below what can be read; only 'heights-ratio' counts it"
+            "{named}: a rebound of zero height is below what can be read; only 'heights-ratio' counts it"
         ));
         table.zero_rebounds = lines.len();
     }

@@ -5,6 +5,10 @@ use saltus_bounce::units::Quantity;
 use super::ReadOptions;
 use super::sheet::{Sheet, shown};
 use super::units::{self, Unit, is_unit};
+use super::vocabulary::{
+    AVERAGE, BOUNCE, ERROR, EVENT, FRAME, HEIGHT, IGNORED, INTERVAL, KNOWN, RELEASE, REPEAT, SETTING, TIME, TRIAL,
+    number,
+};
 use crate::error::TableError;
 
 /// What a column holds.
@@ -63,8 +67,16 @@ impl Column {
         matches!(self.kind, Kind::Time | Kind::Interval | Kind::TimeAt(_) | Kind::Trial(Quantity::Time))
     }
 
-    fn is_height(&self) -> bool {
+    pub(super) fn is_height(&self) -> bool {
         matches!(self.kind, Kind::Height | Kind::HeightAt(_) | Kind::DropHeight | Kind::Trial(Quantity::Length))
+    }
+
+    /// Whether it holds this quantity or its errors.
+    fn holds(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Time => self.is_time() || self.kind == Kind::SigmaTime,
+            _ => self.is_height() || self.kind == Kind::SigmaHeight,
+        }
     }
 }
 
@@ -73,110 +85,15 @@ impl Column {
 pub(super) struct Columns {
     pub(super) columns: Vec<Column>,
     pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
     /// Heights are in pixels that nobody has given a scale for.
     pub(super) pixels: bool,
 }
 
-const KNOWN: [&str; 11] = [
-    "event",
-    "bounce",
-    "time_s",
-    "height_cm",
-    "interval_s",
-    "time_error_s",
-    "height_error_cm",
-    "h0_cm",
-    "trial",
-    "ball",
-    "note",
-];
-
-const ERROR: &[&str] = &["error", "err", "sigma", "uncertainty", "unc", "sd", "std", "stdev", "se"];
-const INTERVAL: &[&str] = &["interval", "intervals", "dt", "delta", "duration", "gap", "period"];
-const TIME: &[&str] = &["time", "times", "t", "timestamp", "clock", "zeit", "temps", "tiempo", "tempo"];
-const HEIGHT: &[&str] = &[
-    "height",
-    "heights",
-    "h",
-    "y",
-    "z",
-    "altitude",
-    "rebound",
-    "apex",
-    "peak",
-    "position",
-    "distance",
-    "displacement",
-    "elevation",
-    "höhe",
-    "hauteur",
-    "altura",
-    "altezza",
-];
-const AVERAGE: &[&str] = &["average", "mean", "avg", "moyenne", "mittelwert", "media"];
-const FRAME: &[&str] = &["frame", "frames", "slice"];
-const RELEASE: &[&str] = &["drop", "release", "initial", "start", "released", "dropped", "before"];
-const TRIAL: &[&str] = &[
-    "trial",
-    "run",
-    "drop",
-    "launch",
-    "throw",
-    "series",
-    "track",
-    "repeat",
-    "repetition",
-    "rep",
-    "set",
-    "experiment",
-    "test",
-];
-const BOUNCE: &[&str] = &["bounce", "bounces", "n", "number", "no", "contact", "impact", "index", "hit", "k", "i"];
-const EVENT: &[&str] = &["event", "events", "what", "phase"];
-const SETTING: &[&str] = &["ball", "surface", "material", "floor", "object", "temperature", "condition"];
-const REPEAT: &[&str] = &["group", "person", "sample", "id"];
-const IGNORED: &[&str] = &[
-    "source",
-    "file",
-    "filename",
-    "comment",
-    "comments",
-    "note",
-    "notes",
-    "remark",
-    "remarks",
-    "observer",
-    "date",
-    "x",
-    "v",
-    "vx",
-    "vy",
-    "a",
-    "ax",
-    "ay",
-    "velocity",
-    "speed",
-    "acceleration",
-    "energy",
-    "force",
-    "step",
-    "flag",
-    "jumps",
-    "mode",
-    // What is to be found, worked out by somebody already.
-    "cor",
-    "e",
-    "cr",
-    "coefficient",
-    "restitution",
-    "pixelx",
-    "pixely",
-];
-
 impl Columns {
     /// Recognises the columns of a sheet; `fps` is the frame rate, where one is known.
     pub(super) fn of(sheet: &Sheet<'_>, options: &ReadOptions, fps: Option<f64>) -> Result<Self, TableError> {
-        let mut found = Self { columns: Vec::new(), notes: Vec::new(), pixels: false };
+        let mut found = Self { columns: Vec::new(), notes: Vec::new(), warnings: Vec::new(), pixels: false };
         for (index, cell) in sheet.block.header.iter().enumerate() {
             found.columns.push(column(sheet, options, index, cell)?);
         }
@@ -205,6 +122,9 @@ impl Columns {
         for kind in [Kind::Time, Kind::Height, Kind::Interval] {
             found.choose(sheet, options, &kind)?;
         }
+        for quantity in [Quantity::Length, Quantity::Time] {
+            found.overrule(sheet, options, quantity)?;
+        }
         found.pixels = found.columns.iter().any(|c| c.is_height() && c.unit.pixels);
         if let Some(name) = options.column.as_ref().filter(|_| !sheet.block.chosen)
             && !found.columns.iter().any(|c| c.name.eq_ignore_ascii_case(name))
@@ -222,6 +142,25 @@ impl Columns {
             }
         }
         Ok(found)
+    }
+
+    /// A unit that is stated is for columns that name none. Where all of them name one, and another, it can only mean that they are wrong: what
+    /// is stated holds, with a warning.
+    fn overrule(&mut self, sheet: &Sheet<'_>, options: &ReadOptions, quantity: Quantity) -> Result<(), TableError> {
+        let Some((name, unit)) = units::stated(sheet, options, quantity)? else { return Ok(()) };
+        let unit = unit.by_name();
+        let all: Vec<&mut Column> = self.columns.iter_mut().filter(|c| c.holds(quantity)).collect();
+        if !all.iter().all(|c| c.unit.named) {
+            return Ok(());
+        }
+        for column in all.into_iter().filter(|c| c.unit != unit) {
+            column.unit = unit;
+            self.warnings.push(format!(
+                "the numbers of '{}' are taken to be in {name}, as stated, against its name",
+                column.name
+            ));
+        }
+        Ok(())
     }
 
     /// A count of frames is a time, if nothing else is and the frame rate is known.
@@ -331,11 +270,6 @@ fn is_trial(cell: &str) -> bool {
     let (words, _) = words(cell);
     words.first().is_some_and(|word| TRIAL.contains(&word.as_str()))
         && words.get(1).is_some_and(|n| number(n).is_some())
-}
-
-/// The number of a bounce or a trial in a name; nobody counts further.
-fn number(word: &str) -> Option<usize> {
-    word.parse().ok().filter(|n| *n <= 1_000_000)
 }
 
 fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) -> Result<Column, TableError> {

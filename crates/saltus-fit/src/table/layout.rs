@@ -8,8 +8,9 @@ use saltus_bounce::units::Quantity;
 
 use super::header::{Columns, Kind};
 use super::order::{in_order, renumbered, summed};
-use super::samples::{self, Missing};
-use super::sheet::{Row, Sheet, shown};
+use super::samples;
+use super::sheet::{Row, Sheet, lines, shown};
+use super::stray;
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 
@@ -56,7 +57,8 @@ struct Reader<'a> {
     key: String,
     kept: usize,
     skipped: usize,
-    missing: Missing,
+    /// The lines of rows without a position.
+    missing: Vec<u64>,
 }
 
 /// Reads the rows of `sheet` into trials.
@@ -91,7 +93,7 @@ pub(super) fn table(
         key: String::new(),
         kept: 0,
         skipped: 0,
-        missing: Missing::default(),
+        missing: Vec::new(),
     };
     sheet.each_row(|row| reader.row(row))?;
     if reader.kept == 0 {
@@ -110,7 +112,7 @@ pub(super) fn table(
     if reader.skipped > 0 {
         notes.push(format!("{} rows kept and {} left out by the filter", reader.kept, reader.skipped));
     }
-    let mut table = Table { notes, metadata, ..Table::default() };
+    let mut table = Table { notes, warnings: columns.warnings.clone(), metadata, ..Table::default() };
     let Reader { trials, layout, kept, missing, .. } = reader;
     table.trials = match layout {
         Layout::Numbered { number } => renumbered(sheet, trials, number, &mut table.repairs)?,
@@ -120,12 +122,15 @@ pub(super) fn table(
         table.trials = table.trials.into_iter().map(|trial| summed(sheet, trial)).collect::<Result<_, _>>()?;
     }
     if let Layout::Samples { .. } = layout {
-        missing.say(&mut table.repairs);
+        if !missing.is_empty() {
+            table.repairs.push(format!("{}: no position here, left out", lines(&missing)));
+        }
         samples::series(sheet, columns, options, &mut table)?;
     }
     for trial in &mut table.trials {
         in_order(sheet, columns, trial, matches!(layout, Layout::Listed))?;
     }
+    stray::warn(sheet, columns, &table.trials, &mut table.warnings)?;
     table.notes.insert(0, format!("read as {what}"));
     table.rows = kept;
     Ok(table)
@@ -230,7 +235,7 @@ impl Reader<'_> {
                 let (time, height) = (self.value(row, self.time)?, self.height(row, self.height)?);
                 if time.is_none() && height.is_none() {
                     let index = self.height.or(self.time).unwrap_or(number);
-                    return Err(row.error(index, "the cell is empty").help("fill it, or take the row out"));
+                    return Err(empty(row, index));
                 }
                 let readings = &mut self.trials[trial].readings;
                 match (self.height.is_some(), self.time.is_some()) {
@@ -275,7 +280,7 @@ impl Reader<'_> {
                     let n = self.trials[trial].readings.len();
                     self.trials[trial].readings.push(Reading { time, height, ..reading(Event::Sample, n) });
                 } else {
-                    self.missing.count(row.line);
+                    self.missing.push(row.line);
                 }
             }
             _ => {
@@ -429,7 +434,10 @@ fn same(cell: &str, value: &str) -> bool {
 }
 
 fn empty(row: &Row<'_>, index: usize) -> TableError {
-    row.error(index, "the cell is empty").help("fill it, or take the row out")
+    match shown(row.cell(index)) {
+        cell if cell.is_empty() => row.error(index, "the cell is empty").help("fill it, or take the row out"),
+        cell => row.error(index, format!("'{cell}' is no reading")).help("write one here, or take the row out"),
+    }
 }
 
 fn event_of(row: &Row<'_>, index: usize) -> Result<Event, TableError> {

@@ -20,7 +20,10 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
         }
         let of = |line: String| format!("{label}: {line}");
         pooled.repairs.extend(part.repairs.into_iter().map(of));
-        pooled.warnings.extend(part.warnings.into_iter().map(of));
+        // What names its place names the file.
+        let named = [format!("{label}:"), format!("sheet '{label}'")];
+        let placed = |line: String| if named.iter().any(|name| line.contains(name)) { line } else { of(line) };
+        pooled.warnings.extend(part.warnings.into_iter().map(placed));
         pooled.rows += part.rows;
         pooled.zero_rebounds += part.zero_rebounds;
         pooled.trials.extend(part.trials.into_iter().map(|trial| Trial {
@@ -57,5 +60,6 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         sigma_height: larger(a.sigma_height, b.sigma_height),
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,
+        oriented: a.oriented,
     })
 }

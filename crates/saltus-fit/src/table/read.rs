@@ -43,6 +43,7 @@ struct Tables<'a> {
 fn recognise<'a>(grid: &'a Grid<'a>, options: &ReadOptions) -> Result<Tables<'a>, TableError> {
     let mut metadata = grid.metadata()?;
     metadata.frame_rate = options.fps.or(metadata.frame_rate);
+    metadata.oriented = options.down.is_some();
     let Recognised { what, blocks, tracks } = export::blocks(grid, options, metadata.frame_rate)?;
     let mut tables = Vec::with_capacity(blocks.len());
     for block in blocks {

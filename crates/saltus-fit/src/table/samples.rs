@@ -7,38 +7,15 @@ use crate::error::TableError;
 
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
 const RECORDING: usize = 5;
-/// Rows this far apart are compared to tell which way the ball falls.
+/// Rows this far apart are compared to tell which way the ball falls; where noise hides it, twice as far, and so on up to one in so many.
 const STRIDE: usize = 2;
+const FARTHEST: usize = 50;
 /// And so far apart to tell how fast.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
 /// They agree how fast if the middle half of the bends lies within this part of their median.
 const ALIKE: f64 = 0.35;
 /// The part of the bends of a series that must agree before it is said to fall either way.
 const AGREE: f64 = 0.65;
-
-/// Rows without a position: how many, and the first.
-#[derive(Default)]
-pub(super) struct Missing {
-    count: usize,
-    first: u64,
-}
-
-impl Missing {
-    pub(super) fn count(&mut self, line: u64) {
-        if self.count == 0 {
-            self.first = line;
-        }
-        self.count += 1;
-    }
-
-    pub(super) fn say(&self, repairs: &mut Vec<String>) {
-        match self.count {
-            0 => {}
-            1 => repairs.push(format!("line {}: no position here, left out", self.first)),
-            n => repairs.push(format!("{n} lines from {} on hold no position and were left out", self.first)),
-        }
-    }
-}
 
 /// Puts the samples of a table in order and the right way up.
 pub(super) fn series(
@@ -162,26 +139,22 @@ fn ordered(
 
 /// Turns a series that falls upwards; heights of a picture are then counted from its lowest.
 fn orient(columns: &Columns, options: &ReadOptions, table: &mut Table) {
-    let (mut up, mut down) = (0, 0);
-    for trial in &table.trials {
-        let (a, b) = bends(&trial.readings);
-        (up, down) = (up + a, down + b);
-    }
-    #[allow(clippy::cast_precision_loss)] // counts of rows
-    let agree = |part: usize| part >= 3 && part as f64 >= AGREE * (up + down) as f64;
+    let falls_upwards = falls_upwards(&table.trials);
     let turned = match options.down {
-        Some(_) => {
-            // The option is heeded, but a ball that then falls upwards is worth a word.
-            if agree(down) {
-                let what = "read this way up the ball falls upwards: is it --y-down or --y-up?";
-                table.warnings.push(what.to_owned());
+        Some(down) => {
+            // What is stated is heeded, but a ball that then falls upwards is worth a word.
+            if falls_upwards == Some(true) {
+                let (way, other) = if down { ("downwards", "--y-up") } else { ("upwards", "--y-down") };
+                table.warnings.push(format!(
+                    "the heights are taken to count {way}, as stated, and then the ball falls upwards: is it {other}?"
+                ));
             }
             false
         }
-        None => agree(down) || (columns.pixels && !agree(up)),
+        None => falls_upwards.unwrap_or(columns.pixels),
     };
     if turned {
-        let why = if agree(down) { "the ball falls that way" } else { "as in pictures" };
+        let why = if falls_upwards.is_some() { "the ball falls that way" } else { "as in pictures" };
         table.notes.push(format!("heights count downwards: {why} (--y-up if not)"));
         each_height(table, |h| -h);
     }
@@ -198,14 +171,28 @@ fn each_height(table: &mut Table, change: impl Fn(f64) -> f64) {
     }
 }
 
+/// Whether the ball falls towards greater heights; `None` where the series does not tell.
+fn falls_upwards(trials: &[Trial]) -> Option<bool> {
+    let longest = trials.iter().map(|trial| trial.readings.len()).max().unwrap_or(0);
+    let farther = std::iter::successors(Some(STRIDE), |stride| Some(2 * stride));
+    let mut strides = farther.take_while(|&stride| stride == STRIDE || FARTHEST * stride <= longest);
+    strides.find_map(|stride| {
+        let votes = trials.iter().map(|trial| bends(&trial.readings, stride));
+        let (up, down) = votes.fold((0, 0), |(up, down), (a, b)| (up + a, down + b));
+        #[allow(clippy::cast_precision_loss)] // counts of rows
+        let agree = |part: usize| part >= 3 && part as f64 >= AGREE * (up + down) as f64;
+        if agree(down) { Some(true) } else { agree(up).then_some(false) }
+    })
+}
+
 /// How often a series bends downwards, as flights do, and upwards; only where the ball moves.
-fn bends(readings: &[Reading]) -> (usize, usize) {
+fn bends(readings: &[Reading], stride: usize) -> (usize, usize) {
     let heights: Vec<f64> = readings.iter().filter_map(|r| r.height).collect();
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &y| (l.min(y), h.max(y)));
     let moves = 0.02 * (high - low);
     let (mut up, mut down) = (0, 0);
-    for w in heights.windows(2 * STRIDE + 1) {
-        let (a, b, c) = (w[0], w[STRIDE], w[2 * STRIDE]);
+    for w in heights.windows(2 * stride + 1) {
+        let (a, b, c) = (w[0], w[stride], w[2 * stride]);
         if (b - a).abs().max((c - b).abs()) > moves {
             up += usize::from(a + c < 2.0 * b);
             down += usize::from(a + c > 2.0 * b);

@@ -4,6 +4,7 @@ use saltus_bounce::units::Quantity;
 
 use super::ReadOptions;
 use super::sheet::{Sheet, shown};
+use super::vocabulary::is_vocabulary;
 use crate::error::TableError;
 
 /// A unit as a factor, or, where that is exact, as a divisor: 30 cm is 30 / 100 m.
@@ -13,6 +14,8 @@ pub(super) struct Unit {
     over: f64,
     /// Pixels nobody has given a scale for: one counts as a metre.
     pub(super) pixels: bool,
+    /// The header names it.
+    pub(super) named: bool,
 }
 
 /// Words for units beside their symbols.
@@ -30,7 +33,7 @@ const WORDS: &[(&[&str], &str)] = &[
 const PIXEL: &[&str] = &["px", "pixel", "pixels", "pix"];
 
 impl Unit {
-    pub(super) const ONE: Self = Self { times: 1.0, over: 1.0, pixels: false };
+    pub(super) const ONE: Self = Self { times: 1.0, over: 1.0, pixels: false, named: false };
 
     /// A number of this unit in SI units.
     pub(super) fn si(self, value: f64) -> f64 {
@@ -40,6 +43,11 @@ impl Unit {
     /// One frame, in seconds.
     pub(super) fn frame(fps: f64) -> Self {
         Self { over: fps, ..Self::ONE }
+    }
+
+    /// The same, named by the header.
+    pub(super) fn by_name(self) -> Self {
+        Self { named: true, ..self }
     }
 
     fn of(scale: f64) -> Self {
@@ -54,7 +62,8 @@ impl Unit {
     /// The unit a word means, if it is one of this quantity.
     fn named(quantity: Quantity, word: &str, options: &ReadOptions) -> Option<Self> {
         if quantity == Quantity::Length && PIXEL.contains(&word) {
-            return Some(Self { times: options.scale.unwrap_or(1.0), pixels: options.scale.is_none(), over: 1.0 });
+            let (times, pixels) = (options.scale.unwrap_or(1.0), options.scale.is_none());
+            return Some(Self { times, pixels, ..Self::ONE });
         }
         let symbol = WORDS.iter().find(|(words, _)| words.contains(&word)).map_or(word, |(_, symbol)| symbol);
         quantity.scale(symbol).map(Self::of)
@@ -76,21 +85,20 @@ pub(super) fn unit(
     bracket: Option<&str>,
 ) -> Result<Unit, TableError> {
     let cell = sheet.block.header[index].as_str();
-    let (given, assumed, option) = match quantity {
-        Quantity::Time => (&options.time_unit, sheet.block.units.0, "--time-unit s"),
-        _ => (&options.height_unit, sheet.block.units.1, "--height-unit cm (or px)"),
+    let (assumed, option) = match quantity {
+        Quantity::Time => (sheet.block.units.0, "--time-unit s"),
+        _ => (sheet.block.units.1, "--height-unit cm (or px)"),
     };
+    let given = stated(sheet, options, quantity)?;
     let in_words = || {
         let mut known = words.iter().skip(1).filter(|word| is_unit(quantity, word));
         let first = known.next();
         // In 'height in cm' the inch is a preposition.
         if first.is_some_and(|word| word == "in") { known.next().or(first) } else { first }
     };
-    if let Some(unit) = bracket.and_then(|inside| Unit::named(quantity, inside, options)) {
-        return Ok(unit);
-    }
-    if let Some(unit) = in_words().and_then(|word| Unit::named(quantity, word, options)) {
-        return Ok(unit);
+    let own = bracket.and_then(|inside| Unit::named(quantity, inside, options));
+    if let Some(unit) = own.or_else(|| in_words().and_then(|word| Unit::named(quantity, word, options))) {
+        return Ok(unit.by_name());
     }
     let other = bracket.into_iter().chain(words.iter().skip(1).map(String::as_str)).find(|word| {
         [Quantity::Time, Quantity::Length, Quantity::Speed].iter().any(|q| is_unit(*q, word)) || *word == "kg"
@@ -103,12 +111,8 @@ pub(super) fn unit(
             )
             .help(format!("use one of {}", known(quantity))));
     }
-    if let Some(unit) = given {
-        return Unit::named(quantity, unit.trim(), options).ok_or_else(|| {
-            sheet
-                .error(format!("the unit given, '{unit}', is not a unit of {}", thing(quantity)))
-                .help(format!("use one of {}", known(quantity)))
-        });
+    if let Some((_, unit)) = given {
+        return Ok(unit);
     }
     // Only pixels are scaled: whoever gives a scale has pixels.
     let assumed = assumed.or((quantity == Quantity::Length && options.scale.is_some()).then_some("px"));
@@ -120,9 +124,30 @@ pub(super) fn unit(
     }
     let stem = words.first().map_or("height", String::as_str);
     let example = if quantity == Quantity::Time { format!("{stem}_s") } else { format!("{stem}_cm") };
-    Err(sheet
-        .header_error(index, format!("the column '{}' has no unit", shown(cell)))
-        .help(format!("name it '{example}', or give {option}")))
+    let message = match words.last().filter(|word| words.len() > 1 && !is_vocabulary(word)) {
+        Some(word) => {
+            format!("'{}' in '{}' is not a unit of {} that is known", shown(word), shown(cell), thing(quantity))
+        }
+        None => format!("the column '{}' has no unit", shown(cell)),
+    };
+    let known = known(quantity);
+    Err(sheet.header_error(index, message).help(format!("name it '{example}', or give {option}; known are {known}")))
+}
+
+/// The unit that is stated beside the table for a quantity: its name, and what it is.
+pub(super) fn stated<'a>(
+    sheet: &Sheet<'_>,
+    options: &'a ReadOptions,
+    quantity: Quantity,
+) -> Result<Option<(&'a str, Unit)>, TableError> {
+    let given = if quantity == Quantity::Time { &options.time_unit } else { &options.height_unit };
+    let Some(name) = given.as_deref().map(str::trim) else { return Ok(None) };
+    match Unit::named(quantity, name, options) {
+        Some(unit) => Ok(Some((name, unit))),
+        None => Err(sheet
+            .error(format!("the unit given, '{name}', is not a unit of {}", thing(quantity)))
+            .help(format!("use one of {}", known(quantity)))),
+    }
 }
 
 /// Whether the first reading of a column is one of a stopwatch, `0:01.25`.

@@ -1,0 +1,103 @@
+//! `saltus fit` as a newcomer meets it: the first example of its guide, several films, options without a unit.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn saltus(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command.current_dir(folder).env("NO_COLOR", "1").args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// What stands between this fence and the next, for the first time.
+fn fenced<'a>(guide: &'a str, fence: &str) -> &'a str {
+    guide.split(fence).nth(1).and_then(|rest| rest.split("```").next()).unwrap()
+}
+
+/// A film of a ball with a COR of 0.8, dropped from a height in metres.
+fn film(drop: f64) -> String {
+    let (g, mut text) = (9.81f64, "time_s,height_m\n".to_owned());
+    let (mut start, mut speed, mut height) = (0.0, 0.0, drop);
+    for n in 0..200 {
+        let t = 0.01 * f64::from(n);
+        let at = |start: f64, speed: f64, height: f64| height + speed * (t - start) - 0.5 * g * (t - start).powi(2);
+        while at(start, speed, height) < 0.0 {
+            let arrival = (speed * speed + 2.0 * g * height).sqrt();
+            (start, speed, height) = (start + (speed + arrival) / g, 0.8 * arrival, 0.0);
+        }
+        // Read to a millimetre.
+        text += &format!("{t:.2},{:.3}\n", at(start, speed, height));
+    }
+    text
+}
+
+#[test]
+fn the_first_example_of_the_guide_is_what_is_printed() {
+    let folder = TempDir::new().unwrap();
+    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fitting.md")).unwrap();
+    fs::write(folder.path().join("drop.csv"), fenced(&guide, "```csv\n")).unwrap();
+    let command: Vec<&str> = fenced(&guide, "```sh\n").split_whitespace().skip(1).collect();
+    let output = saltus(folder.path(), &command);
+    assert_eq!(text(&output.stdout), fenced(&guide, "```text\n"));
+}
+
+#[test]
+fn several_films_are_drawn() {
+    let folder = TempDir::new().unwrap();
+    for (name, drop) in [("low.csv", 0.8), ("high.csv", 1.1)] {
+        fs::write(folder.path().join(name), film(drop)).unwrap();
+    }
+    let output = saltus(folder.path(), &["fit", "low.csv", "high.csv", "--plot", "a.svg", "--plot-cor", "b.svg"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for (name, part) in [("a.svg", "first of 2 trials: the fitted motion"), ("b.svg", "Speed of impact (m/s)")] {
+        let svg = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(svg.contains("Low and high") && svg.contains(part), "{svg}");
+    }
+    let one: String = film(0.8).lines().take(75).map(|line| format!("{line}\n")).collect();
+    fs::write(folder.path().join("one.csv"), one).unwrap();
+    let output = saltus(folder.path(), &["fit", "one.csv", "--plot-cor", "c.svg"]);
+    assert!(text(&output.stderr).contains("which takes two bounces; --plot draws one"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn a_small_length_without_a_unit_is_offered_a_small_one() {
+    let folder = TempDir::new().unwrap();
+    for (option, such) in [
+        ("--ball=4", "'4 cm'"),
+        ("--ball=0.04", "'0.04 m'"),
+        ("--sigma-height=5", "'5 mm'"),
+        ("--sigma-time=10", "'10 ms'"),
+    ] {
+        let output = saltus(folder.path(), &["fit", "drop.csv", option]);
+        assert!(text(&output.stderr).contains(&format!("such as {such}")), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn help_on_help_and_no_line_broken_twice() {
+    let folder = TempDir::new().unwrap();
+    assert_eq!(saltus(folder.path(), &["help", "--help"]).stdout, saltus(folder.path(), &["help"]).stdout);
+    assert_eq!(saltus(folder.path(), &["help", "fit", "-h"]).stdout, saltus(folder.path(), &["help", "fit"]).stdout);
+    assert!(saltus(folder.path(), &["help", "--help"]).status.success());
+}
+
+/// The reader of old workbooks may panic; nobody hears of it.
+#[test]
+fn a_broken_workbook_is_one_error() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("broken.xls"), [&b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"[..], &[7; 4000]].concat())
+        .unwrap();
+    let said = text(&saltus(folder.path(), &["fit", "broken.xls"]).stderr);
+    assert!(
+        said.starts_with("error: broken.xls: this workbook cannot be read") && !said.contains("panicked"),
+        "{said}"
+    );
+}
