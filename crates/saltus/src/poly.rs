@@ -3,6 +3,22 @@
 /// The highest degree handled.
 pub(crate) const MAX_DEGREE: usize = 12;
 
+/// C(n, k) in row n.
+const BINOMIALS: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
+    let mut rows = [[0.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+    let mut n = 0;
+    while n <= MAX_DEGREE {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
+
 /// A polynomial on `[0, 1]` by its Bernstein coefficients, p(u) = Σ bᵢ C(n,i) uⁱ (1-u)ⁿ⁻ⁱ.
 ///
 /// p lies between the smallest and the largest bᵢ, starts at b₀ and ends at bₙ; if the bᵢ fall (rise) throughout, so does p
@@ -37,13 +53,8 @@ impl Bernstein {
         let mut b = [0.0; MAX_DEGREE + 1];
         b[..=degree].copy_from_slice(c);
         // Scale to cₖ / C(n,k), then sum down the Pascal triangle: bᵢ = Σₖ C(i,k) cₖ / C(n,k).
-        let mut binomial = 1.0;
-        for (k, value) in b.iter_mut().enumerate().take(degree + 1) {
+        for (value, binomial) in b[..=degree].iter_mut().zip(&BINOMIALS[degree]) {
             *value /= binomial;
-            #[allow(clippy::cast_precision_loss)] // at most MAX_DEGREE
-            {
-                binomial = binomial * (degree - k) as f64 / (k + 1) as f64;
-            }
         }
         for level in 1..=degree {
             for i in (level..=degree).rev() {
@@ -116,18 +127,14 @@ impl Bernstein {
     /// The coefficients times their binomials, for [`value`].
     fn weighted(&self) -> [f64; MAX_DEGREE + 1] {
         let mut weighted = self.b;
-        let mut binomial = 1.0;
-        for (k, value) in weighted.iter_mut().enumerate().take(self.degree + 1) {
+        for (value, binomial) in weighted[..=self.degree].iter_mut().zip(&BINOMIALS[self.degree]) {
             *value *= binomial;
-            #[allow(clippy::cast_precision_loss)] // at most MAX_DEGREE
-            {
-                binomial = binomial * (self.degree - k) as f64 / (k + 1) as f64;
-            }
         }
         weighted
     }
 
-    /// Where it changes sign, if its signs at both ends differ: by regula falsi with Illinois' halving, to rounding.
+    /// Where it changes sign, if its signs at both ends differ: by regula falsi, to rounding. An end that stays is weighed down as if a parabola ran through
+    /// the last three points (N. Anderson, Å. Björck, BIT 13 (1973) 253, doi:10.1007/BF01951936).
     pub(crate) fn root(&self) -> Option<f64> {
         let (mut a, mut b, mut at_a, mut at_b) = (0.0, 1.0, self.start(), self.end());
         if at_a == 0.0 || at_b == 0.0 || (at_a > 0.0) == (at_b > 0.0) {
@@ -136,14 +143,18 @@ impl Bernstein {
         let weighted = self.weighted();
         for _ in 0..100 {
             let u = b - at_b * (b - a) / (at_b - at_a);
+            if (u - b).abs() <= f64::EPSILON * u {
+                return Some(u);
+            }
             let at_u = value(&weighted[..=self.degree], u);
-            if at_u == 0.0 || (u - b).abs() <= f64::EPSILON * u {
+            if at_u == 0.0 {
                 return Some(u);
             }
             if (at_u > 0.0) != (at_b > 0.0) {
                 (a, at_a) = (b, at_b);
             } else {
-                at_a *= 0.5;
+                let weight = 1.0 - at_u / at_b;
+                at_a *= if weight > 0.0 { weight } else { 0.5 };
             }
             (b, at_b) = (u, at_u);
         }
@@ -190,9 +201,14 @@ impl Bernstein {
 fn value(weighted: &[f64], u: f64) -> f64 {
     let v = 1.0 - u;
     let (ratio, base) = if u <= 0.5 { (u / v, v) } else { (v / u, u) };
-    let horner = |sum: f64, w: &f64| sum * ratio + w;
-    let sum = if u <= 0.5 { weighted.iter().rev().fold(0.0, horner) } else { weighted.iter().fold(0.0, horner) };
-    weighted.iter().skip(1).fold(sum, |value, _| value * base)
+    let (mut sum, mut power) = (0.0, 1.0 / base);
+    let mut step = |w: &f64| (sum, power) = (sum * ratio + w, power * base);
+    if u <= 0.5 {
+        weighted.iter().rev().for_each(&mut step)
+    } else {
+        weighted.iter().for_each(&mut step)
+    }
+    sum * power
 }
 
 /// The first fall through zero of c₀ + c₁ s + c₂ s² at s ≥ 0, with c₀ taken to be zero and its root skipped if `spent`.

@@ -23,7 +23,7 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 ///
 /// | flight F | modes | solution |
 /// |---|---|---|
-/// | [`VacuumFlight`], the default | [`Mode`]: `Flight`, `Rest` | a parabola, by a quadratic's root |
+/// | [`VacuumFlight`], the default | [`Mode`]: `Flight`, `Rest` | a parabola, its impact by a square root |
 /// | [`LinearDragFlight`](crate::flight::LinearDragFlight) | [`Mode`] | its formula |
 /// | [`QuadraticDragFlight`](crate::flight::QuadraticDragFlight) | [`Phase`]: `Rising`, `Falling`, `Rest` | its formula, smooth in each |
 ///
