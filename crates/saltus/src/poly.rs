@@ -204,9 +204,9 @@ fn value(weighted: &[f64], u: f64) -> f64 {
     let (mut sum, mut power) = (0.0, 1.0 / base);
     let mut step = |w: &f64| (sum, power) = (sum * ratio + w, power * base);
     if u <= 0.5 {
-        weighted.iter().rev().for_each(&mut step)
+        weighted.iter().rev().for_each(&mut step);
     } else {
-        weighted.iter().for_each(&mut step)
+        weighted.iter().for_each(&mut step);
     }
     sum * power
 }
