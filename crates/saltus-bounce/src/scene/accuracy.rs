@@ -331,27 +331,21 @@ impl Accuracy {
     /// evaluations. Frames are left aside; where formulas solve the scene, they alone are on it.
     #[must_use]
     pub fn frontier(&self, target: Target) -> Vec<&Trial> {
-        let framed = |trial: &&Trial| matches!(trial.way, Way::Frames { .. });
         if let Some(formulas) = self.trials.iter().find(|trial| matches!(trial.way, Way::Formulas)) {
             return vec![formulas];
         }
+        let stepped = self.trials.iter().filter(|trial| !matches!(trial.way, Way::Frames { .. }));
         let point = |trial: &'_ Trial| {
             let outcome = trial.outcome.as_ref().ok()?;
             Some((outcome.evaluations(), outcome.difference.share(target, &self.doubt)))
         };
-        let mut points: Vec<_> = self
-            .trials
-            .iter()
-            .filter(|trial| !framed(trial))
-            .filter_map(|trial| Some((point(trial)?, trial)))
-            .collect();
+        let mut points: Vec<_> = stepped.filter_map(|trial| Some((point(trial)?, trial))).collect();
         points.sort_by(|((a, off), _), ((b, than), _)| a.cmp(b).then(off.total_cmp(than)));
         let mut least = f64::INFINITY;
-        points.retain(|((_, off), _)| {
-            *off < least && {
-                least = *off;
-                true
-            }
+        points.retain(|&((_, off), _)| {
+            let nearer = off < least;
+            least = least.min(off);
+            nearer
         });
         points.into_iter().map(|(_, trial)| trial).collect()
     }
@@ -360,15 +354,9 @@ impl Accuracy {
     /// them whatever stepper and tolerance it is given.
     #[must_use]
     pub fn cheapest(&self, target: Target) -> Option<&Trial> {
-        let good = |trial: &&Trial| {
-            let meets = trial.outcome.as_ref().is_ok_and(|outcome| outcome.difference.meets(target, &self.doubt));
-            meets && !matches!(trial.way, Way::Frames { .. })
-        };
-        let formulas = |trial: &&Trial| matches!(trial.way, Way::Formulas);
-        if let Some(formulas) = self.trials.iter().find(formulas).filter(good) {
-            return Some(formulas);
-        }
-        self.frontier(target).into_iter().find(good)
+        let meets =
+            |trial: &&Trial| trial.outcome.as_ref().is_ok_and(|outcome| outcome.difference.meets(target, &self.doubt));
+        self.frontier(target).into_iter().find(meets)
     }
 
     /// What a further digit costs by a stepper: the factor by which the evaluations grow as the error falls to a tenth, by least squares of the logarithms

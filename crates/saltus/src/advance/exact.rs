@@ -43,7 +43,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
         let span = match &first {
-            Some(first) if observer.wants_pieces() => self.span_inside(first.edge, now, at, close.span),
+            Some(first) if first.is_told() && observer.wants_pieces() => {
+                self.span_inside(first.edge, now, at, close.span)
+            }
             _ => close.span,
         };
         let told = observer.piece(mode, &Piece::new(now, span, 1.0, c));

@@ -21,6 +21,13 @@ pub(super) struct First<A: Automaton> {
     state: Option<A::State>,
 }
 
+impl<A: Automaton> First<A> {
+    /// Whether a formula told where it is, so that nobody has looked at the guard on the solution there.
+    pub(super) fn is_told(&self) -> bool {
+        self.state.is_some()
+    }
+}
+
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The first crossing on a solution `at` from `x`: by the model's formula where it has one, by `search` elsewhere, which tells whether it is one too.
     #[allow(clippy::too_many_arguments)]
