@@ -28,6 +28,9 @@ pub(crate) struct Section {
     pub(crate) points: Vec<WorkPoint>,
 }
 
+/// What is exact is shown as a rounding off.
+const LEAST: f64 = 1e-16;
+
 impl Section {
     fn methods(&self) -> Vec<&str> {
         let mut methods: Vec<&str> = Vec::new();
@@ -44,12 +47,12 @@ impl Section {
         let mut chart = Chart::new(self.title, (self.error, Measure::Count), ("Time of a run", Measure::Time))
             .caption(&format!("Against {}", self.reference))
             .both_logarithmic()
+            .at_least(LEAST)
             .background(Background::Adaptive);
         for method in self.methods() {
             let of = self.points.iter().filter(|point| point.method == method && point.error.is_finite());
-            // What is exact is shown as a rounding off.
-            let points: Vec<[f64; 2]> = of.map(|point| [point.error.max(1e-16), point.timing.median]).collect();
-            chart = chart.line(method, Stroke::polygon(&points)).marks(points.iter().copied());
+            let points: Vec<[f64; 2]> = of.map(|point| [point.error.max(LEAST), point.timing.median]).collect();
+            chart = chart.line(method, Stroke::polygon(&points)).dotted(points.iter().copied());
         }
         gallery(&format!("accuracy-{}", self.name), &chart.svg()?)?;
         Ok(())

@@ -94,6 +94,12 @@ fn step_with_a_promised_guard<const N: usize>(bencher: Bencher) {
     steps::<N>(bencher, Tsit5, Watch::Promised);
 }
 
+/// The same by the default stepper, against `step_of_auto`.
+#[divan::bench(consts = [2, 4, 8])]
+fn step_of_auto_with_a_promised_guard<const N: usize>(bencher: Bencher) {
+    steps::<N>(bencher, Auto::default(), Watch::Promised);
+}
+
 #[divan::bench(consts = [2, 4, 8])]
 fn step_with_an_unpromised_guard<const N: usize>(bencher: Bencher) {
     steps::<N>(bencher, Tsit5, Watch::Unpromised);

@@ -1,6 +1,5 @@
 //! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
 
-use super::departure::Departure;
 use super::search::{Part, Search, Side};
 use super::{Evidence, Undefined};
 
@@ -97,9 +96,14 @@ impl Search<'_> {
             let whole = || lengths().take(steps - 1);
             let of_value = whole().max() > whole().min().map(|least| 3 * least);
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));
-            let without_speed = |it: Departure| of_value && it.steepest() * b < 0.25 * (self.base - last);
-            let slow = slow || far.is_some_and(|it| turns > 0 || without_speed(it));
-            let order = if slow { order(at_half - self.base, last - self.base, half, b) } else { 1.0 };
+            // The slope that it allows is too small for this fall: two steps, one twice as far as the other, are not its sign.
+            let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
+            let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
+            let order = match slow {
+                true if without_speed => 2.0,
+                true => order(at_half - self.base, last - self.base, half, b),
+                false => 1.0,
+            };
             return Ok(Look::Steps(self.left(Some(order), b)));
         }
         Ok(Look::Steps(Part::None(walk.side)))

@@ -65,6 +65,11 @@ impl Stepper for Auto {
     }
 
     #[inline]
+    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
+        self.0.reach(h, trial)
+    }
+
+    #[inline]
     fn dense<S: State>(
         &self,
         flow: &mut impl FnMut(f64, &S) -> S,
