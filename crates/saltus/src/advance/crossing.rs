@@ -51,7 +51,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Searched { fall, evidence } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
-            found = earlier(found, edge, fall);
+            if let Some(crossing) = fall {
+                let both = found.and_then(|(first, found)| Some((first, together(&found, &crossing)?)));
+                found = both.or(Some((edge, crossing)));
+            }
         }
         Ok(found)
     }
@@ -228,20 +231,10 @@ impl Powers {
     }
 }
 
-/// The earlier of two crossings; those that time cannot tell apart keep the order of their edges.
+/// Of two crossings that time cannot tell apart the first, with the inner end of both, so that neither guard is past zero there; nothing if the second is
+/// earlier.
 #[inline]
-pub(super) fn earlier<E: Copy>(
-    found: Option<(E, Crossing)>,
-    edge: E,
-    crossing: Option<Crossing>,
-) -> Option<(E, Crossing)> {
-    match (found, crossing) {
-        (found, None) => found,
-        (None, Some(crossing)) => Some((edge, crossing)),
-        (Some((first, a)), Some(b)) => {
-            let same = b.outside >= a.inside;
-            // Of two at one time the inner end of both is kept, so that neither guard is past zero there.
-            if same { Some((first, Crossing { inside: a.inside.min(b.inside), ..a })) } else { Some((edge, b)) }
-        }
-    }
+pub(super) fn together(first: &Crossing, second: &Crossing) -> Option<Crossing> {
+    let same = second.outside >= first.inside;
+    same.then(|| Crossing { inside: first.inside.min(second.inside), ..*first })
 }

@@ -186,18 +186,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let state = if horizon.since(clock.now) <= 2.0 * f64::EPSILON * clock.now.since(clock.start) {
             *x
         } else {
-            let mut within = Clock { end: horizon, ..*clock };
-            let t = clock.now.seconds();
-            let end = if self.options.stepped {
-                self.stepped(mode, *x, &mut within, observer)
-            } else if let Some(solution) = self.automaton.exact(mode, t, x) {
-                self.exact(mode, &solution, &mut within, observer)
-            } else if self.automaton.flown(mode, t, x, 0.0).is_some() {
-                self.closed(mode, x, &mut within, observer)
+            let (t, stepped) = (clock.now.seconds(), self.options.stepped);
+            let solution = if stepped { None } else { self.automaton.exact(mode, t, x) };
+            let end = if let Some(solution) = solution {
+                let mut within = Clock { end: horizon, ..*clock }; // a copy, to be kept in registers
+                let end = self.exact(mode, &solution, &mut within, observer);
+                clock.now = within.now;
+                end
             } else {
-                self.stepped(mode, *x, &mut within, observer)
+                let until = std::mem::replace(&mut clock.end, horizon);
+                let end = if !stepped && self.automaton.flown(mode, t, x, 0.0).is_some() {
+                    self.closed(mode, x, clock, observer)
+                } else {
+                    self.stepped(mode, *x, clock, observer)
+                };
+                clock.end = until;
+                end
             };
-            clock.now = within.now;
             match end? {
                 ArcEnd::Stop { stop: Stop::Time, state } => state,
                 end => return Ok(end),

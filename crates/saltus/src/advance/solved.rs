@@ -9,7 +9,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 
 use super::Advance;
-use super::crossing::{Close, earlier};
+use super::crossing::{Close, together};
 
 /// The first crossing on a solution.
 pub(super) struct First<A: Automaton> {
@@ -55,11 +55,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 formula => (Searched::solved(self.fall_by_formula(edge, now, formula, at, limit)), true),
             };
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
-            let first = earlier(found.as_ref().map(|first| (first.edge, first.crossing)), edge, fall);
-            found = match (first, found) {
-                (Some((first, crossing)), Some(found)) if first != edge => Some(First { crossing, ..found }),
-                (Some((_, crossing)), _) => Some(First { edge, crossing, by_formula, state: arrival }),
-                (None, _) => None,
+            let first = |crossing| First { edge, crossing, by_formula, state: arrival };
+            found = match (found, fall) {
+                (found, None) => found,
+                (None, Some(crossing)) => Some(first(crossing)),
+                (Some(found), Some(crossing)) => Some(match together(&found.crossing, &crossing) {
+                    Some(crossing) => First { crossing, ..found },
+                    None => first(crossing),
+                }),
             };
         }
         Ok(found)
