@@ -49,8 +49,8 @@ pub struct Made {
     pub tolerance: f64,
     /// Of each ball, in kg.
     pub masses: Vec<f64>,
-    /// I/m of the ball that may spin.
-    pub inertia: f64,
+    /// I/m of each ball, in m².
+    pub inertia: Vec<f64>,
 }
 
 /// The scene of a number.
@@ -73,10 +73,14 @@ pub fn drawn(numbers: &mut dyn FnMut() -> u64) -> Made {
     if !compliant {
         writeln!(toml, "restitution = {}", restitution(dice)).unwrap();
     }
-    if !compliant && balls == 1 && dimensions > 1 && dice.chance(0.4) {
+    if !compliant && dimensions > 1 && dice.chance(0.4) {
         let coefficient = dice.pick(&[0.0, 0.1, 0.5, 2.0]);
         writeln!(toml, "friction = {{ coefficient = {coefficient:?}, gripping = {:?} }}", dice.pick(&[0.0, 0.3, 1.0]))
             .unwrap();
+    }
+    if balls > 1 && dice.chance(0.3) {
+        let coefficient = dice.pick(&[0.1, 0.5]);
+        writeln!(toml, "collisions = {{ friction = {coefficient:?} }}").unwrap();
     }
     let buoyant = dice.chance(0.1);
     if buoyant {
@@ -84,19 +88,16 @@ pub fn drawn(numbers: &mut dyn FnMut() -> u64) -> Made {
         writeln!(toml, "buoyancy = true\nadded_mass = {}", dice.chance(0.5)).unwrap();
     }
     let radius = dice.about(1e-3, 0.2);
-    let spins = dimensions > 1 && balls == 1 && !compliant && dice.chance(0.4);
-    let mut masses = Vec::new();
+    let spins = dimensions > 1 && !compliant && dice.chance(0.4);
+    let (mut masses, mut inertia) = (Vec::new(), Vec::new());
     let mut ball_tables = String::new();
     for ball in 0..balls {
         let mass = dice.about(1e-4, 10.0);
         masses.push(mass);
         let head = if balls == 1 { "[ball]" } else { "[[ball]]" };
-        write!(
-            ball_tables,
-            "{head}\nradius = {radius:?}\nmass = {mass:?}\nshape = \"{}\"\n",
-            dice.pick(&["solid", "hollow"])
-        )
-        .unwrap();
+        let (shape, factor) = dice.pick(&[("solid", 0.4), ("hollow", 2.0 / 3.0)]);
+        inertia.push(factor * radius * radius);
+        write!(ball_tables, "{head}\nradius = {radius:?}\nmass = {mass:?}\nshape = \"{shape}\"\n").unwrap();
         let height =
             dice.pick(&[0.0, 0.01, 1.0]) * dice.about(0.5, 2.0) + ball as f64 * dice.between(2.0, 2.5) * radius;
         let mut speed = || if dice.chance(0.3) { 0.0 } else { dice.between(-5.0, 5.0) };
@@ -131,7 +132,7 @@ pub fn drawn(numbers: &mut dyn FnMut() -> u64) -> Made {
     }
     let (floors, floor, still) = floors(dice, dimensions, radius);
     loses &= still;
-    let mut more = if balls > 1 || compliant { String::new() } else { air(dice, dimensions, spins, &mut loses) };
+    let mut more = if compliant { String::new() } else { air(dice, dimensions, spins, &mut loses) };
     // What is pressed in is below the floor.
     let floor = floor.filter(|_| !compliant);
     if compliant {
@@ -146,7 +147,6 @@ pub fn drawn(numbers: &mut dyn FnMut() -> u64) -> Made {
         writeln!(more, "tolerance = {tolerance:e}\nstepper = \"{}\"", dice.pick(&["tsit5", "dop853", "rodas5p"]))
             .unwrap();
     }
-    let inertia = if ball_tables.contains("hollow") { 2.0 / 3.0 } else { 0.4 } * radius * radius;
     Made { toml: toml + &ball_tables + &floors + &more, gravity, floor, loses, tolerance, masses, inertia }
 }
 

@@ -52,7 +52,7 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
         last = event.t;
         if made.loses {
             let energy = |of: &dyn Fn(&saltus_bounce::scene::plan::Sides) -> Moment| -> f64 {
-                event.sides.iter().map(|side| made.masses[side.ball] * kinetic(made, &of(side))).sum()
+                event.sides.iter().map(|side| made.masses[side.ball] * kinetic(made, side.ball, &of(side))).sum()
             };
             let (before, after) = (energy(&|side| side.before), energy(&|side| side.after));
             if after > before * (1.0 + 1e-9) + 1e-12 {
@@ -79,7 +79,7 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
             if made.floor.is_some_and(|floor| moment.height() < floor - slack * (1.0 + moment.velocity.norm())) {
                 return Err(format!("ball {ball} is at {} at {t}, below the floor", moment.height()));
             }
-            total += made.masses[ball] * (kinetic(made, &moment) + made.gravity * moment.height());
+            total += made.masses[ball] * (kinetic(made, ball, &moment) + made.gravity * moment.height());
         }
         if made.loses {
             let size = made.masses.iter().sum::<f64>() * (1.0 + made.gravity);
@@ -93,6 +93,6 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
 }
 
 /// Kinetic energy for each kilogram.
-fn kinetic(made: &Made, moment: &Moment) -> f64 {
-    0.5 * (moment.velocity.norm_squared() + made.inertia * moment.spin.norm_squared())
+fn kinetic(made: &Made, ball: usize, moment: &Moment) -> f64 {
+    0.5 * (moment.velocity.norm_squared() + made.inertia[ball] * moment.spin.norm_squared())
 }

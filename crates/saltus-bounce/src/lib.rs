@@ -1,7 +1,7 @@
 //! Bouncing balls as hybrid automata.
 //!
-//! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`] on a floor that gives, [`Line`] and
-//! [`Cloud`] are several balls; run them with [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
+//! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`] on a floor that gives, [`Line`],
+//! [`Cloud`] and [`Flock`] are several balls; run them with [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
 //! and apexes in closed form. [`units`] reads quantities as people write them; `scene`, behind the feature of this name, whole scenes from TOML.
 
 mod ball;
@@ -11,6 +11,7 @@ pub mod compliant;
 pub mod contact;
 pub mod effects;
 pub mod flight;
+pub mod flock;
 mod flyer;
 pub mod friction;
 pub mod line;
@@ -29,6 +30,7 @@ pub use ball::{Ball, Floor, GravityError, Mode, Phase, STANDARD_GRAVITY, SmoothF
 pub use ballistic::Drop;
 pub use cloud::Cloud;
 pub use compliant::Compliant;
+pub use flock::Flock;
 pub use flyer::{Block, Event, Flyer, Grip, Keeps, Moving, Rolls, Stance, Turning};
 pub use line::Line;
 pub use live::{Frame, Live};

@@ -409,6 +409,8 @@ fn doing(mode: &str) -> &str {
         "rest" | "lying" => "at rest",
         "slide" => "sliding",
         "hold" => "lying or rolling",
+        "compression" => "being pressed in",
+        "restitution" => "springing back",
         other => other,
     }
 }

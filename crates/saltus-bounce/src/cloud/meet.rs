@@ -5,7 +5,7 @@
 /// |r + v s| = R with b = r·v < 0: s = (|r| - R)(|r| + R)/(-b + √(|v|² (R² - p²))), where p = |r × v|/|v| is how closely the centres pass
 /// each other: neither difference cancels but by the coordinates themselves. Balls that overlap by rounding, and approach, meet at once.
 #[inline]
-pub(super) fn balls<const D: usize>(r: [f64; D], v: [f64; D], reach: f64) -> Option<f64> {
+pub(crate) fn balls<const D: usize>(r: [f64; D], v: [f64; D], reach: f64) -> Option<f64> {
     let b = dot(&r, &v);
     if b >= 0.0 {
         return None;

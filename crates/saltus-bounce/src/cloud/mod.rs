@@ -12,6 +12,7 @@ use crate::parameter::{ParameterError, finite, positive};
 use crate::restitution::{Cor, Restitution};
 
 pub use flight::Flight;
+pub(crate) use meet::balls as meeting_of_balls;
 use meet::dot;
 pub use swarm::Swarm;
 

@@ -49,6 +49,18 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
     }
 
+    /// What may end a contact by itself, in a fixed order: leaving, the end of a slip, friction that gives way, a slip that finds its direction.
+    pub(crate) fn end(&self, stance: Stance<N>, place: usize) -> Option<Event<N>> {
+        let is = |event: &Event<N>| match event {
+            Event::Leave(_) => place == 0,
+            Event::Stop { .. } => place == 1,
+            Event::Slip(_) => place == 2,
+            Event::Veer { .. } => place == 3,
+            Event::Meet(_) | Event::Change | Event::Turn => false,
+        };
+        if matches!(stance, Stance::Flight { .. }) { None } else { self.edges(stance).iter().find(is) }
+    }
+
     /// A ride on a face that moves, without friction that depends on how it is pressed.
     #[inline]
     fn ridden(&self, stance: Stance<N>) -> Option<Face> {

@@ -101,7 +101,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// The unit normal of `face` and its speed along it.
     #[inline]
-    pub(super) fn normal(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, f64) {
+    pub(crate) fn normal(&self, face: Face, t: f64, x: &Moving<N, S>) -> (SVector<f64, N>, f64) {
         let gradient = self.walls.gradient(face, t, &x.position);
         let length = gradient.norm();
         (gradient / length, -self.walls.rate(face, t, &x.position) / length)
@@ -109,7 +109,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// The state with its position put on `face`.
     #[inline]
-    pub(super) fn on(&self, face: Face, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
+    pub(crate) fn on(&self, face: Face, t: f64, x: &Moving<N, S>) -> Moving<N, S> {
         let gradient = self.walls.gradient(face, t, &x.position);
         let margin = self.walls.margin(face, t, &x.position);
         Moving { position: x.position - gradient * (margin / gradient.norm_squared()), ..*x }
@@ -213,7 +213,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     /// A ball on `face` that does not rebound: in contact, or at once in flight if nothing presses it.
-    pub(super) fn settled(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+    pub(crate) fn settled(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let x = self.beside(face, t, &x);
         let touch = self.touch(face, t, &x);
         if touch.force < 0.0 {
@@ -308,7 +308,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     /// Bounces have accumulated: on one face, or where several meet.
-    pub(super) fn accumulated(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
+    pub(crate) fn accumulated(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let cell = from.cell();
         let distance = |index: usize| {
             let face = Face { cell, index };
@@ -326,6 +326,19 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         };
         let mask = (0..self.walls.faces(cell)).filter(|&index| meets(index)).fold(0, |mask, index| mask | 1 << index);
         self.among(cell, mask, t, *x)
+    }
+
+    /// Whether the ball is so near to a face that it does not touch, and so slow there, that its bounces may have accumulated.
+    pub(crate) fn ends_on_a_face(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> bool {
+        let cell = from.cell();
+        let free = (0..self.walls.faces(cell)).filter(|&index| !from.touches(index)).map(|index| Face { cell, index });
+        free.filter(|&face| self.walls.leads(face, t, &x.position).is_none()).any(|face| {
+            let length = self.walls.gradient(face, t, &x.position).norm();
+            let (normal, speed) = self.normal(face, t, x);
+            let distance = self.walls.margin(face, t, &x.position).abs() / length;
+            let stands = (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt();
+            length > 0.0 && distance <= 100.0 * NEAR * (1.0 + x.position.norm()) && stands
+        })
     }
 
     /// In contact with the faces of a mask.

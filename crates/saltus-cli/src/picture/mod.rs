@@ -39,7 +39,7 @@ fn title(scene: &Scene) -> String {
     if scene.balls.len() > 1 {
         return what;
     }
-    let (height, velocity) = (ball.lowest().z, ball.velocity);
+    let (height, velocity) = (rounded(ball.lowest().z), ball.velocity);
     let speed = if scene.dimensions == 1 { velocity.z } else { velocity.norm() };
     if speed == 0.0 {
         format!("{what} dropped from {height} m")

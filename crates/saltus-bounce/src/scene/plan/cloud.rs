@@ -60,6 +60,16 @@ fn bounds(scene: &Scene) -> Result<Bounds, PlanError> {
     Ok(bounds)
 }
 
+/// Whether a cloud says all there is to say: its walls are those of a box, met by one law, and no ball ever comes to rest.
+pub(super) fn suffices(scene: &Scene) -> bool {
+    let elastic = |law: Option<&Law>| law.and_then(Law::constant).is_some_and(|cor| cor.value() == 1.0);
+    let laws =
+        || (0..scene.floors.len()).flat_map(|floor| (0..scene.balls.len()).map(move |ball| scene.law(ball, floor)));
+    let lasting = scene.gravity.value() == 0.0 || laws().all(elastic) && elastic(scene.collision.as_ref());
+    let first = scene.law(0, 0);
+    lasting && laws().all(|law| law == first) && bounds(scene).is_ok()
+}
+
 pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
     macro_rules! sized {
         ($($n:literal)*) => {

@@ -268,7 +268,7 @@ impl Explanation {
             coordinates: coordinates(scene, model, count),
             modes: unique,
             tolerance: steps.then_some(tolerance),
-            notes: notes(scene),
+            notes: notes(scene, model),
         }
     }
 }
@@ -296,7 +296,7 @@ fn coordinates(scene: &Scene, model: Model, count: usize) -> Vec<String> {
             let numbers = |what: &str| (1..=count / 2).map(|n| format!("{what} of ball {n}")).collect::<Vec<_>>();
             [numbers("gap below the place"), numbers("velocity")].concat()
         }
-        Model::Cloud => {
+        Model::Cloud | Model::Flock => {
             let of = |what: &str| {
                 (1..=scene.balls.len())
                     .flat_map(|n| {
@@ -304,7 +304,8 @@ fn coordinates(scene: &Scene, model: Model, count: usize) -> Vec<String> {
                     })
                     .collect::<Vec<_>>()
             };
-            [of("position"), of("velocity")].concat()
+            let spin = if model == Model::Flock { of("spin") } else { Vec::new() };
+            [of("position"), of("velocity"), spin].concat()
         }
     };
     debug_assert_eq!(list.len(), count);
@@ -312,14 +313,14 @@ fn coordinates(scene: &Scene, model: Model, count: usize) -> Vec<String> {
 }
 
 /// Approximations of the model that this scene meets.
-fn notes(scene: &Scene) -> Vec<String> {
+fn notes(scene: &Scene, model: Model) -> Vec<String> {
     let mut notes = Vec::new();
     let stairs = scene.floors.iter().any(|floor| matches!(floor.shape, super::super::Shape::Stairs { .. }));
     if stairs && scene.balls.iter().any(|ball| ball.radius.is_some()) {
         notes.push("stairs are met by the lowest point of the ball, not by its sides".to_owned());
     }
-    if scene.balls.len() > 1 && scene.dimensions > 1 {
-        notes.push("balls that come to rest among others end the run: what lies beyond is not modelled".to_owned());
+    if model == Model::Flock {
+        notes.push("a ball that comes to rest upon another ends the run: what lies beyond is not modelled".to_owned());
     }
     notes
 }

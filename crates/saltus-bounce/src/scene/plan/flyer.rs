@@ -11,7 +11,7 @@ use super::{PlanError, failed, kind, label};
 use crate::effects::{AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind};
 use crate::friction::{Friction, Rebound};
 use crate::restitution::Restitution;
-use crate::scene::{Law, Scene};
+use crate::scene::{Ball, Law, Scene};
 use crate::walls::{Face, Walls};
 use crate::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
 
@@ -31,27 +31,28 @@ pub(super) fn uniform(scene: &Scene) -> bool {
 }
 
 pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
-    let spin = scene.balls[0].spin.unwrap_or_default();
+    let ball = &scene.balls[0];
+    let spin = ball.spin.unwrap_or_default();
     // One model for each kind of state: which of the effects are named is asked as it runs, and where none is but gravity, flights are exact.
     match (scene.dimensions, spins(scene)) {
-        (1, _) => smooth::<1, _>(scene, rigid(scene, air(scene)?)?),
-        (2, false) => smooth::<2, _>(scene, rigid(scene, air(scene)?)?),
-        (2, true) => rough::<2, f64, _>(scene, rigid(scene, spinning_air(scene)?)?, 0.0 - spin.y),
-        (_, false) => smooth::<3, _>(scene, rigid(scene, air(scene)?)?),
-        (_, true) => rough::<3, Vector3<f64>, _>(scene, rigid(scene, spinning_air(scene)?)?, spin),
+        (1, _) => smooth::<1, _>(scene, rigid(scene, ball, air(scene)?)?),
+        (2, false) => smooth::<2, _>(scene, rigid(scene, ball, air(scene)?)?),
+        (2, true) => rough::<2, f64, _>(scene, rigid(scene, ball, spinning_air(scene, ball)?)?, 0.0 - spin.y),
+        (_, false) => smooth::<3, _>(scene, rigid(scene, ball, air(scene)?)?),
+        (_, true) => rough::<3, Vector3<f64>, _>(scene, rigid(scene, ball, spinning_air(scene, ball)?)?, spin),
     }
 }
 
 /// The effects on a ball that drags air along, or on one that does not: half of no air.
-fn rigid<E>(scene: &Scene, effects: E) -> Result<AddedMass<E>, PlanError> {
-    let sphere = scene.balls[0].sphere();
+pub(super) fn rigid<E>(scene: &Scene, ball: &Ball, effects: E) -> Result<AddedMass<E>, PlanError> {
+    let sphere = ball.sphere();
     let unit = Sphere::solid(1.0, 1.0).map_err(failed)?;
     let density = if scene.effects.added_mass && sphere.is_some() { scene.effects.density } else { 0.0 };
     AddedMass::new(&sphere.unwrap_or(unit), density, effects).map_err(failed)
 }
 
-fn steady(scene: &Scene) -> (Gravity, Option<Buoyancy>) {
-    (scene.gravity, scene.effects.buoyancy(&scene.balls[0], scene.gravity))
+fn steady(scene: &Scene, ball: &Ball) -> (Gravity, Option<Buoyancy>) {
+    (scene.gravity, scene.effects.buoyancy(ball, scene.gravity))
 }
 
 /// The scene's wind in N coordinates.
@@ -59,21 +60,22 @@ fn wind<const N: usize, E>(scene: &Scene, effects: E) -> Result<Wind<N, E>, Plan
     Wind::new(position(&scene.effects.wind.unwrap_or_default()), effects).map_err(failed)
 }
 
-type Blown<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
+pub(super) type Blown<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
 
 type Drags = (Option<LinearDrag>, Option<QuadraticDrag>);
 
 fn air<const N: usize>(scene: &Scene) -> Result<Blown<N, Drags>, PlanError> {
     let (ball, effects) = (&scene.balls[0], &scene.effects);
-    let (gravity, buoyancy) = steady(scene);
+    let (gravity, buoyancy) = steady(scene, ball);
     Ok((gravity, buoyancy, wind(scene, (effects.linear_drag(ball), effects.quadratic_drag(ball)))?))
 }
 
-type Spun = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
+/// What acts on a ball that spins.
+pub(super) type Spun = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
 
-fn spinning_air<const N: usize>(scene: &Scene) -> Result<Blown<N, Spun>, PlanError> {
-    let (ball, effects) = (&scene.balls[0], &scene.effects);
-    let (gravity, buoyancy) = steady(scene);
+pub(super) fn spinning_air<const N: usize>(scene: &Scene, ball: &Ball) -> Result<Blown<N, Spun>, PlanError> {
+    let effects = &scene.effects;
+    let (gravity, buoyancy) = steady(scene, ball);
     let drag = (effects.linear_drag(ball), effects.quadratic_drag(ball));
     Ok((gravity, buoyancy, wind(scene, (drag.0, drag.1, effects.magnus(ball), effects.spin_decay(ball)))?))
 }
@@ -97,8 +99,8 @@ fn smooth<const N: usize, E>(scene: &Scene, effects: E) -> Result<Box<dyn Machin
 where
     E: Effect<N> + Send + Sync + 'static,
 {
-    let (walls, laws, _) = faces::<N>(scene)?;
-    let start = start::<N>(scene);
+    let (walls, laws, _) = faces::<N>(scene, 0)?;
+    let start = start::<N>(&scene.balls[0]);
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let reader = Among::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
@@ -111,42 +113,47 @@ where
     E: Effect<N, S> + Send + Sync + 'static,
     Rolls: Grip<N, S>,
 {
-    let (walls, laws, frictions) = faces::<N>(scene)?;
-    let ball = &scene.balls[0];
-    let radius = ball.radius.unwrap_or(1.0);
-    // Friction turns a ball by its shape and radius, whatever its mass.
-    let sphere = Sphere::with_inertia(radius, ball.mass.unwrap_or(1.0), ball.inertia).map_err(failed)?;
-    let grips = Grips {
-        any: Rolls { ball: sphere, friction: Friction::NONE },
-        each: frictions.into_iter().map(|friction| Rolls { ball: sphere, friction }).collect(),
-    };
-    let start = start::<N>(scene).spinning(spin);
+    let (walls, laws, grips) = gripped::<N>(scene, 0)?;
+    let start = start::<N>(&scene.balls[0]).spinning(spin);
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let reader = Among::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
     Ok(Ready::boxed(flyer, reader, stance, start))
 }
 
-fn start<const N: usize>(scene: &Scene) -> Moving<N> {
-    Moving::new(position(&scene.balls[0].lowest()), position(&scene.balls[0].velocity))
+/// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and radius, whatever its mass.
+pub(super) fn gripped<const N: usize>(scene: &Scene, ball: usize) -> Result<(Surroundings<N>, Laws, Grips), PlanError> {
+    let (walls, laws, frictions) = faces::<N>(scene, ball)?;
+    let ball = &scene.balls[ball];
+    let radius = ball.radius.unwrap_or(1.0);
+    let sphere = Sphere::with_inertia(radius, ball.mass.unwrap_or(1.0), ball.inertia).map_err(failed)?;
+    let grips = Grips {
+        any: Rolls { ball: sphere, friction: Friction::NONE },
+        each: frictions.into_iter().map(|friction| Rolls { ball: sphere, friction }).collect(),
+    };
+    Ok((walls, laws, grips))
+}
+
+pub(super) fn start<const N: usize>(ball: &Ball) -> Moving<N> {
+    Moving::new(position(&ball.lowest()), position(&ball.velocity))
 }
 
 #[allow(clippy::needless_pass_by_value)] // used as a function
-fn crowded(error: crate::ParameterError) -> PlanError {
+pub(super) fn crowded(error: crate::ParameterError) -> PlanError {
     PlanError::new("[[floor]]", &format!("the scene has too many walls, {error}"))
 }
 
-/// The walls of the ball, and the law and the friction of each face.
-fn faces<const N: usize>(scene: &Scene) -> Result<(Surroundings<N>, Laws, Vec<Friction>), PlanError> {
-    let walls = surroundings::<N>(scene, &scene.balls[0])?;
+/// The walls of a ball, and the law and the friction of each face.
+fn faces<const N: usize>(scene: &Scene, ball: usize) -> Result<(Surroundings<N>, Laws, Vec<Friction>), PlanError> {
+    let walls = surroundings::<N>(scene, &scene.balls[ball])?;
     let owners: Vec<usize> = walls.all(0).map(|face| walls.owner(face)).collect();
-    let each: Vec<Law> = owners.iter().filter_map(|&owner| scene.law(0, owner).copied()).collect();
+    let each: Vec<Law> = owners.iter().filter_map(|&owner| scene.law(ball, owner).copied()).collect();
     let frictions = owners.iter().map(|&owner| scene.floors[owner].friction).collect();
     Ok((walls, Laws { each }, frictions))
 }
 
 /// The cell in which a ball starts at `p`, if it is clear of all walls: a curve may be met by the side of a ball whose lowest point is above it.
-fn clear<const N: usize>(walls: &Surroundings<N>, p: &SVector<f64, N>) -> Result<usize, PlanError> {
+pub(super) fn clear<const N: usize>(walls: &Surroundings<N>, p: &SVector<f64, N>) -> Result<usize, PlanError> {
     let cell = walls.cell(p);
     for face in walls.all(cell) {
         let inside = -walls.margin(face, 0.0, p);
@@ -160,7 +167,7 @@ fn clear<const N: usize>(walls: &Surroundings<N>, p: &SVector<f64, N>) -> Result
 
 /// The law of each face of a cell.
 #[derive(Clone, Debug)]
-struct Laws {
+pub(super) struct Laws {
     each: Vec<Law>,
 }
 
@@ -184,7 +191,7 @@ impl Restitution for FaceLaw<'_> {
 
 /// The friction of each face of a cell.
 #[derive(Clone, Debug)]
-struct Grips {
+pub(super) struct Grips {
     /// Without friction.
     any: Rolls,
     each: Vec<Rolls>,
@@ -240,8 +247,18 @@ impl Turned for Vector3<f64> {
     }
 }
 
+/// What a stance is called.
+pub(super) const fn named<const N: usize>(stance: Stance<N>) -> &'static str {
+    match stance {
+        Stance::Flight { .. } => "flight",
+        Stance::Slide { .. } | Stance::Yield { .. } => "slide",
+        Stance::Hold { .. } => "hold",
+        Stance::Corner { .. } => "corner",
+    }
+}
+
 /// Reads a ball among the floors of a scene.
-struct Among {
+pub(super) struct Among {
     kinds: Vec<&'static str>,
     labels: Vec<String>,
     moves: Vec<bool>,
@@ -249,7 +266,7 @@ struct Among {
 }
 
 impl Among {
-    fn new(scene: &Scene, rubs: bool) -> Self {
+    pub(super) fn new(scene: &Scene, rubs: bool) -> Self {
         Self {
             kinds: scene.floors.iter().map(kind).collect(),
             labels: (0..scene.floors.len()).map(|n| label(scene, n)).collect(),
@@ -259,39 +276,19 @@ impl Among {
     }
 }
 
-type Scenic<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
-
-impl<const N: usize, S, E, G> Reader<Scenic<N, S, E, G>> for Among
-where
-    S: Turning + Turned,
-    E: Effect<N, S>,
-    G: Grip<N, S>,
-{
-    type Stepper = super::method::Chosen;
-
-    fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
-        Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }
-    }
-    fn mode(&self, stance: Stance<N>, _: usize) -> &'static str {
-        match stance {
-            Stance::Flight { .. } => "flight",
-            Stance::Slide { .. } | Stance::Yield { .. } => "slide",
-            Stance::Hold { .. } => "hold",
-            Stance::Corner { .. } => "corner",
-        }
-    }
-    fn flies(&self, stance: Stance<N>, _: usize) -> bool {
-        matches!(stance, Stance::Flight { .. })
-    }
-    fn rests(&self, stance: Stance<N>, x: &Moving<N, S>) -> bool {
-        let still = x.velocity.norm() == 0.0 && x.spin.vector().norm() == 0.0;
-        still && !matches!(stance, Stance::Flight { .. }) && !self.moves.contains(&true)
-    }
-    fn happening(&self, model: &Scenic<N, S, E, G>, jump: &Jump<Scenic<N, S, E, G>>, event: Event<N>) -> Happening {
-        let one = |edge| Happening { balls: [Some(0), None], ..Happening::of(edge) };
+impl Among {
+    /// What an event of `ball` is in the scene, which takes it at `p` at time `t`.
+    pub(super) fn happened<const N: usize>(
+        &self,
+        walls: &Surroundings<N>,
+        ball: usize,
+        t: f64,
+        p: &SVector<f64, N>,
+        event: Event<N>,
+    ) -> Happening {
+        let one = |edge| Happening { balls: [Some(ball), None], ..Happening::of(edge) };
         match event {
             Event::Meet(face) => {
-                let (t, p, walls) = (jump.t(), &jump.before.position, model.walls());
                 if walls.leads(face, t, p).is_some() {
                     return one("passage");
                 }
@@ -313,6 +310,63 @@ where
             Event::Turn => one("apex"),
         }
     }
+
+    /// How an edge of a ball is listed.
+    pub(super) fn listed<const N: usize>(&self, walls: &Surroundings<N>, event: Event<N>) -> String {
+        match event {
+            Event::Meet(face) => self.labels.get(walls.owner(face)).cloned().unwrap_or_default(),
+            Event::Leave(_) => "lift-off: the floor no longer presses".to_owned(),
+            Event::Stop { .. } => "stop: the slip has come to an end".to_owned(),
+            Event::Slip(_) => "slip: friction no longer holds".to_owned(),
+            Event::Veer { .. } => "veer: the slip has a direction of its own".to_owned(),
+            Event::Change => "schedule".to_owned(),
+            Event::Turn => "apex: the velocity through the air falls through zero".to_owned(),
+        }
+    }
+
+    /// Why a ball is advanced as it is.
+    pub(super) const fn because<const N: usize>(stance: Stance<N>, advance: Advance) -> &'static str {
+        match (stance, advance) {
+            (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",
+            (Stance::Flight { .. }, _) => "the air's force depends on the velocity, and no formula solves that",
+            (_, Advance::Exact) => "forces along a plane are constant: a parabola",
+            (_, Advance::Formula) => "the ball rides on a floor whose motion is known",
+            _ => "the force depends on where the ball is or how it moves",
+        }
+    }
+
+    /// Whether friction acts anywhere, and whether a floor moves.
+    pub(super) fn acts(&self) -> (bool, bool) {
+        (self.rubs, self.moves.contains(&true))
+    }
+}
+
+type Scenic<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
+
+impl<const N: usize, S, E, G> Reader<Scenic<N, S, E, G>> for Among
+where
+    S: Turning + Turned,
+    E: Effect<N, S>,
+    G: Grip<N, S>,
+{
+    type Stepper = super::method::Chosen;
+
+    fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
+        Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }
+    }
+    fn mode(&self, stance: Stance<N>, _: usize) -> &'static str {
+        named(stance)
+    }
+    fn flies(&self, stance: Stance<N>, _: usize) -> bool {
+        matches!(stance, Stance::Flight { .. })
+    }
+    fn rests(&self, stance: Stance<N>, x: &Moving<N, S>) -> bool {
+        let still = x.velocity.norm() == 0.0 && x.spin.vector().norm() == 0.0;
+        still && !matches!(stance, Stance::Flight { .. }) && !self.moves.contains(&true)
+    }
+    fn happening(&self, model: &Scenic<N, S, E, G>, jump: &Jump<Scenic<N, S, E, G>>, event: Event<N>) -> Happening {
+        self.happened(model.walls(), 0, jump.t(), &jump.before.position, event)
+    }
     fn modes(&self, model: &Scenic<N, S, E, G>) -> Vec<Stance<N>> {
         let walls = model.walls();
         let mut modes = vec![Stance::FLIGHT];
@@ -328,23 +382,9 @@ where
         modes
     }
     fn edge(&self, model: &Scenic<N, S, E, G>, event: Event<N>) -> String {
-        match event {
-            Event::Meet(face) => self.labels.get(model.walls().owner(face)).cloned().unwrap_or_default(),
-            Event::Leave(_) => "lift-off: the floor no longer presses".to_owned(),
-            Event::Stop { .. } => "stop: the slip has come to an end".to_owned(),
-            Event::Slip(_) => "slip: friction no longer holds".to_owned(),
-            Event::Veer { .. } => "veer: the slip has a direction of its own".to_owned(),
-            Event::Change => "schedule".to_owned(),
-            Event::Turn => "apex: the velocity through the air falls through zero".to_owned(),
-        }
+        self.listed(model.walls(), event)
     }
     fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {
-        match (stance, advance) {
-            (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",
-            (Stance::Flight { .. }, _) => "the air's force depends on the velocity, and no formula solves that",
-            (_, Advance::Exact) => "forces along a plane are constant: a parabola",
-            (_, Advance::Formula) => "the ball rides on a floor whose motion is known",
-            _ => "the force depends on where the ball is or how it moves",
-        }
+        Self::because(stance, advance)
     }
 }

@@ -107,7 +107,12 @@ pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
     fn happening(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> Happening;
     /// The modes a run may enter, as far as they differ in how they are advanced.
     fn modes(&self, model: &A) -> Vec<A::Mode>;
+    /// How an edge is listed.
     fn edge(&self, model: &A, edge: A::Edge) -> String;
+    /// How the edges of a mode are listed.
+    fn edges(&self, model: &A, mode: A::Mode) -> Vec<String> {
+        model.edges(mode).iter().map(|edge| self.edge(model, edge)).collect()
+    }
     /// Why a mode is advanced as it is.
     fn why(&self, mode: A::Mode, advance: Advance) -> &'static str;
     /// Contacts that take time.
@@ -245,8 +250,7 @@ where
             } else {
                 Advance::Explicit(method.name())
             };
-            let mut edges: Vec<String> =
-                automaton.edges(mode).iter().map(|edge| reader.edge(automaton, edge)).collect();
+            let mut edges = reader.edges(automaton, mode);
             edges.dedup();
             ModePlan { name: reader.mode(mode, 0), advance, why: reader.why(mode, advance), edges }
         };

@@ -8,6 +8,7 @@ mod cloud;
 mod compliant;
 mod curve;
 mod explain;
+mod flock;
 mod flyer;
 mod line;
 mod machine;
@@ -51,8 +52,10 @@ pub enum Model {
     Compliant,
     /// [`Line`](crate::Line): several balls on a line.
     Line,
-    /// [`Cloud`](crate::Cloud): several balls in the plane or in space.
+    /// [`Cloud`](crate::Cloud): several smooth balls in the plane or in space, of which none comes to rest.
     Cloud,
+    /// [`Flock`](crate::Flock): several balls among floors and walls.
+    Flock,
 }
 
 impl Model {
@@ -65,6 +68,7 @@ impl Model {
             Self::Compliant => "compliant",
             Self::Line => "line",
             Self::Cloud => "cloud",
+            Self::Flock => "flock",
         }
     }
 }
@@ -77,6 +81,7 @@ impl fmt::Display for Model {
             Self::Compliant => "compliant: one ball, up and down on a level floor, with contacts that take time",
             Self::Line => "line: several balls on a line",
             Self::Cloud => "cloud: several smooth balls in the plane or in space",
+            Self::Flock => "flock: several balls among floors and walls",
         })
     }
 }
@@ -307,50 +312,58 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
         let says = "contact that takes time is simulated for one ball: leave it out, or keep one ball";
         return Err(PlanError::new("[contact]", says));
     }
-    let acts = Effect::ALL.into_iter().find(|&effect| {
-        !matches!(effect, Effect::Gravity | Effect::Friction | Effect::Deformation) && scene.names(effect)
-    });
-    if let Some(effect) = acts {
-        let key = match effect {
-            Effect::LinearDrag | Effect::QuadraticDrag => "drag",
-            Effect::Wind => "[air]",
-            Effect::Buoyancy => "buoyancy",
-            Effect::AddedMass => "added_mass",
-            Effect::Lift => "magnus",
-            Effect::SpinDecay => "spin_decay",
-            Effect::Gravity | Effect::Friction | Effect::Deformation => "[[ball]]",
-        };
-        let says = format!("{effect} is simulated for one ball: leave it out, or keep one ball");
-        return Err(PlanError::new(key, &says));
-    }
-    let vertical = scene.dimensions == 1;
-    let rough = scene.floors.iter().position(|floor| floor.friction.coefficient() > 0.0);
-    if let Some(owner) = rough.filter(|_| !vertical) {
-        return Err(PlanError::floor(
-            owner,
-            "several balls are simulated smooth: leave `friction` out, or keep one ball",
-        ));
-    }
-    if scene.collision_friction.coefficient() > 0.0 && !vertical {
-        return Err(PlanError::new("[collisions]", "several balls are simulated smooth: leave `friction` out"));
-    }
-    if scene.balls.iter().any(|ball| ball.spin.is_some()) {
-        return Err(PlanError::new(
-            "[[ball]]",
-            "several balls are simulated smooth, where spin does nothing: leave `spin` out",
-        ));
-    }
-    if let Some(u) = line::direction(scene) {
-        let floor = if vertical { ground(scene) } else { None };
-        if vertical && floor.is_none() && !scene.floors.is_empty() {
-            return Err(PlanError::floor(
-                0,
-                "several balls over a floor that moves are not simulated: leave `motion` out",
-            ));
+    if plain(scene) {
+        let vertical = scene.dimensions == 1;
+        if let Some(u) = line::direction(scene) {
+            let floor = if vertical { ground(scene) } else { None };
+            return Ok((Model::Line, line::machine(scene, u, floor)?, None));
         }
-        return Ok((Model::Line, line::machine(scene, u, floor)?, None));
+        if cloud::suffices(scene) {
+            return Ok((Model::Cloud, cloud::machine(scene)?, None));
+        }
     }
-    Ok((Model::Cloud, cloud::machine(scene)?, None))
+    // On one line they come to rest upon each other, which only `Line` says what lies beyond.
+    match beside_gravity(scene).filter(|_| scene.dimensions == 1) {
+        Some(error) => Err(error),
+        None => Ok((Model::Flock, flock::machine(scene)?, None)),
+    }
+}
+
+/// What acts on several balls that only move up and down but gravity on a floor that stands.
+fn beside_gravity(scene: &Scene) -> Option<PlanError> {
+    if let Some(owner) = scene.floors.iter().position(|floor| floor.motion.is_some()) {
+        let says = "several balls that only move up and down are simulated over floors that stand still: leave `motion` out, or give them a `position` with x";
+        return Some(PlanError::floor(owner, says));
+    }
+    let key = |effect: Effect| match effect {
+        Effect::LinearDrag | Effect::QuadraticDrag => Some("drag"),
+        Effect::Wind => Some("[air]"),
+        Effect::Buoyancy => Some("buoyancy"),
+        Effect::AddedMass => Some("added_mass"),
+        Effect::Lift => Some("magnus"),
+        Effect::SpinDecay => Some("spin_decay"),
+        Effect::Gravity | Effect::Friction | Effect::Deformation => None,
+    };
+    let named = |effect: Effect| key(effect).filter(|_| scene.names(effect)).map(|key| (key, effect));
+    let (key, effect) = Effect::ALL.into_iter().find_map(named)?;
+    let says = format!(
+        "several balls that only move up and down are simulated without {effect}: leave it out, or give them a `position` with x"
+    );
+    Some(PlanError::new(key, &says))
+}
+
+/// Whether nothing acts on several balls but gravity and restitution, on floors that stand still.
+fn plain(scene: &Scene) -> bool {
+    let names = |effect: Effect| match effect {
+        Effect::Gravity => false,
+        // What only moves up and down does not rub.
+        Effect::Friction => scene.dimensions > 1 && scene.names(Effect::Friction),
+        effect => scene.names(effect),
+    };
+    let rubs = scene.dimensions > 1 && scene.collision_friction.coefficient() > 0.0;
+    let spins = scene.balls.iter().any(|ball| ball.spin.is_some());
+    let moves = scene.floors.iter().any(|floor| floor.motion.is_some());
+    !(Effect::ALL.into_iter().any(names) || rubs || spins || moves)
 }
 
 /// What sort of floor it is, in a word.
@@ -388,7 +401,7 @@ fn failed(error: crate::ParameterError) -> PlanError {
 /// let toml = b"restitution = 0.8\ndrag = { per_length = '0.1 1/m' }\nrun = { until = 1 }\n\
 ///     ball = [{ height = 1, radius = 0.1, mass = 1 }, { height = 2, radius = 0.1, mass = 1 }]\n";
 /// let error = Scene::parse("two.toml", toml)?.plan().unwrap_err();
-/// assert!(error.to_string().starts_with("two.toml:2:1: quadratic drag is simulated for one ball"));
+/// assert!(error.to_string().starts_with("two.toml:2:1: several balls that only move up and down are simulated without quadratic drag"));
 /// # Ok::<(), saltus_bounce::scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

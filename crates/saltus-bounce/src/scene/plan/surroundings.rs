@@ -107,7 +107,8 @@ impl<const N: usize> Surroundings<N> {
                 }
                 for side in [1.0, -1.0] {
                     push(plane([side, 0.0, 0.0], 0.5 * size.x)?);
-                    if N > 2 {
+                    // A box in the plane has no depth.
+                    if N > 2 && size.y > 0.0 {
                         push(plane([0.0, side, 0.0], 0.5 * size.y)?);
                     }
                 }

@@ -1,0 +1,152 @@
+//! The flock as a hybrid automaton: what each ball would do alone, and the meetings of two.
+
+use nalgebra::Vector3;
+use saltus::{Automaton, Edges, Entry, ErrorKind, Fall, Polynomial, State};
+
+use super::{CHANGE, Flock, Flying, Happens, Meeting, Stances};
+use crate::cloud::meeting_of_balls;
+use crate::effects::Effect;
+use crate::flyer::{Event, Grip, Stance};
+use crate::restitution::Restitution;
+use crate::walls::{Face, Walls};
+
+impl<const N: usize, E, W, R, G, C> Automaton for Flock<N, E, W, R, G, C>
+where
+    E: Effect<3, Vector3<f64>>,
+    W: Walls<3>,
+    R: Restitution,
+    G: Grip<3, Vector3<f64>>,
+    C: Restitution,
+{
+    type Mode = Stances<N>;
+    type State = Flying<N>;
+    type Edge = Meeting;
+
+    #[inline]
+    fn flow(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Flying<N> {
+        x.map(|ball| Some(self.balls.get(ball)?.1.flow(stances.of(ball), t, &x.ball(ball)))).unwrap_or(*x)
+    }
+
+    fn edges(&self, stances: Stances<N>) -> Edges<Meeting> {
+        Edges::indexed(self.count(&stances), Meeting)
+    }
+
+    #[inline]
+    fn guard(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> f64 {
+        match self.happens(meeting, &x.stances()) {
+            Happens::Balls(i, j) => self.apart(i, j, x).0.norm() - self.reach(i, j),
+            Happens::To(ball, event) => self.balls[ball].1.guard(event, t, &x.ball(ball)),
+            Happens::Change | Happens::Nothing => 1.0,
+        }
+    }
+
+    #[inline]
+    fn affine(&self, meeting: Meeting) -> bool {
+        // Where a ball touches a face, that guard is a constant.
+        match self.happens(meeting, &Stances::FLIGHT) {
+            Happens::To(ball, Event::Meet(face)) => {
+                let walls = self.balls[ball].1.walls();
+                walls.cells() == 1 && walls.straight(face)
+            }
+            _ => false,
+        }
+    }
+
+    fn reset(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> (Stances<N>, Flying<N>) {
+        self.take(x.stances(), meeting, t, x).unwrap_or((x.stances(), *x))
+    }
+
+    fn take(
+        &self,
+        stances: Stances<N>,
+        meeting: Meeting,
+        t: f64,
+        x: &Flying<N>,
+    ) -> Result<(Stances<N>, Flying<N>), ErrorKind> {
+        let x = x.doing(stances);
+        let after = match self.happens(meeting, &stances) {
+            Happens::Balls(i, j) => self.met(i, j, t, &x),
+            Happens::To(ball, event) => {
+                let (flyer, moving) = (&self.balls[ball].1, x.ball(ball));
+                let parts = |face: Face| {
+                    let (normal, speed) = flyer.normal(face, t, &moving);
+                    matches!(stances.of(ball), Stance::Flight { .. })
+                        && flyer.walls().leads(face, t, &moving.position).is_none()
+                        && moving.velocity.dot(&normal) > speed
+                };
+                let (stance, moving) = match event {
+                    // Inside by its rounding, on its way out.
+                    Event::Meet(face) if parts(face) => (stances.of(ball), flyer.outside(face, t, &moving)),
+                    event => flyer.take(stances.of(ball), event, t, &moving)?,
+                };
+                let mut after = x;
+                after.put(ball, stance, moving);
+                after
+            }
+            Happens::Change => {
+                let mut after = x;
+                for (ball, (_, flyer)) in self.balls.iter().enumerate() {
+                    let (stance, moving) = flyer.take(stances.of(ball), Event::Change, t, &x.ball(ball))?;
+                    after.put(ball, stance, moving);
+                }
+                after
+            }
+            Happens::Nothing => x,
+        };
+        let after = self.sided(t, after);
+        Ok((after.stances(), after))
+    }
+
+    /// What overlaps by rounding is put right at once.
+    fn entry(&self, _: Meeting) -> Entry {
+        Entry::Fire
+    }
+
+    fn exact(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Option<Polynomial<Flying<N>>> {
+        let mut parts = [x.with(|_| 0.0); 3];
+        for (ball, (_, flyer)) in self.balls.iter().enumerate() {
+            let stance = stances.of(ball);
+            let polynomial = flyer.exact(stance, t, &x.ball(ball))?;
+            for (part, c) in parts.iter_mut().zip(polynomial.coefficients()) {
+                part.put(ball, stance, *c);
+            }
+        }
+        Some(Polynomial::from(parts))
+    }
+
+    fn flown(&self, stances: Stances<N>, t: f64, x: &Flying<N>, s: f64) -> Option<Flying<N>> {
+        x.map(|ball| {
+            let (flyer, stance, x) = (&self.balls.get(ball)?.1, stances.of(ball), x.ball(ball));
+            let exact = flyer.exact(stance, t, &x).map(|polynomial| polynomial.at(s));
+            exact.or_else(|| flyer.flown(stance, t, &x, s))
+        })
+    }
+
+    fn falls(&self, stances: Stances<N>, meeting: Meeting, t: f64, x: &Flying<N>) -> Fall<Flying<N>> {
+        let Happens::Balls(i, j) = self.happens(meeting, &stances) else { return Fall::Unknown };
+        let pull = |ball: usize| {
+            let (flyer, stance) = (&self.balls[ball].1, stances.of(ball));
+            let uniform = Effect::<3, Vector3<f64>>::uniform(flyer.effects());
+            let straight = uniform && matches!(stance, Stance::Flight { .. });
+            straight.then(|| flyer.flow(stance, t, &x.ball(ball)).velocity)
+        };
+        match (pull(i), pull(j)) {
+            (Some(a), Some(b)) if a == b => {
+                let (between, change) = self.apart(i, j, x);
+                let meeting = meeting_of_balls(between.into(), change.into(), self.reach(i, j));
+                meeting.map_or(Fall::Never, Fall::After)
+            }
+            _ => Fall::Unknown,
+        }
+    }
+
+    fn beyond(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Option<(Stances<N>, Flying<N>)> {
+        let after = self.accumulated(t, &x.doing(stances))?;
+        Some((after.stances(), after))
+    }
+
+    fn scheduled(&self, _: Stances<N>, t: f64) -> Option<(f64, Meeting)> {
+        let changes = self.balls.iter().filter_map(|(_, flyer)| flyer.walls().changes(t));
+        changes.min_by(f64::total_cmp).map(|t| (t, CHANGE))
+    }
+}
