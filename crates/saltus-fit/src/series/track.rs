@@ -16,6 +16,12 @@ const HUBER: f64 = 1.345;
 const WILD: f64 = 6.0;
 /// Starts are tried on so many samples at most.
 const COARSE: usize = 1500;
+/// More than so many times the noise from sample to sample is left for something else to explain,
+const UNEXPLAINED: f64 = 1.2;
+/// such as a drift of the camera, if its BIC is better by so much.
+const CLEAR: f64 = 6.0;
+/// A floor that moves by less than this part of the range, from the first sample to the last, stands still.
+const MOVED: f64 = 0.01;
 /// Candidates of k times the range of heights to start from.
 const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
 
@@ -69,6 +75,8 @@ pub(crate) struct Candidates {
     noise: f64,
     sketch: Sketch,
     found: Vec<Found>,
+    /// The floor drifts, as where a camera turns.
+    drift: bool,
     /// By how much the errors grow because neighbouring residuals are alike.
     dependence: f64,
 }
@@ -134,17 +142,51 @@ impl Candidates {
             noise,
             sketch,
             found: Vec::new(),
+            drift: false,
             dependence: 1.0,
         };
-        candidates.fit_all()?;
+        let drifting = Self { drift: true, ..candidates.clone() };
+        candidates.fit_and_trim(repair)?;
+        if candidates.leaves_more_than_noise() && drifting.sketch.contacts.len() > 1 {
+            let mut drifting = drifting;
+            if drifting.fit_and_trim(repair).is_ok() && drifting.is_clearly_better_than(&candidates) {
+                return Ok(drifting);
+            }
+        }
+        Ok(candidates)
+    }
+
+    fn fit_and_trim(&mut self, repair: bool) -> Result<(), Failure> {
+        self.fit_all()?;
         for _ in 0..3 {
-            if !candidates.trim(repair) {
+            if !self.trim(repair) {
                 break;
             }
-            candidates.fit_all()?;
+            self.fit_all()?;
         }
-        candidates.weigh();
-        Ok(candidates)
+        self.weigh();
+        Ok(())
+    }
+
+    /// The least robust standard deviation that any model leaves.
+    fn least(&self) -> f64 {
+        self.found.iter().map(|f| f.sigma).fold(f64::INFINITY, f64::min)
+    }
+
+    fn leaves_more_than_noise(&self) -> bool {
+        self.least() > UNEXPLAINED * self.noise
+    }
+
+    /// By BIC, with the one unknown more that drift is; neighbouring residuals are alike.
+    fn is_clearly_better_than(&self, other: &Self) -> bool {
+        let n = other.samples.len() as f64 / other.dependence.powi(2);
+        let gain = 2.0 * n * (other.least() / self.least()).ln() - n.ln();
+        let span = self.samples.last().map_or(0.0, |s| s.time) - self.samples.first().map_or(0.0, |s| s.time);
+        let moves = |f: &Found| {
+            let place = self.model(&self.samples, f.choice).drift_place();
+            place.is_some_and(|j| (f.fitted.shared[j] * span).abs() > MOVED)
+        };
+        gain > CLEAR && self.found.iter().all(moves) && 10 * self.samples.len() > 9 * other.samples.len()
     }
 
     fn model<'a>(&self, samples: &'a [Sample], (law, drag): Choice) -> Trajectory<'a> {
@@ -153,6 +195,7 @@ impl Candidates {
             samples,
             impacts: self.sketch.contacts.len(),
             drag,
+            drift: self.drift,
             law,
             speed: self.sketch.speed,
             first: (0.0, 5.0 * step + 0.05),
@@ -188,10 +231,12 @@ impl Candidates {
     /// The fit with a COR for every impact, from the parabolas' sketch.
     fn each(&self, drag: bool) -> Result<Option<Found>, Failure> {
         let Sketch { speed, cors, .. } = &self.sketch;
+        let drift: &[f64] = if self.drift { &[0.0] } else { &[] };
         let starts: Vec<Vec<f64>> = if drag {
-            DRAGS.iter().map(|&k| [&[0.0, *speed, 0.0, 1.0, k], self.cors_with(k).as_slice()].concat()).collect()
+            let start = |&k: &f64| [&[0.0, *speed, 0.0, 1.0, k], drift, self.cors_with(k).as_slice()].concat();
+            DRAGS.iter().map(start).collect()
         } else {
-            vec![[&[0.0, *speed, 0.0, 1.0], cors.as_slice()].concat()]
+            vec![[&[0.0, *speed, 0.0, 1.0], drift, cors.as_slice()].concat()]
         };
         self.best((Law::Each, drag), &starts)
     }
@@ -406,7 +451,10 @@ impl Candidates {
                 .samples
                 .iter()
                 .zip(&left)
-                .map(|(s, r)| (origin.0 + unit * s.time, range * (s.height - values[FLOOR]), range * r))
+                .map(|(s, r)| {
+                    let floor = values[FLOOR] + model.drift_place().map_or(0.0, |j| values[j] * s.time);
+                    (origin.0 + unit * s.time, range * (s.height - floor), range * r)
+                })
                 .collect(),
         };
         Some(Track {
@@ -416,6 +464,10 @@ impl Candidates {
             impacts,
             gravity: unknown(GRAVITY, range / (unit * unit), 0.0),
             drag: model.drag_place().map(|j| unknown(j, 1.0 / range, 0.0)),
+            drift: model
+                .drift_place()
+                .map(|j| unknown(j, range / unit, 0.0))
+                .map(|d| Measured { value: turn * d.value, ..d }),
             floor: Measured { value: turn * floor.value, ..floor },
             rms,
             noise: range * self.noise,
