@@ -177,9 +177,12 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     })
 }
 
+/// A name, what it supposes, x, and the sign that c must have; 0 where either will do.
+type Follows = (&'static str, &'static str, fn(f64) -> f64, f64);
+
 /// What scattering ratios Δₖ₊₁/Δₖ may follow, to first order in ln(Δₖ₊₁/Δₖ) = ln e + c x(Δₖ): a COR linear in speed, x = Δ; drag, x = Δ², the height
 /// of the flight; contacts that take time, x = 1/Δ. Drag makes the first ratios smaller, and so do contacts that take time.
-const FOLLOWS: [(&str, &str, fn(f64) -> f64, f64); 3] = [
+const FOLLOWS: [Follows; 3] = [
     ("linear", "a COR linear in the speed of impact", |flight| flight, 0.0),
     ("drag", "one COR and air drag", |flight| flight * flight, -1.0),
     ("contact", "one COR and contacts that take time", |flight| 1.0 / flight, 1.0),
