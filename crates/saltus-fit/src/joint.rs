@@ -14,6 +14,10 @@ use crate::spread::{Apart, across};
 use crate::statistics::{NORMAL, chi_square_p};
 use crate::successive::{Fitted, fit};
 
+/// After so many drops fitted one by one, a chi-square less probable than this is the end of it.
+const MANY: usize = 500;
+const HOPELESS: f64 = 1e-9;
+
 /// How well heights and times go together under free flight with one COR.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -264,6 +268,10 @@ fn apart(joint: &Joint) -> Result<Option<Apart>, FitError> {
         }
         found.chi_square += fitted.chi_square;
         found.freedom += fitted.freedom;
+        // So many drops that are not explained by themselves are not made good by the rest.
+        if found.cors.len() > MANY && chi_square_p(found.chi_square, found.freedom).is_some_and(|p| p < HOPELESS) {
+            return Ok(None);
+        }
         found.cors.push(cor);
     }
     Ok((found.cors.len() > 1).then_some(found))

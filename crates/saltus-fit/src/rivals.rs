@@ -158,7 +158,7 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
         let offset = Flight { offset: Some(Bounds { low: 0.0, high }), ..base.clone() };
         if base.trials.iter().all(|t| t.release.is_some()) {
             let rebounds = Flight { rebounds: true, ..offset.clone() };
-            push("rebounds", "one COR and rebounds read higher on the ball than the release", rebounds);
+            push("rebounds", "one COR, rebounds read higher than the release", rebounds);
         }
         push("offset", "one COR and a wrong zero of the height scale", offset);
     }
@@ -188,7 +188,7 @@ fn missed(base: &Flight) -> Option<Rival> {
             model.trials[block].heights[place..].iter_mut().for_each(|h| h.0 += 1);
             let Some(fitted) = run(&model, &[0.7], None) else { continue };
             if best.as_ref().is_none_or(|b| fitted.chi_square < b.0) {
-                let about = format!("one COR and a rebound that is missing before number {after}{of}");
+                let about = format!("one COR, a rebound is missing before number {after}{of}");
                 best = Some((fitted.chi_square, about, model));
             }
         }
