@@ -58,7 +58,7 @@ pub(crate) fn run(
             trial.trial = n;
             trial
         });
-        let drawn = Evidence { trials: trials.collect(), repairs: Vec::new() };
+        let drawn = Evidence { trials: trials.collect(), ..Evidence::default() };
         found.extend(cor(&drawn, setting)?);
         progress(found.len());
         if found.len() == rounds {

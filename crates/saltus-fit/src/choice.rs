@@ -25,13 +25,17 @@ pub enum CorModel {
     Each,
     /// A height scale that reads too high, by a ball at most.
     Offset,
+    /// Rebounds that are read higher on the ball than the release, by a ball at most.
+    Rebounds,
     /// Air drag, quadratic in speed.
     Drag,
+    /// Contacts that take time, always the same.
+    Contact,
 }
 
 impl CorModel {
     /// Every model.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Constant,
         Self::Linear,
         Self::Viscoelastic,
@@ -40,7 +44,9 @@ impl CorModel {
         Self::Knots,
         Self::Each,
         Self::Offset,
+        Self::Rebounds,
         Self::Drag,
+        Self::Contact,
     ];
 
     /// Its word in [`ModelChoice::name`].
@@ -55,7 +61,9 @@ impl CorModel {
             Self::Knots => "knots",
             Self::Each => "each",
             Self::Offset => "offset",
+            Self::Rebounds => "rebounds",
             Self::Drag => "drag",
+            Self::Contact => "contact",
         }
     }
 }
@@ -64,8 +72,8 @@ impl CorModel {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ModelChoice {
-    /// A fixed word: `constant`, `linear`, `viscoelastic`, `plastic`, `power`, `knots`, `each`, `offset`, `drag`; for a series `constant`,
-    /// `linear`, `each`, and these with `-drag`.
+    /// A fixed word: `constant`, `linear`, `viscoelastic`, `plastic`, `power`, `knots`, `each`, `offset`, `rebounds`, `drag`, `contact`,
+    /// and `missed`, one rebound that is not in the table; for a series `constant`, `linear`, `each`, and these with `-drag`.
     pub name: String,
     /// What it supposes, for people.
     pub about: String,
@@ -81,6 +89,8 @@ pub struct ModelChoice {
     pub drag: Option<Measured>,
     /// The height that the scale shows for a ball on the floor, in metres, where it is not zero.
     pub offset_m: Option<Measured>,
+    /// The time that a contact takes, in seconds, where it takes any.
+    pub contact_s: Option<Measured>,
     /// What is known of the offset or the drag where it came out at the end of its range: a limit, and no error.
     pub limit: Option<Limit>,
     /// The probability of a chi-square as large as it leaves by chance; none for a series, and where the errors are those of the scatter.
@@ -149,6 +159,7 @@ impl ModelChoice {
             speeds: Vec::new(),
             drag: None,
             offset_m: None,
+            contact_s: None,
             limit: None,
             p: None,
             bic,

@@ -1,5 +1,6 @@
 //! The verdict: what the fits amount to, and what speaks against them.
 
+use crate::alone::{differing, single};
 use crate::bounces::Measured;
 use crate::choice::CorModel;
 use crate::error::FitError;
@@ -13,7 +14,7 @@ use crate::rivals::{self, Compared, Readings};
 use crate::robust::Loss;
 use crate::settings::differ;
 use crate::statistics::NORMAL;
-use crate::table::{Event, Table, Trial};
+use crate::table::{Event, Table};
 use crate::tolerance::losses;
 use crate::weigh;
 
@@ -21,12 +22,10 @@ use crate::weigh;
 pub(crate) const REJECT: f64 = 0.01;
 /// A rebound so many standard errors high is not read as zero.
 const TOO_HIGH: f64 = 5.0;
-/// Readings whose scatter is more than this part of the largest of them hardly show a bounce.
-const LOUD: f64 = 0.1;
+/// Times that do not follow from the others are a doubt if there is one for fewer than so many that do.
+const ADRIFT: usize = 3;
 /// A 95 % interval wider than this says hardly anything.
 const VAGUE: f64 = 0.5;
-/// A fit more probable than this has reading errors that were stated too large.
-const TOO_GOOD: f64 = 0.999;
 
 /// Everything the fits found.
 pub(crate) struct Findings<'a> {
@@ -125,14 +124,14 @@ pub(crate) fn judge(report: &mut Report, found: &Findings<'_>) {
     let mut wider = Vec::new();
     let both = found.joint.as_ref().map_or(0, |joint| joint.trials.len());
     if let Some(kind) = &found.heights {
-        let heights = single(report, kind, found.table.trials(), &mut doubts);
+        let heights = single(report, kind, (found.table.trials(), found.evidence), &mut doubts);
         wider.extend((kind.estimate.trials > both).then_some(("heights", kind.estimate.trials, heights)));
         chosen = Some(heights);
     }
     doubts.extend(contradicted(found));
     doubts.extend(mostly_left_out(found));
     if let Some(kind) = &found.times {
-        let times = single(report, kind, found.table.trials(), &mut doubts);
+        let times = single(report, kind, (found.table.trials(), found.evidence), &mut doubts);
         wider.extend((kind.estimate.trials > both).then_some(("times", kind.estimate.trials, times)));
         chosen = Some(match chosen {
             Some(heights) if joint.is_none() => either(("heights", &heights), ("times", &times), &mut doubts),
@@ -202,7 +201,16 @@ pub(crate) fn models(
         (None, Some(_), None) => (Readings::heights(found.evidence, sigma_height.value), sigma_height.source),
         // Where bounces scatter, times have errors that add up: ratios are compared instead.
         (None, None, Some(_)) if !scattering => (Readings::times(found.evidence, sigma_time.value), sigma_time.source),
-        (None, None, Some(_)) => return none("the bounces scatter, and with times their errors add up"),
+        (None, None, Some(times)) => {
+            if !found.drops_differ(cor.value) {
+                weigh::models(report, &times.models);
+                let untried = Some(
+                    "the bounces scatter: of their ratios, only 'linear', 'drag' and 'contact' are fitted".to_owned(),
+                );
+                return Ok(Compared { models: times.models.clone(), untried, ..Compared::default() });
+            }
+            return none("the bounces scatter, and drops differ");
+        }
         _ => return none("heights and times are of different trials, or there is one flight only"),
     };
     if found.drops_differ(cor.value) {
@@ -258,7 +266,8 @@ fn assumptions(report: &mut Report) {
     }
 }
 
-fn of(estimate: &Estimate) -> Option<Cor> {
+/// The COR of an estimate, where it has one with a range.
+pub(crate) fn of(estimate: &Estimate) -> Option<Cor> {
     let (value, low, high) = (estimate.value?, estimate.low?, estimate.high?);
     Some(Cor { value, standard_error: estimate.standard_error, low, high })
 }
@@ -285,128 +294,14 @@ fn mostly_left_out(found: &Findings<'_>) -> Option<String> {
     let readings = found.table.trials().iter().flat_map(|trial| trial.readings());
     let read = readings.filter(|reading| reading.event == Event::Contact && reading.time.is_some()).count();
     let used: usize = found.evidence.trials.iter().map(|trial| trial.moments.iter().filter(|m| !m.1).count()).sum();
+    let adrift = found.evidence.adrift;
+    if found.times.is_some() && 2 * used >= read && ADRIFT * adrift >= used {
+        return Some(format!(
+            "of {read} times {adrift} do not follow from the others, which then may do so by chance: cut the table to the bounces, or measure again"
+        ));
+    }
     let few = found.times.is_some() && 2 * used < read;
     few.then(|| format!("of {read} times only {used} follow from each other, which may be chance: cut the table to the bounces, or measure again"))
-}
-
-/// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated their error: the tallest height, the longest interval.
-fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {
-    let of_bounces = kind.scatter.unwrap_or(0.0);
-    if kind.sigma.source != Source::Scatter {
-        return of_bounces;
-    }
-    let between = |trial: &Trial| {
-        let mut times: Vec<f64> = trial.readings().iter().filter_map(|reading| reading.time).collect();
-        times.sort_unstable_by(f64::total_cmp);
-        times.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max)
-    };
-    let largest = if M::METHOD == Heights::METHOD {
-        trials.iter().flat_map(|trial| trial.readings()).filter_map(|reading| reading.height).fold(0.0, f64::max)
-    } else {
-        trials.iter().map(between).fold(0.0, f64::max)
-    };
-    of_bounces.max(kind.sigma.value / largest)
-}
-
-/// The COR of one kind of reading, with what speaks against it.
-fn single<M: OneKind>(report: &mut Report, kind: &Kind<M>, trials: &[Trial], doubts: &mut Vec<String>) -> Option<Cor> {
-    let estimate = &kind.estimate;
-    let what = M::METHOD;
-    if let Some(free) = &kind.unbounded {
-        let grown = free.value.unwrap_or(1.0);
-        let grows = free.low.is_some_and(|low| low > 1.0);
-        doubts.push(if grows {
-            format!("the {what} grow from bounce to bounce, as if each bounce added energy")
-        } else {
-            format!("within its error the COR of the {what} is not below 1: they do not shrink from bounce to bounce")
-        });
-        report.warnings.push(format!(
-            "without the bound COR <= 1 the {what} give {grown:.3}: are the readings in order, in the right column and unit, \
-             or was energy put in?"
-        ));
-        return of(free);
-    }
-    let mut cor = of(estimate)?;
-    if estimate.degrees_of_freedom == Some(0) && report.agreement.is_none() {
-        doubts.push(format!("the {what} are just enough for a COR: nothing is left to check it by"));
-    }
-    if let (Some(p), Some(chi_square), Some(freedom)) = (estimate.p, estimate.chi_square, estimate.degrees_of_freedom) {
-        #[allow(clippy::cast_precision_loss)]
-        let birge = (chi_square / freedom as f64).sqrt();
-        if p < REJECT && kind.spread.is_some() {
-            // Said below: reading errors explain every drop by itself.
-        } else if p < REJECT && kind.replicated && kind.scatter.is_none() {
-            report.warnings.push(format!(
-                "the {what} scatter {birge:.1} times more than their reading errors; the error of the COR is taken from the \
-                 spread between trials"
-            ));
-        } else if p < REJECT && kind.scatter.is_some() {
-            if !kind.replicated {
-                doubts.push(format!("one COR does not fit the {what} (chi-square {chi_square:.0} on {freedom})"));
-            }
-        } else if p < REJECT {
-            doubts.push(format!("one COR does not fit the {what} (chi-square {chi_square:.0} on {freedom})"));
-            report
-                .warnings
-                .push(format!("the error of the COR was widened {birge:.1} times, the excess of the scatter"));
-            let centre = cor.value;
-            (cor.low, cor.high) =
-                ((centre - birge * (centre - cor.low)).max(0.0), centre + birge * (cor.high - centre));
-            cor.standard_error = cor.standard_error.map(|s| s * birge);
-        } else if p > TOO_GOOD && freedom > 2 {
-            report.warnings.push(format!(
-                "the {what} scatter {birge:.2} times as much as their reading errors say: those are probably too large"
-            ));
-        }
-    }
-    let part = loudness(kind, trials);
-    if part > LOUD {
-        doubts.push(format!(
-            "the {what} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
-            100.0 * part
-        ));
-    }
-    let mut settings_differ = false;
-    if let Some(differ) = differ(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT) {
-        doubts.push(format!(
-            "the COR by {what} is not the same throughout: {:.3} for {}, {:.3} for {} (by chance: p {})",
-            differ.low.1,
-            differ.low.0,
-            differ.high.1,
-            differ.high.0,
-            chance(differ.p)
-        ));
-        settings_differ = true;
-        report.widened = Some("it takes in each of the balls, floors or drop heights".to_owned());
-        (cor.low, cor.high) = (cor.low.min(differ.low.1), cor.high.max(differ.high.1));
-        cor.standard_error = Some((cor.high - cor.low) / (2.0 * NORMAL));
-        report.warnings.push(
-            "one COR for different balls, floors or drop heights is a mean of them: fit each by itself (--filter)"
-                .to_owned(),
-        );
-    }
-    if let Some(spread) = kind.spread.filter(|_| report.agreement.is_none() && !settings_differ) {
-        report.warnings.push(differing(spread, estimate.trials));
-    }
-    if let Some(scatter) = kind.scatter {
-        report.warnings.push(format!(
-            "the bounces themselves scatter: the COR varies by {:.1} % from bounce to bounce, more than the reading of {what} \
-             explains; the error of the COR allows for it",
-            100.0 * scatter
-        ));
-    }
-    if let Some(p) = kind.trend.filter(|p| *p < REJECT) {
-        let trend = format!("the COR changes from bounce to bounce (a trend as strong by chance: p {})", chance(p));
-        // Where the chi-square is tested and holds, or trials repeat each other, the trend is worth a word, not a doubt.
-        let held = kind.replicated || estimate.p.is_some_and(|p| p >= REJECT);
-        let cause =
-            "it may come from a COR that depends on speed, from air drag, or from a wrong zero of the height scale";
-        report.warnings.push(if held { format!("{trend}; {cause}") } else { format!("about the trend: {cause}") });
-        if !held {
-            doubts.push(trend);
-        }
-    }
-    Some(cor)
 }
 
 /// A rebound read as zero that the fitted heights do not allow.
@@ -424,24 +319,6 @@ fn contradicted(found: &Findings<'_>) -> Option<String> {
         "a rebound was read as zero (bounce {bounce}) that should be {:.1} cm high: leave its cell empty if it was not read",
         100.0 * height
     ))
-}
-
-/// That drops differ, and by how much.
-fn differing(spread: f64, drops: usize) -> String {
-    format!(
-        "the COR differs from drop to drop by {spread:.3} (standard deviation of {drops} drops), more than the reading errors explain: \
-         this spread sets the error; it belongs to the ball, the floor or the way of dropping"
-    )
-}
-
-/// A probability for people, with the sign before it.
-pub(crate) fn chance(p: f64) -> String {
-    match p {
-        p if p >= 0.0095 => format!("= {p:.2}"),
-        p if p >= 0.000_95 => format!("= {p:.3}"),
-        p if p > 0.0 => format!("= {p:.0e}"),
-        _ => "< 1e-300".to_owned(),
-    }
 }
 
 /// Heights and times from different trials: the sharper of the two, if they agree.

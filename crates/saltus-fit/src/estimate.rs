@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use serde::Serialize;
 
 use crate::bounces::Measured;
+use crate::choice::ModelChoice;
 use crate::diagnose::REJECT;
 use crate::error::FitError;
 use crate::evidence::Evidence;
@@ -115,6 +116,8 @@ pub(crate) struct Kind<M> {
     pub(crate) scatter: Option<f64>,
     /// The standard deviation of the COR from drop to drop, where the drops differ by more than the reading errors.
     pub(crate) spread: Option<f64>,
+    /// The models of ratios beside one COR, where the bounces scatter.
+    pub(crate) models: Vec<ModelChoice>,
 }
 
 /// A model that describes one kind of reading by one COR.
@@ -290,6 +293,7 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         separate,
         scatter: None,
         spread,
+        models: Vec::new(),
     }))
 }
 
@@ -311,6 +315,7 @@ pub(crate) fn times(evidence: &Evidence, known: Option<Sourced>) -> Result<Optio
         }
         kind.separate = in_cor(&found.separate, kind.estimate.value.unwrap_or(1.0));
         (kind.trend, kind.replicated, kind.scatter) = (found.trend, found.replicated, Some(found.scatter));
+        kind.models = found.models;
     }
     Ok(Some(kind))
 }

@@ -1,6 +1,6 @@
 //! What the readings of a table say, trial by trial, in the form the models ask for.
 
-use crate::mend::{Contact, mend, usual};
+use crate::mend::{Contact, Repair, mend, usual};
 use crate::model::{FlightTrial, Height, Moment};
 use crate::statistics::median;
 use crate::table::{Event, Table};
@@ -28,6 +28,8 @@ pub(crate) struct TrialEvidence {
 pub(crate) struct Evidence {
     pub(crate) trials: Vec<TrialEvidence>,
     pub(crate) repairs: Vec<String>,
+    /// How many contacts were left out because they follow from nothing else.
+    pub(crate) adrift: usize,
 }
 
 impl Evidence {
@@ -124,6 +126,7 @@ impl Evidence {
                 continue;
             }
             trial.moments = mended.iter().map(|c| (c.flights, false, c.time, trial.moments[c.place].3)).collect();
+            self.adrift += repairs.iter().map(Repair::adrift).sum::<usize>();
             self.repairs.extend(repairs.iter().map(|r| r.text(&named(table, trial.trial))));
         }
     }

@@ -241,6 +241,9 @@ impl Fit {
         if let Some(joint) = &joint {
             let agreement = joint::agreement(joint, &evidence, gravity.value, table.metadata.frame_rate);
             if agreement.p.is_some_and(|p| p < diagnose::REJECT) {
+                if joint.thinned() > 1 {
+                    report.notes.push(format!("what could explain it was tried on one trial in {}", joint.thinned()));
+                }
                 report.hypotheses = joint::hypotheses(joint, sigma_height.value, sigma_time.value, frame)?;
             }
             report.agreement = Some(agreement);

@@ -9,10 +9,14 @@ use crate::estimate::{Estimate, Source, identified, with_spread};
 use crate::evidence::Evidence;
 use crate::least_squares::Bounds;
 use crate::model::{CorLaw, Flight, FlightTrial};
-use crate::rivals::{READINGS, Readings};
+use crate::rivals::{FOLLOWED, READINGS, Readings};
 use crate::spread::{Apart, across};
 use crate::statistics::{NORMAL, chi_square_p};
 use crate::successive::{Fitted, fit};
+
+/// After so many drops fitted one by one, a chi-square less probable than this is the end of it.
+const MANY: usize = 500;
+const HOPELESS: f64 = 1e-9;
 
 /// How well heights and times go together under free flight with one COR.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -159,6 +163,14 @@ pub(crate) struct Joint {
     pub(crate) spread: Option<f64>,
 }
 
+impl Joint {
+    /// Explanations are tried on one trial in so many.
+    pub(crate) fn thinned(&self) -> usize {
+        let rows: usize = self.model.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
+        rows.div_ceil(READINGS).max(1)
+    }
+}
+
 /// What the variants of the joint model suppose.
 #[derive(Clone, Copy, Default)]
 struct Suppose {
@@ -211,7 +223,8 @@ pub(crate) fn joint(
     sigma_time: f64,
 ) -> Result<Option<Joint>, FitError> {
     let (places, trials): (Vec<usize>, Vec<FlightTrial>) = evidence.joint(sigma_height, sigma_time).into_iter().unzip();
-    if trials.is_empty() {
+    let bounces = |t: &FlightTrial| t.heights.last().map_or(0, |h| h.0).max(t.moments.last().map_or(0, |m| m.flights));
+    if trials.is_empty() || trials.iter().any(|t| bounces(t) > FOLLOWED) {
         return Ok(None);
     }
     let Some((model, fitted)) = run(&trials, gravity, Suppose::default(), &[0.3, 0.55, 0.8, 0.95])? else {
@@ -255,6 +268,10 @@ fn apart(joint: &Joint) -> Result<Option<Apart>, FitError> {
         }
         found.chi_square += fitted.chi_square;
         found.freedom += fitted.freedom;
+        // So many drops that are not explained by themselves are not made good by the rest.
+        if found.cors.len() > MANY && chi_square_p(found.chi_square, found.freedom).is_some_and(|p| p < HOPELESS) {
+            return Ok(None);
+        }
         found.cors.push(cor);
     }
     Ok((found.cors.len() > 1).then_some(found))
@@ -344,7 +361,9 @@ pub(crate) fn hypotheses(
 ) -> Result<Vec<Hypothesis>, FitError> {
     let generous_time = frame.filter(|f| *f > sigma_time).unwrap_or(2.0 * sigma_time);
     let (tall, long) = (2.0, generous_time / sigma_time);
-    let trials = &joint.model.trials;
+    // What could explain a disagreement shows in some of very many trials as in all.
+    let some: Vec<FlightTrial> = joint.model.trials.iter().step_by(joint.thinned()).cloned().collect();
+    let trials = &some;
     let loose: Vec<FlightTrial> = trials.iter().map(|t| loosened(t, tall, long)).collect();
     let known_clock = trials.iter().any(|t| t.release_time.is_some());
     let starts = [joint.fitted.shared[0], 0.5];
@@ -459,7 +478,8 @@ pub(crate) fn height_zero(
     (cor, gravity, sigma): (f64, f64, f64),
 ) -> Result<Option<Hypothesis>, FitError> {
     let trials = Readings::heights(evidence, sigma);
-    if trials.iter().map(|t| t.heights.len()).sum::<usize>() > READINGS {
+    let long = trials.iter().any(|t| t.heights.last().is_some_and(|h| h.0 > FOLLOWED));
+    if long || trials.iter().map(|t| t.heights.len()).sum::<usize>() > READINGS {
         return Ok(None);
     }
     let suppose = Suppose { offset: true, ..Suppose::default() };

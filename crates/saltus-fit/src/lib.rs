@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod alone;
 mod bootstrap;
 mod bounces;
 mod choice;
@@ -32,6 +33,7 @@ mod least_squares;
 mod mend;
 mod model;
 mod motion;
+mod orientation;
 mod outliers;
 mod profile;
 mod ratio;

@@ -195,6 +195,11 @@ pub(crate) fn mend(contacts: &[Contact], ratio: f64, noise: f64) -> (Vec<Contact
 }
 
 impl Repair {
+    /// How many contacts it leaves out because they follow from nothing else.
+    pub(crate) fn adrift(&self) -> usize {
+        if let Self::Ended { left_out, .. } = self { *left_out } else { 0 }
+    }
+
     /// For people; `of` names the trial.
     pub(crate) fn text(&self, of: &str) -> String {
         let plural = |n: usize| if n == 1 { "time was" } else { "times were" };

@@ -7,8 +7,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::bounces::Measured;
+use crate::choice::ModelChoice;
 use crate::estimate::{Estimate, REPLICATED, SCATTER, Source, Sourced};
 use crate::evidence::{Evidence, TrialEvidence};
+use crate::rivals::LONGEST_CONTACT;
 use crate::statistics::{student, variance_ratio_p};
 
 /// A trial with more ratios than this is left to the fit of the times: its covariance would be too large a matrix.
@@ -21,6 +24,8 @@ const MOST: usize = 20_000;
 struct Ratios {
     trial: usize,
     y: DVector<f64>,
+    /// The flight before each middle contact, s.
+    before: DVector<f64>,
     reading: DMatrix<f64>,
 }
 
@@ -49,6 +54,8 @@ pub(crate) struct FromRatios {
     pub(crate) replicated: bool,
     /// For each trial of the table its information on ln e, and its own ln e less that of all.
     pub(crate) separate: Vec<(f64, f64)>,
+    /// What else the ratios may depend on beside their scatter, one COR among it, the best first.
+    pub(crate) models: Vec<ModelChoice>,
 }
 
 fn collect(trial: &TrialEvidence) -> Option<Ratios> {
@@ -61,6 +68,7 @@ fn collect(trial: &TrialEvidence) -> Option<Ratios> {
     }
     let n = whole.len();
     let y = DVector::from_iterator(n, whole.iter().map(|w| ((w[2].1 - w[1].1) / (w[1].1 - w[0].1)).ln()));
+    let before = DVector::from_iterator(n, whole.iter().map(|w| w[1].1 - w[0].1));
     let mut b = DMatrix::zeros(n, n + 2);
     for (k, w) in whole.iter().enumerate() {
         let (before, after) = (1.0 / (w[1].1 - w[0].1), 1.0 / (w[2].1 - w[1].1));
@@ -68,7 +76,7 @@ fn collect(trial: &TrialEvidence) -> Option<Ratios> {
         b[(k, k + 1)] = -before - after;
         b[(k, k + 2)] = after;
     }
-    Some(Ratios { trial: trial.trial, y, reading: &b * b.transpose() })
+    Some(Ratios { trial: trial.trial, y, before, reading: &b * b.transpose() })
 }
 
 #[allow(clippy::cast_precision_loss)]
@@ -156,6 +164,7 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     let mut estimate = Estimate::new("times", about, value, value * error, quantile);
     estimate.trials = trials.len();
     estimate.degrees_of_freedom = Some(freedom);
+    let models = beside(&trials, &estimate, scatter, reading);
     let (trend, followed) = trend(&trials, evidence, scatter, reading).unzip();
     Some(FromRatios {
         estimate,
@@ -164,19 +173,82 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
         followed: followed.unwrap_or(0.0),
         replicated,
         separate,
+        models,
     })
 }
 
-/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do, and how much of their squares that is.
+/// A name, what it supposes, x, and the sign that c must have; 0 where either will do.
+type Follows = (&'static str, &'static str, fn(f64) -> f64, f64);
+
+/// What scattering ratios Δₖ₊₁/Δₖ may follow, to first order in ln(Δₖ₊₁/Δₖ) = ln e + c x(Δₖ): a COR linear in speed, x = Δ; drag, x = Δ², the height
+/// of the flight; contacts that take time, x = 1/Δ. Drag makes the first ratios smaller, and so do contacts that take time.
+const FOLLOWS: [Follows; 3] = [
+    ("linear", "a COR linear in the speed of impact", |flight| flight, 0.0),
+    ("drag", "one COR and air drag", |flight| flight * flight, -1.0),
+    ("contact", "one COR and contacts that take time", |flight| 1.0 / flight, 1.0),
+];
+/// The longest flight must be so many times the shortest.
+const SPANS: f64 = 2.0;
+
+/// The models of [`FOLLOWS`] beside one COR, with bounces that scatter.
 #[allow(clippy::cast_precision_loss)]
-fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<(Option<f64>, f64)> {
+fn beside(trials: &[Ratios], one: &Estimate, scatter: f64, reading: f64) -> Vec<ModelChoice> {
+    let flights = || trials.iter().flat_map(|t| t.before.iter().copied());
+    let (shortest, longest) = (flights().fold(f64::INFINITY, f64::min), flights().fold(0.0, f64::max));
+    let (Some(value), Some(standard_error), count) = (one.value, one.standard_error, flights().count() as f64) else {
+        return Vec::new();
+    };
+    let mut constant = ModelChoice::new("constant", "one COR", Measured { value, standard_error }, 0.0);
+    constant.chosen = true;
+    let mut list = vec![constant];
+    if longest < SPANS * shortest || count < 6.0 {
+        return Vec::new();
+    }
+    for (name, about, x, sign) in FOLLOWS {
+        // Drag and the time of contact are counted from none of either, speed from its middle.
+        let zero = if sign == 0.0 { x((shortest * longest).sqrt()) } else { 0.0 };
+        let Some(line) = line(trials, |t, k| x(t.before[k]) - zero, scatter, reading) else { continue };
+        let Measured { value, standard_error } = line.level;
+        let (e, left) = (value.exp(), line.left / line.alone);
+        if line.slope * sign < 0.0 || !(0.0..=1.0).contains(&e) || left <= 0.0 {
+            continue;
+        }
+        let bic = count * left.ln() + count.ln();
+        let cor = Measured { value: e, standard_error: e * standard_error };
+        let mut model = ModelChoice::new(name, about, cor, bic);
+        if name == "contact" && e < 1.0 {
+            let lasts = line.slope / (1.0 / e - 1.0);
+            if lasts > LONGEST_CONTACT {
+                continue;
+            }
+            model.contact_s = Some(Measured { value: lasts, standard_error: lasts * line.slope_error / line.slope });
+        }
+        list.push(model);
+    }
+    list.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+    list
+}
+
+/// A straight line through the logarithms of ratios.
+struct Line {
+    level: Measured,
+    slope: f64,
+    slope_error: f64,
+    /// The weighted sum of squares that it leaves, and that a level alone leaves.
+    left: f64,
+    alone: f64,
+    count: usize,
+}
+
+/// The line over `x`, by generalised least squares; its errors are those of the scatter about it.
+#[allow(clippy::cast_precision_loss)]
+fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, reading: f64) -> Option<Line> {
     let mut normal = DMatrix::<f64>::zeros(2, 2);
     let mut right = DVector::<f64>::zeros(2);
     let (mut total, mut count) = (0.0, 0);
     for trial in trials {
         let n = trial.y.len();
-        let first = evidence.trials.get(trial.trial)?.moments.first().map_or(0, |m| m.0);
-        let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { (first + i) as f64 });
+        let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { x(trial, i) });
         let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
         let factor = covariance.cholesky()?;
         let weighted = factor.solve(&x);
@@ -185,9 +257,26 @@ fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> 
         total += trial.y.dot(&factor.solve(&trial.y));
         count += n;
     }
-    let both = normal.clone().cholesky()?.solve(&right).dot(&right);
-    let level = right[0] * right[0] / normal[(0, 0)];
+    let factor = normal.clone().cholesky()?;
+    let (found, inverse) = (factor.solve(&right), factor.inverse());
+    let left = (total - found.dot(&right)).max(0.0);
     let freedom = count.checked_sub(2).filter(|n| *n > 0)?;
-    let gain = (both - level).max(0.0);
-    Some((variance_ratio_p(gain / ((total - both) / freedom as f64), 1, freedom), gain / (total - level)))
+    let variance = left / freedom as f64;
+    Some(Line {
+        level: Measured { value: found[0], standard_error: (variance * inverse[(0, 0)]).sqrt() },
+        slope: found[1],
+        slope_error: (variance * inverse[(1, 1)]).sqrt(),
+        left,
+        alone: total - right[0] * right[0] / normal[(0, 0)],
+        count,
+    })
+}
+
+/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do, and how much of their squares that is.
+#[allow(clippy::cast_precision_loss)]
+fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<(Option<f64>, f64)> {
+    let first = |trial: &Ratios| evidence.trials.get(trial.trial).and_then(|t| t.moments.first()).map_or(0, |m| m.0);
+    let line = line(trials, |trial, i| (first(trial) + i) as f64, scatter, reading)?;
+    let (gain, freedom) = ((line.alone - line.left).max(0.0), line.count - 2);
+    Some((variance_ratio_p(gain / (line.left / freedom as f64), 1, freedom), gain / line.alone))
 }

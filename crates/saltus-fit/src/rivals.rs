@@ -42,6 +42,13 @@ const TRIALS: usize = 30;
 const LEFT_OUT: usize = 1500;
 /// The zero of a scale is off by a ball at most, and this is the largest: a basketball, m.
 const LARGEST_BALL: f64 = 0.25;
+/// No contact of a ball lasts longer, s.
+pub(crate) const LONGEST_CONTACT: f64 = 0.02;
+/// Heights of which one is missing are looked for among so many, and need so many in their trial.
+const FEW: usize = 200;
+const RUN: usize = 5;
+/// More bounces than this in a trial are not followed one by one.
+pub(crate) const FOLLOWED: usize = 1000;
 /// The COR is listed at so many speeds.
 const LISTED: usize = 25;
 
@@ -121,7 +128,7 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     let spans = factor.is_finite() && slowest > 0.0;
     let of = |law| Flight { law, ..base.clone() };
     let mut list = Vec::new();
-    let mut push = |name, about, model| list.push(Rival { name, about, model });
+    let mut push = |name, about: &str, model| list.push(Rival { name, about: about.to_owned(), model });
     if spans && factor >= SPEEDS && count >= IMPACTS {
         let (low, high, middle) = (slowest, fastest, (slowest * fastest).sqrt());
         push("linear", "a COR linear in the speed of impact", of(CorLaw::Linear { low, high }));
@@ -135,12 +142,24 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     if spans && factor > DRAG_SPEEDS {
         push("drag", "one COR and air drag", Flight { drag: true, ..base.clone() });
     }
+    let timed = base.trials.iter().any(|t| !t.moments.is_empty());
+    if timed && spans && factor > DRAG_SPEEDS {
+        push(
+            "contact",
+            "one COR and contacts that take time",
+            Flight { lasting: Some(LONGEST_CONTACT), ..base.clone() },
+        );
+    }
     let heights = base.trials.iter().any(|t| !t.heights.is_empty());
     if heights && spans && factor >= OFFSET_SPEEDS && count >= OFFSET_IMPACTS {
         let lowest = base.trials.iter().flat_map(|t| &t.heights).map(|h| h.1).fold(f64::INFINITY, f64::min);
         // No ball is higher than where it is let go; the lowest reading may well lie within the error of the zero.
         let high = ball.unwrap_or(LARGEST_BALL).min(0.9 * base.tallest().max(lowest));
         let offset = Flight { offset: Some(Bounds { low: 0.0, high }), ..base.clone() };
+        if base.trials.iter().all(|t| t.release.is_some()) {
+            let rebounds = Flight { rebounds: true, ..offset.clone() };
+            push("rebounds", "one COR, rebounds read higher than the release", rebounds);
+        }
         push("offset", "one COR and a wrong zero of the height scale", offset);
     }
     // Times alone do not tell how fast the ball came to the first contact, and so not the COR there.
@@ -148,13 +167,39 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     if heights && (2..=BOUNCES).contains(&bounces) {
         push("each", "a COR for every bounce", of(CorLaw::Each(bounces)));
     }
+    list.extend(missed(base));
     list
+}
+
+/// One COR if one rebound is not in the table: those after it count one more. The place that leaves least is one more unknown.
+fn missed(base: &Flight) -> Option<Rival> {
+    let rows: usize = base.trials.iter().map(|t| t.heights.len()).sum();
+    if rows > FEW || base.trials.iter().any(|t| !t.moments.is_empty()) {
+        return None;
+    }
+    let mut best: Option<(f64, String, Flight)> = None;
+    for (block, trial) in base.trials.iter().enumerate() {
+        let of = if base.trials.len() > 1 { format!(" in trial {}", block + 1) } else { String::new() };
+        let first = usize::from(trial.release.is_none());
+        for (place, &(after, ..)) in
+            trial.heights.iter().enumerate().skip(first).filter(|_| trial.heights.len() + 1 >= RUN)
+        {
+            let mut model = base.clone();
+            model.trials[block].heights[place..].iter_mut().for_each(|h| h.0 += 1);
+            let Some(fitted) = run(&model, &[0.7], None) else { continue };
+            if best.as_ref().is_none_or(|b| fitted.chi_square < b.0) {
+                let about = format!("one COR, a rebound is missing before number {after}{of}");
+                best = Some((fitted.chi_square, about, model));
+            }
+        }
+    }
+    best.map(|(_, about, model)| Rival { name: "missed", about, model })
 }
 
 /// A model to be tried.
 struct Rival {
     name: &'static str,
-    about: &'static str,
+    about: String,
     model: Flight,
 }
 
@@ -163,9 +208,13 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     let mut compared = Compared::default();
     let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
     let base = Flight { trials: readings.trials.clone(), gravity: readings.gravity, ..Flight::default() };
-    if rows > READINGS || !(0.01..1.0).contains(&cor) {
-        let large = format!("there are more than {READINGS}");
-        compared.untried = Some(if rows > READINGS { large } else { "one COR is not between 0.01 and 1".to_owned() });
+    let long = base.bounces() > FOLLOWED;
+    if rows > READINGS || long || !(0.01..1.0).contains(&cor) {
+        compared.untried = Some(match (rows > READINGS, long) {
+            (true, _) => format!("there are more than {READINGS}"),
+            (_, true) => format!("there are more than {FOLLOWED} bounces in a trial"),
+            _ => "one COR is not between 0.01 and 1".to_owned(),
+        });
         return Ok(compared);
     }
     let Some(constant) = run(&base, &[cor], None) else { return Ok(compared) };
@@ -179,7 +228,7 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
             (fastest / slowest).max(1.0)
         ));
     }
-    let mut all = vec![Rival { name: "constant", about: "one COR", model: base.clone() }];
+    let mut all = vec![Rival { name: "constant", about: "one COR".to_owned(), model: base.clone() }];
     all.extend(rivals(&base, readings.ball, speeds));
     let tried: Result<Vec<_>, FitError> =
         all.into_par_iter().map(|rival| tried(rival, readings, &constant, speeds)).collect();
@@ -189,6 +238,10 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
         choice.bic -= reference.0;
         choice.aicc = choice.aicc.zip(reference.1).map(|(a, b)| a - b);
     }
+    // No ball gains speed at a bounce: a model that needs that is out of the question.
+    list.retain(|m| m.0.chosen || m.0.cor.value <= 1.0);
+    // Nor does a contact of a ball that bounces last longer than that.
+    list.retain(|m| m.0.contact_s.is_none_or(|c| c.value < LONGEST_CONTACT));
     list.sort_by(|a, b| a.0.bic.total_cmp(&b.0.bic));
     // Where one COR stands alone there is nothing for the trials to decide.
     let disputed = list.iter().filter(|m| m.0.bic < DISPUTED).count() > 1;
@@ -214,12 +267,16 @@ fn needs(wanted: CorModel, base: &Flight, (slowest, fastest, count): (f64, f64, 
     let here = format!("here are {count}, at speeds that differ by {factor:.2}");
     let heights = base.trials.iter().any(|t| !t.heights.is_empty());
     match wanted {
-        CorModel::Each | CorModel::Offset if !heights => "it needs heights".to_owned(),
+        CorModel::Each | CorModel::Offset | CorModel::Rebounds if !heights => "it needs heights".to_owned(),
+        CorModel::Rebounds if base.trials.iter().any(|t| t.release.is_none()) => {
+            "it needs the height of release of every drop".to_owned()
+        }
+        CorModel::Contact if base.trials.iter().all(|t| t.moments.is_empty()) => "it needs times".to_owned(),
         CorModel::Each if base.bounces() > BOUNCES => format!("it is for up to {BOUNCES} bounces"),
-        CorModel::Drag if fastest / slowest <= DRAG_SPEEDS => {
+        CorModel::Drag | CorModel::Contact if fastest / slowest <= DRAG_SPEEDS => {
             format!("it needs bounces at speeds that differ by a factor of {DRAG_SPEEDS}; {here}")
         }
-        CorModel::Offset if fastest / slowest < OFFSET_SPEEDS || count < OFFSET_IMPACTS => {
+        CorModel::Offset | CorModel::Rebounds if fastest / slowest < OFFSET_SPEEDS || count < OFFSET_IMPACTS => {
             format!("it needs {OFFSET_IMPACTS} bounces at speeds that differ by a factor of {OFFSET_SPEEDS:.2}; {here}")
         }
         CorModel::Linear | CorModel::Viscoelastic | CorModel::Plastic | CorModel::Power | CorModel::Knots
@@ -244,18 +301,20 @@ fn tried(
     let mut start = model.law.start(constant.shared[0]);
     start.extend(model.offset.map(|b| 0.1 * b.high));
     start.extend(model.drag.then_some(0.01));
+    start.extend(model.lasting.map(|most| 0.1 * most));
     let Some(fitted) = run(&model, &start, Some(&constant.own)).filter(|fitted| fitted.freedom >= SPARE) else {
         return Ok(None);
     };
     let n = used(&model) as f64;
-    let p = n - fitted.freedom as f64;
+    // The place of a rebound that is missing was looked for too.
+    let p = n - fitted.freedom as f64 + if name == "missed" { 1.0 } else { 0.0 };
     let misfit = if readings.scattered { n * (fitted.chi_square / n).max(1e-300).ln() } else { fitted.chi_square };
     let cor = if model.law.of_speed() {
         at(&model, &fitted, (slowest * fastest).sqrt())
     } else {
         mean(&fitted, model.law.unknowns())
     };
-    let mut choice = ModelChoice::new(name, about, cor, misfit + p * n.ln());
+    let mut choice = ModelChoice::new(name, &about, cor, misfit + p * n.ln());
     choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
     choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
     if model.law.of_speed() {
@@ -271,7 +330,9 @@ fn tried(
     choice.exponent = (name == "power").then(|| fitted.measured(1));
     choice.offset_m = model.offset_place().map(|j| fitted.measured(j));
     choice.drag = model.drag_place().map(|j| fitted.measured(j));
-    if let Some(j) = model.offset_place().or(model.drag_place()).filter(|&j| fitted.active[j]) {
+    choice.contact_s = model.lasting_place().map(|j| fitted.measured(j));
+    if let Some(j) = model.offset_place().or(model.drag_place()).or(model.lasting_place()).filter(|&j| fitted.active[j])
+    {
         let found = identified("a limit", limit(&model, &fitted, j))?;
         choice.limit = found.map(|limit| Limit { bound: fitted.shared[j], limit });
     }

@@ -18,6 +18,7 @@ use crate::bounces::Measured;
 use crate::error::FitError;
 use crate::estimate::identified;
 use crate::least_squares::Failure;
+use crate::orientation::falls_upwards;
 use crate::table::{Event, Table, Trial};
 use flights::NoFlights;
 
@@ -45,7 +46,9 @@ pub struct Track {
     pub gravity: Measured,
     /// The drag coefficient k of v' = −g ∓ k v², per unit of length; none where the motion has no drag.
     pub drag: Option<Measured>,
-    /// The height of the ball in contact with the floor, on the table's scale.
+    /// The speed at which the floor moves on the table's scale, as where the camera turns; none where it stands still.
+    pub drift: Option<Measured>,
+    /// The height of the ball in contact with the floor, on the table's scale; where that drifts, at the first impact.
     pub floor: Measured,
     /// The root mean square of what is left between motion and samples.
     pub rms: f64,
@@ -113,11 +116,13 @@ pub(crate) struct Series {
     /// Trials whose series show no bounce that can be fitted, and why.
     pub(crate) refused: Vec<(usize, String)>,
     pub(crate) repairs: Vec<String>,
+    /// What was stated about the way that heights count, where the ball then falls upwards.
+    pub(crate) falls_upwards: Option<&'static str>,
 }
 
 /// Fits every series of the table, with wild samples left out if `repair`; `None` if it has none.
 pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitError> {
-    let mut series = Series::default();
+    let mut series = Series { falls_upwards: table.metadata.falls_upwards, ..Series::default() };
     let mut seen = false;
     let mut candidates = Vec::new();
     for (n, trial) in table.trials().iter().enumerate() {
@@ -194,8 +199,10 @@ fn samples(trial: &Trial, oriented: bool) -> Option<(Samples, Vec<String>)> {
         rows = rows.into_iter().step_by(every).collect();
     }
     let times: Vec<f64> = rows.iter().map(|r| r.0).collect();
-    let mut heights: Vec<f64> = rows.iter().map(|r| r.1).collect();
-    let turned = !oriented && flights::upside_down(&times, &heights);
+    let heights: Vec<f64> = rows.iter().map(|r| r.1).collect();
+    let recording = [(times, heights)];
+    let turned = !oriented && falls_upwards(&recording) == Some(true);
+    let [(times, mut heights)] = recording;
     if turned {
         heights.iter_mut().for_each(|h| *h = -*h);
         repairs

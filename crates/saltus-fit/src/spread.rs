@@ -70,7 +70,7 @@ impl Apart {
 pub(crate) fn apart<M: OneKind>(evidence: &Evidence, sigma: Sourced) -> Result<Option<Apart>, FitError> {
     let mut found = Apart::default();
     for trial in &evidence.trials {
-        let alone = Evidence { trials: vec![trial.clone()], repairs: Vec::new() };
+        let alone = Evidence { trials: vec![trial.clone()], ..Evidence::default() };
         let model = M::with_sigma(&alone, sigma.value);
         if !model.usable() {
             continue;

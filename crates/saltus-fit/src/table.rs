@@ -3,6 +3,7 @@
 mod check;
 mod export;
 mod header;
+mod heading;
 mod layout;
 mod old_workbook;
 mod options;
@@ -126,6 +127,8 @@ pub(crate) struct Metadata {
     pub(crate) pixels: bool,
     /// Which way the heights count was stated, and is not to be recognised.
     pub(crate) oriented: bool,
+    /// What was stated of it, and that the ball then falls upwards.
+    pub(crate) falls_upwards: Option<&'static str>,
 }
 
 impl Table {

@@ -7,6 +7,8 @@ use crate::statistics::NORMAL;
 
 /// A BIC this much less decides.
 pub(crate) const CLEAR: f64 = 6.0;
+/// One this much less speaks for the model, weakly.
+const BETTER: f64 = 2.0;
 /// CORs that differ by less are the same for any purpose.
 const SAME: f64 = 0.002;
 /// A COR that changes by less over all speeds may be called one.
@@ -18,6 +20,9 @@ enum Kind {
     Speed,
     Drag,
     Offset,
+    Rebounds,
+    Contact,
+    Missed,
     Each,
 }
 
@@ -26,6 +31,9 @@ fn kind(model: &ModelChoice) -> Option<Kind> {
         "linear" | "viscoelastic" | "plastic" | "power" | "knots" => Some(Kind::Speed),
         "drag" => Some(Kind::Drag),
         "offset" => Some(Kind::Offset),
+        "rebounds" => Some(Kind::Rebounds),
+        "contact" => Some(Kind::Contact),
+        "missed" => Some(Kind::Missed),
         "each" => Some(Kind::Each),
         _ => None,
     }
@@ -52,12 +60,19 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
             let text = format!("{} fits {how} one COR (BIC {:+.1}), with {}", model.about, model.bic, gives(model));
             report.warnings.push(text);
         }
-        if differ || changes(model) > LEVEL || kind == Kind::Each {
+        if differ || changes(model) > LEVEL || matches!(kind, Kind::Each | Kind::Missed) {
             close.push((kind, model));
         }
-        if differ && let Some(cor) = &mut report.cor {
-            cor.low = cor.low.min(model.cor.value - NORMAL * model.cor.standard_error).max(0.0);
-            cor.high = cor.high.max(model.cor.value + NORMAL * model.cor.standard_error);
+        // One that fits better counts even where its own error is as large as the difference; one that hardly does, with its COR alone.
+        let reach = match (differ || model.bic < -BETTER && apart > SAME, model.bic < 0.0) {
+            (true, _) => Some(NORMAL * model.cor.standard_error),
+            (false, better) => better.then_some(0.0),
+        };
+        if let (Some(reach), Some(cor)) = (reach, &mut report.cor)
+            && (model.cor.value - reach < cor.low || model.cor.value + reach > cor.high)
+        {
+            cor.low = cor.low.min(model.cor.value - reach).max(0.0);
+            cor.high = cor.high.max(model.cor.value + reach);
             report.widened = Some("it reaches out to models that fit as well, with another COR".to_owned());
         }
     }
@@ -154,6 +169,18 @@ fn cause(kind: Kind, model: &ModelChoice) -> String {
         Kind::Offset => {
             let offset = model.offset_m.map_or(0.0, |o| 100.0 * o.value);
             format!("the height scale reads {offset:.1} cm too high (COR {})", gives(model))
+        }
+        Kind::Rebounds => {
+            let offset = model.offset_m.map_or(0.0, |o| 100.0 * o.value);
+            format!("rebounds are read {offset:.1} cm higher on the ball than the release (COR {})", gives(model))
+        }
+        Kind::Contact => {
+            let lasting = model.contact_s.map_or(0.0, |c| 1000.0 * c.value);
+            format!("every contact takes {lasting:.0} ms (COR {})", gives(model))
+        }
+        Kind::Missed => {
+            let place = model.about.split_once("is missing ").map_or("", |(_, place)| place);
+            format!("a rebound is missing {place} (COR {})", gives(model))
         }
         Kind::Each => "it differs from bounce to bounce".to_owned(),
     }

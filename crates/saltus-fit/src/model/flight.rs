@@ -26,7 +26,8 @@ pub(crate) struct FlightTrial {
 /// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball comes back after leaving at e vₙ; heights
 /// are read from a zero δ. In still air hₙ = δ + (e v)²/2g and a flight lasts 2 e v/g; with drag both are those of [`Air::hop`].
 ///
-/// Shared: the unknowns of the law of the COR, then on request the zero δ of the height scale, a lag of the clock, and drag k.
+/// Shared: the unknowns of the law of the COR, then on request the zero δ of the height scale (of all heights, or of the rebounds only), a lag of
+/// the clock, drag k, and the time that a contact takes: between two of them a flight and one contact pass.
 /// Own: v₁ unless the height of release is set, a unless the time of release is known (then a is that time plus the fall, plus the lag).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flight {
@@ -35,8 +36,12 @@ pub(crate) struct Flight {
     pub(crate) law: CorLaw,
     /// The zero of the height scale is unknown within these bounds, m.
     pub(crate) offset: Option<Bounds>,
+    /// The release was read from the true zero: δ is that of the rebounds.
+    pub(crate) rebounds: bool,
     pub(crate) lag: bool,
     pub(crate) drag: bool,
+    /// A contact lasts an unknown time, s, at most this.
+    pub(crate) lasting: Option<f64>,
     /// The shared unknowns are known: only own ones are fitted.
     pub(crate) pinned: Option<Vec<f64>>,
 }
@@ -46,6 +51,7 @@ struct Places {
     offset: Option<usize>,
     lag: Option<usize>,
     drag: Option<usize>,
+    lasting: Option<usize>,
 }
 
 /// The least drag, in 1/m: less cannot be told from none.
@@ -63,7 +69,12 @@ impl Flight {
             next += usize::from(wanted);
             wanted.then(|| next - 1)
         };
-        Places { offset: place(self.offset.is_some()), lag: place(self.lag), drag: place(self.drag) }
+        Places {
+            offset: place(self.offset.is_some()),
+            lag: place(self.lag),
+            drag: place(self.drag),
+            lasting: place(self.lasting.is_some()),
+        }
     }
 
     /// The own unknowns of a trial for a given COR: the speed from release or first height, the clock from the first moment.
@@ -113,15 +124,16 @@ impl Flight {
         let drag = places.drag.map(|j| q + j);
         let air = Air { gravity: self.gravity, drag: places.drag.map_or(0.0, |j| shared[j]) };
         let offset = unknown(places.offset);
+        let zero = if self.rebounds { Dual::constant(0.0, all) } else { offset.clone() };
         let speed = match trial.release {
             Some((height, None)) => {
-                let height = Dual::constant(height, all).minus(&offset);
+                let height = Dual::constant(height, all).minus(&zero);
                 height.through(&air.speed(height.value.max(0.0)), None, drag)
             }
             _ => Dual::unknown(own[0], all, 0),
         };
         let (fall, height) = air.fallen(speed.value);
-        let released = offset.plus(&speed.through(&height, None, drag));
+        let released = zero.plus(&speed.through(&height, None, drag));
         let clock = match trial.release_time {
             Some(time) => {
                 let fall = speed.through(&fall, None, drag);
@@ -129,7 +141,7 @@ impl Flight {
             }
             None => Dual::unknown(own[q - 1], all, q - 1),
         };
-        Beginning { air, drag, offset, speed, released, clock }
+        Beginning { air, drag, offset, speed, released, clock, lasting: unknown(places.lasting) }
     }
 
     /// The highest release, m.
@@ -140,6 +152,11 @@ impl Flight {
     /// The unknown zero of the height scale, where it is one of the shared.
     pub(crate) fn offset_place(&self) -> Option<usize> {
         self.places().offset
+    }
+
+    /// The time that a contact takes, where it is one of the shared unknowns.
+    pub(crate) fn lasting_place(&self) -> Option<usize> {
+        self.places().lasting
     }
 
     /// The drag, where it is one of the shared unknowns.
@@ -162,6 +179,7 @@ struct Beginning {
     speed: Dual,
     released: Dual,
     clock: Dual,
+    lasting: Dual,
 }
 
 impl Model for Flight {
@@ -175,6 +193,9 @@ impl Model for Flight {
         }
         if self.drag {
             ranges.push((Bounds { low: LEAST_DRAG, high: 10.0 }, 0.05));
+        }
+        if let Some(high) = self.lasting {
+            ranges.push((Bounds { low: 0.0, high }, high));
         }
         if let Some(values) = &self.pinned {
             ranges.iter_mut().zip(values).for_each(|(range, &v)| range.0 = Bounds { low: v, high: v });
@@ -219,7 +240,7 @@ impl Model for Flight {
             let cor = self.law.through(n, &speed, &shared[..self.law.unknowns()], q);
             let departure = cor.times(&speed);
             let hop = start.air.hop(departure.value);
-            let top = contact.plus(&through(&departure, &hop.rise));
+            let top = contact.plus(&start.lasting).plus(&through(&departure, &hop.rise));
             while let Some(&(_, height, sigma)) = heights.next_if(|h| h.0 <= n + 1) {
                 row(&start.offset.plus(&through(&departure, &hop.height)), height, sigma);
             }

@@ -29,12 +29,14 @@ pub(crate) enum Law {
     Each,
 }
 
-/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, then those of the COR.
+/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, then those of
+/// the COR. Seen from a floor that drifts evenly the motion is the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Trajectory<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) impacts: usize,
     pub(crate) drag: bool,
+    pub(crate) drift: bool,
     pub(crate) law: Law,
     /// The speed v₁ of the linear law.
     pub(crate) speed: f64,
@@ -70,7 +72,11 @@ struct Apex {
 impl Trajectory<'_> {
     /// Where the unknowns of the COR begin.
     pub(crate) fn first_cor(&self) -> usize {
-        DRAG + usize::from(self.drag)
+        DRAG + usize::from(self.drag) + usize::from(self.drift)
+    }
+
+    pub(crate) fn drift_place(&self) -> Option<usize> {
+        self.drift.then_some(DRAG + usize::from(self.drag))
     }
 
     pub(crate) fn drag_place(&self) -> Option<usize> {
@@ -151,6 +157,9 @@ impl Model for Trajectory<'_> {
         if self.drag {
             ranges.push((Bounds { low: LEAST_DRAG, high: 10.0 }, 0.1));
         }
+        if self.drift {
+            ranges.push((Bounds { low: -1.0, high: 1.0 }, 0.05));
+        }
         match self.law {
             Law::Constant => ranges.push((Bounds { low: 0.0, high: self.high }, 0.05)),
             Law::Linear => {
@@ -185,7 +194,11 @@ impl Model for Trajectory<'_> {
             if self.drag {
                 rows[(i, DRAG)] -= w * drop.by[2];
             }
-            rows[(i, n)] = w * (sample.height - apex.height.value + drop.value);
+            let drift = self.drift_place().map_or(0.0, |j| {
+                rows[(i, j)] += w * sample.time;
+                values[j] * sample.time
+            });
+            rows[(i, n)] = w * (sample.height - apex.height.value + drop.value - drift);
         }
     }
 }

@@ -4,8 +4,9 @@ use std::fmt::{self, Formatter};
 
 use super::numbers::{digits, duration, figures, length, measured, number, pair, signed};
 use super::{Cor, Report};
+use crate::alone::chance;
 use crate::bounces::{BounceCor, Measured};
-use crate::diagnose::{REJECT, chance};
+use crate::diagnose::REJECT;
 use crate::estimate::{Estimate, Source, Sourced};
 use crate::joint::{Agreement, Generous, Hypothesis};
 use crate::robust::Loss;

@@ -2,6 +2,7 @@
 //!
 //! A flight has one maximum and no minimum, so every minimum that rises and falls by more than noise on both sides is a contact.
 
+use crate::orientation::noise_by_thirds;
 use crate::statistics::median;
 
 /// A sample that is smaller than this part of the whole range, or this many times the noise, makes no extreme.
@@ -9,10 +10,6 @@ const PROMINENT: f64 = 0.01;
 const ABOVE_NOISE: f64 = 8.0;
 /// A minimum further above the floor than this part of the range is no contact with it.
 const FLOOR: f64 = 0.05;
-/// The part of the bends that must agree which way is up, before samples farther apart are asked,
-const AGREE: f64 = 0.65;
-/// and the part of a series that those are apart at most, one in so many.
-const FARTHEST: usize = 50;
 /// A flight with fewer samples than this says nothing of its own.
 const FEWEST: usize = 4;
 
@@ -36,50 +33,6 @@ pub(super) enum NoFlights {
     NoBounce,
     /// It has too few samples after the first contact, or before it.
     TooFew,
-}
-
-/// The standard deviation of noise, by the median of third differences: they take a parabola away.
-pub(super) fn noise_by_thirds(times: &[f64], heights: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-    let Some(usual) = median(&mut steps) else { return 0.0 };
-    let even = |w: &[f64]| w.windows(2).all(|p| (p[1] - p[0] - usual).abs() < 0.2 * usual);
-    let mut thirds: Vec<f64> = times
-        .windows(4)
-        .zip(heights.windows(4))
-        .filter(|(t, _)| even(t))
-        .map(|(_, h)| (h[3] - 3.0 * h[2] + 3.0 * h[1] - h[0]).abs())
-        .collect();
-    // Var(third difference) = 20 σ²; 1.4826 turns a median of absolute values into a standard deviation.
-    median(&mut thirds).map_or(0.0, |m| 1.4826 * m / 20f64.sqrt())
-}
-
-/// Whether heights are counted downwards: then the series is round below and pointed above.
-pub(super) fn upside_down(times: &[f64], heights: &[f64]) -> bool {
-    // Close samples show their noise: the nearest are taken on which the bends agree, or else the nearest of all.
-    let nearest = (times.len() / 100).clamp(1, 5);
-    let farther = std::iter::successors(Some(nearest), |reach| Some(2 * reach));
-    let reaches = farther.take_while(|&reach| reach == nearest || FARTHEST * reach <= times.len());
-    let votes: Vec<(usize, usize)> = reaches.map(|reach| bends(times, heights, reach)).collect();
-    #[allow(clippy::cast_precision_loss)] // counts of samples
-    let agree = |&&(up, down): &&(usize, usize)| up.max(down) as f64 > AGREE * (up + down) as f64;
-    votes.iter().find(agree).or(votes.first()).is_some_and(|(up, down)| up > down)
-}
-
-/// How many samples bend upwards and downwards between those `reach` away. Nearly all of a bounce is curved one way, where anything moves.
-fn bends(times: &[f64], heights: &[f64], reach: usize) -> (usize, usize) {
-    let top = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let bottom = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let (mut up, mut down) = (0, 0);
-    for i in reach..times.len().saturating_sub(reach) {
-        let (a, b, c) = (heights[i - reach], heights[i], heights[i + reach]);
-        let (s, t) = (times[i] - times[i - reach], times[i + reach] - times[i]);
-        let bend = (c - b) / t - (b - a) / s;
-        if (a - b).abs().max((c - b).abs()) < 0.002 * (top - bottom) {
-            continue;
-        }
-        if bend > 0.0 { up += 1 } else { down += 1 }
-    }
-    (up, down)
 }
 
 /// Single wild samples taken back between their neighbours, for finding extremes only.

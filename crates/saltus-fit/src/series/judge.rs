@@ -19,6 +19,9 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
     let Some(pooled) = &series.pooled else {
         report.verdict = Verdict::Refused;
         report.reason = series.refused.first().map_or_else(|| "the series is empty".to_owned(), |r| r.1.clone());
+        if let Some(stated) = series.falls_upwards {
+            report.warnings.push(std::mem::replace(&mut report.reason, stated.to_owned()));
+        }
         report.warnings.extend(series.refused.iter().skip(1).map(|r| r.1.clone()));
         return;
     };
@@ -32,7 +35,7 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
     let mut estimate =
         Estimate::new(name(drag), &about(drag), pooled.cor.value, pooled.cor.standard_error, pooled.quantile);
     estimate.trials = series.tracks.len();
-    let mut doubts = Vec::new();
+    let mut doubts: Vec<String> = series.falls_upwards.iter().map(|&stated| stated.to_owned()).collect();
     let (mut low, mut high) = (estimate.low.unwrap_or(0.0), estimate.high.unwrap_or(1.0));
     report.estimates.push(estimate);
     let other = pooled.rivals.iter().find(|r| r.0.1 != drag);
@@ -132,6 +135,15 @@ fn roughness(report: &mut Report, series: &Series, doubts: &mut Vec<String>) {
             track.rms, track.noise
         ));
     }
+    for track in series.tracks.iter().filter(|t| t.drift.is_some()) {
+        let drift = track.drift.map_or(0.0, |d| d.value);
+        let range = track.course.apexes.iter().map(|a| a.1).fold(0.0, f64::max);
+        report.warnings.push(format!(
+            "trial {}: the floor drifts by {:.1} % of the drop a second, as if the camera turned; the fit allows for it",
+            track.trial + 1,
+            100.0 * drift / range
+        ));
+    }
     let wild: usize = series.tracks.iter().map(|t| t.left_out[2]).sum();
     let all: usize = series.tracks.iter().map(|t| t.samples).sum();
     if wild * 20 > all {
@@ -145,8 +157,9 @@ fn gravity(report: &mut Report, tracks: &[Track]) {
     let expected = report.gravity.value;
     if !in_metres(found, expected) {
         report.warnings.push(format!(
-            "the recording's gravity is {found:.3} per s² in the unit of the heights, not {expected}: {}. The COR does not depend on it; \
-             speeds, drag and heights do",
+            "the recording's gravity is {} {}/s², not {expected} m/s²: {}. The COR does not depend on it; speeds, drag and heights do",
+            if found.abs() < 100.0 { format!("{found:.2}") } else { format!("{found:.0}") },
+            if report.pixels { "px" } else { "units" },
             if report.pixels {
                 "heights are in pixels (--scale says how large one is)"
             } else {

@@ -1,9 +1,11 @@
 //! One recording: scaled, cut, fitted by every model, and told in its own units again.
 
+mod told;
+
+use super::Samples;
 use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
 use super::wild::wild;
-use super::{Impact, Samples, Track, Variant};
 use crate::bounces::Measured;
 use crate::least_squares::Failure;
 use crate::model::{Dual, FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
@@ -16,6 +18,12 @@ const HUBER: f64 = 1.345;
 const WILD: f64 = 6.0;
 /// Starts are tried on so many samples at most.
 const COARSE: usize = 1500;
+/// More than so many times the noise from sample to sample is left for something else to explain,
+const UNEXPLAINED: f64 = 1.2;
+/// such as a drift of the camera, if its BIC is better by so much.
+const CLEAR: f64 = 6.0;
+/// A floor that moves by less than this part of the range, from the first sample to the last, stands still.
+const MOVED: f64 = 0.01;
 /// Candidates of k times the range of heights to start from.
 const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
 
@@ -69,6 +77,8 @@ pub(crate) struct Candidates {
     noise: f64,
     sketch: Sketch,
     found: Vec<Found>,
+    /// The floor drifts, as where a camera turns.
+    drift: bool,
     /// By how much the errors grow because neighbouring residuals are alike.
     dependence: f64,
 }
@@ -134,17 +144,51 @@ impl Candidates {
             noise,
             sketch,
             found: Vec::new(),
+            drift: false,
             dependence: 1.0,
         };
-        candidates.fit_all()?;
+        let drifting = Self { drift: true, ..candidates.clone() };
+        candidates.fit_and_trim(repair)?;
+        if candidates.leaves_more_than_noise() && drifting.sketch.contacts.len() > 1 {
+            let mut drifting = drifting;
+            if drifting.fit_and_trim(repair).is_ok() && drifting.is_clearly_better_than(&candidates) {
+                return Ok(drifting);
+            }
+        }
+        Ok(candidates)
+    }
+
+    fn fit_and_trim(&mut self, repair: bool) -> Result<(), Failure> {
+        self.fit_all()?;
         for _ in 0..3 {
-            if !candidates.trim(repair) {
+            if !self.trim(repair) {
                 break;
             }
-            candidates.fit_all()?;
+            self.fit_all()?;
         }
-        candidates.weigh();
-        Ok(candidates)
+        self.weigh();
+        Ok(())
+    }
+
+    /// The least robust standard deviation that any model leaves.
+    fn least(&self) -> f64 {
+        self.found.iter().map(|f| f.sigma).fold(f64::INFINITY, f64::min)
+    }
+
+    fn leaves_more_than_noise(&self) -> bool {
+        self.least() > UNEXPLAINED * self.noise
+    }
+
+    /// By BIC, with the one unknown more that drift is; neighbouring residuals are alike.
+    fn is_clearly_better_than(&self, other: &Self) -> bool {
+        let n = other.samples.len() as f64 / other.dependence.powi(2);
+        let gain = 2.0 * n * (other.least() / self.least()).ln() - n.ln();
+        let span = self.samples.last().map_or(0.0, |s| s.time) - self.samples.first().map_or(0.0, |s| s.time);
+        let moves = |f: &Found| {
+            let place = self.model(&self.samples, f.choice).drift_place();
+            place.is_some_and(|j| (f.fitted.shared[j] * span).abs() > MOVED)
+        };
+        gain > CLEAR && self.found.iter().all(moves) && 10 * self.samples.len() > 9 * other.samples.len()
     }
 
     fn model<'a>(&self, samples: &'a [Sample], (law, drag): Choice) -> Trajectory<'a> {
@@ -153,6 +197,7 @@ impl Candidates {
             samples,
             impacts: self.sketch.contacts.len(),
             drag,
+            drift: self.drift,
             law,
             speed: self.sketch.speed,
             first: (0.0, 5.0 * step + 0.05),
@@ -188,10 +233,12 @@ impl Candidates {
     /// The fit with a COR for every impact, from the parabolas' sketch.
     fn each(&self, drag: bool) -> Result<Option<Found>, Failure> {
         let Sketch { speed, cors, .. } = &self.sketch;
+        let drift: &[f64] = if self.drift { &[0.0] } else { &[] };
         let starts: Vec<Vec<f64>> = if drag {
-            DRAGS.iter().map(|&k| [&[0.0, *speed, 0.0, 1.0, k], self.cors_with(k).as_slice()].concat()).collect()
+            let start = |&k: &f64| [&[0.0, *speed, 0.0, 1.0, k], drift, self.cors_with(k).as_slice()].concat();
+            DRAGS.iter().map(start).collect()
         } else {
-            vec![[&[0.0, *speed, 0.0, 1.0], cors.as_slice()].concat()]
+            vec![[&[0.0, *speed, 0.0, 1.0], drift, cors.as_slice()].concat()]
         };
         self.best((Law::Each, drag), &starts)
     }
@@ -340,109 +387,6 @@ impl Candidates {
         let free = self.samples.len().saturating_sub(found.fitted.shared.len()).max(1) as f64;
         let scatter = (found.fitted.chi_square / free).max(0.0).sqrt().max(found.sigma);
         Measured { value: x.value, standard_error: found.fitted.error_of(&x.by) * scatter * self.dependence }
-    }
-
-    /// What was left out, for people.
-    pub(crate) fn repairs(&self) -> Vec<String> {
-        let mut list = Vec::new();
-        let plural = |n: usize| if n == 1 { "sample" } else { "samples" };
-        let (before, after) = self.left_out;
-        if before + after > 0 {
-            list.push(format!(
-                "{before} {} before the fall and {after} {} after the last flight left out: the ball was held, caught or lay there",
-                plural(before),
-                plural(after)
-            ));
-        }
-        if self.wild > 0 {
-            let n = self.wild;
-            list.push(format!("{n} wild {} left out, far from every flight through their neighbours", plural(n)));
-        }
-        list
-    }
-
-    /// The recording under the chosen model, in the table's units.
-    pub(crate) fn track(&self, choice: Choice) -> Option<Track> {
-        let single = self.sketch.contacts.len() == 1;
-        let (law, drag) = if single { (Law::Constant, choice.1) } else { choice };
-        let of = |choice: Choice| self.found.iter().find(|f| f.choice == choice);
-        let each = if single { (Law::Constant, drag) } else { (Law::Each, drag) };
-        let chosen = of((law, drag)).or_else(|| of((law, false))).or(self.found.first())?;
-        // Impact by impact, whatever the law.
-        let own = of(each).unwrap_or(chosen);
-        let Scale { origin, unit, range } = self.scale;
-        let model = self.model(&self.samples, own.choice);
-        let impacts = model.impacts(&own.fitted.shared);
-        let impacts: Vec<Impact> = impacts
-            .iter()
-            .enumerate()
-            .map(|(n, i)| Impact {
-                bounce: n + 1,
-                time: origin.0 + unit * i.time.value,
-                speed: i.arrival.value * range / unit,
-                cor: self.measured(own, &i.cor),
-            })
-            .collect();
-        let values = &chosen.fitted.shared;
-        let model = self.model(&self.samples, chosen.choice);
-        let unknown = |j: usize, scale: f64, shift: f64| {
-            let m = self.measured(chosen, &Dual::unknown(values[j], values.len(), j));
-            Measured { value: shift + scale * m.value, standard_error: scale * m.standard_error }
-        };
-        let turn = if self.turned { -1.0 } else { 1.0 };
-        let floor = unknown(FLOOR, range, origin.1);
-        let left = self.left(values, chosen.choice);
-        let rms = range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
-        let course = Course {
-            contacts: model.impacts(values).iter().map(|i| origin.0 + unit * i.time.value).collect(),
-            apexes: model
-                .apexes(values)
-                .iter()
-                .map(|(t, h)| (origin.0 + unit * t, range * (h - values[FLOOR])))
-                .collect(),
-            gravity: values[GRAVITY] * range / (unit * unit),
-            drag: model.drag_place().map_or(0.0, |j| values[j] / range),
-            samples: self
-                .samples
-                .iter()
-                .zip(&left)
-                .map(|(s, r)| (origin.0 + unit * s.time, range * (s.height - values[FLOOR]), range * r))
-                .collect(),
-        };
-        Some(Track {
-            trial: self.trial,
-            samples: self.samples.len(),
-            left_out: [self.left_out.0, self.left_out.1, self.wild],
-            impacts,
-            gravity: unknown(GRAVITY, range / (unit * unit), 0.0),
-            drag: model.drag_place().map(|j| unknown(j, 1.0 / range, 0.0)),
-            floor: Measured { value: turn * floor.value, ..floor },
-            rms,
-            noise: range * self.noise,
-            models: self.variants(),
-            course,
-        })
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        let least = self.found.iter().map(|f| f.bic).fold(f64::INFINITY, f64::min);
-        let mut list: Vec<Variant> = self
-            .found
-            .iter()
-            .map(|f| {
-                let left = self.left(&f.fitted.shared, f.choice);
-                Variant {
-                    law: name(f.choice.0),
-                    drag: f.choice.1,
-                    unknowns: f.fitted.shared.len(),
-                    rms: self.scale.range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt(),
-                    bic: f.bic - least,
-                    cor: f.cor,
-                }
-            })
-            .collect();
-        list.sort_by(|a, b| a.bic.total_cmp(&b.bic));
-        list
     }
 }
 

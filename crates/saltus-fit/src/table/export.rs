@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ReadOptions;
+use super::heading::{Line, heading};
 use super::sheet::{Grid, Row};
 use crate::error::TableError;
 
@@ -86,17 +87,11 @@ pub(super) fn blocks(grid: &Grid<'_>, options: &ReadOptions, fps: Option<f64>) -
     if first.numbers {
         return one(bare(grid, first, options, fps)?);
     }
-    let header = title_lines(&head);
-    let at = head.get(header + 1).map_or((grid.text.len(), head[header].at.1), |r| r.at);
-    let block = Block { header: head[header].cells.clone(), ..below(grid, head[header].at, at) };
+    let lines: Vec<Line<'_>> = head.iter().map(|record| (record.cells.as_slice(), record.any)).collect();
+    let (names, header, rows) = heading(&lines);
+    let at = head.get(rows).map_or((grid.text.len(), head[header].at.1), |r| r.at);
+    let block = Block { header: names, ..below(grid, head[header].at, at) };
     Ok(side_by_side(&block).unwrap_or(Recognised { what: None, blocks: vec![block], tracks: false }))
-}
-
-/// How many records stand above the header: titles of one cell, before names of several with numbers below them.
-fn title_lines(head: &[Record]) -> usize {
-    let filled = |record: &Record| record.cells.iter().filter(|cell| !cell.is_empty()).count();
-    let header = head.windows(2).position(|pair| !pair[0].any && filled(&pair[0]) > 1 && pair[1].any);
-    header.filter(|&n| head[..n].iter().all(|record| !record.any && filled(record) == 1)).unwrap_or(0)
 }
 
 /// The records from byte `start` in line `line` on, up to `most`.

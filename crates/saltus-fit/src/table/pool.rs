@@ -61,5 +61,6 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,
         oriented: a.oriented,
+        falls_upwards: a.falls_upwards.or(b.falls_upwards),
     })
 }

@@ -4,18 +4,14 @@ use super::header::Columns;
 use super::sheet::Sheet;
 use super::{ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
+use crate::orientation::falls_upwards;
 
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
 const RECORDING: usize = 5;
-/// Rows this far apart are compared to tell which way the ball falls; where noise hides it, twice as far, and so on up to one in so many.
-const STRIDE: usize = 2;
-const FARTHEST: usize = 50;
-/// And so far apart to tell how fast.
+/// Rows this far apart are compared to tell how fast the ball falls.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
 /// They agree how fast if the middle half of the bends lies within this part of their median.
 const ALIKE: f64 = 0.35;
-/// The part of the bends of a series that must agree before it is said to fall either way.
-const AGREE: f64 = 0.65;
 
 /// Puts the samples of a table in order and the right way up.
 pub(super) fn series(
@@ -139,15 +135,18 @@ fn ordered(
 
 /// Turns a series that falls upwards; heights of a picture are then counted from its lowest.
 fn orient(columns: &Columns, options: &ReadOptions, table: &mut Table) {
-    let falls_upwards = falls_upwards(&table.trials);
+    let recordings: Vec<(Vec<f64>, Vec<f64>)> =
+        table.trials.iter().map(|t| t.readings.iter().filter_map(|r| Some((r.time?, r.height?))).unzip()).collect();
+    let falls_upwards = falls_upwards(&recordings);
     let turned = match options.down {
         Some(down) => {
             // What is stated is heeded, but a ball that then falls upwards is worth a word.
             if falls_upwards == Some(true) {
-                let (way, other) = if down { ("downwards", "--y-up") } else { ("upwards", "--y-down") };
-                table.warnings.push(format!(
-                    "the heights are taken to count {way}, as stated, and then the ball falls upwards: is it {other}?"
-                ));
+                table.metadata.falls_upwards = Some(if down {
+                    "the heights are taken to count downwards, as stated, and then the ball falls upwards: it should be --y-up"
+                } else {
+                    "the heights are taken to count upwards, as stated, and then the ball falls upwards: it should be --y-down"
+                });
             }
             false
         }
@@ -169,34 +168,4 @@ fn each_height(table: &mut Table, change: impl Fn(f64) -> f64) {
     for reading in table.trials.iter_mut().flat_map(|t| &mut t.readings) {
         reading.height = reading.height.map(&change);
     }
-}
-
-/// Whether the ball falls towards greater heights; `None` where the series does not tell.
-fn falls_upwards(trials: &[Trial]) -> Option<bool> {
-    let longest = trials.iter().map(|trial| trial.readings.len()).max().unwrap_or(0);
-    let farther = std::iter::successors(Some(STRIDE), |stride| Some(2 * stride));
-    let mut strides = farther.take_while(|&stride| stride == STRIDE || FARTHEST * stride <= longest);
-    strides.find_map(|stride| {
-        let votes = trials.iter().map(|trial| bends(&trial.readings, stride));
-        let (up, down) = votes.fold((0, 0), |(up, down), (a, b)| (up + a, down + b));
-        #[allow(clippy::cast_precision_loss)] // counts of rows
-        let agree = |part: usize| part >= 3 && part as f64 >= AGREE * (up + down) as f64;
-        if agree(down) { Some(true) } else { agree(up).then_some(false) }
-    })
-}
-
-/// How often a series bends downwards, as flights do, and upwards; only where the ball moves.
-fn bends(readings: &[Reading], stride: usize) -> (usize, usize) {
-    let heights: Vec<f64> = readings.iter().filter_map(|r| r.height).collect();
-    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &y| (l.min(y), h.max(y)));
-    let moves = 0.02 * (high - low);
-    let (mut up, mut down) = (0, 0);
-    for w in heights.windows(2 * stride + 1) {
-        let (a, b, c) = (w[0], w[stride], w[2 * stride]);
-        if (b - a).abs().max((c - b).abs()) > moves {
-            up += usize::from(a + c < 2.0 * b);
-            down += usize::from(a + c > 2.0 * b);
-        }
-    }
-    (up, down)
 }

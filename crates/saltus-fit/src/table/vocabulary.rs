@@ -16,8 +16,49 @@ pub(super) const KNOWN: [&str; 11] = [
 ];
 
 pub(super) const ERROR: &[&str] = &["error", "err", "sigma", "uncertainty", "unc", "sd", "std", "stdev", "se"];
-pub(super) const INTERVAL: &[&str] = &["interval", "intervals", "dt", "delta", "duration", "gap", "period"];
-pub(super) const TIME: &[&str] = &["time", "times", "t", "timestamp", "clock", "zeit", "temps", "tiempo", "tempo"];
+pub(super) const INTERVAL: &[&str] = &[
+    "interval",
+    "intervals",
+    "dt",
+    "delta",
+    "duration",
+    "gap",
+    "period",
+    "durée",
+    "intervalle",
+    "intervalles",
+    "dauer",
+    "intervall",
+    "intervalle",
+    "zeitabstand",
+    "zeitintervall",
+    "flugzeit",
+    "flugdauer",
+    "durata",
+    "intervallo",
+    "intervalli",
+    "duración",
+    "intervalo",
+    "intervalos",
+];
+pub(super) const TIME: &[&str] = &[
+    "time",
+    "times",
+    "t",
+    "timestamp",
+    "clock",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "aufprallzeit",
+    "zeitpunkt",
+    "aufprallzeitpunkt",
+    "kontaktzeit",
+    "instant",
+    "istante",
+    "instante",
+];
 pub(super) const HEIGHT: &[&str] = &[
     "height",
     "heights",
@@ -36,10 +77,43 @@ pub(super) const HEIGHT: &[&str] = &[
     "hauteur",
     "altura",
     "altezza",
+    "höhen",
+    "hoehe",
+    "fallhöhe",
+    "starthöhe",
+    "anfangshöhe",
+    "abwurfhöhe",
+    "sprunghöhe",
+    "rücksprunghöhe",
+    "rückprallhöhe",
+    "hauteurs",
+    "alturas",
+    "altezze",
 ];
-pub(super) const AVERAGE: &[&str] = &["average", "mean", "avg", "moyenne", "mittelwert", "media"];
-pub(super) const FRAME: &[&str] = &["frame", "frames", "slice"];
-pub(super) const RELEASE: &[&str] = &["drop", "release", "initial", "start", "released", "dropped", "before"];
+pub(super) const AVERAGE: &[&str] =
+    &["average", "mean", "avg", "moyenne", "mittelwert", "media", "moyennes", "durchschnitt", "mittel", "promedio"];
+pub(super) const FRAME: &[&str] = &["frame", "frames", "slice", "bild", "bildnummer", "fotogramma", "fotograma"];
+pub(super) const RELEASE: &[&str] = &[
+    "drop",
+    "release",
+    "initial",
+    "start",
+    "released",
+    "dropped",
+    "before",
+    "fallhöhe",
+    "starthöhe",
+    "anfangshöhe",
+    "abwurfhöhe",
+    "initiale",
+    "chute",
+    "départ",
+    "lâcher",
+    "iniziale",
+    "caduta",
+    "inicial",
+    "caída",
+];
 pub(super) const TRIAL: &[&str] = &[
     "trial",
     "run",
@@ -54,11 +128,74 @@ pub(super) const TRIAL: &[&str] = &[
     "set",
     "experiment",
     "test",
+    "versuch",
+    "messung",
+    "durchgang",
+    "wurf",
+    "essai",
+    "mesure",
+    "lancer",
+    "prova",
+    "lancio",
+    "misura",
+    "ensayo",
+    "intento",
+    "lanzamiento",
 ];
-pub(super) const BOUNCE: &[&str] =
-    &["bounce", "bounces", "n", "number", "no", "contact", "impact", "index", "hit", "k", "i"];
+pub(super) const BOUNCE: &[&str] = &[
+    "bounce",
+    "bounces",
+    "n",
+    "number",
+    "no",
+    "contact",
+    "impact",
+    "index",
+    "hit",
+    "k",
+    "i",
+    "contacts",
+    "impacts",
+    "hits",
+    "aufprall",
+    "aufpralle",
+    "kontakt",
+    "stoß",
+    "stoss",
+    "nr",
+    "nummer",
+    "rebond",
+    "rebonds",
+    "choc",
+    "numéro",
+    "rimbalzo",
+    "rimbalzi",
+    "urto",
+    "numero",
+    "rebote",
+    "rebotes",
+    "bote",
+    "número",
+];
 pub(super) const EVENT: &[&str] = &["event", "events", "what", "phase"];
-pub(super) const SETTING: &[&str] = &["ball", "surface", "material", "floor", "object", "temperature", "condition"];
+pub(super) const SETTING: &[&str] = &[
+    "ball",
+    "surface",
+    "material",
+    "floor",
+    "object",
+    "temperature",
+    "condition",
+    "boden",
+    "untergrund",
+    "balle",
+    "ballon",
+    "sol",
+    "palla",
+    "pallina",
+    "suelo",
+    "pelota",
+];
 pub(super) const REPEAT: &[&str] = &["group", "person", "sample", "id"];
 pub(super) const IGNORED: &[&str] = &[
     "source",
@@ -96,6 +233,14 @@ pub(super) const IGNORED: &[&str] = &[
     "restitution",
     "pixelx",
     "pixely",
+    "bemerkung",
+    "datum",
+    "geschwindigkeit",
+    "remarque",
+    "vitesse",
+    "énergie",
+    "velocità",
+    "velocidad",
 ];
 
 /// Whether a word of a name says what a column holds, or counts.
