@@ -22,7 +22,7 @@ where
     type State = Flying<N>;
     type Edge = Meeting;
 
-    #[inline]
+    #[inline(never)] // much code, called for each stage of each stepper
     fn flow(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Flying<N> {
         x.map(|ball| Some(self.balls.get(ball)?.1.flow(stances.of(ball), t, &x.ball(ball)))).unwrap_or(*x)
     }
@@ -31,7 +31,7 @@ where
         Edges::indexed(self.count(&stances), Meeting)
     }
 
-    #[inline]
+    #[inline(never)]
     fn guard(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> f64 {
         match self.happens(meeting, &x.stances()) {
             Happens::Balls(i, j) => self.apart(i, j, x).0.norm() - self.reach(i, j),
@@ -40,7 +40,6 @@ where
         }
     }
 
-    #[inline]
     fn affine(&self, meeting: Meeting) -> bool {
         // Where a ball touches a face, that guard is a constant.
         match self.happens(meeting, &Stances::FLIGHT) {
