@@ -78,12 +78,6 @@ where
                     Event::Meet(face) if parts(face) => (stances.of(ball), flyer.outside(face, t, &moving)),
                     event => flyer.take(stances.of(ball), event, t, &moving)?,
                 };
-                let (stance, moving) = match (event, stance) {
-                    (Event::Meet(face), Stance::Flight { cell }) if cell == face.cell => {
-                        flyer.at_rest_on(face, t, &moving).unwrap_or((stance, moving))
-                    }
-                    _ => (stance, moving),
-                };
                 let mut after = x;
                 after.put(ball, stance, moving);
                 after
