@@ -76,17 +76,6 @@ where
         x
     }
 
-    /// What a ball does that is pressed to `face` and neither leaves nor approaches it, for all that the rounding of its velocity tells: it does not bounce any
-    /// more.
-    pub(super) fn at_rest_on(&self, face: Face, t: f64, x: &Ball) -> Option<(Stance<3>, Ball)> {
-        if self.walls().leads(face, t, &x.position).is_some() {
-            return None;
-        }
-        let (parting, size) = self.parting(face, t, x);
-        let pull = self.flow(Stance::Flight { cell: face.cell }, t, x).velocity.dot(&self.normal(face, t, x).0);
-        (pull < -PULL && parting.abs() <= 8.0 * f64::EPSILON * size).then(|| self.settled(face, t, *x))
-    }
-
     /// What a ball does whose velocity another has changed: it goes on lying where it neither leaves nor is pressed in.
     pub(super) fn pushed(&self, stance: Stance<3>, t: f64, x: &Ball) -> (Stance<3>, Ball) {
         let cell = stance.cell();
