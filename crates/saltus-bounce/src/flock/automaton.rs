@@ -34,7 +34,7 @@ where
     #[inline(never)]
     fn guard(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> f64 {
         match self.happens(meeting, &x.stances()) {
-            Happens::Balls(i, j) => self.apart(i, j, x).0.norm() - self.reach(i, j),
+            Happens::Balls(i, j) => self.gap(i, j, x),
             Happens::To(ball, event) => self.balls[ball].1.guard(event, t, &x.ball(ball)),
             Happens::Change | Happens::Nothing => 1.0,
         }
@@ -64,7 +64,7 @@ where
     ) -> Result<(Stances<N>, Flying<N>), ErrorKind> {
         let x = x.doing(stances);
         let after = match self.happens(meeting, &stances) {
-            Happens::Balls(i, j) => self.met(i, j, t, &x),
+            Happens::Balls(i, j) => self.collided(i, j, &self.restitution, t, &x),
             Happens::To(ball, event) => {
                 let (flyer, moving) = (&self.balls[ball].1, x.ball(ball));
                 let parts = |face: Face| {

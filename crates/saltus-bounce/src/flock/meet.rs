@@ -129,11 +129,14 @@ where
     }
 
     /// Two balls have met.
-    pub(super) fn met(&self, i: usize, j: usize, t: f64, x: &Flying<N>) -> Flying<N> {
-        self.collided(i, j, &self.restitution, t, x)
-    }
-
-    fn collided(&self, i: usize, j: usize, restitution: &impl Restitution, t: f64, x: &Flying<N>) -> Flying<N> {
+    pub(super) fn collided(
+        &self,
+        i: usize,
+        j: usize,
+        restitution: &impl Restitution,
+        t: f64,
+        x: &Flying<N>,
+    ) -> Flying<N> {
         let (between, change) = self.apart(i, j, x);
         let distance = between.norm();
         let mut after = *x;
@@ -164,7 +167,8 @@ where
         self.moved_until(i, j, x, 0.0, |gap| gap >= 0.0)
     }
 
-    fn gap(&self, i: usize, j: usize, x: &Flying<N>) -> f64 {
+    /// How far two balls are from touching; negative where they overlap.
+    pub(super) fn gap(&self, i: usize, j: usize, x: &Flying<N>) -> f64 {
         self.apart(i, j, x).0.norm() - self.reach(i, j)
     }
 

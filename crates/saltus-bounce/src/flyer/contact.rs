@@ -310,19 +310,13 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// Bounces have accumulated: on one face, or where several meet.
     pub(crate) fn accumulated(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let cell = from.cell();
-        let distance = |index: usize| {
-            let face = Face { cell, index };
-            let length = self.walls.gradient(face, t, &x.position).norm();
-            let wall = length > 0.0 && self.walls.leads(face, t, &x.position).is_none();
-            if wall { self.walls.margin(face, t, &x.position).abs() / length } else { f64::INFINITY }
-        };
+        let distance = |index: usize| self.distance(Face { cell, index }, t, x);
         let free = (0..self.walls.faces(cell)).filter(|&index| !from.touches(index));
         let Some(nearest) = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) else { return (from, *x) };
         let size = NEAR * (1.0 + x.position.norm());
         let meets = |index: usize| {
-            let (normal, speed) = self.normal(Face { cell, index }, t, x);
-            let stands = (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt();
-            index == nearest || from.touches(index) || distance(index) <= size && stands
+            let stands = || self.stands(Face { cell, index }, t, x);
+            index == nearest || from.touches(index) || distance(index) <= size && stands()
         };
         let mask = (0..self.walls.faces(cell)).filter(|&index| meets(index)).fold(0, |mask, index| mask | 1 << index);
         self.among(cell, mask, t, *x)
@@ -331,14 +325,23 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// Whether the ball is so near to a face that it does not touch, and so slow there, that its bounces may have accumulated.
     pub(crate) fn ends_on_a_face(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> bool {
         let cell = from.cell();
-        let free = (0..self.walls.faces(cell)).filter(|&index| !from.touches(index)).map(|index| Face { cell, index });
-        free.filter(|&face| self.walls.leads(face, t, &x.position).is_none()).any(|face| {
-            let length = self.walls.gradient(face, t, &x.position).norm();
-            let (normal, speed) = self.normal(face, t, x);
-            let distance = self.walls.margin(face, t, &x.position).abs() / length;
-            let stands = (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt();
-            length > 0.0 && distance <= 100.0 * NEAR * (1.0 + x.position.norm()) && stands
-        })
+        let mut free =
+            (0..self.walls.faces(cell)).filter(|&index| !from.touches(index)).map(|index| Face { cell, index });
+        let near = 100.0 * NEAR * (1.0 + x.position.norm());
+        free.any(|face| self.distance(face, t, x) <= near && self.stands(face, t, x))
+    }
+
+    /// How far the ball is from `face`; infinitely, where that is no wall.
+    fn distance(&self, face: Face, t: f64, x: &Moving<N, S>) -> f64 {
+        let length = self.walls.gradient(face, t, &x.position).norm();
+        let wall = length > 0.0 && self.walls.leads(face, t, &x.position).is_none();
+        if wall { self.walls.margin(face, t, &x.position).abs() / length } else { f64::INFINITY }
+    }
+
+    /// Whether it neither leaves nor approaches `face`, as far as bounces that accumulate tell.
+    fn stands(&self, face: Face, t: f64, x: &Moving<N, S>) -> bool {
+        let (normal, speed) = self.normal(face, t, x);
+        (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt()
     }
 
     /// In contact with the faces of a mask.

@@ -99,10 +99,12 @@ impl Search<'_> {
             // The slope that it allows is too small for this fall: two steps, one twice as far as the other, are not its sign.
             let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
             let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
-            let order = match slow {
-                true if without_speed => 2.0,
-                true => order(at_half - self.base, last - self.base, half, b),
-                false => 1.0,
+            let order = if slow && without_speed {
+                2.0
+            } else if slow {
+                order(at_half - self.base, last - self.base, half, b)
+            } else {
+                1.0
             };
             return Ok(Look::Steps(self.left(Some(order), b)));
         }
