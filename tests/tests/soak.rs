@@ -29,7 +29,6 @@ fn scenes_that_broke_a_law_keep_it() {
 }
 
 #[test]
-#[ignore = "a heavy ball among others is left flying at the speed of the floor, to rounding, and falls through it"]
 fn a_scene_that_breaks_a_law_still() {
     let made = numbered(76_643);
     assert!(lived(&made, EVALUATIONS).is_ok(), "{}", made.toml);

@@ -1,7 +1,9 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
-use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step};
+use crate::cross::{
+    Crossing, Evidence, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step, settle,
+};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::poly::{Bernstein, MAX_DEGREE};
@@ -30,24 +32,25 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Found<A>, Error> {
         let mut found: Found<A> = None;
         for edge in self.automaton.edges(mode).iter() {
-            let start = self.start(edge, first);
+            let (start, level) = (self.start(edge, first), self.level(edge, first));
             let affine = self.automaton.affine(edge);
             if affine && start != Start::Spent && self.stays_above(edge, now, c, limit / scale) {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence: Evidence::Excluded });
                 continue;
             }
-            let powers = if affine { self.stretched(edge, now, c, limit / scale) } else { None };
+            let powers = if affine { self.stretched(edge, now, c, limit / scale, start, level) } else { None };
             let p = powers.as_ref().and_then(Powers::bernstein);
             let bend = if p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
             let mut guard = |s: f64| {
                 *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale)) - level
             };
             let searched = match &p {
                 Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut guard, limit, start),
                 None => first_fall_on_step(&mut guard, limit, start, bend),
             };
+            let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, evidence } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
@@ -84,24 +87,35 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if bend.is_finite() { bend } else { 0.0 }
     }
 
-    /// An affine guard along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
+    /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     #[inline]
-    fn stretched(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> Option<Powers> {
+    fn stretched(
+        &mut self,
+        edge: A::Edge,
+        now: Time,
+        c: &[A::State],
+        stretch: f64,
+        start: Start,
+        level: f64,
+    ) -> Option<Powers> {
         if c.len() > MAX_DEGREE + 1 {
             return None;
         }
         let t = now.seconds();
         self.memory.stats.guards += c.len() as u64 + 1;
-        let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
-        let start = self.automaton.guard(edge, t, &c[0]);
+        let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+        let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
         let mut p = [0.0; MAX_DEGREE + 1];
-        p[0] = start;
+        p[0] = g - level;
         let mut power = stretch;
         for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
-            *p = less_constant(|x| self.automaton.guard(edge, t, x), constant, c) * power;
+            *p = less_constant(guard, constant, c) * power;
             power *= stretch;
         }
-        Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + start.abs()) })
+        if start == Start::Spent && turns_down(&p) && is_rounding(guard, constant, &c[1]) {
+            p[1] = 0.0;
+        }
+        Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + g.abs()) })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
@@ -187,6 +201,27 @@ pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, 
     }
     let far = guard(&x.with(|i| LARGER * x.get(i))) - constant;
     if far.is_finite() { far / LARGER } else { guard(x) - constant }
+}
+
+/// Whether a guard with these powers falls from a spent root, and ever faster: with a slope that [is rounding](is_rounding), it only touched zero there.
+#[inline]
+pub(super) fn turns_down(powers: &[f64]) -> bool {
+    powers[1] < 0.0 && powers[2] < 0.0
+}
+
+/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
+#[cold]
+pub(super) fn is_rounding<S: State>(guard: impl Fn(&S) -> f64 + Copy, constant: f64, x: &S) -> bool {
+    let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
+    let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
+    less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
+}
+
+/// What was found of a `guard` less its `level` at the start, of the guard itself.
+pub(super) fn unlevelled(searched: Searched, level: f64, mut guard: impl FnMut(f64) -> f64) -> Searched {
+    let later = searched.fall.filter(|fall| level != 0.0 && fall.inside > 0.0);
+    let settled = later.and_then(|fall| settle(|s| guard(s) + level, fall.root));
+    Searched { fall: settled.or(searched.fall), ..searched }
 }
 
 /// The end of an arc's last piece.

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::automaton::{Automaton, Entry};
+use crate::automaton::{Automaton, Entry, Fall};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
@@ -10,12 +10,18 @@ use crate::time::{Time, resolution};
 
 use super::Advance;
 
+/// A guard no larger than this part of the state may be zero but for rounding.
+const SMALL: f64 = 1e-12;
+/// A guard that changes by this many roundings at a glance is sure to rise or fall.
+const SURELY: f64 = 64.0;
+
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
     #[inline]
     pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
         let mut zero = None;
+        self.memory.wall_count = 0;
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
@@ -29,9 +35,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if g >= 0.0 {
                 if spent.is_some() {
                     self.memory.unspend(edge); // the reset led away from the wall
-                }
-                if g == 0.0 && spent.is_none() {
+                } else if g == 0.0 {
                     zero = zero.or(Some(edge));
+                } else if g <= SMALL * size(x) && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
+                    self.memory.at_wall(edge, g);
                 }
                 continue; // a zero that falls at once is found like every other crossing
             }
@@ -40,8 +47,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let rounding =
                 slope.abs() * tick + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
             if -g <= 4.0 * rounding {
-                if spent.is_none() && slope < 0.0 {
-                    return Ok(Some(self.first_of(mode, t, x, zero, edge)));
+                if spent.is_none() {
+                    let unsure = slope.abs() * self.glance() <= SURELY * rounding;
+                    if unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
+                        self.memory.at_wall(edge, g);
+                    } else if slope < 0.0 {
+                        return Ok(Some(self.first_of(mode, t, x, zero, edge)));
+                    }
                 }
                 continue;
             }
@@ -57,6 +69,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.
     fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
         zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0) < 0.0).unwrap_or(edge)
+    }
+
+    /// The longest time over which a guard's slope is looked at.
+    fn glance(&self) -> f64 {
+        if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 }
     }
 
     /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
@@ -86,7 +103,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The shortest time is taken over which the change of the guard doubles (or, where it never does, quadruples) with time twice in a row: longer than
     /// rounding, shorter than the way to the guard's next root.
     pub(super) fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let longest = if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 };
+        let longest = self.glance();
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
         let (automaton, guards) = (self.automaton, Cell::from_mut(&mut self.memory.stats.guards));
@@ -112,4 +129,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
     }
+}
+
+/// The sum of a state's coordinates, all taken as positive.
+#[inline]
+fn size<S: State>(x: &S) -> f64 {
+    (0..x.len()).map(|i| x.get(i).abs()).sum()
 }

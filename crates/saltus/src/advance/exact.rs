@@ -12,7 +12,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, less_constant};
+use super::crossing::{Close, is_rounding, less_constant, turns_down, unlevelled};
 use super::{Advance, ArcEnd, Clock};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -60,7 +60,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
-        let powers = [g(&c[0]), power(1), power(2)];
+        let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
+        if start == Start::Spent && turns_down(&powers) && is_rounding(g, constant, &c[1]) {
+            powers[1] = 0.0;
+        }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
                 Some(at) => Searched { fall: None, evidence: Evidence::Rounding { from: at, to: at } },
@@ -93,7 +96,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let longest = self.options.longest_step;
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
-        let mut start = start;
+        let (mut start, mut level) = (start, self.level(edge, true));
         let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
@@ -102,8 +105,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut evidence = Evidence::Excluded;
         loop {
             let to = if from + window < limit { from + window } else { limit };
-            let searched =
-                first_fall(|s| guard(from + s), to - from, start).map_err(|Undefined(s)| Undefined(from + s))?;
+            let searched = first_fall(|s| guard(from + s) - level, to - from, start)
+                .map_err(|Undefined(s)| Undefined(from + s))?;
+            let searched = unlevelled(searched, level, |s| guard(s) - level);
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
@@ -114,7 +118,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             from = to;
             window = (2.0 * window).min(longest);
-            start = Start::Resumed;
+            (start, level) = (Start::Resumed, 0.0);
         }
     }
 }

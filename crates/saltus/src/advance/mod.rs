@@ -73,6 +73,9 @@ pub(crate) struct Memory<E> {
     /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
     idle: [Option<Spent<E>>; MOST_IDLE],
     idle_count: usize,
+    /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
+    walls: [Option<(E, f64)>; MOST_IDLE],
+    wall_count: usize,
     /// When a scheduled edge was last taken.
     clock_took: Option<f64>,
     slack: f64,
@@ -94,6 +97,8 @@ impl<E: Copy + PartialEq> Memory<E> {
             last: None,
             idle: [None; MOST_IDLE],
             idle_count: 0,
+            walls: [None; MOST_IDLE],
+            wall_count: 0,
             clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
@@ -115,6 +120,14 @@ impl<E: Copy + PartialEq> Memory<E> {
         self.spent = self.spent.filter(|spent| spent.edge != edge);
         for idle in &mut self.idle[..self.idle_count] {
             *idle = idle.filter(|idle| idle.edge != edge);
+        }
+    }
+
+    /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of it.
+    fn at_wall(&mut self, edge: E, g: f64) {
+        if self.wall_count < MOST_IDLE {
+            self.walls[self.wall_count] = Some((edge, g));
+            self.wall_count += 1;
         }
     }
 
@@ -234,5 +247,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     fn start(&self, edge: A::Edge, first: bool) -> Start {
         if first && self.memory.spent_as(edge).is_some() { Start::Spent } else { Start::Open }
+    }
+
+    /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero but for that at its start: it is to be seen without, so
+    /// that the rise or fall from there decides, and not the rounding.
+    #[inline]
+    fn level(&self, edge: A::Edge, first: bool) -> f64 {
+        let mut walls = self.memory.walls[..self.memory.wall_count].iter().flatten();
+        if first { walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1) } else { 0.0 }
     }
 }
