@@ -386,20 +386,22 @@ fn hills_are_left_at_hardly_more_than_the_speed_to_leave_them() {
     let mut runner = TestRunner::deterministic();
     let balls = (4.9..5.3_f64, -100.0..100.0_f64, 0.35..0.45_f64, 0.0..0.3_f64, 6.0..12.0_f64);
     let mut left = 0;
-    for _ in 0..2000 {
+    for k in 0..2000 {
         let (speed, spin, curvature, friction, digits) = balls.new_tree(&mut runner).unwrap().current();
+        let (tolerance, drag) =
+            (10.0_f64.powf(-digits), if k % 2 == 0 { "" } else { "drag = { per_length = 1e-9 }\n" });
         let toml = format!(
-            "restitution = 0.9\nfriction = {friction}\n[ball]\nradius = 0.2\nmass = 0.01\nposition = [0.0, 0.2]\n\
-             velocity = [{speed}, 0.0]\nspin = {spin}\n[[floor]]\nkind = \"parabola\"\ncurvature = -{curvature}\n[run]\nuntil = 1.0\ntolerance = {}",
-            10.0_f64.powf(-digits)
+            "restitution = 0.9\nfriction = {friction}\n{drag}[ball]\nradius = 0.2\nmass = 0.01\nposition = [0.0, 0.2]\n\
+             velocity = [{speed}, 0.0]\nspin = {spin}\n[[floor]]\nkind = \"parabola\"\ncurvature = -{curvature}\n\
+             [run]\nuntil = 1.0\ntolerance = {tolerance}"
         );
         let record = Scene::parse("hill.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
         let Some(lift) = record.events().into_iter().find(|event| event.edge == "lift-off") else { continue };
         left += 1;
-        // In flight only gravity acts: the speed across does not change any more.
-        let [across, end] = [lift.t, 1.0].map(|t| record.at(0, t).unwrap().velocity.x);
-        assert!((across - end).abs() < 1e-12, "{across} {end}\n{toml}");
         assert_eq!(record.events().last(), Some(&lift), "{toml}");
+        // In flight only gravity acts, and a drag of next to nothing, by which it is stepped: the speed across does not change any more.
+        let [across, end] = [lift.t, 1.0].map(|t| record.at(0, t).unwrap().velocity.x);
+        assert!((across - end).abs() < 1e-6, "{across} {end}\n{toml}");
     }
     assert!(left > 500, "{left}");
 }

@@ -87,7 +87,7 @@ impl Search<'_> {
         margin: f64,
     ) -> Result<bool, Undefined> {
         let nowhere_below = least > -margin;
-        if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * margin {
+        if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * (margin + self.roughness(b)) {
             self.rise = Some(margin);
             return Ok(false);
         }

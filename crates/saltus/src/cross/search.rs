@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
             margin += roughness;
         }
         let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
-        if leaving && !self.spent && known.is_none() && self.is_under_a_rise(&p, b, least, margin)? {
+        if leaving && !self.spent && known.is_none() && self.is_under_a_rise(&p, b, least, sampled)? {
             return Ok(Part::None(Side::Inside));
         }
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
