@@ -16,8 +16,10 @@ use saltus_tests::scene_laws::lived;
 const EVALUATIONS: u64 = 200_000_000;
 
 /// Of the first million, those that have broken a law: a floor not met again by a bounce below the rounding of its motion or of a long stiff step, a corner, an impact
-/// while sliding, friction that held what it could not, rolling on curved ground, a light ball between the floor and a heavy one.
-const BROKEN_ONCE: [u64; 10] = [10_188, 16_544, 141_099, 331_928, 348_293, 430_915, 836_149, 849_809, 961_866, 995_019];
+/// while sliding, friction that held what it could not, rolling on curved ground, a light ball
+/// between the floor and a heavy one.
+const BROKEN_ONCE: [u64; 12] =
+    [10_188, 16_544, 76_643, 141_099, 331_928, 348_293, 430_915, 836_149, 849_809, 960_723, 961_866, 995_019];
 
 #[test]
 fn scenes_that_broke_a_law_keep_it() {
@@ -26,12 +28,6 @@ fn scenes_that_broke_a_law_keep_it() {
         let lived = lived(&made, EVALUATIONS);
         assert!(lived.is_ok(), "{lived:?}\n{}", made.toml);
     }
-}
-
-#[test]
-fn a_scene_that_breaks_a_law_still() {
-    let made = numbered(76_643);
-    assert!(lived(&made, EVALUATIONS).is_ok(), "{}", made.toml);
 }
 
 /// A ball that rolls off a hill in space: the direction of a slip that begins is stiff.

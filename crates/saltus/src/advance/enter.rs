@@ -8,12 +8,14 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::Advance;
+use super::{Advance, Spent};
 
 /// A guard no larger than this part of the state may be zero but for rounding.
 const SMALL: f64 = 1e-12;
 /// A guard that changes by this many roundings at a glance is sure to rise or fall.
 const SURELY: f64 = 64.0;
+/// A fall this small a part of another is rounding beside it.
+const DRIVEN: f64 = 4096.0 * f64::EPSILON;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
@@ -28,9 +30,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if g.is_nan() {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
             }
-            let spent = self.memory.spent_as(edge);
-            if spent.is_some_and(|spent| g.abs() <= spent.slack) {
-                continue;
+            let mut spent = self.memory.spent_as(edge);
+            if let Some(at_root) = spent.filter(|spent| g.abs() <= spent.slack) {
+                if !self.is_driven(mode, at_root, t, x, g) {
+                    continue;
+                }
+                self.memory.unspend(edge);
+                spent = None;
             }
             if g >= 0.0 {
                 if spent.is_some() {
@@ -64,6 +70,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether a guard that went on falling from its spent root, by no more than the rounding of what it falls by now, was driven on by a jump since: a ball that is
+    /// squeezed between others and the floor until its rebounds are rounding, and struck again.
+    fn is_driven(&mut self, mode: A::Mode, spent: Spent<A::Edge>, t: f64, x: &A::State, g: f64) -> bool {
+        spent.slope < 0.0 && self.guard_slope(mode, spent.edge, t, x, g) * DRIVEN < spent.slope
     }
 
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.

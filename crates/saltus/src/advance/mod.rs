@@ -47,12 +47,14 @@ impl<A: Automaton> ArcEnd<A> {
     }
 }
 
-/// The edge just taken, whose root is spent, and how far from zero its guard is there for rounding alone.
+/// An edge taken, whose root is spent, and how far from zero its guard is there for rounding alone.
 #[derive(Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Spent<E> {
     edge: E,
     slack: f64,
+    /// dg/dt with which its guard went on falling as another edge was taken at once; else zero.
+    slope: f64,
 }
 
 /// How many edges that were taken at one time, and go on falling, are remembered.
@@ -171,13 +173,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.memory.longest_duration = self.memory.longest_duration.max(duration);
         } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
             let g = self.automaton.guard(last.edge, t, x);
-            if g.abs() <= last.slack && self.guard_slope(mode, last.edge, t, x, g) < 0.0 {
+            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, t, x, g) } else { 0.0 };
+            if slope < 0.0 {
                 self.memory.idle.rotate_right(1);
-                self.memory.idle[0] = Some(last);
+                self.memory.idle[0] = Some(Spent { slope, ..last });
                 self.memory.idle_count = MOST_IDLE.min(self.memory.idle_count + 1);
             }
         }
-        self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
+        self.memory.spent = Some(Spent { edge, slack: self.memory.slack, slope: 0.0 });
         self.memory.last = Some(edge);
     }
 
