@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::{Advance, Spent};
+use super::Advance;
 
 /// A guard no larger than this part of the state may be zero but for rounding.
 const SMALL: f64 = 1e-12;
@@ -31,8 +31,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
             }
             let mut spent = self.memory.spent_as(edge);
-            if let Some(at_root) = spent.filter(|spent| g.abs() <= spent.slack) {
-                if !self.is_driven(mode, at_root, t, x, g) {
+            if spent.is_some_and(|spent| g.abs() <= spent.slack) {
+                if self.memory.idle_count == 0 || !self.is_driven(mode, edge, t, x, g) {
                     continue;
                 }
                 self.memory.unspend(edge);
@@ -74,8 +74,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether a guard that went on falling from its spent root, by no more than the rounding of what it falls by now, was driven on by a jump since: a ball that is
     /// squeezed between others and the floor until its rebounds are rounding, and struck again.
-    fn is_driven(&mut self, mode: A::Mode, spent: Spent<A::Edge>, t: f64, x: &A::State, g: f64) -> bool {
-        spent.slope < 0.0 && self.guard_slope(mode, spent.edge, t, x, g) * DRIVEN < spent.slope
+    #[cold]
+    fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
+        let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
+        let then = idle.find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
+        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g) * DRIVEN < then)
     }
 
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.

@@ -53,8 +53,6 @@ impl<A: Automaton> ArcEnd<A> {
 struct Spent<E> {
     edge: E,
     slack: f64,
-    /// dg/dt with which its guard went on falling as another edge was taken at once; else zero.
-    slope: f64,
 }
 
 /// How many edges that were taken at one time, and go on falling, are remembered.
@@ -72,8 +70,8 @@ pub(crate) struct Memory<E> {
     spent: Option<Spent<E>>,
     /// The edge of the last jump.
     last: Option<E>,
-    /// Edges taken earlier at this time whose guards went on falling: not taken again before they have risen.
-    idle: [Option<Spent<E>>; MOST_IDLE],
+    /// Edges taken earlier at this time whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
+    idle: [Option<(Spent<E>, f64)>; MOST_IDLE],
     idle_count: usize,
     /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
     walls: [Option<(E, f64)>; MOST_IDLE],
@@ -113,7 +111,7 @@ impl<E: Copy + PartialEq> Memory<E> {
     /// The edge among those whose root at this time is spent.
     #[inline]
     fn spent_as(&self, edge: E) -> Option<Spent<E>> {
-        let idle = self.idle[..self.idle_count].iter().flatten();
+        let idle = self.idle[..self.idle_count].iter().flatten().map(|(spent, _)| spent);
         self.spent.iter().chain(idle).find(|spent| spent.edge == edge).copied()
     }
 
@@ -121,7 +119,7 @@ impl<E: Copy + PartialEq> Memory<E> {
     fn unspend(&mut self, edge: E) {
         self.spent = self.spent.filter(|spent| spent.edge != edge);
         for idle in &mut self.idle[..self.idle_count] {
-            *idle = idle.filter(|idle| idle.edge != edge);
+            *idle = idle.filter(|(idle, _)| idle.edge != edge);
         }
     }
 
@@ -131,6 +129,13 @@ impl<E: Copy + PartialEq> Memory<E> {
             self.walls[self.wall_count] = Some((edge, g));
             self.wall_count += 1;
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn level(&self, edge: E) -> f64 {
+        let mut walls = self.walls[..self.wall_count].iter().flatten();
+        walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1)
     }
 
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
@@ -176,11 +181,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, t, x, g) } else { 0.0 };
             if slope < 0.0 {
                 self.memory.idle.rotate_right(1);
-                self.memory.idle[0] = Some(Spent { slope, ..last });
+                self.memory.idle[0] = Some((last, slope));
                 self.memory.idle_count = MOST_IDLE.min(self.memory.idle_count + 1);
             }
         }
-        self.memory.spent = Some(Spent { edge, slack: self.memory.slack, slope: 0.0 });
+        self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
         self.memory.last = Some(edge);
     }
 
@@ -256,7 +261,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// that the rise or fall from there decides, and not the rounding.
     #[inline]
     fn level(&self, edge: A::Edge, first: bool) -> f64 {
-        let mut walls = self.memory.walls[..self.memory.wall_count].iter().flatten();
-        if first { walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1) } else { 0.0 }
+        if first && self.memory.wall_count > 0 { self.memory.level(edge) } else { 0.0 }
     }
 }
