@@ -393,6 +393,20 @@ fn a_scene_is_explained() {
     assert_eq!((&json["schema"], &json["model"]), (&Value::from(1), &Value::from("flyer")));
     assert_eq!(json["coordinates"].as_array().unwrap().len(), 5);
     assert_eq!(json["modes"][0]["advance"], "explicit stepper Dop853");
+    // What spin does, with numbers: k = ρ π R³/(2m), and lift k ω v/(1 + 2 R ω/v) of a spin across the velocity.
+    let (radius, mass, v): (f64, f64, f64) = (0.033, 0.058, 30.0_f64.hypot(2.0));
+    let spin = 80.0 * std::f64::consts::PI;
+    let k = 1.225 * std::f64::consts::PI * radius.powi(3) / (2.0 * mass);
+    let start = k * spin * v / (1.0 + 2.0 * radius * spin / v);
+    let effects = json["effects"].to_string();
+    let lift = format!("lift by spin, a = {k:.8} × ω × v / (1 + 0.066 m × |ω × v|/v²), {start:.5} m/s² at the start");
+    assert!(effects.contains(&lift), "no '{lift}' in {effects}");
+    assert!(effects.contains("spin decay, ω' = -ω/(20 s)"), "{effects}");
+    // A ball twice as heavy as its air drags a quarter of its mass along.
+    let (_folder, light) = scene(
+        "restitution = 0.5\nadded_mass = true\nair = { density = 2 }\nball = { radius = 1, mass = 16.755160819145562, height = 1 }\n",
+    );
+    assert!(done(&["explain", &light]).contains("added mass, which leaves 0.8 of every acceleration\n"));
 }
 
 /// What each effect changes and costs: exact where nothing changes, refused in words where there is nothing to toggle.
