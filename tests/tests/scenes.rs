@@ -67,6 +67,34 @@ fn what_examples_say_is_what_is_read() {
     assert!((motion.offset(0.01) - 1e-3).abs() < 1e-15);
 }
 
+/// From impact to impact the billiard balls keep v + (2/5) R ω along the cloth, so what rolls has 5/7 of it; ω counts as topspin.
+#[test]
+fn a_draw_shot_by_the_textbook() {
+    let scene = example("billiards");
+    let (ball, e, friction) = (&scene.balls[0], 0.95, scene.floors[0].friction.coefficient());
+    let (radius, speed, push) = (ball.radius.unwrap(), ball.velocity.x, friction * scene.gravity.value());
+    // The cue ball slides as far as the object ball: d = v t - μ g t²/2.
+    let way = scene.balls[1].centre().x - 2.0 * radius;
+    let t = (speed - (speed * speed - 2.0 * push * way).sqrt()) / push;
+    let (met, topspin) = (speed - push * t, -ball.planar_spin().unwrap() * radius + 2.5 * push * t);
+    assert!(topspin < 0.0, "there is backspin left to draw it back");
+    let after = [(0.5 * (1.0 - e) * met, topspin), (0.5 * (1.0 + e) * met, 0.0)];
+    let record = scene.plan().unwrap().run().unwrap();
+    let impacts = record.impacts();
+    let hit = impacts.iter().find(|impact| impact.t > 0.0).unwrap();
+    assert!((hit.t - t).abs() < 1e-9, "{} is not {t}", hit.t);
+    for (n, (v, topspin)) in after.into_iter().enumerate() {
+        let rolls = (v + 0.4 * topspin) * 5.0 / 7.0;
+        let end = record.at(n, record.until()).unwrap();
+        assert_eq!(record.mode(n, record.until()), Some("hold"));
+        assert!((end.velocity.x - rolls).abs() < 1e-8, "ball {n}: {} m/s, not {rolls}", end.velocity.x);
+        assert!((end.spin.y * radius - rolls).abs() < 1e-8, "ball {n} does not roll");
+        assert!(end.height().abs() < 1e-9 && end.velocity.y == 0.0);
+    }
+    let last = |n: usize| record.at(n, record.until()).unwrap().velocity.x;
+    assert!(last(0) < 0.0 && last(1) > 0.0, "the cue ball comes back");
+}
+
 /// Each block of TOML in the page is a scene, and no key is left out.
 #[test]
 fn the_page_about_scenes() {

@@ -1,4 +1,4 @@
-//! What a scene costs over the same motion composed by hand: its plan and its run, both recorded.
+//! What a scene costs over the same motion composed by hand, its plan and its run, both recorded; and what a flock costs over a cloud.
 //!
 //! `cargo bench -p saltus-bounce --bench scene`; quote ratios of one run on one machine, not times.
 
@@ -10,6 +10,7 @@ use divan::Bencher;
 use saltus::Simulation;
 use saltus::nalgebra::vector;
 use saltus_bounce::scene::Scene;
+use saltus_bounce::scene::plan::Model;
 use saltus_bounce::{Ball, Cor, Mode};
 
 const UNTIL: f64 = 10.0;
@@ -57,6 +58,33 @@ fn bouncing_planned(bencher: Bencher) {
 #[divan::bench]
 fn bouncing_by_plan(bencher: Bencher) {
     let plan = bouncing().plan().unwrap();
+    bencher.bench(|| black_box(&plan).run().unwrap());
+}
+
+/// Five smooth balls in a box, without loss: a cloud. That one of them is said to spin makes them a flock, of the same motion.
+fn balls(spin: &str) -> Scene {
+    let ball = |n: u32| {
+        let x = 0.16 * f64::from(n) - 0.32;
+        let (up, across) = (0.1 + 0.05 * f64::from(n), 0.5 - 0.2 * f64::from(n));
+        format!("[[ball]]\nradius = 0.02\nmass = 0.03\nposition = [{x}, 0, {up}]\nvelocity = [{across}, 0.3, 0.1]\n")
+    };
+    let balls: String = (0..5).map(ball).collect();
+    scene(&format!(
+        "restitution = 1\nfloor = {{ kind = 'box', size = [1, 1, 1] }}\nrun = {{ until = 1e9, most_jumps = 1000 }}\n{balls}{spin}"
+    ))
+}
+
+#[divan::bench]
+fn balls_by_cloud(bencher: Bencher) {
+    let plan = balls("").plan().unwrap();
+    assert_eq!(plan.explain().model, Model::Cloud);
+    bencher.bench(|| black_box(&plan).run().unwrap());
+}
+
+#[divan::bench]
+fn balls_by_flock(bencher: Bencher) {
+    let plan = balls("spin = [0, 0, 0]\n").plan().unwrap();
+    assert_eq!(plan.explain().model, Model::Flock);
     bencher.bench(|| black_box(&plan).run().unwrap());
 }
 

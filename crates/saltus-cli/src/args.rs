@@ -191,7 +191,7 @@ pub(crate) struct Simulate {
     /// The upward velocity it starts with, such as `-2m/s`.
     #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
     pub(crate) velocity: f64,
-    /// Gravity.
+    /// Gravity, which acts downwards.
     #[arg(long, value_name = "ACCELERATION", value_parser = quantity(Quantity::Acceleration), default_value = "9.81m/s^2", allow_hyphen_values = true)]
     pub(crate) gravity: f64,
     /// When to stop, such as `4s`.
@@ -212,7 +212,7 @@ pub(crate) struct Simulate {
     /// Write the motion to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the motion as SVG; `-o FILE.svg` does so too, and writes nothing else.
+    /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to standard output, and nothing else goes there.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
     /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact, such as `1mm`, `0.1ms`, or `1mm,1ms`.

@@ -7,6 +7,7 @@ use saltus_bounce::scene::plan::{Event, Impact, Model, Moment, Record, With};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::ground::name;
 
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
@@ -155,7 +156,11 @@ impl Motion<'_> {
     /// Whether the run keeps a spin.
     fn spins(&self) -> bool {
         let rubs = self.scene.floors.iter().any(|floor| floor.friction.coefficient() > 0.0);
-        self.model == Model::Flyer && self.scene.dimensions > 1 && (self.scene.balls[0].spin.is_some() || rubs)
+        match self.model {
+            Model::Flyer => self.scene.dimensions > 1 && (self.scene.balls[0].spin.is_some() || rubs),
+            Model::Flock => true,
+            _ => false,
+        }
     }
 
     /// The jumps and the impacts as JSON; the contract is written down in docs/simulating.md.
@@ -305,9 +310,10 @@ impl Motion<'_> {
         let impacts = record.impacts();
         let named = record.balls() > 1 || self.scene.floors.len() > 1;
         let timed = impacts.iter().any(|impact| impact.press.is_some());
+        let width = impacts.iter().map(|impact| self.what(impact).chars().count()).max().unwrap_or(0).max(22);
         let mut text = format!("{:>6} {:>14}", "impact", "time (s)");
         if named {
-            let _ = write!(text, "  {:<22}", "what");
+            let _ = write!(text, "  {:<width$}", "what");
         }
         let _ = write!(text, " {:>16} {:>17}", "before (m/s)", "after (m/s)");
         let _ = if timed {
@@ -326,7 +332,7 @@ impl Motion<'_> {
             }
             let _ = write!(text, "{:>6} {:>14.9}", index + 1, impact.t);
             if named {
-                let _ = write!(text, "  {:<22}", self.what(impact));
+                let _ = write!(text, "  {:<width$}", self.what(impact));
             }
             let rebound = impact.rebound.map_or_else(|| "-".to_owned(), figure);
             let _ = write!(text, " {:>16} {rebound:>17}", figure(-impact.approach));
@@ -354,7 +360,8 @@ impl Motion<'_> {
             None => {
                 let _ = write!(text, "\nThe run ends at {end:.9} s");
                 for ball in 0..record.balls() {
-                    let which = if record.balls() > 1 { format!(", {}", self.name(ball)) } else { String::new() };
+                    let which =
+                        if record.balls() > 1 { format!(", {}", name(self.scene, ball)) } else { String::new() };
                     if let (Some(mode), Some(moment)) = (record.mode(ball, end), record.at(ball, end)) {
                         let _ = write!(text, "{which}, {} at {} m", doing(mode), figure(moment.height()));
                     }
@@ -365,21 +372,16 @@ impl Motion<'_> {
         text
     }
 
-    fn name(&self, ball: usize) -> String {
-        let name = self.scene.balls.get(ball).and_then(|ball| ball.name.clone());
-        name.unwrap_or_else(|| format!("ball {}", ball + 1))
-    }
-
     fn what(&self, impact: &Impact) -> String {
         let on = match impact.with {
-            With::Ball(other) => format!("ball {}", other + 1),
+            With::Ball(other) => name(self.scene, other),
             With::Floor(floor) => {
                 let name = self.scene.floors.get(floor).and_then(|floor| floor.name.clone());
                 name.unwrap_or_else(|| format!("floor {}", floor + 1))
             }
             _ => "something".to_owned(),
         };
-        if self.record.balls() > 1 { format!("ball {} on {on}", impact.ball + 1) } else { on }
+        if self.record.balls() > 1 { format!("{} on {on}", name(self.scene, impact.ball)) } else { on }
     }
 }
 
@@ -406,7 +408,7 @@ fn impact_row(impact: &Impact) -> ImpactRow {
 fn doing(mode: &str) -> &str {
     match mode {
         "flight" | "rising" | "falling" | "fall" | "rise" => "in flight",
-        "rest" | "lying" => "at rest",
+        "rest" | "lying" => "resting",
         "slide" => "sliding",
         "hold" => "lying or rolling",
         "compression" => "being pressed in",

@@ -139,6 +139,14 @@ fn is_svg(path: &Path) -> bool {
 /// The format of the motion, if it is to be written, and where the picture goes.
 fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>), Error> {
     let output = args.output.as_deref();
+    if args.plot.as_deref() == Some(Path::new("-")) && output.is_none_or(|path| path == Path::new("-")) {
+        if output.is_none() && args.format.is_none() {
+            return Ok((None, args.plot.as_deref()));
+        }
+        return Err(Error::new(
+            "the picture and the motion cannot both go to standard output: name a file for one, by --plot or by -o",
+        ));
+    }
     if let Some(path) = output.filter(|path| is_svg(path)) {
         if args.plot.is_some() {
             return Err(Error::new("the picture is to go to two files: give either --plot or -o with a name in .svg"));

@@ -362,10 +362,49 @@ fn example_scenes_are_drawn() {
         }
         count += 1;
     }
-    assert!(count >= 14);
+    assert!(count >= 15);
 }
 
 /// Each kind of picture, of a scene that has it; refused in words where there is nothing to draw.
+#[test]
+fn a_picture_to_standard_output_is_alone_there() {
+    let (_folder, scene) = scene("restitution = 0.5\nball = { height = 1 }\n");
+    let picture = done(&["simulate", &scene, "--plot", "-"]);
+    assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"), "{picture}");
+    let folder = TempDir::new().unwrap();
+    let csv = folder.path().join("motion.csv");
+    assert_eq!(done(&["simulate", &scene, "--plot", "-", "-o", csv.to_str().unwrap()]), picture);
+    assert!(fs::read_to_string(&csv).unwrap().starts_with("time_s,"));
+    for motion in [&["--format", "csv"][..], &["-o", "-"]] {
+        assert!(refused(&[&["simulate", &scene, "--plot", "-"], motion].concat()).contains("name a file for one"));
+    }
+}
+
+/// A ball on a table that shakes too little to throw it moves with it; the run has no rest, and nothing slides.
+#[test]
+fn a_ball_on_a_shaken_table_rests_on_it() {
+    let (_folder, path) = scene(
+        "restitution = 0.2\nball = { height = '1 cm' }\nfloor = { motion = { amplitude = '1 mm', frequency = '5 Hz' } }\nrun = { until = '2 s' }\n",
+    );
+    assert!(done(&["simulate", &path]).contains("The run ends at 2.000000000 s, resting at "));
+    let json: Value = serde_json::from_str(&done(&["simulate", &path, "--format", "json"])).unwrap();
+    assert_eq!((&json["stop"]["mode"], &json["stop"]["rest"]), (&Value::from("rest"), &Value::Null));
+    assert!(done(&["explain", &path]).contains("\nmode         rest: "));
+}
+
+/// Balls that spin are written with their spin, each by its name.
+#[test]
+fn a_draw_shot_is_written_with_its_spins() {
+    let scene = root().join("examples/scenes/billiards.toml");
+    let scene = scene.to_str().unwrap();
+    assert!(done(&["simulate", scene]).contains("object ball on cue ball"));
+    let csv = done(&["simulate", scene, "--format", "csv"]);
+    let (header, rows) = csv.split_once('\n').unwrap();
+    assert!(header.ends_with(",spin_rad_per_s"), "{header}");
+    let spin: f64 = rows.lines().next().unwrap().rsplit(',').next().unwrap().parse().unwrap();
+    assert!((spin - 30.0 * std::f64::consts::PI).abs() < 1e-12);
+}
+
 #[test]
 fn kinds_of_pictures() {
     let squash = root().join("examples/scenes/squash.toml");
@@ -393,6 +432,20 @@ fn a_scene_is_explained() {
     assert_eq!((&json["schema"], &json["model"]), (&Value::from(1), &Value::from("flyer")));
     assert_eq!(json["coordinates"].as_array().unwrap().len(), 5);
     assert_eq!(json["modes"][0]["advance"], "explicit stepper Dop853");
+    // What spin does, with numbers: k = ρ π R³/(2m), and lift k ω v/(1 + 2 R ω/v) of a spin across the velocity.
+    let (radius, mass, v): (f64, f64, f64) = (0.033, 0.058, 30.0_f64.hypot(2.0));
+    let spin = 80.0 * std::f64::consts::PI;
+    let k = 1.225 * std::f64::consts::PI * radius.powi(3) / (2.0 * mass);
+    let start = k * spin * v / (1.0 + 2.0 * radius * spin / v);
+    let effects = json["effects"].to_string();
+    let lift = format!("lift by spin, a = {k:.8} × ω × v / (1 + 0.066 m × |ω × v|/v²), {start:.5} m/s² at the start");
+    assert!(effects.contains(&lift), "no '{lift}' in {effects}");
+    assert!(effects.contains("spin decay, ω' = -ω/(20 s)"), "{effects}");
+    // A ball twice as heavy as its air drags a quarter of its mass along.
+    let (_folder, light) = scene(
+        "restitution = 0.5\nadded_mass = true\nair = { density = 2 }\nball = { radius = 1, mass = 16.755160819145562, height = 1 }\n",
+    );
+    assert!(done(&["explain", &light]).contains("added mass, which leaves 0.8 of every acceleration\n"));
 }
 
 /// What each effect changes and costs: exact where nothing changes, refused in words where there is nothing to toggle.

@@ -63,7 +63,7 @@ pub struct Chart {
     pub(crate) jumps: Vec<[[f64; 2]; 2]>,
     pub(crate) arrows: Vec<[[f64; 2]; 2]>,
     pub(crate) marks: Vec<[f64; 2]>,
-    pub(crate) discs: Vec<Disc>,
+    pub(crate) discs: Vec<(usize, Disc)>,
     pub(crate) ground: Vec<Stroke>,
     pub(crate) to_scale: bool,
     /// Which axes go by powers of ten, across and up.
@@ -154,10 +154,11 @@ impl Chart {
         self
     }
 
-    /// Adds discs.
+    /// Adds discs in the ink of the last line.
     #[must_use]
     pub fn discs(mut self, discs: impl IntoIterator<Item = Disc>) -> Self {
-        self.discs.extend(discs);
+        let line = self.lines.len().saturating_sub(1);
+        self.discs.extend(discs.into_iter().map(|disc| (line, disc)));
         self
     }
 
@@ -245,7 +246,7 @@ impl Chart {
         for (label, at) in &self.limits {
             include(0, finite(*at, || format!("the limit '{label}'"))?);
         }
-        for (n, disc) in self.discs.iter().enumerate() {
+        for (n, (_, disc)) in self.discs.iter().enumerate() {
             let radius = magnitude(disc.radius, || format!("the radius of disc {}", n + 1))?;
             for (k, &value) in disc.at.iter().enumerate() {
                 let value = finite(value, || format!("a coordinate of disc {}", n + 1))?;

@@ -117,9 +117,9 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     for trace in traces(&place, edges.1, ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
-    for (data, full) in discs(chart, x, y) {
+    for (data, ink, full) in discs(chart, x, y) {
         let mut canvas = canvas.try_borrow_mut().map_err(|e| PlotError::Drawing(e.to_string()))?;
-        canvas.glaze(&data, Ink::Series(0), if full { 1.0 } else { 0.35 });
+        canvas.glaze(&data, ink, if full { 1.0 } else { 0.35 });
     }
     panel.draw_series([EmptyElement::at((across.0, up.0))]).map_err(failed)?;
     callout::draw(&place, edges, &root, ty)?;
@@ -258,15 +258,15 @@ pub(crate) fn dot((x, y): (f64, f64)) -> String {
 }
 
 /// Discs as paths, pale ones first.
-fn discs(chart: &Chart, x: Affine, y: Affine) -> Vec<(String, bool)> {
+fn discs(chart: &Chart, x: Affine, y: Affine) -> Vec<(String, Ink, bool)> {
     let mut discs: Vec<_> = chart.discs.clone();
-    discs.sort_by_key(|disc| disc.full);
-    let circle = |disc: &crate::chart::Disc| {
+    discs.sort_by_key(|(_, disc)| disc.full);
+    let circle = |(line, disc): &(usize, crate::chart::Disc)| {
         // To scale, but never too small to see.
         let r = (disc.radius * x.scale.abs()).max(2.0);
         let (cx, cy) = (x.at(disc.at[0]), y.at(disc.at[1]));
         let [r2, x0, y0, d] = [r, cx - r, cy, 2.0 * r].map(|v| number(v, 2));
-        (format!("M{x0} {y0}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z"), disc.full)
+        (format!("M{x0} {y0}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z"), Ink::series(*line), disc.full)
     };
     discs.iter().map(circle).collect()
 }

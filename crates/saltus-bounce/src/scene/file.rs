@@ -127,6 +127,10 @@ impl File {
     /// What the file says, checked; what `run` says goes before it.
     pub(super) fn scene(&self, run: super::Run) -> Result<Scene, Fault> {
         let gravity = match &self.gravity {
+            Some(at) if at.get().0 < 0.0 => {
+                let says = "is not a gravity in m/s^2: it acts downwards, leave the minus out";
+                return Err(at.fault(format!("{} {says}", at.get().0)));
+            }
             Some(at) => Gravity::new(at.get().0).map_err(|error| at.fault(error))?,
             None => Gravity::EARTH,
         };

@@ -261,8 +261,9 @@ impl FloorTable {
                 })?;
                 if at.get().as_slice().len() != space.dimensions() {
                     return Err(at.fault(format!(
-                        "the box needs {} lengths: write one for each coordinate",
-                        space.dimensions()
+                        "the box needs {} lengths: write one for each coordinate, such as `size = [{}]`",
+                        space.dimensions(),
+                        vec!["\"1 m\""; space.dimensions()].join(", ")
                     )));
                 }
                 if let Some(bad) = at.get().as_slice().iter().find(|side| side.real() <= 0.0) {

@@ -90,7 +90,10 @@ fn scenes_that_are_refused() {
         ("restitution = 0.8\n[ball]\nposition = [\"0 m\", \"1 kg\"]\n", &["3:20", "not a unit of length but of mass"]),
         ("restitution = 1\n[ball]\nheight = 1\n", &["nothing ends this run", "loses nothing", "until"]),
         ("gravity = 0\nrestitution = 0.5\n[ball]\nheight = 1\n", &["nothing ends this run", "no gravity"]),
-        ("gravity = -9.81\nrestitution = 0.5\n[ball]\nheight = 1\n", &["1:11", "-9.81 is not a gravity"]),
+        (
+            "gravity = -9.81\nrestitution = 0.5\n[ball]\nheight = 1\n",
+            &["1:11", "-9.81 is not a gravity", "leave the minus out"],
+        ),
         (
             "gravity = \"mon\"\nrestitution = 0.5\n[ball]\nheight = 1\n",
             &["1:11", "no body named 'mon'", "did you mean 'moon'?"],
@@ -142,7 +145,12 @@ fn scenes_that_are_refused() {
         ("restitution = 0.8\n[ball]\nheight = 1\n[ball]\nheight = 2\n", &["4:", "given twice", "[[ball]]"]),
         ("restitution = 0.8\n[ball]\nheight = 1\n[run]\nmost_jumps = -1\n", &["5:14", "a whole number"]),
         ("restitution = 0.8\n[ball]\nheight = 1\n[run]\ntolerance = 0\n", &["5:13", "0 is not a relative tolerance"]),
-        ("restitution = 0.8\nball = 3\n", &["2:8", "does not belong here"]),
+        ("restitution = 0.8\nball = 3\n", &["2:8", "does not belong here", "such as { height = \"1 m\" }"]),
+        ("restitution = 0.8\ncollisions = 0.9\nball = { height = 1 }\n", &["2:14", "such as { restitution = 0.85 }"]),
+        (
+            "restitution = 1\nball = { position = [0, 1] }\nfloor = { kind = 'box', size = 1 }\n",
+            &["3:32", "size = [\"1 m\", \"1 m\"]"],
+        ),
         ("restitution = 0.8\n[ball\n", &["2:"]),
         ("height 1\n", &["1:", "key = value"]),
     ] {

@@ -89,8 +89,11 @@ pub(super) fn readings(path: &Path) -> Result<Vec<Reading>, Error> {
         ));
     }
     if !["glb", "usda", "json", "svg", "csv"].contains(&extension.as_str()) {
-        let says = "of what saltus export writes, .glb, .usda, .json, .svg and .csv can be read back";
-        return Err(Error::new(format!("'{}': {says}", path.display())));
+        let scene = if extension == "toml" { "; `saltus explain` checks a scene" } else { "" };
+        return Err(Error::new(format!(
+            "'{}' cannot be checked: of what saltus export writes, .glb, .usda, .json, .svg and .csv can be read back{scene}",
+            path.display()
+        )));
     }
     let bytes = fs::read(path).map_err(|error| Error::new(format!("cannot read '{}': {error}", path.display())))?;
     let readings = if extension == "glb" {

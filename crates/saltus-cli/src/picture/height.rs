@@ -6,15 +6,20 @@ use saltus_plot::{Arc, Background, HeightTime};
 
 pub(super) fn picture(scene: &Scene, record: &Record) -> HeightTime {
     let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(scene, record));
+    let floor = scene.floors.iter().find_map(|floor| moving(floor, record.until()));
     for ball in 0..record.balls() {
-        let label = if record.balls() > 1 { crate::ground::name(scene, ball) } else { String::new() };
+        let label = match (record.balls(), &floor) {
+            (1, None) => String::new(),
+            (1, Some(_)) => "ball".to_owned(),
+            _ => crate::ground::name(scene, ball),
+        };
         let arcs = record.segments(ball).into_iter().map(|segment| {
             let heights = segment.coefficients.iter().map(saltus_bounce::scene::plan::Moment::height).collect();
             Arc::new(segment.start, segment.span, heights)
         });
         picture = picture.motion(&label, arcs);
     }
-    if let Some(arcs) = scene.floors.iter().find_map(|floor| moving(floor, record.until())) {
+    if let Some(arcs) = floor {
         picture = picture.motion("floor", arcs);
     }
     let impacts = record.impacts().into_iter();

@@ -64,13 +64,22 @@ fn rounded(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// A number that is given is said as it was; four digits say one chosen of a range.
+fn said(cor: f64) -> String {
+    let text = cor.to_string();
+    if text.len() > 6 { format!("{cor:.4}") } else { text }
+}
+
 /// What is said under the title.
 fn caption(scene: &Scene, record: &Record) -> String {
     let mut parts = Vec::new();
-    if let Some(cor) = scene.law(0, 0).and_then(saltus_bounce::scene::Law::constant) {
-        // Four digits say a chosen number of a range; a number that is given is said as it was.
-        let cor = cor.value();
-        parts.push(format!("COR {}", if format!("{cor}").len() > 6 { format!("{cor:.4}") } else { cor.to_string() }));
+    let cor = scene.law(0, 0).and_then(saltus_bounce::scene::Law::constant);
+    if let Some(cor) = cor {
+        parts.push(format!("COR {}", said(cor.value())));
+    }
+    let between = scene.collision.as_ref().and_then(saltus_bounce::scene::Law::constant);
+    if let Some(between) = between.filter(|_| between != cor) {
+        parts.push(format!("COR {} between balls", said(between.value())));
     }
     parts.push(format!("gravity {} m/s²", scene.gravity.value()));
     let caption = parts.join(", ");

@@ -91,7 +91,8 @@ pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
             };
             arc(&segment, across, r)
         });
-        chart = chart.line("", strokes);
+        let label = if record.balls() > 1 { name(scene, ball) } else { String::new() };
+        chart = chart.line(&label, strokes);
         for frame in 0..=FRAMES {
             let t = record.until() * f64::from(frame) / f64::from(FRAMES);
             let Some(m) = record.at(ball, t) else { continue };

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Model;
-use crate::effects::{LinearDrag, QuadraticDrag};
+use crate::effects::{Effect as _, LinearDrag, Motion, QuadraticDrag};
 use crate::friction::Friction;
 use crate::scene::error::short;
 use crate::scene::{Ball, Contact, Decay, Linear, Quadratic, Scene};
@@ -178,8 +178,40 @@ impl Scene {
                 let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
                 format!("friction, coefficient {}", numbers.join(", "))
             }
-            other => other.name().to_owned(),
+            Effect::AddedMass => {
+                format!("added mass, which leaves {} of every acceleration", short(super::net(self).1))
+            }
+            Effect::Lift => self.lift(ball),
+            Effect::SpinDecay => match (effects.spin_decay, ball.radius) {
+                (Some(Decay::Within(time)), _) => format!("spin decay, ω' = -ω/({} s)", short(time)),
+                (Some(Decay::InFlight(c)), Some(radius)) => {
+                    format!("spin decay, ω' = -{} /m × |v| ω", short(c / radius))
+                }
+                _ => effect.name().to_owned(),
+            },
+            Effect::Deformation => effect.name().to_owned(),
         }
+    }
+
+    /// The lift of `ball` by its spin, with how much that is as it starts.
+    fn lift(&self, ball: &Ball) -> String {
+        let (Some(lift), Some([_, saturation]), Some(radius)) =
+            (self.effects.magnus(ball), self.effects.lift, ball.radius)
+        else {
+            return Effect::Lift.name().to_owned();
+        };
+        let law = match saturation {
+            0.0 => String::new(),
+            saturation => format!(" / (1 + {} m × |ω × v|/v²)", short(saturation * radius)),
+        };
+        let start = Motion {
+            t: 0.0,
+            position: ball.lowest(),
+            velocity: ball.velocity - self.effects.wind.unwrap_or_default(),
+            spin: ball.spin.unwrap_or_default(),
+        };
+        let size = short(lift.acceleration(&start).norm());
+        format!("lift by spin, a = {} × ω × v{law}, {size} m/s² at the start", short(lift.slope()))
     }
 }
 

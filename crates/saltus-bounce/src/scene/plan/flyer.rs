@@ -247,10 +247,11 @@ impl Turned for Vector3<f64> {
     }
 }
 
-/// What a stance is called.
+/// What a stance is called. What only moves up and down has no way to slide: on a floor it rests.
 pub(super) const fn named<const N: usize>(stance: Stance<N>) -> &'static str {
     match stance {
         Stance::Flight { .. } => "flight",
+        Stance::Slide { .. } if N == 1 => "rest",
         Stance::Slide { .. } | Stance::Yield { .. } => "slide",
         Stance::Hold { .. } => "hold",
         Stance::Corner { .. } => "corner",

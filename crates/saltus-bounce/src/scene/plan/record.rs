@@ -226,7 +226,7 @@ impl fmt::Display for End {
             Self::Jumps { most } => write!(f, "the limit of {most} jumps was reached: allow more, or end by time"),
             Self::Zeno { limit } => write!(
                 f,
-                "infinitely many impacts happen before {limit} s, and what lies beyond is not modelled for several balls: end the run before"
+                "infinitely many impacts come to a limit at {limit:.6} s, and what lies beyond is not modelled for several balls: end the run before"
             ),
             Self::Evaluations { most } => write!(
                 f,
