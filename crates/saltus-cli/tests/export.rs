@@ -1,0 +1,165 @@
+//! `export` and `check`: a scene's motion as files for animation programs.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+mod tool;
+
+use std::fs;
+
+use tempfile::TempDir;
+use tool::{done, refused, root, run, text};
+
+#[test]
+fn a_scene_is_exported_for_animators_and_says_how_exactly() {
+    let scene = root().join("examples/scenes/squash.toml");
+    let scene = scene.to_str().unwrap();
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("ball.glb");
+    let output = run(&["export", scene, "--fps", "24", "--snap", "gravity", "-o", file.to_str().unwrap()]);
+    assert!(output.status.success());
+    let said = text(&output.stderr);
+    assert!(said.contains("farthest contact from a frame: 0.00 frames; worst height error: 2.13 mm"), "{said}");
+    assert_eq!(fs::read(&file).unwrap()[..4], *b"glTF");
+    let keys = done(&["--quiet", "export", scene, "--to", "csv", "--first-frame", "1"]);
+    assert!(keys.lines().nth(1).unwrap().starts_with("squash ball,1,0,0,0,1,"), "{keys}");
+    assert!(refused(&["export", scene, "--fps", "0", "--to", "csv"]).contains("'0' is not a frame rate"));
+    assert!(refused(&["export", scene, "-o", "ball.xyz"]).contains("no format goes by the extension '.xyz'"));
+    assert!(refused(&["-q", "export", scene, "-o", "no-such-folder/ball.glb"]).contains("there is no folder"));
+}
+
+#[test]
+fn what_exists_is_written_over_only_when_that_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.toml");
+    let (path, scene) = (file.to_str().unwrap(), root().join("examples/scenes/squash.toml"));
+    let scene = scene.to_str().unwrap();
+    for command in
+        [&["export", scene, "--to", "csv", "-o", path][..], &["solve", "touch 1 at 1s", "--free", "height", "-o", path]]
+    {
+        fs::write(&file, "mine").unwrap();
+        let says = format!("'{path}' exists: name another file, or say --force to write it anew");
+        assert!(refused(command).contains(&says));
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+        done(&[&["-q"], command, &["--force"]].concat());
+        assert_ne!(fs::read_to_string(&file).unwrap(), "mine");
+        // There is nothing to lose in an empty file, nor with standard output.
+        fs::write(&file, "").unwrap();
+        done(&[&["-q"], command].concat());
+    }
+    done(&["-q", "export", scene, "--to", "csv", "-o", "-"]);
+}
+
+#[test]
+fn what_is_exported_reads_back_as_promised() {
+    let scenes = root().join("examples/scenes");
+    let folder = TempDir::new().unwrap();
+    for (scene, options) in [
+        ("squash.toml", &["--snap", "gravity", "--squash", "0.3", "--stretch", "0.1"][..]),
+        ("slow-contact.toml", &["--squash", "law", "--fps", "25"]),
+        ("topspin.toml", &["--stretch", "0.2"]),
+        ("box.toml", &["--on-twos"]),
+    ] {
+        let scene = scenes.join(scene);
+        let scene = scene.to_str().unwrap();
+        for (format, name) in [
+            ("glb", "ball.glb"),
+            ("usd", "ball.usda"),
+            ("usd-splines", "splines.usda"),
+            ("lottie", "lottie.json"),
+            ("json", "ball.json"),
+            ("svg", "ball.svg"),
+            ("csv", "ball.csv"),
+        ] {
+            // A table of frames says where the ball is on them, and nothing of between.
+            if options.contains(&"--on-twos") && format == "csv" {
+                continue;
+            }
+            let file = folder.path().join(name);
+            let file = file.to_str().unwrap();
+            done(
+                &[&["-q", "export", scene, "--to", format, "-o", file, "--force", "--first-frame", "1"], options]
+                    .concat(),
+            );
+            let said = done(&[&["-q", "check", file, scene], options].concat());
+            assert!(
+                said.contains("contacts touch; within") && !said.contains("not within"),
+                "{scene} {format}: {said}"
+            );
+            // Single precision cannot be this near.
+            let other = run(&[&["-q", "check", file, scene, "--tolerance", "0.000001mm"], options].concat());
+            if format == "glb" {
+                assert_eq!(other.status.code(), Some(1), "{}", text(&other.stdout));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_wrong_is_found_out() {
+    let scene = root().join("examples/scenes/squash.toml");
+    let scene = scene.to_str().unwrap();
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let file = path("ball.csv");
+    done(&["-q", "export", scene, "-o", &file]);
+    // The motion of another gravity, a contact lowered by 3 mm, a file cut short.
+    let found = run(&["-q", "check", &file, scene, "--snap", "gravity"]);
+    assert_eq!(found.status.code(), Some(1), "{}", text(&found.stdout));
+    let keys = fs::read_to_string(&file).unwrap();
+    let lines: Vec<&str> = keys.lines().collect();
+    let cells: Vec<&str> = lines[2].split(',').collect();
+    let lowered = [&cells[..5], &["-0.003"], &cells[6..]].concat().join(",");
+    fs::write(&file, [&lines[..2], &[&lowered], &lines[3..]].concat().join("\n")).unwrap();
+    let found = run(&["-q", "check", &file, scene]);
+    assert_eq!(found.status.code(), Some(1));
+    assert!(text(&found.stdout).contains("a contact is 3.00 mm too low"), "{}", text(&found.stdout));
+    fs::write(&file, lines[..4].join("\n")).unwrap();
+    let found = run(&["-q", "check", &file, scene]);
+    assert!(text(&found.stdout).contains("; it ends at") && found.status.code() == Some(1));
+    for (name, says) in
+        [("ball.py", "a script can only be run"), ("ball.fbx", "can be read back"), ("none.glb", "cannot read")]
+    {
+        assert!(refused(&["check", &path(name), scene]).contains(says));
+    }
+    for (name, content) in
+        [("a.glb", "no glb"), ("a.json", "{}"), ("a.usda", "#usda 1.0"), ("a.svg", "<svg/>"), ("a.csv", "a,b\n1,2\n")]
+    {
+        fs::write(path(name), content).unwrap();
+        assert!(refused(&["check", &path(name), scene]).contains("cannot be read back"), "{name}");
+    }
+}
+
+#[test]
+fn squash_and_stretch_are_never_silent() {
+    let scenes = root().join("examples/scenes");
+    let said = |scene: &str, options: &[&str]| {
+        let scene = scenes.join(scene);
+        let output = run(&[&["export", scene.to_str().unwrap(), "--to", "csv"], options].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    let by_hand = said("squash.toml", &["--squash", "0.3", "--stretch", "0.1", "--exaggerate", "1.5", "--hold", "3"]);
+    for part in [
+        "squashed to 0.55 of its height by hand",
+        "stretched to 1.15 of its length by hand",
+        "contacts held for 3 frames, the end ",
+        "outline moved by up to ",
+        "volume kept within 0.0",
+    ] {
+        assert!(by_hand.contains(part), "{part}: {by_hand}");
+    }
+    // The greatest deformation of the first contact, 46.9 mm of a ball of 10 cm.
+    let law = said("slow-contact.toml", &["--squash", "law"]);
+    assert!(law.contains("squashed to 0.53 of its height as the contact's law has it"), "{law}");
+    let half = said("slow-contact.toml", &["--squash", "law", "--exaggerate", "0.5"]);
+    assert!(half.contains("0.500 times as far as the contact's law has it"), "{half}");
+    assert!(said("topspin.toml", &[]).contains("keys added to its turning"));
+    let refuse = |scene: &str, options: &[&str]| {
+        let scene = scenes.join(scene);
+        refused(&[&["export", scene.to_str().unwrap(), "--to", "csv"], options].concat())
+    };
+    assert!(refuse("squash.toml", &["--squash", "law"]).contains("no law says how far"));
+    assert!(refuse("box.toml", &["--squash", "0.3"]).contains("several balls cannot wait"));
+    assert!(refuse("squash.toml", &["--squash", "2"]).contains("not a number from 0 to 0.9, nor `law`"));
+    assert!(refuse("squash.toml", &["--squash", "0.5", "--exaggerate", "4"]).contains("squash it by 0 to 0.9"));
+}
