@@ -19,6 +19,8 @@ pub(crate) struct TrialEvidence {
     pub(crate) heights: Vec<(usize, f64, Option<f64>)>,
     /// Bounces whose rebound was read as zero.
     pub(crate) zeros: Vec<usize>,
+    /// The errors of the times are those of the intervals, which add up.
+    pub(crate) added_up: bool,
     /// Flights since contact 1, whether at an apex, time, stated error.
     pub(crate) moments: Vec<(usize, bool, f64, Option<f64>)>,
 }
