@@ -126,6 +126,8 @@ pub(crate) trait OneKind: Model + Clone {
     const ABOUT: &'static str;
     const ASSUMED: f64;
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self;
+    /// The numbers that were read.
+    fn read(evidence: &Evidence) -> Vec<f64>;
     fn without_bound(&self) -> Self;
     fn with_trend(&self) -> Self;
     /// Every reading with the same error, whatever its row states.
@@ -144,6 +146,10 @@ impl OneKind for Heights {
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
         Self { trials: evidence.heights(sigma), high: 0.0, trend: false, logarithms: false }
+    }
+
+    fn read(evidence: &Evidence) -> Vec<f64> {
+        evidence.trials.iter().flat_map(|t| t.heights.iter().map(|h| h.1)).collect()
     }
 
     fn without_bound(&self) -> Self {
@@ -182,7 +188,12 @@ impl OneKind for Contacts {
     const ASSUMED: f64 = 0.01;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
-        Self { trials: evidence.moments(sigma), high: 1.0, trend: false }
+        let added_up = evidence.trials.iter().any(|t| t.added_up);
+        Self { trials: evidence.moments(sigma), high: 1.0, trend: false, added_up }
+    }
+
+    fn read(evidence: &Evidence) -> Vec<f64> {
+        evidence.trials.iter().flat_map(|t| t.moments.iter().map(|m| m.2)).collect()
     }
 
     fn without_bound(&self) -> Self {
@@ -219,6 +230,13 @@ impl OneKind for Contacts {
     }
 }
 
+/// The standard deviation of rounding to the decimal that all these numbers are given to. A scatter that happens to be smaller claims too much.
+fn rounding(values: &[f64]) -> f64 {
+    let steps = [1.0, 0.1, 0.01, 0.001, 1e-4];
+    let whole = |step: &f64| values.iter().all(|v| (v / step - (v / step).round()).abs() < 1e-6);
+    steps.into_iter().find(whole).map_or(0.0, |step| step / 12f64.sqrt())
+}
+
 /// Turns a failure into an error, except that of a table that determines nothing.
 pub(crate) fn identified<T>(what: &str, result: Result<T, Failure>) -> Result<Option<T>, FitError> {
     match result {
@@ -240,7 +258,7 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
     let Some(mut fitted) = run(&model)? else { return Ok(None) };
     if known.is_none() && fitted.freedom >= SCATTER && !fitted.active[0] {
         #[allow(clippy::cast_precision_loss)]
-        let factor = (fitted.chi_square / fitted.freedom as f64).sqrt();
+        let factor = (fitted.chi_square / fitted.freedom as f64).sqrt().max(rounding(&M::read(evidence)) / M::ASSUMED);
         // Readings without any scatter at all leave the usual error in place: zero would claim too much.
         if factor * M::ASSUMED > 1e-9 {
             sigma = Sourced { value: factor * M::ASSUMED, source: Source::Scatter };
@@ -295,6 +313,23 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         spread,
         models: Vec::new(),
     }))
+}
+
+/// Whether the errors of times between contacts are to be taken as adding up along the times, as where each was read or rounded by itself.
+///
+/// A few intervals do not tell whether the contacts were timed, or each interval: what leaves the larger error is taken, unless the stated error of
+/// reading rules that out. Of many trials the spread tells.
+pub(crate) fn add_up(evidence: &Evidence, known: Option<Sourced>) -> Result<bool, FitError> {
+    let contacts = Contacts::with_sigma(evidence, known.map_or(Contacts::ASSUMED, |s| s.value));
+    let usable = contacts.trials.iter().filter(|t| t.len() > 2).count();
+    if !(1..REPLICATED).contains(&usable) {
+        return Ok(false);
+    }
+    let run = |added_up| identified("times", Contacts { added_up, ..contacts.clone() }.minimise());
+    let (Some(timed), Some(added_up)) = (run(false)?, run(true)?) else { return Ok(false) };
+    let holds = |f: &Fitted| known.is_none() || chi_square_p(f.chi_square, f.freedom).is_none_or(|p| p >= REJECT);
+    let variance = |f: &Fitted| f.covariance[(0, 0)] * if known.is_none() { f.chi_square } else { 1.0 };
+    Ok(variance(&added_up) > variance(&timed) && (holds(&added_up) || !holds(&timed)))
 }
 
 /// Fits the times; where the bounces scatter more than the readings, by the ratios of intervals.

@@ -8,6 +8,12 @@ use crate::table::{Event, Table};
 /// By so much the first ratio of intervals is above the later ones if the first is a fall; exactly it would be twice.
 const RELEASED: f64 = 1.25;
 
+/// At least so many pairs of contacts show that each was heard twice: within each they are no further apart than this, s,
+const PAIRS: usize = 3;
+const ECHO: f64 = 0.05;
+/// and all flights between pairs are so many times longer.
+const APART: f64 = 3.0;
+
 /// The evidence of one trial.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TrialEvidence {
@@ -19,6 +25,8 @@ pub(crate) struct TrialEvidence {
     pub(crate) heights: Vec<(usize, f64, Option<f64>)>,
     /// Bounces whose rebound was read as zero.
     pub(crate) zeros: Vec<usize>,
+    /// The errors of the times are those of the intervals, which add up.
+    pub(crate) added_up: bool,
     /// Flights since contact 1, whether at an apex, time, stated error.
     pub(crate) moments: Vec<(usize, bool, f64, Option<f64>)>,
 }
@@ -70,10 +78,34 @@ impl Evidence {
             evidence.trials.push(found);
         }
         if repair {
+            evidence.pairs(table);
             evidence.releases(table);
             evidence.mend(table, sigma_time);
         }
         evidence
+    }
+
+    /// Finds trials whose contacts were all heard twice: the second of every pair is left out.
+    fn pairs(&mut self, table: &Table) {
+        for trial in &mut self.trials {
+            let plain = trial.moments.iter().enumerate().all(|(n, m)| m.0 == n && !m.1);
+            if !plain || trial.moments.len() < 2 * PAIRS || trial.heights.iter().any(|h| h.0 > 0) {
+                continue;
+            }
+            let flights: Vec<f64> = trial.moments.windows(2).map(|w| w[1].2 - w[0].2).collect();
+            let longest = flights.iter().copied().step_by(2).fold(0.0, f64::max);
+            let shortest = flights.iter().copied().skip(1).step_by(2).fold(f64::INFINITY, f64::min);
+            if longest > ECHO || shortest < APART * longest {
+                continue;
+            }
+            let heard = trial.moments.len();
+            trial.moments = trial.moments.iter().step_by(2).enumerate().map(|(n, m)| (n, m.1, m.2, m.3)).collect();
+            let of = named(table, trial.trial);
+            self.repairs.push(format!(
+                "{of}the {heard} contacts come in pairs up to {:.1} ms apart, as if each was heard twice: the second of every pair left out",
+                1e3 * longest
+            ));
+        }
     }
 
     /// Finds releases that stand among the contacts: a first time of exactly 0, and a flight after it that is the fall, half a flight.

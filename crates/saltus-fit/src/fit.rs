@@ -199,6 +199,9 @@ impl Fit {
                 evidence = outliers::without::<Contacts>(evidence, sigma, stated, drop)?;
             }
         }
+        if table.metadata.intervals && estimate::add_up(&evidence, known_time)? {
+            evidence.trials.iter_mut().for_each(|t| t.added_up = true);
+        }
         let heights: Option<Kind<Heights>> = one_kind(&evidence, known_height)?;
         let times: Option<Kind<Contacts>> = estimate::times(&evidence, known_time)?;
         let assumed = Sourced { value: 0.01, source: Source::Assumed };

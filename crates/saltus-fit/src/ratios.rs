@@ -72,9 +72,15 @@ fn collect(trial: &TrialEvidence) -> Option<Ratios> {
     let mut b = DMatrix::zeros(n, n + 2);
     for (k, w) in whole.iter().enumerate() {
         let (before, after) = (1.0 / (w[1].1 - w[0].1), 1.0 / (w[2].1 - w[1].1));
-        b[(k, k)] = before;
-        b[(k, k + 1)] = -before - after;
-        b[(k, k + 2)] = after;
+        if trial.added_up {
+            // One error for each interval.
+            b[(k, k)] = -before;
+            b[(k, k + 1)] = after;
+        } else {
+            b[(k, k)] = before;
+            b[(k, k + 1)] = -before - after;
+            b[(k, k + 2)] = after;
+        }
     }
     Some(Ratios { trial: trial.trial, y, before, reading: &b * b.transpose() })
 }

@@ -125,6 +125,8 @@ pub(crate) struct Metadata {
     pub(crate) sigma_time: Option<f64>,
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.
     pub(crate) pixels: bool,
+    /// Times are sums of times between contacts.
+    pub(crate) intervals: bool,
     /// Which way the heights count was stated, and is not to be recognised.
     pub(crate) oriented: bool,
     /// What was stated of it, and that the ball then falls upwards.

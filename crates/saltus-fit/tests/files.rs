@@ -338,5 +338,10 @@ fn wrong_units_and_frame_rates_are_suspected() {
     let fall: String = (0..40).map(|n| format!("{n},{}\n", 1.0 - 4.905 * (f64::from(n) / 120.0).powi(2))).collect();
     let text = format!("frame,y_m\n{fall}");
     warned(text.as_bytes(), &plain().fps(30.0), "120 frames a second would be right");
+    let slow: String = (0..40)
+        .map(|n| format!("{:.4},{}\n", f64::from(n) / 30.0, 1.0 - 4.905 * (f64::from(n) / 120.0).powi(2)))
+        .collect();
+    let told = "runs 4.0 times slower than life, as a film shot at 120 frames a second and played at 30;";
+    warned(format!("time_s,y_m\n{slow}").as_bytes(), &plain(), told);
     assert!(saltus_fit::Fit::new().run(&read(text.as_bytes(), &plain().fps(120.0))).unwrap().warnings().is_empty());
 }

@@ -175,3 +175,23 @@ fn a_cor_that_may_be_anything_is_not_trusted() {
     assert_eq!(report.verdict(), Verdict::Doubtful, "{report}");
     assert!(report.reason().contains("hardly known"), "{report}");
 }
+
+/// A trigger that hears every contact twice, some milliseconds apart.
+#[test]
+fn contacts_all_heard_twice_count_once() {
+    let (mut time, mut flight, mut times) = (0.3, 0.8, Vec::new());
+    for n in 0..8 {
+        times.extend([time, time + 0.008 + 0.001 * f64::from(n % 3)]);
+        time += flight;
+        flight *= 0.8;
+    }
+    for heard in [&times[..], &times[..15]] {
+        let table = Table::from_contacts(heard).unwrap();
+        let report = Fit::new().run(&table).unwrap();
+        let cor = report.cor().unwrap();
+        assert!(report.verdict() == Verdict::Trusted && (cor.value - 0.8).abs() < 1e-3, "{report}");
+        assert!(report.repairs().iter().any(|r| r.contains("heard twice")), "{report}");
+        // As they stand, they are no bounces of a ball.
+        assert_ne!(Fit::new().repair(false).run(&table).unwrap().verdict(), Verdict::Trusted);
+    }
+}

@@ -16,7 +16,8 @@ pub(crate) struct Moment {
 
 /// Times of contacts (and apexes). Shared: e, and on request a trend. Own: a, τ.
 ///
-/// The times themselves are fitted, not the intervals: neighbouring intervals share a contact, so their errors are correlated.
+/// The times themselves are fitted, not the intervals: neighbouring intervals share a contact, so their errors are correlated. Where each interval
+/// was read by itself, it is the times that share their errors, and the intervals are fitted.
 #[derive(Clone, Debug)]
 pub(crate) struct Contacts {
     /// In ascending order of flights.
@@ -25,6 +26,8 @@ pub(crate) struct Contacts {
     pub(crate) high: f64,
     /// Adds an unknown m: flight k lasts τ eᵏ (1 + m k (k − 1)/2), a COR that changes from bounce to bounce. Derivatives are at m = 0.
     pub(crate) trend: bool,
+    /// The errors are those of the intervals, which add up along the times.
+    pub(crate) added_up: bool,
 }
 
 impl Contacts {
@@ -110,6 +113,13 @@ impl Model for Contacts {
                 predicted += tau * sums.trend * shared[1];
             }
             rows[(i, 2 + shared.len())] = (moment.time - predicted) / moment.sigma;
+        }
+        if self.added_up {
+            for (i, pair) in self.trials[block].windows(2).enumerate().rev() {
+                let before = rows.row(i) * (pair[0].sigma / pair[1].sigma);
+                let mut row = rows.row_mut(i + 1);
+                row -= before;
+            }
         }
     }
 }

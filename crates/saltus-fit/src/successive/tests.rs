@@ -5,7 +5,7 @@ use crate::model::{Contacts, CorLaw, Flight, FlightTrial, Heights, Moment};
 
 fn contacts(times: &[f64], sigma: f64) -> Contacts {
     let one = |(flights, &time): (usize, &f64)| Moment { flights, apex: false, time, sigma };
-    Contacts { trials: vec![times.iter().enumerate().map(one).collect()], high: 1.0, trend: false }
+    Contacts { trials: vec![times.iter().enumerate().map(one).collect()], high: 1.0, trend: false, added_up: false }
 }
 
 /// Compares filled derivatives with central differences of filled residuals.

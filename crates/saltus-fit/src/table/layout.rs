@@ -119,6 +119,7 @@ pub(super) fn table(
         _ => trials,
     };
     if matches!(layout, Layout::Intervals { .. }) {
+        table.metadata.intervals = true;
         table.trials = table.trials.into_iter().map(|trial| summed(sheet, trial)).collect::<Result<_, _>>()?;
     }
     if let Layout::Samples { .. } = layout {

@@ -60,6 +60,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         sigma_height: larger(a.sigma_height, b.sigma_height),
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,
+        intervals: a.intervals || b.intervals,
         oriented: a.oriented,
         falls_upwards: a.falls_upwards.or(b.falls_upwards),
     })

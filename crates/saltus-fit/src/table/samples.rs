@@ -57,12 +57,24 @@ fn falls(table: &mut Table) {
     let rate = (gravity / median).sqrt();
     let rate = match table.metadata.frame_rate {
         Some(fps) => format!("{:.0} frames a second would be right", fps * rate),
-        None => format!("a clock {:.2} times as slow would be right", 1.0 / rate),
+        None => pace(table, rate),
     };
     table.warnings.push(format!(
         "the ball falls with {median:.2} m/s² where {gravity:.2} are due: is the unit of heights, the scale or the frame rate \
          wrong? ({rate})"
     ));
+}
+
+/// By how much a recording runs too slowly or too fast, and at which rates it would have been filmed and played.
+fn pace(table: &Table, rate: f64) -> String {
+    let steps = table.trials.iter().flat_map(|t| t.readings.windows(2)).filter_map(|w| Some(w[1].time? - w[0].time?));
+    let played = crate::statistics::median(&mut steps.collect::<Vec<f64>>()).map_or(0.0, |step| 1.0 / step);
+    let (by, how) = if rate > 1.0 { (rate, "slower") } else { (1.0 / rate, "faster") };
+    format!(
+        "if it is the clock, the recording runs {by:.1} times {how} than life, as a film shot at {:.0} frames a second and played at {played:.0}; \
+         the COR does not depend on it",
+        played * rate
+    )
 }
 
 /// The downward accelerations where a series moves and bends downwards, from second differences.
