@@ -1,6 +1,7 @@
 //! The air of a scene and what it does to a ball.
 
 use nalgebra::Vector3;
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -114,9 +115,10 @@ impl Effects {
 }
 
 /// The air, or whatever the ball flies in. It acts only through the effects that are named.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "air")]
+#[cfg_attr(test, schemars(rename = "air"))]
 pub(super) struct AirTable {
     /// Its density; 1.225 kg/m^3, dry air at 15 °C at sea level, unless given.
     density: Option<At<Measure<Density>>>,
@@ -127,9 +129,10 @@ pub(super) struct AirTable {
 }
 
 /// Drag: linear by `rate` or `viscous`, quadratic by `per_length` or `coefficient`; one of each kind may act together.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "drag")]
+#[cfg_attr(test, schemars(rename = "drag"))]
 pub(super) struct DragTable {
     /// Linear, a = -rate × v.
     rate: Option<At<Measure<Rate>>>,
@@ -142,9 +145,10 @@ pub(super) struct DragTable {
 }
 
 /// Lift by spin (the Magnus effect): C = slope × S/(1 + saturation × S), S the surface's speed over the ball's.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "magnus")]
+#[cfg_attr(test, schemars(rename = "magnus"))]
 pub(super) struct MagnusTable {
     /// The lift coefficient per spin parameter; 1 unless given.
     slope: Option<At<Number>>,
@@ -153,9 +157,10 @@ pub(super) struct MagnusTable {
 }
 
 /// Decay of spin in the air: by `time` or by `coefficient`.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "spin-decay")]
+#[cfg_attr(test, schemars(rename = "spin-decay"))]
 pub(super) struct SpinDecayTable {
     /// The time within which spin falls to 1/e.
     time: Option<At<Measure<Time>>>,

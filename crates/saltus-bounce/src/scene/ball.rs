@@ -1,6 +1,7 @@
 //! The balls of a scene: what they are and how they start.
 
 use nalgebra::Vector3;
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -84,9 +85,10 @@ impl Ball {
 }
 
 /// Where the mass of a ball sits.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 enum Kind {
     /// All through: I = 2/5 m R².
     Solid,
@@ -95,9 +97,10 @@ enum Kind {
 }
 
 /// A ball: what it is and how it starts.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "ball")]
+#[cfg_attr(test, schemars(rename = "ball"))]
 pub(super) struct BallTable {
     /// What to call it.
     name: Option<String>,

@@ -1,5 +1,6 @@
 //! Contact: an instant, or a force while the ball is pressed in.
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -33,9 +34,10 @@ pub enum Contact {
     HuntCrossley(HuntCrossley),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 enum Kind {
     /// In an instant, by the law of restitution.
     Rigid,
@@ -48,9 +50,10 @@ enum Kind {
 }
 
 /// The elasticity of a material.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "elastic")]
+#[cfg_attr(test, schemars(rename = "elastic"))]
 struct ElasticTable {
     /// Young's modulus.
     young: At<Measure<Pressure>>,
@@ -59,9 +62,10 @@ struct ElasticTable {
 }
 
 /// A force law: its constants, or what is to come of it.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "contact")]
+#[cfg_attr(test, schemars(rename = "contact"))]
 pub(super) struct ContactTable {
     /// Which law.
     law: At<Kind>,

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
@@ -23,9 +24,10 @@ use crate::friction::Friction;
 use crate::materials;
 
 /// A scene: balls, what acts on them, what they bounce on.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(title = "saltus scene", rename = "scene")]
+#[cfg_attr(test, schemars(title = "saltus scene", rename = "scene"))]
 pub(super) struct File {
     /// Gravity, downwards, or the name of a body ("moon"); 9.80665 m/s^2 unless given.
     gravity: Option<At<GravityValue>>,
@@ -60,9 +62,10 @@ pub(super) struct File {
 }
 
 /// Impacts between balls.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "collisions")]
+#[cfg_attr(test, schemars(rename = "collisions"))]
 struct CollisionTable {
     /// Restitution between balls; the scene's unless given.
     restitution: Option<At<Short<RestitutionTable>>>,
@@ -110,6 +113,7 @@ impl<'de> Deserialize<'de> for GravityValue {
     }
 }
 
+#[cfg(test)]
 impl JsonSchema for GravityValue {
     fn inline_schema() -> bool {
         true

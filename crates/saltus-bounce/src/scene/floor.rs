@@ -1,6 +1,7 @@
 //! The floors, walls and boxes of a scene.
 
 use nalgebra::Vector3;
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -96,9 +97,10 @@ pub enum Shape {
     },
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 enum Kind {
     /// Level: `height`, `motion`.
     Level,
@@ -116,9 +118,10 @@ enum Kind {
     Sine,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 enum Axis {
     /// Across x.
     X,
@@ -127,9 +130,10 @@ enum Axis {
 }
 
 /// A floor, a wall or a box.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "floor")]
+#[cfg_attr(test, schemars(rename = "floor"))]
 pub(super) struct FloorTable {
     /// What to call it.
     name: Option<String>,

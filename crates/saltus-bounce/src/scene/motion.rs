@@ -1,5 +1,6 @@
 //! How a level floor moves.
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -44,9 +45,10 @@ impl Motion {
 }
 
 /// How a level floor moves: a vibration, or a schedule.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "motion")]
+#[cfg_attr(test, schemars(rename = "motion"))]
 pub(super) struct MotionTable {
     /// Of a vibration: half of the way between its ends.
     amplitude: Option<At<Measure<Length>>>,

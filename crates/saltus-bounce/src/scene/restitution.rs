@@ -1,5 +1,6 @@
 //! What an impact leaves of the speed: a number, a range, a law, or what is known of a material on another.
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -90,9 +91,10 @@ impl Restitution for Law {
 }
 
 /// How restitution depends on the speed.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 enum Kind {
     /// e = cor + slope × speed, constant below `slowest` and above `fastest`.
     Linear,
@@ -105,9 +107,10 @@ enum Kind {
 }
 
 /// Restitution as a table: a range, or a law over the speed of impact.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "restitution")]
+#[cfg_attr(test, schemars(rename = "restitution"))]
 pub(super) struct RestitutionTable {
     /// Which law.
     law: Option<At<Kind>>,
@@ -290,9 +293,10 @@ impl RestitutionTable {
 }
 
 /// Friction along a surface as a table.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "friction")]
+#[cfg_attr(test, schemars(rename = "friction"))]
 pub(super) struct FrictionTable {
     /// The coefficient of sliding friction μ.
     coefficient: At<Number>,

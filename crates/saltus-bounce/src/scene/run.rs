@@ -1,5 +1,6 @@
 //! When a run ends, how it is stepped, and what is drawn of it.
 
+#[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -33,9 +34,10 @@ impl Run {
 }
 
 /// A way to step through a flow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 pub enum Stepper {
     /// Tsitouras 5(4).
     Tsit5,
@@ -76,9 +78,10 @@ pub struct Picture {
 }
 
 /// The kinds of pictures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[schemars(inline)]
+#[cfg_attr(test, schemars(inline))]
 pub enum Kind {
     /// Height against time.
     #[default]
@@ -100,9 +103,10 @@ pub enum Kind {
 }
 
 /// How long and how precisely to run.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "run")]
+#[cfg_attr(test, schemars(rename = "run"))]
 pub(super) struct RunTable {
     /// When to stop; when everything has come to rest unless given.
     until: Option<At<Measure<Time>>>,
@@ -115,9 +119,10 @@ pub(super) struct RunTable {
 }
 
 /// What is drawn.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "picture")]
+#[cfg_attr(test, schemars(rename = "picture"))]
 pub(super) struct PictureTable {
     /// The title; made from the scene unless given.
     title: Option<String>,

@@ -1,9 +1,9 @@
 //! The keys of a scene file, for editors.
 
-use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value};
 
-use super::file::File;
+/// Written by a test from the types that a file is read into.
+const SCHEMA: &str = include_str!("scene.schema.json");
 
 /// The JSON Schema (draft 7) of scene files, as text.
 ///
@@ -14,17 +14,13 @@ use super::file::File;
 /// assert!(schema.contains("\"title\": \"saltus scene\"") && schema.contains("\"height\""));
 /// ```
 #[must_use]
-pub fn schema() -> String {
-    serde_json::to_string_pretty(&root()).unwrap_or_default() + "\n"
-}
-
-fn root() -> Value {
-    SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<File>().to_value()
+pub const fn schema() -> &'static str {
+    SCHEMA
 }
 
 /// The tables with their keys; the top of the file is "".
 fn tables() -> Vec<(String, Map<String, Value>)> {
-    let root = root();
+    let root: Value = serde_json::from_str(SCHEMA).unwrap_or_default();
     let keys = |table: &Value| table.get("properties").and_then(Value::as_object).cloned();
     let mut tables: Vec<_> = keys(&root).map(|keys| (String::new(), keys)).into_iter().collect();
     if let Some(definitions) = root.get("definitions").and_then(Value::as_object) {
@@ -55,4 +51,26 @@ pub(super) fn homes(key: &str) -> Vec<String> {
             _ => format!("under [{name}]"),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use schemars::generate::SchemaSettings;
+
+    use super::super::file::File;
+    use super::SCHEMA;
+
+    /// `SALTUS_BLESS=1` rewrites it.
+    #[test]
+    fn it_is_that_of_the_types() {
+        let root =
+            SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<File>().to_value();
+        let schema = serde_json::to_string_pretty(&root).unwrap() + "\n";
+        if std::env::var_os("SALTUS_BLESS").is_some() {
+            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/scene/scene.schema.json");
+            std::fs::write(path, &schema).unwrap();
+        } else {
+            assert!(schema == SCHEMA.replace("\r\n", "\n"), "SALTUS_BLESS=1 writes:\n{schema}");
+        }
+    }
 }

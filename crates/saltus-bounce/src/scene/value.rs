@@ -1,10 +1,12 @@
 //! The values that stand in a scene file: quantities with units, plain numbers, vectors, one thing or a list of it.
 
+#[cfg(test)]
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+#[cfg(test)]
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -53,6 +55,7 @@ impl<T: Real> At<T> {
     }
 }
 
+#[cfg(test)]
 impl<T: JsonSchema> JsonSchema for At<T> {
     fn inline_schema() -> bool {
         T::inline_schema()
@@ -165,6 +168,7 @@ impl<'de, D: Dimension> Deserialize<'de> for Measure<D> {
     }
 }
 
+#[cfg(test)]
 impl<D: Dimension> JsonSchema for Measure<D> {
     fn schema_name() -> Cow<'static, str> {
         D::QUANTITY.to_string().replace(' ', "-").into()
@@ -199,6 +203,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
+#[cfg(test)]
 impl JsonSchema for Number {
     fn inline_schema() -> bool {
         true
@@ -249,6 +254,7 @@ impl<'de> Deserialize<'de> for Loose {
     }
 }
 
+#[cfg(test)]
 impl JsonSchema for Loose {
     fn inline_schema() -> bool {
         true
@@ -309,6 +315,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMany<T> {
     }
 }
 
+#[cfg(test)]
 impl<T: JsonSchema> JsonSchema for OneOrMany<T> {
     fn inline_schema() -> bool {
         true
@@ -361,6 +368,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Short<T> {
     }
 }
 
+#[cfg(test)]
 impl<T: JsonSchema> JsonSchema for Short<T> {
     fn inline_schema() -> bool {
         true

@@ -112,7 +112,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *p = less_constant(guard, constant, c) * power;
             power *= stretch;
         }
-        if start == Start::Spent && turns_down(&p) && is_rounding(guard, constant, &c[1]) {
+        if start == Start::Spent && turns_down(&p) && is_rounding(&guard, constant, &c[1]) {
             p[1] = 0.0;
         }
         Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + g.abs()) })
@@ -211,15 +211,21 @@ pub(super) fn turns_down(powers: &[f64]) -> bool {
 
 /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
 #[cold]
-pub(super) fn is_rounding<S: State>(guard: impl Fn(&S) -> f64 + Copy, constant: f64, x: &S) -> bool {
+pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> bool {
     let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
     let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
     less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
 }
 
 /// What was found of a `guard` less its `level` at the start, of the guard itself.
-pub(super) fn unlevelled(searched: Searched, level: f64, mut guard: impl FnMut(f64) -> f64) -> Searched {
-    let later = searched.fall.filter(|fall| level != 0.0 && fall.inside > 0.0);
+#[inline]
+pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
+    if level == 0.0 { searched } else { off_level(searched, level, guard) }
+}
+
+#[cold]
+fn off_level(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
+    let later = searched.fall.filter(|fall| fall.inside > 0.0);
     let settled = later.and_then(|fall| settle(|s| guard(s) + level, fall.root));
     Searched { fall: settled.or(searched.fall), ..searched }
 }
