@@ -13,7 +13,7 @@ use crate::step::{Stepper, Trial};
 use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{exceeds, less_constant};
+use super::crossing::{exceeds, is_rounding, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -179,8 +179,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.automaton.flow(mode, t, x)
     }
 
-    /// Whether an arc that leaves a wall by the flow returns to it at once by a dense output whose slope at its start is not the flow's: the step is too
-    /// long for a motion this slow, and would lose the state behind the wall.
+    /// Whether an arc that leaves a wall by the flow, or stands on it, falls from it at once by a dense output whose slope at its start is not the flow's: the
+    /// step is too long for a motion this slow, and would lose the state behind the wall.
     fn contradicted(
         &mut self,
         mode: A::Mode,
@@ -199,12 +199,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if self.memory.spent_as(edge).is_none() {
                 continue;
             }
-            // What the guard rises by on the way of the flow and on that of the dense output.
-            let [rate, told] = if self.automaton.affine(edge) {
+            // What the guard rises by on the way of the flow and on that of the dense output; and whether a fall on the latter is beyond rounding.
+            let (rate, told, falls) = if self.automaton.affine(edge) {
                 self.memory.stats.guards += 3;
                 let guard = |x: &A::State| self.automaton.guard(edge, t, x);
                 let constant = guard(&slope.with(|_| 0.0));
-                [h * less_constant(guard, constant, slope), less_constant(guard, constant, c1)]
+                let told = less_constant(guard, constant, c1);
+                (h * less_constant(guard, constant, slope), told, told < 0.0 && !is_rounding(&guard, constant, c1))
             } else {
                 self.memory.stats.guards += 4;
                 let s = PROBE * h;
@@ -212,9 +213,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
                     self.automaton.guard(edge, t + s, &at(by)) - self.automaton.guard(edge, t - s, &at(-by))
                 };
-                [rise(slope, s), rise(c1, PROBE)]
+                let (rate, told) = (rise(slope, s), rise(c1, PROBE));
+                let g = self.automaton.guard(edge, t, x);
+                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, 0.0))
             };
-            if rate > 0.0 && told < 0.5 * rate {
+            if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
             }
         }
