@@ -113,7 +113,7 @@ fn the_page_about_scenes() {
 
 /// Every table of the schema with each of its keys.
 fn keys() -> Vec<(String, String)> {
-    let schema: serde_json::Value = serde_json::from_str(&schema()).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(schema()).unwrap();
     let list = |name: &str, table: &serde_json::Value| -> Vec<(String, String)> {
         let keys = table["properties"].as_object().into_iter().flatten();
         keys.map(|(key, _)| (name.to_owned(), key.clone())).collect()
