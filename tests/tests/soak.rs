@@ -31,11 +31,16 @@ fn scenes_that_broke_a_law_keep_it() {
     }
 }
 
+/// Of two million and four hundred thousand, those that end in an error and should not: a slip in space that turns too fast for Rodas5P at 2e-11 to 4e-11, twice;
+/// a ball that bounces ever lower on a rising floor and is 1e-11 m inside it where the schedule ends.
 #[test]
-#[ignore = "a slip of 1e-5 m/s in space turns too fast for Rodas5P at 4e-11: the run ends with an error that says so"]
-fn a_slip_that_turns_stepped_by_rodas() {
-    let made = numbered(1_379_602);
-    assert!(lived(&made, EVALUATIONS).is_ok(), "{}", made.toml);
+#[ignore = "ends in an error that says where"]
+fn scenes_that_end_in_an_error_still() {
+    for number in [1_379_602, 2_168_904, 2_238_289] {
+        let made = numbered(number);
+        let lived = lived(&made, EVALUATIONS);
+        assert!(lived.is_ok(), "{lived:?}\n{}", made.toml);
+    }
 }
 
 /// A ball that rolls off a hill in space: the direction of a slip that begins is stiff.
