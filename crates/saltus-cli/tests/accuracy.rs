@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod tool;
+
+use std::process::Output;
 
 use serde_json::Value;
 
 fn saltus(arguments: &[&str]) -> Output {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    Command::new(env!("CARGO_BIN_EXE_saltus")).args(arguments).current_dir(root).env("NO_COLOR", "1").output().unwrap()
+    tool::saltus().args(arguments).current_dir(tool::root()).output().unwrap()
 }
 
 fn done(arguments: &[&str]) -> (String, String) {
@@ -107,7 +107,7 @@ fn every_field_of_json_is_in_the_page_that_help_names() {
     for command in [&["accuracy", TOPSPIN][..], &["explain", TOPSPIN, "--cost"]] {
         let (help, _) = done(&[command[0], "--help"]);
         let page = help.split_whitespace().find(|word| word.starts_with("docs/")).unwrap();
-        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(page);
+        let page = tool::root().join(page);
         let page = std::fs::read_to_string(page).unwrap();
         let (text, _) = done(&[command, &["--format", "json"]].concat());
         for name in names(&serde_json::from_str(&text).unwrap()) {

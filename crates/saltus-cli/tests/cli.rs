@@ -5,12 +5,11 @@
 mod tool;
 
 use std::fs;
-use std::io::Write;
 use std::process::Stdio;
 
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::{done, golden, refused, root, run, saltus, squash, table, text};
+use tool::{done, fed, golden, refused, root, run, saltus, squash, table, text};
 
 #[test]
 fn the_main_job() {
@@ -177,10 +176,7 @@ fn several_files_and_bare_pixels() {
 
 #[test]
 fn a_table_from_standard_input() {
-    let mut child = saltus().args(["fit", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-    child.stdin.take().unwrap().write_all(b"bounce,height_cm\n0,100\n1,64\n2,41\n").unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success() && text(&output.stdout).contains("COR"));
+    assert!(fed(&["fit", "-"], b"bounce,height_cm\n0,100\n1,64\n2,41\n").contains("COR"));
 }
 
 /// A file that is there stays whole when it cannot be written, and is replaced whole when it can.

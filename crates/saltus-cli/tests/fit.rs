@@ -2,19 +2,17 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod tool;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use tempfile::TempDir;
+use tool::text;
 
 fn saltus(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
-    command.current_dir(folder).env("NO_COLOR", "1").args(arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    tool::saltus().current_dir(folder).args(arguments).output().unwrap()
 }
 
 /// What stands between this fence and the next, for the first time.

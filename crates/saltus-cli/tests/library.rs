@@ -2,23 +2,21 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod tool;
+
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use saltus_bounce::scene::Scene;
 use serde_json::Value;
 use tempfile::TempDir;
+use tool::root;
 
 fn saltus(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_saltus")).args(arguments).env("NO_COLOR", "1").output().unwrap();
+    let output = tool::saltus().args(arguments).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (output.status.code(), out, err)
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 fn example(name: &str) -> String {

@@ -5,12 +5,10 @@
 mod tool;
 
 use std::fs;
-use std::io::Write;
-use std::process::Stdio;
 
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::{done, golden, refused, root, run, run_quietly, saltus, scene, text};
+use tool::{done, fed, golden, refused, root, run, run_quietly, scene, text};
 
 #[test]
 fn simulating_for_programs() {
@@ -301,10 +299,7 @@ fn bad_scenes() {
 
 #[test]
 fn a_scene_from_standard_input() {
-    let mut child = saltus().args(["simulate", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-    child.stdin.take().unwrap().write_all(b"restitution = 0.5\nball = { height = '1 m' }\n").unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success() && text(&output.stdout).contains("At rest"));
+    assert!(fed(&["simulate", "-"], b"restitution = 0.5\nball = { height = '1 m' }\n").contains("At rest"));
 }
 
 #[test]

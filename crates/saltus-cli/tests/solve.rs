@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
+mod tool;
+
 use std::fs;
-use std::process::Command;
 
 use saltus_bounce::scene::Scene;
 use saltus_bounce::scene::plan::Record;
@@ -13,8 +14,7 @@ const G: f64 = 9.806_65;
 
 /// Status, standard output and what is said.
 fn solve(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_saltus")).arg("solve").args(arguments).env("NO_COLOR", "1").output().unwrap();
+    let output = tool::saltus().arg("solve").args(arguments).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (output.status.code(), out, err)
 }

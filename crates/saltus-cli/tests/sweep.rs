@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
+mod tool;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -33,8 +35,8 @@ impl Place {
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
-        command.args(["sweep", "scene.toml"]).args(arguments).current_dir(self.0.path()).env("NO_COLOR", "1");
+        let mut command = tool::saltus();
+        command.args(["sweep", "scene.toml"]).args(arguments).current_dir(self.0.path());
         command
     }
 

@@ -196,12 +196,13 @@ pub(crate) fn models(
     let agree = !report.agreement.as_ref().is_some_and(|a| a.p.is_some_and(|p| p < REJECT));
     let Some(cor) = report.cor.filter(|_| agree) else { return none("they do not settle on one COR to begin with") };
     let scattering = found.times.as_ref().is_some_and(|k| k.scatter.is_some());
-    let added_up = found.evidence.trials.iter().any(|t| t.added_up);
     let (trials, source) = match (&found.joint, &found.heights, &found.times) {
         (Some(joint), _, _) => (joint.model.trials.clone(), sigma_time.source),
         (None, Some(_), None) => (Readings::heights(found.evidence, sigma_height.value), sigma_height.source),
         // Where bounces scatter, times have errors that add up: ratios are compared instead.
-        (None, None, Some(_)) if !scattering && added_up => return none("the errors of times between contacts add up"),
+        (None, None, Some(_)) if !scattering && found.evidence.added_up() => {
+            return none("the errors of times between contacts add up");
+        }
         (None, None, Some(_)) if !scattering => (Readings::times(found.evidence, sigma_time.value), sigma_time.source),
         (None, None, Some(times)) => {
             if !found.drops_differ(cor.value) {

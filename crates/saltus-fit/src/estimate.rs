@@ -188,8 +188,7 @@ impl OneKind for Contacts {
     const ASSUMED: f64 = 0.01;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
-        let added_up = evidence.trials.iter().any(|t| t.added_up);
-        Self { trials: evidence.moments(sigma), high: 1.0, trend: false, added_up }
+        Self { trials: evidence.moments(sigma), high: 1.0, trend: false, added_up: evidence.added_up() }
     }
 
     fn read(evidence: &Evidence) -> Vec<f64> {

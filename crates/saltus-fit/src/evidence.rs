@@ -85,6 +85,11 @@ impl Evidence {
         evidence
     }
 
+    /// Whether the errors of the times are those of the intervals, which add up.
+    pub(crate) fn added_up(&self) -> bool {
+        self.trials.iter().any(|t| t.added_up)
+    }
+
     /// Finds trials whose contacts were all heard twice: the second of every pair is left out.
     fn pairs(&mut self, table: &Table) {
         for trial in &mut self.trials {

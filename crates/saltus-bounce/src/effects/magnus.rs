@@ -49,12 +49,12 @@ impl Magnus {
         })
     }
 
-    /// What ω×v is multiplied by, from |ω×v| and v².
     /// Lift over ω×v where the spin is slow, (ρA/2m) κR, without a unit.
     pub(crate) const fn slope(&self) -> f64 {
         self.slope
     }
 
+    /// What ω×v is multiplied by, from |ω×v| and v².
     #[inline]
     fn factor(&self, cross: f64, square: f64) -> f64 {
         // Also right where v = 0: there ω×v is zero, and so is the lift.

@@ -3,8 +3,9 @@
 #![allow(dead_code)] // each test file has a use for some of it
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -43,6 +44,15 @@ pub(crate) fn refused(arguments: &[&str]) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
     assert_eq!(text(&output.stdout), "");
     text(&output.stderr)
+}
+
+/// A command that must succeed with this on its standard input; its standard output.
+pub(crate) fn fed(arguments: &[&str], input: &[u8]) -> String {
+    let mut child = saltus().args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(input).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    text(&output.stdout)
 }
 
 /// A table in a folder of its own.

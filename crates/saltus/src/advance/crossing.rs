@@ -44,11 +44,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
             let mut guard = |s: f64| {
                 *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale)) - level
+                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
             };
+            let mut above = |s: f64| guard(s) - level;
             let searched = match &p {
-                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut guard, limit, start),
-                None => first_fall_on_step(&mut guard, limit, start, bend),
+                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
+                None => first_fall_on_step(&mut above, limit, start, bend),
             };
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, evidence } =
@@ -112,10 +113,26 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *p = less_constant(guard, constant, c) * power;
             power *= stretch;
         }
-        if start == Start::Spent && turns_down(&p) && is_rounding(&guard, constant, &c[1]) {
+        if start == Start::Spent && self.only_touched(edge, t, &p, constant, &c[1]) {
             p[1] = 0.0;
         }
         Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + g.abs()) })
+    }
+
+    /// Whether an affine guard of these `powers` that seems to fall from its root only touched zero there: it bends down, and its slope, that of the state `x`, is
+    /// no more than rounding.
+    #[inline]
+    pub(super) fn only_touched(&mut self, edge: A::Edge, t: f64, powers: &[f64], constant: f64, x: &A::State) -> bool {
+        powers[1] < 0.0 && powers[2] < 0.0 && self.is_rounding(edge, t, constant, x)
+    }
+
+    /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
+    #[cold]
+    pub(super) fn is_rounding(&mut self, edge: A::Edge, t: f64, constant: f64, x: &A::State) -> bool {
+        self.memory.stats.guards += x.len() as u64 + 1;
+        let added = |x: &A::State| less_constant(|x| self.automaton.guard(edge, t, x), constant, x);
+        let parts: f64 = (0..x.len()).map(|k| added(&x.with(|i| if i == k { x.get(i) } else { 0.0 })).abs()).sum();
+        added(x).abs() <= 8.0 * f64::EPSILON * parts
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
@@ -203,31 +220,10 @@ pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, 
     if far.is_finite() { far / LARGER } else { guard(x) - constant }
 }
 
-/// Whether a guard with these powers falls from a spent root, and ever faster: with a slope that [is rounding](is_rounding), it only touched zero there.
-#[inline]
-pub(super) fn turns_down(powers: &[f64]) -> bool {
-    powers[1] < 0.0 && powers[2] < 0.0
-}
-
-/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
-#[cold]
-pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> bool {
-    let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
-    let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
-    less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
-}
-
-/// What was found of a `guard` less its `level` at the start, of the guard itself.
-#[inline]
-pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
-    if level == 0.0 { searched } else { off_level(searched, level, guard) }
-}
-
-#[cold]
-fn off_level(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
-    let later = searched.fall.filter(|fall| fall.inside > 0.0);
-    let settled = later.and_then(|fall| settle(|s| guard(s) + level, fall.root));
-    Searched { fall: settled.or(searched.fall), ..searched }
+/// What was found of a guard less its `level` at the start, of the `guard` itself.
+pub(super) fn unlevelled(searched: Searched, level: f64, guard: impl FnMut(f64) -> f64) -> Searched {
+    let later = searched.fall.filter(|fall| level != 0.0 && fall.inside > 0.0);
+    Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
 }
 
 /// The end of an arc's last piece.

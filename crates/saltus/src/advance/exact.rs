@@ -12,7 +12,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, is_rounding, less_constant, turns_down, unlevelled};
+use super::crossing::{Close, less_constant, unlevelled};
 use super::{Advance, ArcEnd, Clock};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -61,7 +61,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
         let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
-        if start == Start::Spent && turns_down(&powers) && is_rounding(&g, constant, &c[1]) {
+        if start == Start::Spent && self.only_touched(edge, now.seconds(), &powers, constant, &c[1]) {
             powers[1] = 0.0;
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
@@ -107,7 +107,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let to = if from + window < limit { from + window } else { limit };
             let searched = first_fall(|s| guard(from + s) - level, to - from, start)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
-            let searched = unlevelled(searched, level, &mut |s| guard(s) - level);
+            let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };

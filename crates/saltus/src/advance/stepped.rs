@@ -13,7 +13,7 @@ use crate::step::{Stepper, Trial};
 use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{exceeds, is_rounding, less_constant};
+use super::crossing::{exceeds, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -205,9 +205,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let guard = |x: &A::State| self.automaton.guard(edge, t, x);
                 let constant = guard(&slope.with(|_| 0.0));
                 let told = less_constant(guard, constant, c1);
-                (h * less_constant(guard, constant, slope), told, told < 0.0 && !is_rounding(&guard, constant, c1))
+                let rate = h * less_constant(guard, constant, slope);
+                (rate, told, told < 0.0 && !self.is_rounding(edge, t, constant, c1))
             } else {
-                self.memory.stats.guards += 4;
+                self.memory.stats.guards += 5;
                 let s = PROBE * h;
                 let rise = |rate: &A::State, by: f64| {
                     let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
