@@ -113,26 +113,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *p = less_constant(guard, constant, c) * power;
             power *= stretch;
         }
-        if start == Start::Spent && self.only_touched(edge, t, &p, constant, &c[1]) {
+        if start == Start::Spent && only_touched(&p, &guard, constant, &c[1], &mut self.memory.stats.guards) {
             p[1] = 0.0;
         }
         Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + g.abs()) })
-    }
-
-    /// Whether an affine guard of these `powers` that seems to fall from its root only touched zero there: it bends down, and its slope, that of the state `x`, is
-    /// no more than rounding.
-    #[inline]
-    pub(super) fn only_touched(&mut self, edge: A::Edge, t: f64, powers: &[f64], constant: f64, x: &A::State) -> bool {
-        powers[1] < 0.0 && powers[2] < 0.0 && self.is_rounding(edge, t, constant, x)
-    }
-
-    /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
-    #[cold]
-    pub(super) fn is_rounding(&mut self, edge: A::Edge, t: f64, constant: f64, x: &A::State) -> bool {
-        self.memory.stats.guards += x.len() as u64 + 1;
-        let added = |x: &A::State| less_constant(|x| self.automaton.guard(edge, t, x), constant, x);
-        let parts: f64 = (0..x.len()).map(|k| added(&x.with(|i| if i == k { x.get(i) } else { 0.0 })).abs()).sum();
-        added(x).abs() <= 8.0 * f64::EPSILON * parts
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
@@ -220,9 +204,38 @@ pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, 
     if far.is_finite() { far / LARGER } else { guard(x) - constant }
 }
 
+/// Whether an affine guard of these `powers` that seems to fall from its root only touched zero there: it bends down, and its slope, that of the state `x`, is no
+/// more than rounding.
+#[inline]
+pub(super) fn only_touched<S: State>(
+    powers: &[f64],
+    guard: &dyn Fn(&S) -> f64,
+    constant: f64,
+    x: &S,
+    count: &mut u64,
+) -> bool {
+    powers[1] < 0.0 && powers[2] < 0.0 && is_rounding(guard, constant, x, count)
+}
+
+/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
+#[cold]
+pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S, count: &mut u64) -> bool {
+    *count += x.len() as u64 + 1;
+    let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
+    let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
+    less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
+}
+
 /// What was found of a guard less its `level` at the start, of the `guard` itself.
-pub(super) fn unlevelled(searched: Searched, level: f64, guard: impl FnMut(f64) -> f64) -> Searched {
-    let later = searched.fall.filter(|fall| level != 0.0 && fall.inside > 0.0);
+#[inline]
+pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
+    if level == 0.0 { searched } else { off_level(searched, guard) }
+}
+
+/// Seldom, and so out of the way of what is always done.
+#[cold]
+fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
+    let later = searched.fall.filter(|fall| fall.inside > 0.0);
     Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
 }
 

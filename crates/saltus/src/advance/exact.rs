@@ -12,7 +12,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, less_constant, unlevelled};
+use super::crossing::{Close, less_constant, only_touched, unlevelled};
 use super::{Advance, ArcEnd, Clock};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -61,7 +61,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
         let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
-        if start == Start::Spent && self.only_touched(edge, now.seconds(), &powers, constant, &c[1]) {
+        if start == Start::Spent && only_touched(&powers, &g, constant, &c[1], &mut self.memory.stats.guards) {
             powers[1] = 0.0;
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {

@@ -13,7 +13,7 @@ use crate::step::{Stepper, Trial};
 use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{exceeds, less_constant};
+use super::crossing::{exceeds, is_rounding, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -206,7 +206,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let constant = guard(&slope.with(|_| 0.0));
                 let told = less_constant(guard, constant, c1);
                 let rate = h * less_constant(guard, constant, slope);
-                (rate, told, told < 0.0 && !self.is_rounding(edge, t, constant, c1))
+                (rate, told, told < 0.0 && !is_rounding(&guard, constant, c1, &mut self.memory.stats.guards))
             } else {
                 self.memory.stats.guards += 5;
                 let s = PROBE * h;
