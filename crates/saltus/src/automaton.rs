@@ -247,6 +247,12 @@ impl<E: Copy> Edges<E> {
         self.len == 0
     }
 
+    /// The edge, if there is just one.
+    #[inline]
+    pub(crate) fn only(&self) -> Option<E> {
+        if self.len == 1 { self.iter().next() } else { None }
+    }
+
     /// The edges in order.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = E> {

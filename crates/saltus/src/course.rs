@@ -205,37 +205,37 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         // x is x⁺ of the last jump, or the initial state.
         let (mode, x, began) = (at.mode, at.state, at.clock.now);
         let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory: &mut at.memory };
-        let (edge, before) = match arc.arc(mode, &x, &mut at.clock, observer)? {
-            ArcEnd::Crossing { edge, before } => (edge, before),
-            ArcEnd::Stop { stop, state } => {
-                at.state = state;
+        let (edge, time, before) = match arc.arc(mode, &x, &at.clock, observer)? {
+            ArcEnd::Crossing { edge, time, before } => (edge, time, before),
+            ArcEnd::Stop { stop, time, state } => {
+                (at.clock.now, at.state) = (time, state);
                 return Ok(Some(stop));
             }
         };
         if std::mem::take(&mut arc.memory.spurious) {
-            at.state = before;
+            (at.clock.now, at.state) = (time, before);
             return self.at_limit(0.0, observer);
         }
         // Here x⁻ = before, still inside the domain of the mode.
-        let now = at.clock.now.seconds();
+        let now = time.seconds();
         let (to, after) = automaton
             .take(mode, edge, now, &before)
             .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
-        let duration = at.clock.now.since(began);
-        let at_once = arc.memory.at_once(at.clock.now.since(at.instant));
+        let duration = time.since(began);
+        let at_once = arc.memory.at_once(time.since(at.instant));
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
             if at_once {
                 at.cascade += 1;
             } else {
-                (at.cascade, at.instant) = (0, at.clock.now);
+                (at.cascade, at.instant) = (0, time);
             }
             if let Some((kind, note)) = wrong(*automaton, to, &after) {
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy alone took a fifth of a ball's impact.
-            (at.mode, at.state, at.jumps) = (to, after, at.jumps + 1);
+            (at.clock.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
             let jump = Jump { time: at.instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {
                 return Ok(Some(Stop::Observer));
@@ -249,13 +249,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         if !at_once {
             at.contraction.push(duration);
         }
-        let elapsed = at.clock.now.since(at.clock.start);
+        let elapsed = time.since(at.clock.start);
         let remaining = if stands {
             Some(0.0)
         } else {
             at.contraction.remaining(elapsed.next_up() - elapsed, at.memory.hides_durations())
         };
-        if let Some(remaining) = remaining.filter(|&s| at.clock.now.after(s).seconds() <= at.clock.end.seconds()) {
+        if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.clock.end.seconds()) {
             return self.at_limit(remaining, observer);
         }
         Ok(if at.jumps >= options.most_jumps {

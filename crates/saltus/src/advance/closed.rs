@@ -25,7 +25,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         x: &A::State,
-        clock: &mut Clock,
+        clock: &Clock,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
@@ -55,8 +55,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         } else {
             ControlFlow::Continue(())
         };
-        clock.now = close.time;
-        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.state))
+        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.time, close.state))
     }
 }
 

@@ -21,7 +21,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         solution: &Polynomial<A::State>,
-        clock: &mut Clock,
+        clock: &Clock,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
@@ -49,8 +49,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             _ => close.span,
         };
         let told = observer.piece(mode, &Piece::new(now, span, 1.0, c));
-        clock.now = close.time;
-        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.state))
+        Ok(ArcEnd::after(first.map(|first| first.edge), told, close.time, close.state))
     }
 
     /// An affine guard along a parabola is a parabola.

@@ -30,19 +30,19 @@ pub(crate) struct Clock {
 /// How an arc ended.
 pub(crate) enum ArcEnd<A: Automaton> {
     /// At a crossing; `before` is the state at its inner side.
-    Crossing { edge: A::Edge, before: A::State },
+    Crossing { edge: A::Edge, time: Time, before: A::State },
     /// The run ends here.
-    Stop { stop: Stop<A::Edge>, state: A::State },
+    Stop { stop: Stop<A::Edge>, time: Time, state: A::State },
 }
 
 impl<A: Automaton> ArcEnd<A> {
     /// At `state`, after a piece to whose end this was found and of which the observer was told.
     #[inline]
-    fn after(found: Option<A::Edge>, told: ControlFlow<()>, state: A::State) -> Self {
+    fn after(found: Option<A::Edge>, told: ControlFlow<()>, time: Time, state: A::State) -> Self {
         match found {
-            _ if told.is_break() => Self::Stop { stop: Stop::Observer, state },
-            Some(edge) => Self::Crossing { edge, before: state },
-            None => Self::Stop { stop: Stop::Time, state },
+            _ if told.is_break() => Self::Stop { stop: Stop::Observer, time, state },
+            Some(edge) => Self::Crossing { edge, time, before: state },
+            None => Self::Stop { stop: Stop::Time, time, state },
         }
     }
 }
@@ -195,49 +195,45 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         x: &A::State,
-        clock: &mut Clock,
+        clock: &Clock,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
-        if let Some(edge) = self.enter(mode, x, clock.now)? {
-            return Ok(ArcEnd::Crossing { edge, before: *x });
+        let &Clock { now, .. } = clock;
+        if let Some(edge) = self.enter(mode, x, now)? {
+            return Ok(ArcEnd::Crossing { edge, time: now, before: *x });
         }
         let scheduled = self.scheduled(mode, clock);
         let horizon = scheduled.map_or(clock.end, |(t, _)| Time::new(t));
         // What is left of the span may be the rounding of the jumps' times.
-        let state = if horizon.since(clock.now) <= 2.0 * f64::EPSILON * clock.now.since(clock.start) {
-            *x
+        let (time, state) = if horizon.since(now) <= 2.0 * f64::EPSILON * now.since(clock.start) {
+            (now, *x)
         } else {
-            let (t, stepped) = (clock.now.seconds(), self.options.stepped);
+            let stepped = self.options.stepped;
+            if !stepped && !observer.wants_pieces() {
+                if let Some(end) = self.told(mode, x, now, horizon.since(now), observer) {
+                    return Ok(end);
+                }
+            }
+            let (t, within) = (now.seconds(), Clock { end: horizon, ..*clock });
             let solution = if stepped { None } else { self.automaton.exact(mode, t, x) };
             let end = if let Some(solution) = solution {
-                let mut within = Clock { end: horizon, ..*clock }; // a copy, to be kept in registers
-                let end = self.exact(mode, &solution, &mut within, observer);
-                clock.now = within.now;
-                end
+                self.exact(mode, &solution, &within, observer)
+            } else if !stepped && self.automaton.flown(mode, t, x, 0.0).is_some() {
+                self.closed(mode, x, &within, observer)
             } else {
-                let until = std::mem::replace(&mut clock.end, horizon);
-                let end = if !stepped && self.automaton.flown(mode, t, x, 0.0).is_some() {
-                    self.closed(mode, x, clock, observer)
-                } else {
-                    self.stepped(mode, *x, clock, observer)
-                };
-                clock.end = until;
-                end
+                self.stepped(mode, *x, within, observer)
             };
             match end? {
-                ArcEnd::Stop { stop: Stop::Time, state } => state,
+                ArcEnd::Stop { stop: Stop::Time, time, state } => (time, state),
                 end => return Ok(end),
             }
         };
         Ok(match scheduled {
             Some((t, edge)) => {
                 self.memory.clock_took = Some(t);
-                ArcEnd::Crossing { edge, before: state }
+                ArcEnd::Crossing { edge, time, before: state }
             }
-            None => {
-                clock.now = clock.end;
-                ArcEnd::Stop { stop: Stop::Time, state }
-            }
+            None => ArcEnd::Stop { stop: Stop::Time, time: clock.end, state },
         })
     }
 

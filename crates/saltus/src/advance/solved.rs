@@ -1,14 +1,14 @@
 //! The first crossing on a solution that is known, and the end of the arc there.
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Crossing, Searched, Start, settle};
+use crate::cross::{Crossing, Evidence, Searched, Start, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
-use super::Advance;
+use super::{Advance, ArcEnd};
 use super::crossing::{Close, together};
 
 /// The first crossing on a solution.
@@ -68,6 +68,36 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(found)
     }
 
+    /// How an arc of a mode with one edge ends, where a formula tells the time of its fall and the state there: nothing is then searched, nor even the
+    /// solution asked for, if no observer wants its pieces.
+    #[inline]
+    pub(super) fn told(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        now: Time,
+        remaining: f64,
+        observer: &mut impl Observer<A>,
+    ) -> Option<ArcEnd<A>> {
+        let edge = self.automaton.edges(mode).only()?;
+        let Fall::In(s, state) = self.automaton.falls(mode, edge, now.seconds(), x) else { return None };
+        if !(s < remaining && self.arrives(edge, now, s, &state, remaining)) {
+            return None;
+        }
+        self.memory.stats.exact += 1;
+        self.arrived();
+        let span = past(remaining);
+        observer.inspection(&Inspection { mode, edge, start: now, span, evidence: Evidence::Isolated });
+        Some(ArcEnd::Crossing { edge, time: now.after(s), before: state })
+    }
+
+    /// An arc has ended on its guard exactly: rounding has left nothing.
+    #[inline]
+    fn arrived(&mut self) {
+        self.memory.slack = 0.0;
+        (self.memory.hidden, self.memory.spurious) = (0, false);
+    }
+
     /// How an arc ends at the first crossing on its solution.
     #[inline(always)]
     pub(super) fn close_on_solution(
@@ -82,8 +112,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let arrived = crossing.inside == crossing.root && crossing.root < remaining;
         match state.filter(|_| arrived) {
             Some(state) => {
-                self.memory.slack = 0.0;
-                (self.memory.hidden, self.memory.spurious) = (0, false);
+                self.arrived();
                 Close { span: crossing.root, time: now.after(crossing.root), state }
             }
             None => self.close((edge, crossing), now, at, remaining, by_formula),

@@ -26,7 +26,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         mut x: A::State,
-        clock: &mut Clock,
+        mut clock: Clock,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let mut slope = self.flow(mode, clock.now.seconds(), &x);
@@ -43,10 +43,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         loop {
             let remaining = clock.end.since(clock.now);
             if remaining <= 0.0 {
-                return Ok(ArcEnd::Stop { stop: Stop::Time, state: x });
+                return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.now, state: x });
             }
             if let Some(stop) = self.options.exceeded(&self.memory.stats) {
-                return Ok(ArcEnd::Stop { stop, state: x });
+                return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
             let last = h >= remaining;
@@ -75,7 +75,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 if told.is_break() {
-                    return Ok(ArcEnd::Stop { stop: Stop::Observer, state });
+                    return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
                 }
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
@@ -91,8 +91,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             } else {
                 ControlFlow::Continue(())
             };
-            clock.now = close.time;
-            return Ok(ArcEnd::after(Some(found.0), told, close.state));
+            return Ok(ArcEnd::after(Some(found.0), told, close.time, close.state));
         }
     }
 
