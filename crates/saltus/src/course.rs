@@ -41,6 +41,25 @@ pub struct Course<'a, A: Automaton, M = Auto> {
     at: Checkpoint<A>,
 }
 
+/// Where a run stands just after a jump, handed on to the next arc: read back from where it is kept, it would be waited for, by a fifth of a ball's impact.
+struct Stand<A: Automaton> {
+    mode: A::Mode,
+    state: A::State,
+    now: Time,
+    /// See [`Checkpoint`].
+    instant: Time,
+}
+
+/// What comes after an arc and the jump at its end.
+enum Next<A: Automaton> {
+    Arc,
+    /// Infinitely many jumps in the time that remains.
+    Limit {
+        remaining: f64,
+    },
+    Stop(Stop<A::Edge>),
+}
+
 /// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes it, [`Simulation::resume`](crate::Simulation::resume)
 /// goes on from it; the feature `serde` writes and reads it.
 ///
@@ -176,11 +195,14 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<Ending<A>, Error> {
         let stop = match self.at.stop {
             Some(stop) => stop,
-            None => loop {
-                if let Some(stop) = self.arc_and_jump(observer)? {
-                    break stop;
+            None => {
+                let mut stand = self.stand();
+                loop {
+                    if let Some(stop) = self.step(&mut stand, observer)? {
+                        break stop;
+                    }
                 }
-            },
+            }
         };
         self.at.stop = Some(stop);
         let Checkpoint { mode, state, clock, jumps, .. } = self.at;
@@ -194,27 +216,47 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     #[inline]
     pub fn advance(&mut self, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
         if self.at.stop.is_none() {
-            self.at.stop = self.arc_and_jump(observer)?;
+            self.at.stop = self.step(&mut self.stand(), observer)?;
         }
         Ok(self.at.stop)
     }
 
     #[inline]
-    fn arc_and_jump(&mut self, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+    fn stand(&self) -> Stand<A> {
+        let Checkpoint { mode, state, clock: Clock { now, .. }, instant, .. } = self.at;
+        Stand { mode, state, now, instant }
+    }
+
+    #[inline]
+    fn step(&mut self, stand: &mut Stand<A>, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+        Ok(match self.arc_and_jump(stand, observer)? {
+            Next::Arc => None,
+            Next::Stop(stop) => Some(stop),
+            Next::Limit { remaining } => {
+                let stop = self.at_limit(remaining, observer)?;
+                *stand = self.stand();
+                stop
+            }
+        })
+    }
+
+    #[inline]
+    fn arc_and_jump(&mut self, stand: &mut Stand<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
         let Self { automaton, stepper, options, at } = self;
         // x is x⁺ of the last jump, or the initial state.
-        let (mode, x, began) = (at.mode, at.state, at.clock.now);
+        let Stand { mode, state: x, now: began, instant } = *stand;
         let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory: &mut at.memory };
-        let (edge, time, before) = match arc.arc(mode, &x, &at.clock, observer)? {
+        let clock = Clock { now: began, ..at.clock };
+        let (edge, time, before) = match arc.arc(mode, &x, &clock, observer)? {
             ArcEnd::Crossing { edge, time, before } => (edge, time, before),
             ArcEnd::Stop { stop, time, state } => {
                 (at.clock.now, at.state) = (time, state);
-                return Ok(Some(stop));
+                return Ok(Next::Stop(stop));
             }
         };
         if std::mem::take(&mut arc.memory.spurious) {
             (at.clock.now, at.state) = (time, before);
-            return self.at_limit(0.0, observer);
+            return Ok(Next::Limit { remaining: 0.0 });
         }
         // Here x⁻ = before, still inside the domain of the mode.
         let now = time.seconds();
@@ -222,26 +264,24 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             .take(mode, edge, now, &before)
             .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
         let duration = time.since(began);
-        let at_once = arc.memory.at_once(time.since(at.instant));
+        let at_once = arc.memory.at_once(time.since(instant));
+        let instant = if at_once { instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
-            if at_once {
-                at.cascade += 1;
-            } else {
-                (at.cascade, at.instant) = (0, time);
-            }
-            if let Some((kind, note)) = wrong(*automaton, to, &after) {
+            (at.cascade, at.instant) = (if at_once { at.cascade + 1 } else { 0 }, instant);
+            if !after.is_finite() || !automaton.has_mode(to) {
+                let (kind, note) = wrong(to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy alone took a fifth of a ball's impact.
             (at.clock.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
-            let jump = Jump { time: at.instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
+            let jump = Jump { time: instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {
-                return Ok(Some(Stop::Observer));
+                return Ok(Next::Stop(Stop::Observer));
             }
             if automaton.terminal(edge) {
-                return Ok(Some(Stop::Terminal { edge }));
+                return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
         arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
@@ -250,26 +290,23 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             at.contraction.push(duration);
         }
         let elapsed = time.since(at.clock.start);
-        let remaining = if stands {
-            Some(0.0)
-        } else {
-            at.contraction.remaining(elapsed.next_up() - elapsed, at.memory.hides_durations())
-        };
+        let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.clock.end.seconds()) {
-            return self.at_limit(remaining, observer);
+            return Ok(Next::Limit { remaining });
         }
         Ok(if at.jumps >= options.most_jumps {
-            Some(Stop::Jumps { most: at.jumps })
+            Next::Stop(Stop::Jumps { most: at.jumps })
         } else if at.cascade >= options.longest_cascade {
             // Collisions that go on at one time: what lies beyond them is the model's to say.
             if automaton.beyond(at.mode, now, &at.state).is_some() {
-                return self.at_limit(0.0, observer);
+                return Ok(Next::Limit { remaining: 0.0 });
             }
-            Some(Stop::Cascade { edge })
+            Next::Stop(Stop::Cascade { edge })
         } else if at.memory.stats.evaluations() >= options.most_evaluations {
-            Some(Stop::Evaluations { most: options.most_evaluations })
+            Next::Stop(Stop::Evaluations { most: options.most_evaluations })
         } else {
-            None
+            *stand = Stand { mode: to, state: after, now: time, instant };
+            Next::Arc
         })
     }
 
@@ -295,15 +332,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     }
 }
 
-/// What is wrong with a mode and a state to go on from, and which they are.
-fn wrong<A: Automaton>(automaton: &A, mode: A::Mode, x: &A::State) -> Option<(ErrorKind, String)> {
-    if !x.is_finite() {
-        Some((ErrorKind::Reset, listed(x)))
-    } else if !automaton.has_mode(mode) {
-        Some((ErrorKind::UnknownMode, format!("{mode:?}")))
-    } else {
-        None
-    }
+/// What is wrong with a mode and a state that cannot be gone on from, and which they are.
+#[cold]
+fn wrong<X: State>(mode: impl fmt::Debug, x: X) -> (ErrorKind, String) {
+    if x.is_finite() { (ErrorKind::UnknownMode, format!("{mode:?}")) } else { (ErrorKind::Reset, listed(&x)) }
 }
 
 /// Whether two states are equal coordinate by coordinate.

@@ -1,10 +1,14 @@
 //! Zeno: when the times between jumps shrink so that infinitely many fit before a limit.
 
+use crate::time::resolution;
+
 /// How many durations are remembered.
 const MEMORY: usize = 16;
 /// The longest repeating pattern of jumps looked for.
 const LONGEST_CYCLE: usize = 4;
 
+/// A duration that is this part of the time elapsed is far from the time's resolution.
+const FAR: f64 = 1e6 * f64::EPSILON;
 /// A ratio of durations that rounding has not brought below one.
 const CLEARLY_BELOW_ONE: f64 = 0.995;
 
@@ -36,7 +40,7 @@ impl Contraction {
         self.durations[(self.count - 1 - back) % MEMORY]
     }
 
-    /// The time from the last jump to the limit, if the durations contract and the next one is shorter than `resolution`.
+    /// The time from the last jump to the limit, if the durations contract and the next one is shorter than the resolution of the time `elapsed`.
     ///
     /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are all below one; with r the largest
     /// of them and S the last cycle's duration, what remains is at most S r/(1-r).
@@ -44,14 +48,13 @@ impl Contraction {
     /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing better can be had later:
     /// the ratios decide if they are clearly below one.
     #[inline]
-    pub(crate) fn remaining(&self, resolution: f64, hidden: bool) -> Option<f64> {
-        if self.count == 0 || self.last(0) > resolution * 1e6 && !hidden {
+    pub(crate) fn remaining(&self, elapsed: f64, hidden: bool) -> Option<f64> {
+        if self.count == 0 || self.last(0) > FAR * elapsed && !hidden {
             None
+        } else if hidden {
+            self.certified(f64::INFINITY, CLEARLY_BELOW_ONE)
         } else {
-            self.certified(
-                if hidden { f64::INFINITY } else { resolution },
-                if hidden { CLEARLY_BELOW_ONE } else { 1.0 },
-            )
+            self.certified(resolution(elapsed), 1.0)
         }
     }
 
@@ -78,17 +81,20 @@ impl Contraction {
 mod tests {
     use super::*;
 
+    /// A time whose resolution is 1e-12 s.
+    const LATE: f64 = 5000.0;
+
     #[test]
     fn a_geometric_series_is_summed() {
         let mut contraction = Contraction::new();
         let mut d = 1.0;
         let mut sum = 0.0;
-        while contraction.remaining(1e-12, false).is_none() {
+        while contraction.remaining(LATE, false).is_none() {
             contraction.push(d);
             sum += d;
             d *= 0.8;
         }
-        assert!((sum + contraction.remaining(1e-12, false).unwrap() - 5.0).abs() < 1e-14);
+        assert!((sum + contraction.remaining(LATE, false).unwrap() - 5.0).abs() < 1e-14);
     }
 
     #[test]
@@ -96,7 +102,7 @@ mod tests {
         let mut contraction = Contraction::new();
         for n in 1..100_000 {
             contraction.push(1e-3 / f64::from(n));
-            assert_eq!(contraction.remaining(1e-12, false), None);
+            assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
 
@@ -105,7 +111,7 @@ mod tests {
         let mut contraction = Contraction::new();
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
             contraction.push(duration);
-            assert_eq!(contraction.remaining(1e-12, false), None);
+            assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
 
@@ -120,7 +126,7 @@ mod tests {
                 sum += part;
             }
             d *= 0.5;
-            if let Some(rest) = contraction.remaining(1e-12, false) {
+            if let Some(rest) = contraction.remaining(LATE, false) {
                 assert!((sum + rest - 8.0).abs() < 1e-12);
                 return;
             }

@@ -27,49 +27,67 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
-            if g.is_nan() {
-                return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
-            }
-            let mut spent = self.memory.spent_as(edge);
+            let spent = self.memory.spent_as(edge);
             if spent.is_some_and(|spent| g.abs() <= spent.slack) {
                 if self.memory.idle_count == 0 || !self.is_driven(mode, edge, t, x, g) {
                     continue;
                 }
-                self.memory.unspend(edge);
-                spent = None;
-            }
-            if g >= 0.0 {
-                if spent.is_some() {
-                    self.memory.unspend(edge); // the reset led away from the wall
-                } else if g == 0.0 {
-                    zero = zero.or(Some(edge));
-                } else if g <= SMALL * size(x) && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
-                    self.memory.at_wall(edge, g);
-                }
-                continue; // a zero that falls at once is found like every other crossing
-            }
-            let slope = self.guard_slope(mode, edge, t, x, g);
-            let tick = resolution(t);
-            let rounding =
-                slope.abs() * tick + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
-            if -g <= 4.0 * rounding {
-                if spent.is_none() {
-                    let unsure = slope.abs() * self.glance() <= SURELY * rounding;
-                    if unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
-                        self.memory.at_wall(edge, g);
-                    } else if slope < 0.0 {
-                        return Ok(Some(self.first_of(mode, t, x, zero, edge)));
-                    }
-                }
+            } else if spent.is_none() && g > SMALL * size(x) {
                 continue;
             }
-            match self.automaton.entry(edge) {
-                Entry::Refuse => return Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
-                Entry::Fire => return Ok(Some(self.first_of(mode, t, x, zero, edge))),
-                Entry::Wait => self.memory.unspend(edge),
+            if self.is_entered(mode, edge, t, x, g, &mut zero)? {
+                return Ok(Some(self.first_of(mode, t, x, zero, edge)));
             }
         }
         Ok(None)
+    }
+
+    /// Whether an edge whose guard is neither clear of zero nor spent is to be taken at once.
+    #[inline(never)]
+    fn is_entered(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        t: f64,
+        x: &A::State,
+        g: f64,
+        zero: &mut Option<A::Edge>,
+    ) -> Result<bool, Error> {
+        if g.is_nan() {
+            return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
+        }
+        // Within its slack a spent root is here only where it was driven on, and is then no longer spent.
+        let spent = self.memory.spent_as(edge).is_some_and(|spent| g.abs() > spent.slack);
+        if !spent || g >= 0.0 {
+            self.memory.unspend(edge); // the reset led away from the wall
+        }
+        if g >= 0.0 {
+            if !spent && g == 0.0 {
+                *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
+            } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
+                self.memory.at_wall(edge, g);
+            }
+            return Ok(false);
+        }
+        let slope = self.guard_slope(mode, edge, t, x, g);
+        let rounding =
+            slope.abs() * resolution(t) + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
+        if -g <= 4.0 * rounding {
+            let unsure = slope.abs() * self.glance() <= SURELY * rounding;
+            if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
+                self.memory.at_wall(edge, g);
+                return Ok(false);
+            }
+            return Ok(!spent && slope < 0.0);
+        }
+        match self.automaton.entry(edge) {
+            Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
+            Entry::Fire => Ok(true),
+            Entry::Wait => {
+                self.memory.unspend(edge);
+                Ok(false)
+            }
+        }
     }
 
     /// Whether a guard that went on falling from its spent root, by no more than the rounding of what it falls by now, was driven on by a jump since: a ball that is

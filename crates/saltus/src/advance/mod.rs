@@ -175,7 +175,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if let Some(duration) = duration {
             self.memory.idle_count = 0;
             self.memory.last_duration = duration;
-            self.memory.longest_duration = self.memory.longest_duration.max(duration);
+            if duration > self.memory.longest_duration {
+                self.memory.longest_duration = duration;
+            }
         } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
             let g = self.automaton.guard(last.edge, t, x);
             let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, t, x, g) } else { 0.0 };
@@ -209,10 +211,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             (now, *x)
         } else {
             let stepped = self.options.stepped;
-            if !stepped && !observer.wants_pieces() {
-                if let Some(end) = self.told(mode, x, now, horizon.since(now), observer) {
-                    return Ok(end);
-                }
+            if !stepped
+                && !observer.wants_pieces()
+                && let Some(end) = self.told(mode, x, now, horizon.since(now), observer)
+            {
+                return Ok(end);
             }
             let (t, within) = (now.seconds(), Clock { end: horizon, ..*clock });
             let solution = if stepped { None } else { self.automaton.exact(mode, t, x) };

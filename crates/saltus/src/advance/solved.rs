@@ -8,8 +8,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
-use super::{Advance, ArcEnd};
 use super::crossing::{Close, together};
+use super::{Advance, ArcEnd};
 
 /// The first crossing on a solution.
 pub(super) struct First<A: Automaton> {
