@@ -123,7 +123,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 h
             };
             let trial = self.trial(mode, t, x, slope, size);
-            let norm = self.stepper.error(size, &trial, |error| tolerance.norm(error, x, &trial.end));
+            let norm = self.stepper.error(size, trial.as_ref(), |error| tolerance.norm(error, x, &trial.end));
             let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
             let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY }, size);
             if accepted {
@@ -170,7 +170,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *count += 1;
             automaton.flow(mode, t, x)
         };
-        self.stepper.dense(&mut flow, t, x, h, trial)
+        self.stepper.dense(&mut flow, t, x, h, trial.as_ref())
     }
 
     pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
@@ -240,7 +240,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if x.len() > MOST_PROBED {
             return false;
         }
-        let Some(reach) = self.stepper.reach(h, trial) else { return false };
+        let Some(reach) = self.stepper.reach(h, trial.as_ref()) else { return false };
         let (edges, t) = (self.automaton.edges(mode), now.seconds());
         for edge in edges.iter() {
             if !self.automaton.affine(edge) {

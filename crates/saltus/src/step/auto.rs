@@ -60,12 +60,12 @@ impl Stepper for Auto {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
         self.0.error(h, trial, norm)
     }
 
     #[inline]
-    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
+    fn reach<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>) -> Option<S> {
         self.0.reach(h, trial)
     }
 
@@ -76,7 +76,7 @@ impl Stepper for Auto {
         t: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, Self::Stages<S>>,
+        trial: Trial<&S, &Self::Stages<S>>,
     ) -> Self::Dense<S> {
         self.0.dense(flow, t, x, h, trial)
     }

@@ -228,7 +228,7 @@ impl Stepper for Dop853 {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, [S; 8]>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &[S; 8]>, norm: impl Fn(&S) -> f64) -> f64 {
         let [_, d @ ..] = trial.stages.each_ref();
         let fifth = norm(&trial.end.with(|i| h * weighted(&E5, d, i)));
         let third = norm(&trial.end.with(|i| h * weighted(&E3, d, i)));
@@ -246,22 +246,22 @@ impl Stepper for Dop853 {
         t: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, [S; 8]>,
+        trial: Trial<&S, &[S; 8]>,
     ) -> [S; 8] {
-        let end = &trial.end;
-        let [k1, d6, d7, d8, d9, d10, d11, d12] = &trial.stages;
-        let d13 = &difference(&trial.slope, k1);
+        let Trial { end, slope, stages: [k1, d6, d7, d8, d9, d10, d11, d12] } = trial;
+        let d13 = &difference(slope, k1);
         let mut stages = Differences { flow, t, x, slope: k1, h };
         let d14 = &stages.next(CD[0], &A14, [d7, d8, d9, d10, d11, d12, d13]);
         let d15 = &stages.next(CD[1], &A15, [d6, d7, d8, d11, d12, d13, d14]);
         let d16 = &stages.next(CD[2], &A16, [d6, d7, d8, d9, d13, d14, d15]);
         let all = [d6, d7, d8, d9, d10, d11, d12, d13, d14, d15, d16];
         // x + θ(f₀ + (1-θ)(f₁ + θ(f₂ + (1-θ)(f₃ + θ(f₄ + (1-θ)(f₅ + θ f₆)))))), multiplied out.
-        let [f3, f4, f5, f6] = D.map(|d| x.with(|i| h * weighted(&d, all, i)));
+        let f = |d: &[f64; 11]| x.with(|i| h * weighted(d, all, i));
+        let (f3, f4, f5, f6) = (f(&D[0]), f(&D[1]), f(&D[2]), f(&D[3]));
         // The coefficient of θ² is then f₂ + f₃ - f₁, but is taken from what is left of the step.
         let c1 = x.with(|i| h * k1.get(i));
         let f1 = |i| c1.get(i) - (end.get(i) - x.get(i));
-        let f2 = |i| (end.get(i) - x.get(i)) - h * trial.slope.get(i) - f1(i);
+        let f2 = |i| (end.get(i) - x.get(i)) - h * slope.get(i) - f1(i);
         let higher = [
             x.with(|i| f4.get(i) + f5.get(i) - 2.0 * f3.get(i) - f2(i)),
             x.with(|i| f6.get(i) - 3.0 * f5.get(i) - 2.0 * f4.get(i) + f3.get(i)),

@@ -81,20 +81,20 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
-        let Trial { end, slope, stages } = *trial;
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
+        let Trial { end, slope, stages } = trial;
         match stages {
-            Either::Loose(stages) => L::default().error(h, &Trial { end, slope, stages }, norm),
-            Either::Tight(stages) => T::default().error(h, &Trial { end, slope, stages }, norm),
+            Either::Loose(stages) => L::default().error(h, Trial { end, slope, stages }, norm),
+            Either::Tight(stages) => T::default().error(h, Trial { end, slope, stages }, norm),
         }
     }
 
     #[inline]
-    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
-        let Trial { end, slope, stages } = *trial;
+    fn reach<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>) -> Option<S> {
+        let Trial { end, slope, stages } = trial;
         match stages {
-            Either::Loose(stages) => L::default().reach(h, &Trial { end, slope, stages }),
-            Either::Tight(stages) => T::default().reach(h, &Trial { end, slope, stages }),
+            Either::Loose(stages) => L::default().reach(h, Trial { end, slope, stages }),
+            Either::Tight(stages) => T::default().reach(h, Trial { end, slope, stages }),
         }
     }
 
@@ -105,12 +105,12 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
         t: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, Self::Stages<S>>,
+        trial: Trial<&S, &Self::Stages<S>>,
     ) -> Self::Dense<S> {
-        let Trial { end, slope, stages } = *trial;
+        let Trial { end, slope, stages } = trial;
         match stages {
-            Either::Loose(stages) => Either::Loose(L::default().dense(flow, t, x, h, &Trial { end, slope, stages })),
-            Either::Tight(stages) => Either::Tight(T::default().dense(flow, t, x, h, &Trial { end, slope, stages })),
+            Either::Loose(stages) => Either::Loose(L::default().dense(flow, t, x, h, Trial { end, slope, stages })),
+            Either::Tight(stages) => Either::Tight(T::default().dense(flow, t, x, h, Trial { end, slope, stages })),
         }
     }
 }

@@ -68,13 +68,13 @@ pub trait Stepper: Copy {
     /// How large the estimated local error of a trial is, as `norm` measures the error of a state.
     ///
     /// A method with one estimate returns `norm` of it; one with several combines their norms.
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64;
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64;
 
     /// How far each coordinate of the dense output is from the start of the step at most; `None` where only the dense output itself can tell.
     ///
     /// Where that shows that no guard comes near zero, the dense output is not asked for.
     #[inline]
-    fn reach<S: State>(&self, h: f64, trial: &Trial<S, Self::Stages<S>>) -> Option<S> {
+    fn reach<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>) -> Option<S> {
         let _ = (h, trial);
         None
     }
@@ -86,7 +86,7 @@ pub trait Stepper: Copy {
         t: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, Self::Stages<S>>,
+        trial: Trial<&S, &Self::Stages<S>>,
     ) -> Self::Dense<S>;
 }
 
@@ -102,6 +102,12 @@ pub struct Trial<S, K> {
 }
 
 impl<S, K> Trial<S, K> {
+    /// The same, borrowed.
+    #[inline]
+    pub const fn as_ref(&self) -> Trial<&S, &K> {
+        Trial { end: &self.end, slope: &self.slope, stages: &self.stages }
+    }
+
     /// The same with its stages kept as something else.
     #[inline]
     fn with_stages<L>(self, keep: impl FnOnce(K) -> L) -> Trial<S, L> {
@@ -198,7 +204,7 @@ mod testing {
         while t < 1.0 - 1e-9 {
             let slope = flow(t, &x);
             let trial = stepper.trial(&mut flow, t, &x, &slope, h);
-            let dense = stepper.dense(&mut flow, t, &x, h, &trial);
+            let dense = stepper.dense(&mut flow, t, &x, h, trial.as_ref());
             let dense = dense.as_ref();
             for theta in [0.1, 0.3, 0.5, 0.8] {
                 inside = inside.max((horner(dense, theta) - (t + theta * h).sin().exp()).abs());
@@ -224,7 +230,7 @@ mod testing {
         let slope = flow(t, &x);
         let mut size = |h: f64| {
             let trial = stepper.trial(&mut flow, t, &x, &slope, h);
-            stepper.error(h, &trial, |e| e.abs())
+            stepper.error(h, trial.as_ref(), |e| e.abs())
         };
         (size(h) / size(0.5 * h)).log2()
     }

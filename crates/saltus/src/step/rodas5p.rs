@@ -182,7 +182,7 @@ impl Stepper for Rodas5P {
     }
 
     #[inline]
-    fn error<S: State>(&self, _: f64, trial: &Trial<S, ([S; 8], S)>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, _: f64, trial: Trial<&S, &([S; 8], S)>, norm: impl Fn(&S) -> f64) -> f64 {
         norm(&trial.stages.0[7])
     }
 
@@ -193,11 +193,12 @@ impl Stepper for Rodas5P {
         _: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, ([S; 8], S)>,
+        trial: Trial<&S, &([S; 8], S)>,
     ) -> [S; 5] {
         // (1-θ) x + θ (end + (1-θ)(b₀ + θ (b₁ + θ b₂))), multiplied out.
         let (u, slope) = (trial.stages.0.each_ref(), &trial.stages.1);
-        let [b0, b1, b2] = H.map(|b| x.with(|i| weighted(&b, u, i)));
+        let b = |h: &[f64; 8]| x.with(|i| weighted(h, u, i));
+        let (b0, b1, b2) = (b(&H[0]), b(&H[1]), b(&H[2]));
         // Where the slope at the start agrees with that of the flow to within the error estimate or rounding, it becomes the flow's, by
         // a multiple of θ (1-θ)³: an arc that ends in a small part of the step sees nothing else. Where the flow is stiff the two do
         // not agree, and must not.
@@ -211,7 +212,7 @@ impl Stepper for Rodas5P {
             x.with(|i| if bend.get(i) == 0.0 { (trial.end.get(i) - x.get(i)) + b0.get(i) } else { h * slope.get(i) });
         let higher = [x.with(|i| b2.get(i) - b1.get(i) + 3.0 * bend.get(i)), x.with(|i| -b2.get(i) - bend.get(i))];
         let [c3, c4] = higher;
-        [*x, c1, closing(x, &trial.end, &c1, &higher), c3, c4]
+        [*x, c1, closing(x, trial.end, &c1, &higher), c3, c4]
     }
 }
 

@@ -75,13 +75,13 @@ impl Stepper for Tsit5 {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: &Trial<S, [S; 6]>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &[S; 6]>, norm: impl Fn(&S) -> f64) -> f64 {
         let last = last(trial);
         norm(&trial.end.with(|i| h * weighted(&E, all(trial, &last), i)))
     }
 
     #[inline]
-    fn reach<S: State>(&self, h: f64, trial: &Trial<S, [S; 6]>) -> Option<S> {
+    fn reach<S: State>(&self, h: f64, trial: Trial<&S, &[S; 6]>) -> Option<S> {
         let last = last(trial);
         let differences = all(trial, &last);
         let most = |i: usize| MOST.iter().zip(differences).map(|(most, d)| most * d.get(i).abs()).sum::<f64>();
@@ -95,26 +95,26 @@ impl Stepper for Tsit5 {
         _: f64,
         x: &S,
         h: f64,
-        trial: &Trial<S, [S; 6]>,
+        trial: Trial<&S, &[S; 6]>,
     ) -> [S; 5] {
         let last = last(trial);
         let c1 = x.with(|i| h * trial.stages[0].get(i));
         let higher = |d: &[f64; 6]| x.with(|i| h * weighted(d, all(trial, &last), i));
         let (c3, c4) = (higher(&D[0]), higher(&D[1]));
-        [*x, c1, closing(x, &trial.end, &c1, &[c3, c4]), c3, c4]
+        [*x, c1, closing(x, trial.end, &c1, &[c3, c4]), c3, c4]
     }
 }
 
 /// k₇ - k₁.
 #[inline]
-fn last<S: State>(trial: &Trial<S, [S; 6]>) -> S {
-    difference(&trial.slope, &trial.stages[0])
+fn last<S: State>(trial: Trial<&S, &[S; 6]>) -> S {
+    difference(trial.slope, &trial.stages[0])
 }
 
 /// The differences k₂ - k₁ to k₇ - k₁, of which `last` is the last.
 #[inline]
-fn all<'a, S>(trial: &'a Trial<S, [S; 6]>, last: &'a S) -> [&'a S; 6] {
-    let [_, d2, d3, d4, d5, d6] = &trial.stages;
+fn all<'a, S>(trial: Trial<&'a S, &'a [S; 6]>, last: &'a S) -> [&'a S; 6] {
+    let [_, d2, d3, d4, d5, d6] = trial.stages;
     [d2, d3, d4, d5, d6, last]
 }
 
