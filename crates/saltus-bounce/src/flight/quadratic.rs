@@ -6,7 +6,7 @@ use nalgebra::{Vector2, vector};
 
 use super::{Apex, Impact, VerticalFlight};
 use crate::parameter::{ParameterError, not_negative};
-use crate::stable::{log_ratio, phi1, ratio};
+use crate::stable::{artanh_ratio, ln_1p, log_ratio, phi1, ratio};
 
 /// v' = -g - k v|v|: rising, v = w tan(atan(v₀/w) - ωs); falling, v = -w tanh(artanh(u₀/w) + ωs).
 ///
@@ -33,7 +33,14 @@ pub struct QuadraticDragFlight {
     drag: f64,
     /// ω = √(gk).
     rate: f64,
+    /// 1/w² = k/g, by which the square of the speed tells the drag's share in the acceleration.
+    share: f64,
+    /// 1/(2k).
+    length: f64,
 }
+
+/// Beside one it is nothing, yet it is far from the smallest numbers, which have few digits.
+const NOTHING: f64 = 1e-280;
 
 impl QuadraticDragFlight {
     /// Under `gravity` in m/s² with k = `drag` in 1/m.
@@ -43,7 +50,9 @@ impl QuadraticDragFlight {
     pub fn new(gravity: f64, drag: f64) -> Result<Self, ParameterError> {
         let gravity = not_negative("a gravity in m/s^2", gravity)?;
         let drag = not_negative("a quadratic drag in 1/m", drag)?;
-        Ok(Self { gravity, drag, rate: gravity.sqrt() * drag.sqrt() })
+        let drag = if drag.is_subnormal() { 0.0 } else { drag };
+        let share = if gravity > 0.0 { drag / gravity } else { 0.0 };
+        Ok(Self { gravity, drag, rate: gravity.sqrt() * drag.sqrt(), share, length: 0.5 / drag })
     }
 
     /// The acceleration with drag downwards, as on the way up, or upwards, as on the way down, whatever the sign of the velocity.
@@ -108,8 +117,10 @@ impl VerticalFlight for QuadraticDragFlight {
     fn apex(&self, velocity: f64) -> Option<Apex> {
         let (v, g) = (velocity, self.gravity);
         (v > 0.0 && g > 0.0).then(|| {
-            let (time, z) = (v / g, self.rate * (v / g));
-            Apex { time: time * ratio(f64::atan, z), rise: 0.5 * v * time * log_ratio(z * z) }
+            let (time, share) = (v / g, v * v * self.share);
+            // The next fall waits for the rise: no more divisions than must be.
+            let rise = if share < NOTHING { 0.5 * v * time } else { self.length * ln_1p(share) };
+            Apex { time: time * ratio(f64::atan, self.rate * time), rise }
         })
     }
 
@@ -128,7 +139,7 @@ impl VerticalFlight for QuadraticDragFlight {
             (left, left - 1.0)
         };
         // (1 - e^(-2kh))/(2k)
-        let reach = if through == 0.0 { depth } else { depth * (lost / through) };
+        let reach = if through > -NOTHING { depth } else { -lost * self.length };
         let end = (u * u * left + 2.0 * g * reach).sqrt();
         if g == 0.0 {
             return (u > 0.0).then(|| Impact { time: depth / u * phi1(k * depth), speed: u * (-k * depth).exp() });
@@ -138,7 +149,7 @@ impl VerticalFlight for QuadraticDragFlight {
         let t = 2.0 * reach / sum;
         let tanh = self.rate * t;
         let time = if tanh < 0.5 {
-            t * ratio(f64::atanh, tanh)
+            t * artanh_ratio(tanh)
         } else {
             // artanh from 1 - tanh, which is a quotient of positive terms too, times e^(-2kh).
             let w = g / self.rate;
