@@ -332,7 +332,7 @@ mod tests {
         let (t, x, h) = (0.7, [1.0, -0.3], 0.4);
         let slope = flow(t, &x);
         let trial = Dop853.trial(&mut flow, t, &x, &slope, h);
-        let dense = Dop853.dense(&mut flow, t, &x, h, &trial);
+        let dense = Dop853.dense(&mut flow, t, &x, h, trial.as_ref());
         for i in 0..2 {
             assert_eq!(dense[1][i], h * slope[i]);
             let at_end: f64 = (1..8).map(|k| f64::from(k as u32) * dense[k][i]).sum();
@@ -363,11 +363,11 @@ mod tests {
                 let part = |i: usize| (e[i] / (1e-9 + 1e-9 * x[i].abs().max(trial.end[i].abs()))).powi(2);
                 (0.5 * (part(0) + part(1))).sqrt()
             };
-            let error = Dop853.error(h, &trial, norm);
+            let error = Dop853.error(h, trial.as_ref(), norm);
             let factor = (error.powf(0.125) / 0.9).clamp(1.0 / 6.0, 1.0 / 0.333);
             if error <= 1.0 {
                 accepted += 1;
-                let _ = Dop853.dense(&mut flow, t, &x, h, &trial);
+                let _ = Dop853.dense(&mut flow, t, &x, h, trial.as_ref());
                 (t, x, slope) = (t + h, trial.end, trial.slope);
                 if last {
                     break;

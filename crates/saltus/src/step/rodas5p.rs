@@ -343,7 +343,7 @@ mod tests {
     fn step<S: State>(mut flow: impl FnMut(f64, &S) -> S, t: f64, x: S, h: f64) -> (S, S) {
         let slope = flow(t, &x);
         let trial = Rodas5P.trial(&mut flow, t, &x, &slope, h);
-        let dense = Rodas5P.dense(&mut flow, t, &x, h, &trial);
+        let dense = Rodas5P.dense(&mut flow, t, &x, h, trial.as_ref());
         (trial.end, horner(&dense, 0.5))
     }
 
