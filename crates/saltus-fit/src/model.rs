@@ -14,4 +14,4 @@ pub(crate) use dual::Dual;
 pub(crate) use flight::{Flight, FlightTrial};
 pub(crate) use heights::{Height, Heights};
 pub(crate) use law::CorLaw;
-pub(crate) use trajectory::{FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+pub(crate) use trajectory::{FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-pub(crate) use self::numbers::pair;
+pub(crate) use self::numbers::{measured, pair};
 use crate::bootstrap::Bootstrap;
 use crate::bounces::BounceCor;
 use crate::choice::ModelChoice;

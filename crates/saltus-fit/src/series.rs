@@ -1,7 +1,7 @@
 //! Series of heights in time: a tracked ball, frame by frame.
 //!
 //! The series is cut into flights, parabolas give a first sketch, and the whole motion is fitted through every sample, with drag and
-//! without, with one COR, one that depends on speed, and one for every impact. What the samples prefer decides; all are listed.
+//! without, with one COR, one that depends on speed, and one for every impact; and again with impacts that last. What the samples prefer decides.
 //! Neither gravity nor the scale nor the unit of time enters the COR, so they are fitted too, and reported.
 
 mod flights;
@@ -48,6 +48,8 @@ pub struct Track {
     pub drag: Option<Measured>,
     /// The speed at which the floor moves on the table's scale, as where the camera turns; none where it stands still.
     pub drift: Option<Measured>,
+    /// The time that the ball stays on the floor at each impact, in seconds; none where that is too short to be seen.
+    pub contact: Option<Measured>,
     /// The height of the ball in contact with the floor, on the table's scale; where that drifts, at the first impact.
     pub floor: Measured,
     /// The root mean square of what is left between motion and samples.
@@ -113,6 +115,8 @@ pub struct Variant {
 pub(crate) struct Series {
     pub(crate) tracks: Vec<Track>,
     pub(crate) pooled: Option<Pooled>,
+    /// The same with contacts that take no time where these do, and the other way round; and by how much its BIC is worse.
+    pub(crate) otherwise: Option<(Pooled, f64)>,
     /// Trials whose series show no bounce that can be fitted, and why.
     pub(crate) refused: Vec<(usize, String)>,
     pub(crate) repairs: Vec<String>,
@@ -124,16 +128,16 @@ pub(crate) struct Series {
 pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitError> {
     let mut series = Series { falls_upwards: table.metadata.falls_upwards, ..Series::default() };
     let mut seen = false;
-    let mut candidates = Vec::new();
+    let mut recordings = Vec::new();
     for (n, trial) in table.trials().iter().enumerate() {
-        let Some((samples, mut repairs)) = samples(trial, table.metadata.oriented) else { continue };
+        let Some((samples, repairs)) = samples(trial, table.metadata.oriented) else { continue };
         seen = true;
         let of = match (trial.label(), table.trials().len()) {
             (_, 1) => String::new(),
             ("", _) => format!("trial {}: ", n + 1),
             (label, _) => format!("{label}: "),
         };
-        let found = match track::Candidates::of(n, &samples, repair) {
+        let found = match track::Recording::of(n, &samples, repair) {
             Ok(found) => Some(found),
             Err(track::Refusal::Flights(why)) => {
                 series.refused.push((n, format!("{of}{}", reason(why, samples.times.len()))));
@@ -147,18 +151,28 @@ pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitErro
                 None
             }
         };
-        repairs.extend(found.iter().flat_map(track::Candidates::repairs));
-        series.repairs.extend(repairs.into_iter().map(|r| format!("{of}{r}")));
-        candidates.extend(found);
+        recordings.push((of, repairs, found));
     }
     if !seen {
         return Ok(None);
     }
-    let choice = track::choose(&candidates);
-    for candidate in candidates {
-        series.tracks.extend(candidate.track(choice));
+    let fitted = || recordings.iter().filter_map(|(_, _, found)| found.as_ref());
+    // Positive where contacts that take time are better.
+    let gain: f64 = fitted().filter_map(track::Recording::gain).sum();
+    let under = |lasting: bool| {
+        let candidates: Vec<&track::Candidates> = fitted().map(|found| found.under(lasting)).collect();
+        let choice = track::choose(&candidates);
+        let tracks: Vec<Track> = candidates.iter().filter_map(|candidates| candidates.track(choice)).collect();
+        (pool::pool(&tracks, choice), tracks)
+    };
+    (series.pooled, series.tracks) = under(gain > 0.0);
+    if fitted().any(|found| found.gain().is_some()) {
+        series.otherwise = under(gain <= 0.0).0.map(|pooled| (pooled, gain.abs()));
     }
-    series.pooled = pool::pool(&series.tracks, choice);
+    for (of, mut repairs, found) in recordings {
+        repairs.extend(found.iter().flat_map(|found| found.under(gain > 0.0).repairs()));
+        series.repairs.extend(repairs.into_iter().map(|r| format!("{of}{r}")));
+    }
     Ok(Some(series))
 }
 

@@ -2,6 +2,11 @@
 //!
 //! Between contacts the flight is known in closed form ([`Air`]), and so are the times of the contacts; their derivatives carry the
 //! shift of every later flight, so nothing needs adding for the jumps.
+//!
+//! A contact takes no time, or the time T of a linear spring with a damper, which is the same at every speed: half an oscillation, at the part
+//! x of which a ball that came at v is below the floor by (v T/π) eˣ sin πx, and leaves at e v.
+
+use std::f64::consts::PI;
 
 use nalgebra::DMatrix;
 
@@ -29,14 +34,15 @@ pub(crate) enum Law {
     Each,
 }
 
-/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, then those of
-/// the COR. Seen from a floor that drifts evenly the motion is the same.
+/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, the time of a
+/// contact if it takes any, then those of the COR. Seen from a floor that drifts evenly the motion is the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Trajectory<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) impacts: usize,
     pub(crate) drag: bool,
     pub(crate) drift: bool,
+    pub(crate) contact: bool,
     pub(crate) law: Law,
     /// The speed v₁ of the linear law.
     pub(crate) speed: f64,
@@ -55,7 +61,10 @@ const DRAG: usize = 4;
 /// The least k times the range of heights: below it drag cannot be told from none.
 pub(crate) const LEAST_DRAG: f64 = 1e-7;
 
-/// An impact as the model has it: time, speed of arrival, COR, each with derivatives by all unknowns.
+/// The range of the time of a contact, in units of time in which G is one and so is the range of heights.
+pub(crate) const LASTING: Bounds = Bounds { low: 1e-4, high: 0.5 };
+
+/// An impact as the model has it: time of arrival, its speed, COR, each with derivatives by all unknowns.
 #[derive(Clone, Debug)]
 pub(crate) struct Impact {
     pub(crate) time: Dual,
@@ -72,7 +81,11 @@ struct Apex {
 impl Trajectory<'_> {
     /// Where the unknowns of the COR begin.
     pub(crate) fn first_cor(&self) -> usize {
-        DRAG + usize::from(self.drag) + usize::from(self.drift)
+        DRAG + usize::from(self.drag) + usize::from(self.drift) + usize::from(self.contact)
+    }
+
+    pub(crate) fn contact_place(&self) -> Option<usize> {
+        self.contact.then(|| self.first_cor() - 1)
     }
 
     pub(crate) fn drift_place(&self) -> Option<usize> {
@@ -125,7 +138,8 @@ impl Trajectory<'_> {
             let hop = air.hop(departure.value);
             let rise = self.chain(&hop.rise, &departure);
             let fall = self.chain(&hop.fall, &departure);
-            let top = time.plus(&rise);
+            let leaves = self.contact_place().map_or_else(|| time.clone(), |j| time.plus(&unknown(j)));
+            let top = leaves.plus(&rise);
             let next = top.plus(&fall);
             let next_arrival = self.chain(&hop.arrival, &departure);
             apexes.push(Apex { time: top, height: floor.plus(&self.chain(&hop.height, &departure)) });
@@ -133,6 +147,22 @@ impl Trajectory<'_> {
             (time, arrival) = (next, next_arrival);
         }
         (impacts, apexes)
+    }
+
+    /// How far a ball is below the floor at a time within a contact that lasts `lasting`.
+    fn pressed(lasting: &Dual, impact: &Impact, time: f64) -> Dual {
+        let e = impact.cor.value.max(1e-9);
+        let x = (time - impact.time.value) / lasting.value;
+        let (sin, cos) = (PI * x).sin_cos();
+        let shape = e.powf(x) / PI;
+        let scale = impact.arrival.value * lasting.value;
+        let by_x = scale * shape * (e.ln() * sin + PI * cos);
+        let depth = scale * shape * sin;
+        let by_cor = impact.cor.mapped(0.0, depth * x / e);
+        let by_speed = impact.arrival.mapped(0.0, lasting.value * shape * sin);
+        let by_time = impact.time.mapped(0.0, -by_x / lasting.value);
+        let by_lasting = lasting.mapped(depth, (depth - x * by_x) / lasting.value);
+        by_lasting.plus(&by_cor).plus(&by_speed).plus(&by_time)
     }
 
     pub(crate) fn impacts(&self, values: &[f64]) -> Vec<Impact> {
@@ -160,6 +190,9 @@ impl Model for Trajectory<'_> {
         if self.drift {
             ranges.push((Bounds { low: -1.0, high: 1.0 }, 0.05));
         }
+        if self.contact {
+            ranges.push((LASTING, 0.05));
+        }
         match self.law {
             Law::Constant => ranges.push((Bounds { low: 0.0, high: self.high }, 0.05)),
             Law::Linear => {
@@ -179,26 +212,82 @@ impl Model for Trajectory<'_> {
         let air = self.air(values);
         let (impacts, apexes) = self.course(values);
         let n = values.len();
+        let lasting = self.contact_place().map(|j| Dual::unknown(values[j], n, j));
         let mut flight = 0;
         for (i, sample) in self.samples.iter().enumerate() {
             while flight < impacts.len() && sample.time >= impacts[flight].time.value {
                 flight += 1;
             }
-            let apex = &apexes[flight];
-            let drop = air.drop(sample.time - apex.time.value);
             let w = sample.weight;
-            for j in 0..n {
-                rows[(i, j)] = w * (apex.height.by[j] + drop.by[0] * apex.time.by[j]);
-            }
-            rows[(i, GRAVITY)] -= w * drop.by[1];
-            if self.drag {
-                rows[(i, DRAG)] -= w * drop.by[2];
-            }
+            let touching = lasting.as_ref().zip(flight.checked_sub(1).map(|last| &impacts[last]));
+            let touching = touching.filter(|(lasting, impact)| sample.time < impact.time.value + lasting.value);
+            let height = if let Some((lasting, impact)) = touching {
+                let depth = Self::pressed(lasting, impact, sample.time);
+                for j in 0..n {
+                    rows[(i, j)] = -w * depth.by[j];
+                }
+                rows[(i, FLOOR)] += w;
+                values[FLOOR] - depth.value
+            } else {
+                let apex = &apexes[flight];
+                let drop = air.drop(sample.time - apex.time.value);
+                for j in 0..n {
+                    rows[(i, j)] = w * (apex.height.by[j] + drop.by[0] * apex.time.by[j]);
+                }
+                rows[(i, GRAVITY)] -= w * drop.by[1];
+                if self.drag {
+                    rows[(i, DRAG)] -= w * drop.by[2];
+                }
+                apex.height.value - drop.value
+            };
             let drift = self.drift_place().map_or(0.0, |j| {
                 rows[(i, j)] += w * sample.time;
                 values[j] * sample.time
             });
-            rows[(i, n)] = w * (sample.height - apex.height.value + drop.value - drift);
+            rows[(i, n)] = w * (sample.height - height - drift);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In flight and within contacts alike.
+    #[test]
+    fn derivatives_are_those_of_the_heights() {
+        let samples: Vec<Sample> =
+            (0..97).map(|i| Sample { time: 0.0513 * f64::from(i) - 1.0, height: 0.0, weight: 1.0 }).collect();
+        let model = Trajectory {
+            samples: &samples,
+            impacts: 2,
+            drag: true,
+            drift: true,
+            contact: true,
+            law: Law::Linear,
+            speed: 1.4,
+            first: (0.0, 0.1),
+            high: 1.5,
+        };
+        let at = vec![0.02, 1.4, 0.01, 1.1, 0.1, 0.02, 0.3, 0.8, -0.05];
+        let rows = |values: &[f64]| {
+            let mut rows = DMatrix::zeros(samples.len(), values.len() + 1);
+            model.fill(0, values, &[], &mut rows);
+            rows
+        };
+        let exact = rows(&at);
+        for j in 0..at.len() {
+            let near = [-1e-6, 1e-6].map(|step| {
+                let mut near = at.clone();
+                near[j] += step;
+                rows(&near).column(at.len()).clone_owned()
+            });
+            for i in 0..samples.len() {
+                let numeric = (near[0][i] - near[1][i]) / 2e-6;
+                assert!((numeric - exact[(i, j)]).abs() < 1e-5, "{i}, {j}: {numeric} {}", exact[(i, j)]);
+            }
+        }
+        let lowest = samples.iter().enumerate().map(|(i, s)| -exact[(i, at.len())] - 0.02 * s.time).fold(1.0, f64::min);
+        assert!(lowest < -0.05, "no sample within a contact: {lowest}");
     }
 }

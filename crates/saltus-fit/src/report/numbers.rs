@@ -16,7 +16,7 @@ pub(crate) fn pair(value: f64, error: f64) -> String {
 }
 
 /// The same with no more decimals than the error asks for.
-pub(super) fn measured(value: f64, error: f64) -> String {
+pub(crate) fn measured(value: f64, error: f64) -> String {
     with_error(value, error, decimals(0, error))
 }
 

@@ -120,7 +120,10 @@ fn motion(report: &Report, track: &Track, several: bool) -> String {
         let drag = measured(drag.value, drag.standard_error);
         if unit == "units" { format!("; drag k = {drag} per unit") } else { format!("; drag k = {drag} /{unit}") }
     });
+    let contact = track.contact.map_or_else(String::new, |contact| {
+        format!("; impacts last {} ms", measured(1e3 * contact.value, 1e3 * contact.standard_error))
+    });
     let (samples, rms) = (track.samples, figures(track.rms));
     let noise = if several { String::new() } else { format!(" (from sample to sample {})", figures(track.noise)) };
-    format!("{of}{samples} samples; gravity {gravity} {unit}/s\u{b2}{drag}; rms {rms} {unit}{noise}")
+    format!("{of}{samples} samples; gravity {gravity} {unit}/s\u{b2}{drag}{contact}; rms {rms} {unit}{noise}")
 }

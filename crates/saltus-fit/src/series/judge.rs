@@ -6,10 +6,13 @@ use crate::bounces::Measured;
 use crate::choice::ModelChoice;
 use crate::estimate::Estimate;
 use crate::model::Law;
-use crate::report::{Cor, Report, Verdict};
+use crate::report::{Cor, Report, Verdict, measured};
+use crate::spread::across;
 
 /// So much better a BIC must be before the other model is out of the question.
 const CLEAR: f64 = 6.0;
+/// A BIC that is worse by less hardly speaks against a model.
+const HARDLY: f64 = 3.0;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
 
@@ -67,6 +70,35 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
             high = high.max(cor.value + pooled.quantile * cor.standard_error);
         }
     }
+    let contact = contact_time(&series.tracks);
+    if let Some((other, worse)) = &series.otherwise {
+        let (was, is) = (other.cor, pooled.cor);
+        let apart = (was.value - is.value).abs();
+        if let Some(lasts) = contact {
+            report.notes.push(format!(
+                "the ball stays {} on the floor at each impact: with impacts that take no time the BIC is {worse:.1} worse, and the COR would come \
+                 out as {:.3}",
+                milliseconds(lasts),
+                was.value
+            ));
+        }
+        let undecided = *worse < CLEAR && apart > 2.0 * was.standard_error.hypot(is.standard_error) && apart > 0.005;
+        if undecided {
+            let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
+            doubts.push(format!(
+                "two models fit the samples alike (BIC apart by {worse:.1}): impacts that take no time give a COR of {:.3}, impacts that last one of {:.3}",
+                instant.value, lasting.value
+            ));
+        }
+        let reach = pooled.quantile * was.standard_error;
+        let wider = was.value - reach < low || was.value + reach > high;
+        // Every impact takes some time.
+        if wider && (undecided || contact.is_none() && *worse < HARDLY) {
+            report.widened = Some("it takes in impacts that take time, and such that take none".to_owned());
+            low = low.min(was.value - reach).max(0.0);
+            high = high.max(was.value + reach);
+        }
+    }
     if varying(series, law, &mut doubts, (&mut low, &mut high)) {
         report.widened = Some("it takes in the COR of every impact".to_owned());
     }
@@ -83,16 +115,27 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
     }
     report.cor = Some(Cor { value: e.value, standard_error: Some(e.standard_error), low, high });
     report.verdict = if doubts.is_empty() { Verdict::Trusted } else { Verdict::Doubtful };
+    let lasts = contact.map_or_else(String::new, |lasts| format!(", with impacts that last {}", milliseconds(lasts)));
     let air = match (drag, cause_is_open(pooled)) {
         (_, true) => ", with air drag or with a COR that depends on speed: the samples cannot tell which",
         (true, false) => ", with air drag",
         (false, false) => "",
     };
     report.reason = doubts.first().cloned().unwrap_or_else(|| match series.tracks.len() {
-        1 => format!("one motion fits the series{air}"),
-        n => format!("one COR fits {n} series{air}"),
+        1 => format!("one motion fits the series{air}{lasts}"),
+        n => format!("one COR fits {n} series{air}{lasts}"),
     });
     report.warnings.extend(doubts.into_iter().skip(1));
+}
+
+/// The time of a contact, over all recordings that show one.
+fn contact_time(tracks: &[Track]) -> Option<Measured> {
+    let times: Vec<Measured> = tracks.iter().filter_map(|track| track.contact).collect();
+    across(&times).map(|across| across.mean)
+}
+
+fn milliseconds(time: Measured) -> String {
+    format!("{} ms", measured(1e3 * time.value, 1e3 * time.standard_error))
 }
 
 /// Whether air drag, and no drag but a COR that depends on speed, fit alike.

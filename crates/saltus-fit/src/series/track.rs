@@ -8,7 +8,7 @@ use super::parabolas::{Sketch, sketch};
 use super::wild::wild;
 use crate::bounces::Measured;
 use crate::least_squares::Failure;
-use crate::model::{Dual, FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+use crate::model::{Dual, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
 use crate::statistics::median;
 use crate::successive::{Fitted, fit};
 
@@ -26,6 +26,8 @@ const CLEAR: f64 = 6.0;
 const MOVED: f64 = 0.01;
 /// Candidates of k times the range of heights to start from.
 const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
+/// The time of a contact to start from, in units in which G and the range of heights are one.
+const LASTS: f64 = 0.03;
 
 /// Why a series gives no motion.
 #[derive(Clone, Debug)]
@@ -65,6 +67,43 @@ struct Found {
     cor: Measured,
 }
 
+/// A recording with contacts that take no time, and with such that do, where that can be told.
+#[derive(Clone, Debug)]
+pub(crate) struct Recording {
+    instant: Candidates,
+    /// The other, and by how much its BIC is better.
+    lasting: Option<(Candidates, f64)>,
+}
+
+impl Recording {
+    /// Fits every model to one series.
+    pub(crate) fn of(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
+        let rough = Candidates::cut(trial, series, repair)?;
+        let instant = rough.clone().fitted(repair)?;
+        // After a single impact the height of the floor does the same; where one COR has no use for such a time, it would only follow noise.
+        let lasting = (instant.impacts() > 1).then(|| Candidates { contact: true, ..rough }.fitted(repair).ok());
+        let usable = |all: &Candidates| {
+            all.found.iter().any(|found| found.choice == (Law::Constant, false))
+                && 10 * all.samples.len() > 9 * instant.samples.len()
+        };
+        let lasting = lasting.flatten().filter(usable).map(|lasting| {
+            let gain = lasting.gain(&instant);
+            (lasting, gain)
+        });
+        Ok(Self { instant, lasting })
+    }
+
+    /// By how much the BIC of contacts that take time is better; `None` where that cannot be told.
+    pub(crate) fn gain(&self) -> Option<f64> {
+        self.lasting.as_ref().map(|lasting| lasting.1)
+    }
+
+    /// All models with contacts that take time if `lasting` (and that can be told), or such that take none.
+    pub(crate) fn under(&self, lasting: bool) -> &Candidates {
+        self.lasting.as_ref().filter(|_| lasting).map_or(&self.instant, |lasting| &lasting.0)
+    }
+}
+
 /// All models of a recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidates {
@@ -74,11 +113,15 @@ pub(crate) struct Candidates {
     samples: Vec<Sample>,
     wild: usize,
     left_out: (usize, usize),
+    /// Among those after the last flight are some that no flight passes.
+    brief: bool,
     noise: f64,
     sketch: Sketch,
     found: Vec<Found>,
     /// The floor drifts, as where a camera turns.
     drift: bool,
+    /// Contacts take time.
+    contact: bool,
     /// By how much the errors grow because neighbouring residuals are alike.
     dependence: f64,
 }
@@ -91,26 +134,28 @@ pub(crate) struct Course {
     pub(crate) apexes: Vec<(f64, f64)>,
     pub(crate) gravity: f64,
     pub(crate) drag: f64,
+    /// The time of a contact.
+    pub(crate) lasting: f64,
     /// Sample times, heights above the floor, and what the motion leaves of them.
     pub(crate) samples: Vec<(f64, f64, f64)>,
 }
 
 impl Candidates {
-    /// Fits every model to one series.
-    pub(crate) fn of(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
+    /// One series cut into flights, with a sketch of its motion.
+    fn cut(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
         let wild = if repair { wild(&series.times, &series.heights) } else { vec![false; series.times.len()] };
         let kept = |values: &[f64]| -> Vec<f64> {
             values.iter().zip(&wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
         };
-        let (times, heights) = (kept(&series.times), kept(&series.heights));
-        let span = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
+        let (kept_times, heights) = (kept(&series.times), kept(&series.heights));
+        let span = kept_times.last().copied().unwrap_or(0.0) - kept_times.first().copied().unwrap_or(0.0);
         let top = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let range = top - heights.iter().copied().fold(f64::INFINITY, f64::min);
         if !(span > 0.0 && range > 0.0 && span.is_finite() && range.is_finite()) {
             return Err(Refusal::Flights(NoFlights::NoBounce));
         }
-        let start = times[0];
-        let times: Vec<f64> = times.iter().map(|t| (t - start) / span).collect();
+        let start = kept_times[0];
+        let times: Vec<f64> = kept_times.iter().map(|t| (t - start) / span).collect();
         let heights: Vec<f64> = heights.iter().map(|h| (h - top) / range).collect();
         let flights = flights::cut(&times, &heights).map_err(Refusal::Flights)?;
         let rough = sketch(&flights)?;
@@ -134,28 +179,41 @@ impl Candidates {
             })
             .collect();
         let Flights { noise, left_out, .. } = flights;
-        let mut candidates = Self {
+        // What no flight passes before the fall or after the last flight is not wild: the last bounces have too few samples each.
+        let (begin, end) = (kept_times[from], kept_times[to - 1]);
+        let misfits = || series.times.iter().zip(&wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
+        let (early, late) = (misfits().filter(|t| *t < begin).count(), misfits().filter(|t| *t > end).count());
+        let left_out = (left_out.0 + early, left_out.1 + late);
+        Ok(Self {
             trial,
             turned: series.turned,
             scale,
             samples,
-            wild: wild.iter().filter(|wild| **wild).count(),
+            wild: misfits().count() - early - late,
+            brief: late > 0,
             left_out,
             noise,
             sketch,
             found: Vec::new(),
             drift: false,
+            contact: false,
             dependence: 1.0,
-        };
-        let drifting = Self { drift: true, ..candidates.clone() };
-        candidates.fit_and_trim(repair)?;
-        if candidates.leaves_more_than_noise() && drifting.sketch.contacts.len() > 1 {
-            let mut drifting = drifting;
-            if drifting.fit_and_trim(repair).is_ok() && drifting.is_clearly_better_than(&candidates) {
-                return Ok(drifting);
-            }
-        }
-        Ok(candidates)
+        })
+    }
+
+    /// Fits every model, with a floor that drifts where that is clearly better.
+    fn fitted(mut self, repair: bool) -> Result<Self, Failure> {
+        let mut drifting = Self { drift: true, ..self.clone() };
+        self.fit_and_trim(repair)?;
+        let drifts = self.leaves_more_than_noise()
+            && self.impacts() > 1
+            && drifting.fit_and_trim(repair).is_ok()
+            && drifting.is_clearly_better_than(&self);
+        Ok(if drifts { drifting } else { self })
+    }
+
+    fn impacts(&self) -> usize {
+        self.sketch.contacts.len()
     }
 
     fn fit_and_trim(&mut self, repair: bool) -> Result<(), Failure> {
@@ -179,6 +237,26 @@ impl Candidates {
         self.least() > UNEXPLAINED * self.noise
     }
 
+    /// By how much the BIC of `other` is worse, both on the samples that are left to this one; a drift has to be clearly better.
+    fn gain(&self, other: &Self) -> f64 {
+        let samples = self.samples.iter().map(|s| Sample { weight: 1.0, ..*s }).collect();
+        let mut other = Self { samples, found: Vec::new(), ..other.clone() };
+        if other.fit_all().is_err() {
+            return 0.0;
+        }
+        let sigma = self.least().min(other.least());
+        let count = self.samples.len() as f64;
+        let n = (count / self.dependence.powi(2)).max(2.0);
+        let bic = |of: &Self| {
+            let one = |f: &Found| {
+                let loss: f64 = of.left(&f.fitted.shared, f.choice).iter().map(|r| huber_loss(r / sigma)).sum();
+                n * (loss / count).max(1e-18).ln() + f.fitted.shared.len() as f64 * n.ln()
+            };
+            of.found.iter().map(one).fold(f64::INFINITY, f64::min) + if of.drift { CLEAR } else { 0.0 }
+        };
+        bic(&other) - bic(self)
+    }
+
     /// By BIC, with the one unknown more that drift is; neighbouring residuals are alike.
     fn is_clearly_better_than(&self, other: &Self) -> bool {
         let n = other.samples.len() as f64 / other.dependence.powi(2);
@@ -195,9 +273,10 @@ impl Candidates {
         let step = (samples[samples.len() - 1].time - samples[0].time) / samples.len() as f64;
         Trajectory {
             samples,
-            impacts: self.sketch.contacts.len(),
+            impacts: self.impacts(),
             drag,
             drift: self.drift,
+            contact: self.contact,
             law,
             speed: self.sketch.speed,
             first: (0.0, 5.0 * step + 0.05),
@@ -205,42 +284,44 @@ impl Candidates {
         }
     }
 
-    /// Fits all models, each COR for itself first: the others start from there.
+    /// Fits all models, each COR for itself first: the others start from there, or from the sketch where so many are not determined.
     fn fit_all(&mut self) -> Result<(), Failure> {
         self.found.clear();
         for drag in [false, true] {
-            let Some(each) = self.each(drag)? else { continue };
-            let first = each.fitted.shared.len() - self.sketch.contacts.len();
-            let (head, cors) = each.fitted.shared.split_at(first);
-            let mean = cors.iter().sum::<f64>() / cors.len() as f64;
-            if cors.len() > 1 {
-                let starts = [mean, cors[0]].map(|e| [head, &[e]].concat());
+            let own = self.starts(drag);
+            let each = self.best((Law::Each, drag), &own)?;
+            let near: Vec<&[f64]> = match &each {
+                Some(each) => vec![&each.fitted.shared],
+                None => own.iter().map(Vec::as_slice).collect(),
+            };
+            let alike = |near: &&[f64]| {
+                let (head, cors) = near.split_at(near.len() - self.impacts());
+                [cors.iter().sum::<f64>() / cors.len() as f64, cors[0]].map(|e| [head, &[e]].concat())
+            };
+            let starts: Vec<Vec<f64>> = near.iter().flat_map(alike).collect();
+            if self.impacts() > 1 {
                 let constant = self.best((Law::Constant, drag), &starts)?;
                 self.found.extend(constant);
-                if cors.len() > 2 {
-                    let starts = [[head, &[mean, 0.0]].concat()];
-                    let linear = self.best((Law::Linear, drag), &starts)?;
-                    self.found.extend(linear);
-                }
-                self.found.push(each);
-            } else {
-                self.found.push(Found { choice: (Law::Constant, drag), ..each });
             }
+            if self.impacts() > 2 {
+                let starts: Vec<Vec<f64>> =
+                    starts.iter().step_by(2).map(|start| [start.as_slice(), &[0.0]].concat()).collect();
+                let linear = self.best((Law::Linear, drag), &starts)?;
+                self.found.extend(linear);
+            }
+            let law = if self.impacts() > 1 { Law::Each } else { Law::Constant };
+            self.found.extend(each.map(|each| Found { choice: (law, drag), ..each }));
         }
         if self.found.is_empty() { Err(Failure::NotIdentified) } else { Ok(()) }
     }
 
-    /// The fit with a COR for every impact, from the parabolas' sketch.
-    fn each(&self, drag: bool) -> Result<Option<Found>, Failure> {
+    /// Where the fit with a COR for every impact starts: from the parabolas' sketch.
+    fn starts(&self, drag: bool) -> Vec<Vec<f64>> {
         let Sketch { speed, cors, .. } = &self.sketch;
         let drift: &[f64] = if self.drift { &[0.0] } else { &[] };
-        let starts: Vec<Vec<f64>> = if drag {
-            let start = |&k: &f64| [&[0.0, *speed, 0.0, 1.0, k], drift, self.cors_with(k).as_slice()].concat();
-            DRAGS.iter().map(start).collect()
-        } else {
-            vec![[&[0.0, *speed, 0.0, 1.0], drift, cors.as_slice()].concat()]
-        };
-        self.best((Law::Each, drag), &starts)
+        let lasts: &[f64] = if self.contact { &[LASTS] } else { &[] };
+        let start = |air: &[f64], cors: &[f64]| [&[0.0, *speed, 0.0, 1.0], air, drift, lasts, cors].concat();
+        if drag { DRAGS.iter().map(|&k| start(&[k], &self.cors_with(k))).collect() } else { vec![start(&[], cors)] }
     }
 
     /// The CORs that the durations of the flights mean under drag, with G = 1.
@@ -298,8 +379,10 @@ impl Candidates {
             }
         }
         let Some((fitted, sigma)) = last else { return Ok(None) };
-        // Drag that sits on its lower end is none.
-        let none = choice.1 && fitted.shared[GRAVITY + 1] <= 2.0 * LEAST_DRAG;
+        // Drag that sits on its lower end is none, and so is a time of contact.
+        let place = self.model(&self.samples, choice).contact_place();
+        let none = choice.1 && fitted.shared[GRAVITY + 1] <= 2.0 * LEAST_DRAG
+            || place.is_some_and(|j| fitted.shared[j] <= 2.0 * LASTING.low);
         let cor = Measured { value: 0.0, standard_error: 0.0 };
         Ok((!none).then_some(Found { choice, fitted, sigma, bic: 0.0, cor }))
     }
@@ -391,9 +474,9 @@ impl Candidates {
 }
 
 /// The model with the least BIC over all recordings together.
-pub(crate) fn choose(candidates: &[Candidates]) -> Choice {
+pub(crate) fn choose(candidates: &[&Candidates]) -> Choice {
     let total = |choice: &Choice| {
-        let one = |c: &Candidates| {
+        let one = |c: &&Candidates| {
             let bic = |choice: Choice| c.found.iter().find(|f| f.choice == choice).map(|f| f.bic);
             // A single impact has one law only; drag that is not there is none.
             bic(*choice).or(bic((Law::Constant, choice.1))).or(bic((choice.0, false))).or(bic((Law::Constant, false)))

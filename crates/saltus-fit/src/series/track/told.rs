@@ -12,8 +12,9 @@ impl Candidates {
         let plural = |n: usize| if n == 1 { "sample" } else { "samples" };
         let (before, after) = self.left_out;
         if before + after > 0 {
+            let brief = if self.brief { ", or bounced in too few samples" } else { "" };
             list.push(format!(
-                "{before} {} before the fall and {after} {} after the last flight left out: the ball was held, caught or lay there",
+                "{before} {} before the fall and {after} {} after the last flight left out: the ball was held, caught or lay there{brief}",
                 plural(before),
                 plural(after)
             ));
@@ -66,6 +67,7 @@ impl Candidates {
                 .collect(),
             gravity: values[GRAVITY] * range / (unit * unit),
             drag: model.drag_place().map_or(0.0, |j| values[j] / range),
+            lasting: model.contact_place().map_or(0.0, |j| values[j] * unit),
             samples: self
                 .samples
                 .iter()
@@ -87,6 +89,7 @@ impl Candidates {
                 .drift_place()
                 .map(|j| unknown(j, range / unit, 0.0))
                 .map(|d| Measured { value: turn * d.value, ..d }),
+            contact: model.contact_place().map(|j| unknown(j, unit, 0.0)),
             floor: Measured { value: turn * floor.value, ..floor },
             rms,
             noise: range * self.noise,
