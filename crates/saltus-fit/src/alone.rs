@@ -4,8 +4,8 @@ use crate::diagnose::{REJECT, of};
 use crate::estimate::{Kind, OneKind, Source, Sourced, one_kind};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::model::Heights;
-use crate::report::{Cor, Report};
-use crate::settings::differ;
+use crate::report::{Cor, Report, duration};
+use crate::settings::{differ, drift};
 use crate::statistics::NORMAL;
 use crate::table::Trial;
 
@@ -96,13 +96,6 @@ pub(crate) fn single<M: OneKind>(
             "the {what} hardly shrink, as if no bounce lost anything: they are those of something else, or in another unit"
         ));
     }
-    let part = loudness(kind, trials);
-    if part > LOUD {
-        doubts.push(format!(
-            "the {what} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
-            100.0 * part
-        ));
-    }
     let mut settings_differ = false;
     if let Some(mut differ) = differ(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT) {
         for (setting, cor) in [&mut differ.low, &mut differ.high] {
@@ -125,15 +118,39 @@ pub(crate) fn single<M: OneKind>(
                 .to_owned(),
         );
     }
+    let part = loudness(kind, trials);
+    if part > LOUD && !settings_differ {
+        doubts.push(format!(
+            "the {what} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
+            100.0 * part
+        ));
+    }
+    if let Some(drift) = drift(&kind.separate, cor.value).filter(|d| d.p < REJECT && !settings_differ) {
+        report.warnings.push(format!(
+            "the COR changes from trial to trial in the order of the table, from {:.3} to {:.3} (by chance: p {}): one COR is a mean of that; \
+             did the ball warm up, lose air or wear out?",
+            drift.first,
+            drift.last,
+            chance(drift.p)
+        ));
+    }
     if let Some(spread) = kind.spread.filter(|_| report.agreement.is_none() && !settings_differ) {
         report.warnings.push(differing(spread, estimate.trials));
     }
     if let Some(scatter) = kind.scatter {
-        report.warnings.push(format!(
-            "the bounces themselves scatter: the COR varies by {:.1} % from bounce to bounce, more than the reading of {what} \
-             explains; the error of the COR allows for it",
+        let varies = format!(
+            "the bounces themselves scatter: the COR varies by {:.1} % from bounce to bounce, and the error of the COR allows for it",
             100.0 * scatter
-        ));
+        );
+        let error = duration(kind.sigma.value);
+        report.warnings.push(match kind.sigma.source {
+            Source::Scatter | Source::Assumed => format!(
+                "{varies}; nobody stated how well the {what} were read: if to {error} only, say so (--sigma-time {}), and it is the readings \
+                 that are taken to scatter",
+                error.replace(' ', "")
+            ),
+            _ => format!("{varies}; readings good to {error} do not explain it"),
+        });
     }
     if let Some(p) = kind.trend.filter(|p| *p < REJECT) {
         let trend = format!("the COR changes from bounce to bounce (a trend as strong by chance: p {})", chance(p));

@@ -106,6 +106,34 @@ pub struct ModelChoice {
     pub losses: Vec<UnderLoss>,
     /// Whether the reported COR is its.
     pub chosen: bool,
+    /// What it leaves; none for a series and for ratios.
+    #[serde(skip)]
+    pub(crate) misfit: Option<Misfit>,
+}
+
+/// What a model leaves of so many readings with so many unknowns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Misfit {
+    pub(crate) chi_square: f64,
+    pub(crate) readings: f64,
+    pub(crate) unknowns: f64,
+}
+
+impl Misfit {
+    /// The BIC where the errors of the readings are taken from their scatter.
+    pub(crate) fn by_scatter(self) -> f64 {
+        self.readings * (self.chi_square / self.readings).max(1e-300).ln() + self.unknowns * self.readings.ln()
+    }
+
+    /// The BIC where the errors are so many times those of the fit.
+    pub(crate) fn by_errors(self, times: f64) -> f64 {
+        self.chi_square / (times * times) + self.unknowns * self.readings.ln()
+    }
+
+    /// The scatter of the readings about the model, in the errors of the fit.
+    pub(crate) fn scatter(self) -> f64 {
+        (self.chi_square / (self.readings - self.unknowns).max(1.0)).sqrt()
+    }
 }
 
 /// A model fitted under another loss: the same numbers as by least squares, without errors.
@@ -167,6 +195,7 @@ impl ModelChoice {
             left_out: None,
             losses: Vec::new(),
             chosen: false,
+            misfit: None,
         }
     }
 

@@ -233,7 +233,12 @@ pub(crate) fn models(
     };
     let mut compared = rivals::compare(&readings, cor.value)?;
     report.notes.append(&mut compared.notes);
-    weigh::models(report, &compared.models);
+    let doubted = weigh::models(report, &compared.models);
+    match (&found.joint, &found.heights) {
+        (Some(_), _) => {}
+        (None, Some(_)) => weigh::error_decides(report, &compared.models, "heights", sigma_height, doubted),
+        (None, None) => weigh::error_decides(report, &compared.models, "times", sigma_time, doubted),
+    }
     Ok(compared)
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-pub(crate) use self::numbers::{measured, pair};
+pub(crate) use self::numbers::{duration, length, measured, pair};
 use crate::bootstrap::Bootstrap;
 use crate::bounces::BounceCor;
 use crate::choice::ModelChoice;
@@ -203,6 +203,12 @@ impl Report {
     #[must_use]
     pub fn cor(&self) -> Option<&Cor> {
         self.cor.as_ref()
+    }
+
+    /// Whether the heights are in pixels that nobody gave a scale for.
+    #[must_use]
+    pub fn in_pixels(&self) -> bool {
+        self.pixels
     }
 
     /// The gravity that was used, in m/s².

@@ -6,7 +6,7 @@
 use rayon::iter::{IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use crate::bounces::Measured;
-use crate::choice::{CorModel, Limit, ModelChoice, SpeedCor, UnderLoss};
+use crate::choice::{CorModel, Limit, Misfit, ModelChoice, SpeedCor, UnderLoss};
 use crate::error::FitError;
 use crate::estimate::identified;
 use crate::evidence::Evidence;
@@ -308,15 +308,17 @@ fn tried(
     let n = used(&model) as f64;
     // The place of a rebound that is missing was looked for too.
     let p = n - fitted.freedom as f64 + if name == "missed" { 1.0 } else { 0.0 };
-    let misfit = if readings.scattered { n * (fitted.chi_square / n).max(1e-300).ln() } else { fitted.chi_square };
+    let misfit = Misfit { chi_square: fitted.chi_square, readings: n, unknowns: p };
+    let bic = if readings.scattered { misfit.by_scatter() } else { misfit.by_errors(1.0) };
     let cor = if model.law.of_speed() {
         at(&model, &fitted, (slowest * fastest).sqrt())
     } else {
         mean(&fitted, model.law.unknowns())
     };
-    let mut choice = ModelChoice::new(name, &about, cor, misfit + p * n.ln());
+    let mut choice = ModelChoice::new(name, &about, cor, bic);
+    choice.misfit = Some(misfit);
     choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
-    choice.aicc = (n > p + 1.0).then(|| misfit + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
+    choice.aicc = (n > p + 1.0).then(|| bic - p * n.ln() + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
     if model.law.of_speed() {
         let (slowest, fastest, _) = impacts(&model, &fitted);
         let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);

@@ -5,6 +5,7 @@
 //! Neither gravity nor the scale nor the unit of time enters the COR, so they are fitted too, and reported.
 
 mod flights;
+mod frames;
 mod judge;
 mod motion;
 mod parabolas;
@@ -130,7 +131,7 @@ pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitErro
     let mut seen = false;
     let mut recordings = Vec::new();
     for (n, trial) in table.trials().iter().enumerate() {
-        let Some((samples, repairs)) = samples(trial, table.metadata.oriented) else { continue };
+        let Some((samples, repairs)) = samples(trial, table.metadata.oriented, repair) else { continue };
         seen = true;
         let of = match (trial.label(), table.trials().len()) {
             (_, 1) => String::new(),
@@ -185,8 +186,9 @@ pub(crate) struct Samples {
     pub(crate) turned: bool,
 }
 
-/// The series of a trial, put in order and the right way up unless that was stated, and what had to be done for it; `None` if it has none.
-fn samples(trial: &Trial, oriented: bool) -> Option<(Samples, Vec<String>)> {
+/// The series of a trial, put in order and the right way up unless that was stated, with the times of its frames if `repair`, and what had to be done
+/// for it; `None` if it has none.
+fn samples(trial: &Trial, oriented: bool, repair: bool) -> Option<(Samples, Vec<String>)> {
     let mut rows: Vec<(f64, f64, u64)> = trial
         .readings()
         .iter()
@@ -203,6 +205,15 @@ fn samples(trial: &Trial, oriented: bool) -> Option<(Samples, Vec<String>)> {
     if rows.len() < before {
         let many = before - rows.len();
         repairs.push(format!("{many} samples at a time that another sample has: the first of each was used"));
+    }
+    let times: Vec<f64> = rows.iter().map(|row| row.0).collect();
+    if let Some(frames) = frames::of(&times).filter(|_| repair) {
+        rows.iter_mut().zip(frames.times).for_each(|(row, time)| row.0 = time);
+        repairs.push(format!(
+            "the times are those of {:.5} frames a second, rounded to {} ms: each frame was given its own time",
+            frames.rate,
+            1000.0 * frames.rounded
+        ));
     }
     let every = rows.len().div_ceil(SAMPLES);
     if every > 1 {

@@ -1,4 +1,4 @@
-//! Whether trials of different balls, floors or drop heights may share one COR.
+//! Whether trials of different balls, floors or drop heights may share one COR, and whether it changes in their order.
 
 use std::collections::BTreeMap;
 
@@ -39,4 +39,33 @@ pub(crate) fn differ(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opt
     let own = || settings.iter().map(|(name, s)| ((*name).to_owned(), cor + s.1 / s.0));
     let by_cor = |a: &(String, f64), b: &(String, f64)| a.1.total_cmp(&b.1);
     Some(Differ { p, low: own().min_by(by_cor)?, high: own().max_by(by_cor)? })
+}
+
+/// From so many trials on, a COR that changes in their order shows.
+const ORDERED: usize = 6;
+
+/// A COR that changes from trial to trial in their order: the probability of that by chance, and what it is at the first and at the last.
+pub(crate) struct Drift {
+    pub(crate) p: f64,
+    pub(crate) first: f64,
+    pub(crate) last: f64,
+}
+
+/// The straight line through the trials' own CORs, each weighing by its information; arguments as for [`differ`].
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn drift(separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
+    let trials = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (n as f64, s.0, s.1));
+    let count = trials().count();
+    let (weight, place, shift) =
+        trials().fold((0.0, 0.0, 0.0), |sum, (n, w, shift)| (sum.0 + w, sum.1 + w * n, sum.2 + w * shift));
+    let (place, shift) = (place / weight, shift / weight);
+    let (square, product, all) = trials().fold((0.0, 0.0, 0.0), |sum, (n, w, s)| {
+        (sum.0 + w * (n - place).powi(2), sum.1 + w * (n - place) * (s - shift), sum.2 + w * (s - shift).powi(2))
+    });
+    let slope = product / square;
+    let gain = slope * product;
+    let freedom = count.checked_sub(2).filter(|_| count >= ORDERED)?;
+    let p = variance_ratio_p(gain / ((all - gain).max(1e-300) / freedom as f64), 1, freedom)?;
+    let at = |n: f64| cor + shift + slope * (n - place);
+    Some(Drift { p, first: at(0.0), last: at(separate.len() as f64 - 1.0) })
 }

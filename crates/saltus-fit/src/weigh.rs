@@ -1,8 +1,9 @@
 //! What other models of the same readings mean for the COR and the verdict.
 
-use crate::choice::{CorModel, ModelChoice};
+use crate::choice::{CorModel, Misfit, ModelChoice};
 use crate::diagnose::REJECT;
-use crate::report::{Cor, Report, Verdict, pair};
+use crate::estimate::{Source, Sourced};
+use crate::report::{Cor, Report, Verdict, duration, length, pair};
 use crate::statistics::NORMAL;
 
 /// A BIC this much less decides.
@@ -41,9 +42,9 @@ fn kind(model: &ModelChoice) -> Option<Kind> {
 
 /// Warns of models that fit better than one COR, or as well with another COR; doubts one COR where the first is so and it matters.
 ///
-/// The models come with the best first.
-pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
-    let Some(one) = list.iter().find(|m| m.chosen) else { return };
+/// The models come with the best first. Answers whether one COR is doubted.
+pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) -> bool {
+    let Some(one) = list.iter().find(|m| m.chosen) else { return false };
     let least = list.first().map_or(0.0, |m| m.bic);
     let mut seen = Vec::new();
     // What matters, beside one COR: if one of these is better, whatever comes close to the best may be the cause.
@@ -91,7 +92,7 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
         better.retain(|(kind, _)| *kind != Kind::Each);
     }
     if better.is_empty() {
-        return;
+        return false;
     }
     let mut causes: Vec<String> = better.iter().map(|&(kind, model)| cause(kind, model)).collect();
     if !list.iter().any(|m| kind(m) == Some(Kind::Speed)) {
@@ -110,6 +111,54 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) {
         report.warnings.insert(0, before);
     }
     report.verdict = Verdict::Doubtful;
+    true
+}
+
+/// Says where it is the error of reading that decides for or against one COR: one that is stated may be larger than the readings show, and one that is
+/// not stated is no larger than what the best model leaves.
+pub(crate) fn error_decides(report: &mut Report, list: &[ModelChoice], what: &str, sigma: Sourced, doubted: bool) {
+    let Some((one, left)) = list.iter().find(|m| m.chosen).and_then(|m| Some((m, m.misfit?))) else { return };
+    // Where a rebound is missing, no error of reading is to blame.
+    if list.first().is_some_and(|m| kind(m) == Some(Kind::Missed)) {
+        return;
+    }
+    let gain = |m: &ModelChoice, bic: &dyn Fn(Misfit) -> f64| m.misfit.map_or(0.0, |misfit| bic(misfit) - bic(left));
+    let by_scatter = |m: &ModelChoice| gain(m, &Misfit::by_scatter);
+    let by_errors = |m: &ModelChoice| gain(m, &|misfit| misfit.by_errors(left.scatter().max(1.0)));
+    // As far as it would matter if the errors were what the model leaves.
+    let matters = |m: &&ModelChoice| {
+        let apart = (m.cor.value - one.cor.value).abs();
+        let errors =
+            m.cor.standard_error.hypot(one.cor.standard_error) * m.misfit.map_or(1.0, |m| m.scatter().min(1.0));
+        !m.chosen && (changes(m) > LEVEL || apart > SAME && apart > 2.0 * errors)
+    };
+    let best = list.iter().filter(matters).min_by(|a, b| by_scatter(a).total_cmp(&by_scatter(b)));
+    let Some((best, misfit)) = best.and_then(|m| Some((m, m.misfit?))).filter(|(m, _)| by_scatter(m) < -CLEAR) else {
+        return;
+    };
+    let scattered = sigma.source == Source::Scatter;
+    // With an error as large as the scatter about one COR, no other model is to be better by so much.
+    if scattered != doubted || list.iter().any(|m| by_errors(m) < -CLEAR) {
+        return;
+    }
+    let (option, size): (_, fn(f64) -> String) =
+        if what == "heights" { ("--sigma-height", length) } else { ("--sigma-time", duration) };
+    let (about_best, about_one) = (size(misfit.scatter() * sigma.value), size(left.scatter() * sigma.value));
+    let (name, stated) = (&best.about, |error: &str| format!("{option} {}", error.replace(' ', "")));
+    report.warnings.push(if scattered {
+        format!(
+            "nobody stated how well the {what} were read, and that decides it: about {name} they scatter by {about_best}, about one COR by \
+             {about_one}; if they are no better than that, say so ({}), and one COR is not ruled out",
+            stated(&about_one)
+        )
+    } else {
+        format!(
+            "the error of reading decides it: with {what} ± {} one COR is not ruled out; but about {name} they scatter by {about_best} \
+             only, and if they are as good as that ({}), one COR does not do",
+            size(sigma.value),
+            stated(&about_best)
+        )
+    });
 }
 
 /// Lets the report rest on the model that was asked for; says so where it could not be fitted.
@@ -191,7 +240,6 @@ mod tests {
     use super::*;
     use crate::bounces::Measured;
     use crate::choice::SpeedCor;
-    use crate::estimate::{Source, Sourced};
 
     fn model(name: &str, cor: f64, bic: f64, speeds: &[(f64, f64)]) -> ModelChoice {
         let mut model = ModelChoice::new(name, name, Measured { value: cor, standard_error: 0.002 }, bic);

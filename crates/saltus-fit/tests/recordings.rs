@@ -208,3 +208,117 @@ fn a_great_number_of_a_bounce_takes_no_time() {
     let _ = Fit::new().run(&parse(text));
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }
+
+/// A film whose times are written to 10 ms or 1 ms: the frames come evenly, so each gets its own time back.
+#[test]
+fn rounded_times_of_frames_are_restored() {
+    let mut noise = Noise(41);
+    for (rate, decimals, step) in
+        [(30.0, 2, 0.01), (29.97, 2, 0.01), (30.0, 3, 0.001), (60.0, 2, 0.01), (240.0, 3, 0.001)]
+    {
+        let (mut held, mut narrower) = (0, 0);
+        for run in 0..12 {
+            let start = 0.37 + noise.uniform();
+            let (mut exact, mut rounded) = ("time_s,height_m\n".to_owned(), "time_s,height_m\n".to_owned());
+            // A frame that the tracker lost, but not where it touches.
+            for n in (0..(2.3 * rate) as u32).filter(|n| *n != 5 + run % 3) {
+                let t = f64::from(n) / rate;
+                let h = height(t, 1.0, 0.05, 0.8) + noise.normal(0.002);
+                exact += &format!("{:.7},{h:.5}\n", start + t);
+                rounded += &format!("{:.decimals$},{h:.5}\n", start + t);
+            }
+            let (exact, rounded, raw) =
+                (fit(&exact), fit(&rounded), Fit::new().repair(false).run(&parse(&rounded)).unwrap());
+            let told =
+                |r: &Report| r.repairs().iter().filter(|line| line.contains("frames a second, rounded to")).count();
+            assert_eq!((told(&exact), told(&rounded), told(&raw)), (0, 1, 0), "{rate} {step}\n{rounded}");
+            let width = |r: &Report| r.cor().map_or(f64::INFINITY, |cor| cor.high - cor.low);
+            let apart = (exact.cor().unwrap().value - rounded.cor().unwrap().value).abs();
+            assert!(apart < 0.1 * width(&exact), "{rate} {step} {apart}\n{rounded}");
+            held += u32::from(holds(&rounded, 0.8));
+            narrower += u32::from(width(&rounded) < 0.7 * width(&raw));
+        }
+        assert!(held >= 9, "{rate} {step}: {held}");
+        // To a tenth of a frame, rounding costs little.
+        assert!(step < 0.005 || narrower >= 9, "{rate} {step}: {narrower}");
+    }
+    // A camera that does not keep time: what it wrote down is taken as it is.
+    let mut text = "time_s,height_m\n".to_owned();
+    let mut t = 0.0;
+    for _ in 0..70 {
+        text +=
+            &format!("{t:.2},{:.5}\n", height((100.0f64 * t).round() / 100.0, 1.0, 0.05, 0.8) + noise.normal(0.002));
+        t += 0.02 + 0.03 * noise.uniform();
+    }
+    let report = fit(&text);
+    assert!(report.repairs().iter().all(|line| !line.contains("frames a second")), "{report}");
+}
+
+/// Nobody states the error of reading, or somebody states it as large as the scatter about one COR: where that turns the verdict, both reports say so.
+#[test]
+fn where_the_error_of_reading_decides_it_is_said() {
+    let mut noise = Noise(8);
+    let mut turned = 0;
+    for _ in 0..40 {
+        let (mut t, mut lasts, mut text) = (0.6, 0.96, "time_s\n".to_owned());
+        for _ in 0..12 {
+            text += &format!("{:.4}\n", t + noise.normal(0.003));
+            (t, lasts) = (t + lasts, lasts * (0.905 - 0.0035 * 0.5 * G * lasts));
+        }
+        let table = parse(&text);
+        let alone = Fit::new().run(&table).unwrap();
+        let sigma = alone.sigma_time().unwrap().value;
+        let stated = Fit::new().sigma_time(sigma).run(&table).unwrap();
+        if !alone.reason().contains("one COR does not do") || stated.reason().contains("one COR does not do") {
+            continue;
+        }
+        turned += 1;
+        let says = |report: &Report, part: &str| report.warnings().iter().any(|line| line.contains(part));
+        assert!(says(&alone, "nobody stated how well the times were read, and that decides it"), "{alone}");
+        assert!(says(&alone, "(--sigma-time "), "{alone}");
+        assert!(says(&stated, "the error of reading decides it: with times"), "{stated}");
+        assert!(holds(&alone, alone.cor().unwrap().value) && holds(&stated, alone.cor().unwrap().value));
+    }
+    assert!(turned >= 5, "{turned}");
+}
+
+/// A rough floor, nothing stated: the readings could be to blame as well.
+#[test]
+fn bounces_that_scatter_are_told_from_readings_by_what_is_stated() {
+    let mut noise = Noise(3);
+    let mut seen = 0;
+    for _ in 0..20 {
+        let (mut t, mut lasts, mut text) = (0.6, 0.8, "time_s\n".to_owned());
+        for _ in 0..9 {
+            text += &format!("{t:.4}\n");
+            (t, lasts) = (t + lasts, lasts * (0.8 + noise.normal(0.03)));
+        }
+        let report = fit(&text);
+        let Some(line) = report.warnings().iter().find(|line| line.contains("themselves scatter")) else { continue };
+        let (_, option) = line.split_once("(--sigma-time ").unwrap_or_else(|| panic!("{report}"));
+        let sigma: f64 = option.split_once("ms)").unwrap().0.parse().unwrap();
+        let stated = Fit::new().sigma_time(1e-3 * sigma).run(&parse(&text)).unwrap();
+        assert!(stated.warnings().iter().all(|line| !line.contains("themselves scatter")), "{stated}");
+        seen += 1;
+    }
+    assert!(seen >= 10, "{seen}");
+}
+
+#[test]
+fn a_cor_that_changes_from_drop_to_drop_in_their_order_is_told() {
+    let table = |last: f64| {
+        let mut noise = Noise(12);
+        let mut text = "trial,bounce,height_cm\n".to_owned();
+        for trial in 0..12 {
+            let e = 0.75 + (last - 0.75) * f64::from(trial) / 11.0;
+            for bounce in 0..5 {
+                text += &format!("{trial},{bounce},{:.1}\n", 100.0 * e.powi(2 * bounce) + noise.normal(0.3));
+            }
+        }
+        fit(&text)
+    };
+    let told =
+        |report: &Report| report.warnings().iter().any(|line| line.contains("in the order of the table, from 0.75"));
+    let (warming, steady) = (table(0.81), table(0.75));
+    assert!(told(&warming) && !told(&steady), "{warming}{steady}");
+}

@@ -28,6 +28,8 @@ pub enum HeightUnit {
     Micrometres,
     /// nm
     Nanometres,
+    /// Pixels of a picture: heights are given in them, not in metres.
+    Pixels,
 }
 
 impl HeightUnit {
@@ -41,15 +43,16 @@ impl HeightUnit {
             Self::Millimetres => "mm",
             Self::Micrometres => "µm",
             Self::Nanometres => "nm",
+            Self::Pixels => "px",
         }
     }
 
-    /// How many metres one of it is.
+    /// How many metres one of it is; of pixels, one.
     #[must_use]
     pub fn metres(self) -> f64 {
         match self {
             Self::Kilometres => 1e3,
-            Self::Metres => 1.0,
+            Self::Metres | Self::Pixels => 1.0,
             Self::Centimetres => 1e-2,
             Self::Millimetres => 1e-3,
             Self::Micrometres => 1e-6,

@@ -1,7 +1,9 @@
 //! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the profile of the cost.
 
 use saltus_fit::{Measure, Motion, Report, Verdict};
-use saltus_plot::{Arc, Background, Chart, HeightTime, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke};
+use saltus_plot::{
+    Arc, Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke,
+};
 
 /// The measured points, the fitted motion, and what is left between them.
 pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
@@ -24,6 +26,9 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
         .residuals(residuals)
         .background(Background::Adaptive)
         .caption(&caption(report));
+    if report.in_pixels() {
+        picture = picture.height_unit(HeightUnit::Pixels);
+    }
     if let Some(agreement) = disagreement(report) {
         picture = picture.caption(&agreement);
     }
@@ -77,10 +82,10 @@ fn impacts(report: &Report) -> Option<Result<String, PlotError>> {
     if fastest <= slowest {
         return None;
     }
-    let speed = if metres {
-        ("Speed of impact", Scale::Speed)
-    } else {
-        ("Speed of impact, in the unit of heights per second", Scale::Number)
+    let speed = match (metres, report.in_pixels()) {
+        (true, _) => ("Speed of impact", Scale::Speed),
+        (false, true) => ("Speed of impact (px/s)", Scale::Number),
+        (false, false) => ("Speed of impact, in the unit of heights per second", Scale::Number),
     };
     let bar =
         |side: f64, impact: &saltus_fit::Impact| [impact.speed, impact.cor.value + side * impact.cor.standard_error];
@@ -114,13 +119,17 @@ pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
         let sigma = point.sigma_height.filter(|sigma| *sigma < point.height)?;
         Some([[*n, point.height - sigma], [*n, point.height + sigma]])
     });
-    let intervals = if read.is_empty() { intervals(report) } else { Vec::new() };
+    // A release says nothing of the bounces after it.
+    let released = read.iter().all(|(n, _)| *n == 0.0);
+    let intervals = if released { intervals(report) } else { Vec::new() };
     let marked = match (read.is_empty(), intervals.is_empty()) {
-        (false, _) => "Marks: heights as they were read, ± one standard error",
+        (false, true) => "Marks: heights as they were read, ± one standard error",
+        (false, false) => "Marks: the height of release, and g Δ²/8 of the intervals Δ between contacts",
         (true, false) => "Marks: g Δ²/8 of the intervals Δ between contacts",
         (true, true) => "",
     };
-    let chart = Chart::new(&report.title(), ("Bounce", Scale::Count), ("Apex", Scale::Length))
+    let apex = if report.in_pixels() { ("Apex (px)", Scale::Number) } else { ("Apex", Scale::Length) };
+    let chart = Chart::new(&report.title(), ("Bounce", Scale::Count), apex)
         .logarithmic()
         .line(&course(report, motion), Stroke::polygon(&fitted))
         .marks(read.iter().map(|(n, point)| [*n, point.height]).chain(intervals))

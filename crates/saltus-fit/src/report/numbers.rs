@@ -42,12 +42,12 @@ pub(super) fn number(x: f64) -> String {
 }
 
 /// A length in mm or cm.
-pub(super) fn length(metres: f64) -> String {
+pub(crate) fn length(metres: f64) -> String {
     if metres >= 0.001 { format!("{} cm", figures(100.0 * metres)) } else { format!("{} mm", figures(1000.0 * metres)) }
 }
 
 /// A duration in ms or s.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     if seconds < 1.0 { format!("{} ms", figures(1000.0 * seconds)) } else { format!("{} s", figures(seconds)) }
 }
 

@@ -26,6 +26,8 @@ pub(super) struct Block {
     pub(super) frames: bool,
     /// The columns were chosen here, `--column` heeded.
     pub(super) chosen: bool,
+    /// The line of the first remark below the rows.
+    pub(super) remarks: Option<u64>,
 }
 
 /// The tables of a text, and what they are.
@@ -90,8 +92,25 @@ pub(super) fn blocks(grid: &Grid<'_>, options: &ReadOptions, fps: Option<f64>) -
     let lines: Vec<Line<'_>> = head.iter().map(|record| (record.cells.as_slice(), record.any)).collect();
     let (names, header, rows) = heading(&lines);
     let at = head.get(rows).map_or((grid.text.len(), head[header].at.1), |r| r.at);
-    let block = Block { header: names, ..below(grid, head[header].at, at) };
+    let mut block = Block { header: names, ..below(grid, head[header].at, at) };
+    leave_remarks(grid, &mut block)?;
     Ok(side_by_side(&block).unwrap_or(Recognised { what: None, blocks: vec![block], tracks: false }))
+}
+
+/// Ends the rows before the sentences below them: `Mean ratio: 0.64`.
+fn leave_remarks(grid: &Grid<'_>, block: &mut Block) -> Result<(), TableError> {
+    let mut end = None;
+    grid.each_record(block.rows.clone(), block.line, |row| {
+        let text = row.cell(0);
+        let words = (0..row.cells().count()).all(|n| !row.is_number(n));
+        let sentence = text.starts_with(char::is_alphabetic) && text.contains(char::is_whitespace);
+        end = if words && sentence { end.or(Some((row.start, row.line))) } else { None };
+        Ok(true)
+    })?;
+    if let Some((start, line)) = end.filter(|end| end.0 > block.rows.start) {
+        (block.rows.end, block.remarks) = (start, Some(line));
+    }
+    Ok(())
 }
 
 /// The records from byte `start` in line `line` on, up to `most`.

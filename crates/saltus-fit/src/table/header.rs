@@ -6,8 +6,8 @@ use super::ReadOptions;
 use super::sheet::{Sheet, shown};
 use super::units::{self, Unit, is_unit};
 use super::vocabulary::{
-    AVERAGE, BOUNCE, ERROR, EVENT, FRAME, HEIGHT, IGNORED, INTERVAL, KNOWN, RELEASE, REPEAT, SETTING, TIME, TRIAL,
-    number,
+    AVERAGE, BETWEEN, BOUNCE, ERROR, EVENT, FRAME, HEIGHT, IGNORED, INTERVAL, KNOWN, RELEASE, REPEAT, SETTING, TIME,
+    TRIAL, number, of_trial, ordinal,
 };
 use crate::error::TableError;
 
@@ -97,6 +97,7 @@ impl Columns {
         for (index, cell) in sheet.block.header.iter().enumerate() {
             found.columns.push(column(sheet, options, index, cell)?);
         }
+        found.repeats();
         found.drop_trials();
         found.frames(sheet, fps)?;
         // With h1, h2 ... beside it, h0 is one of the apexes and a row is a trial.
@@ -180,6 +181,16 @@ impl Columns {
         Ok(())
     }
 
+    /// Nobody averages a bounce and the next: in `drop,height 1,height 2,average` they are repeats.
+    fn repeats(&mut self) {
+        let averaged = |c: &Column| words(&c.name).0.first().is_some_and(|word| AVERAGE.contains(&word.as_str()));
+        if self.columns.iter().any(averaged) && self.columns.iter().any(|c| c.kind == Kind::DropHeight) {
+            for column in self.columns.iter_mut().filter(|c| matches!(c.kind, Kind::HeightAt(_))) {
+                column.kind = Kind::Trial(Quantity::Length);
+            }
+        }
+    }
+
     /// In `drop,trial 1 (cm),trial 2 (cm)` the drop is a height as the trials are, not their number.
     fn drop_trials(&mut self) {
         let trial = self.columns.iter().find(|c| c.kind == Kind::Trial(Quantity::Length));
@@ -261,7 +272,13 @@ fn words(cell: &str) -> (Vec<String>, Option<String>) {
         }
         _ => (cell.as_str(), None),
     };
-    let words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect();
+    let mut words: Vec<String> =
+        name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect();
+    // `2nd bounce` is `bounce 2`.
+    if let Some(n) = words.first().and_then(|word| ordinal(word)).filter(|_| words.len() > 1) {
+        words[0] = n.to_string();
+        words.swap(0, 1);
+    }
     (words, bracket)
 }
 
@@ -269,7 +286,14 @@ fn words(cell: &str) -> (Vec<String>, Option<String>) {
 fn is_trial(cell: &str) -> bool {
     let (words, _) = words(cell);
     words.first().is_some_and(|word| TRIAL.contains(&word.as_str()))
-        && words.get(1).is_some_and(|n| number(n).is_some())
+        && words.get(1).is_some_and(|n| of_trial(n).is_some())
+}
+
+/// Whether a name is that of one of several bounces or repeats, such as `height 2 (cm)`.
+fn is_numbered(cell: &str) -> bool {
+    let (words, _) = words(cell);
+    let of = |word: &String| HEIGHT.contains(&word.as_str()) || BOUNCE.contains(&word.as_str());
+    words.first().is_some_and(of) && words.get(1).is_some_and(|n| number(n).is_some())
 }
 
 fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) -> Result<Column, TableError> {
@@ -285,7 +309,7 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
     let numbered = words.get(1).and_then(|n| number(n));
     let joined = first.get(1..).and_then(number);
 
-    let beside_trials = || sheet.block.header.iter().any(|cell| is_trial(cell));
+    let beside_trials = || sheet.block.header.iter().any(|cell| is_trial(cell) || is_numbered(cell));
     if AVERAGE.contains(&first) && beside_trials() {
         return make(Kind::Ignored, one);
     }
@@ -316,7 +340,7 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
             make(Kind::HeightAt(n), unit_of(Quantity::Length)?)
         };
     }
-    if TRIAL.contains(&first) && words.len() > 1 && numbered.is_some() {
+    if is_trial(&words[..2.min(words.len())].join(" ")) {
         let quantity = match (is_unit(Quantity::Length), is_unit(Quantity::Time), options) {
             (true, _, _) => Quantity::Length,
             (_, true, _) => Quantity::Time,
@@ -333,7 +357,7 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
     if has(RELEASE) && (has(HEIGHT) || is_unit(Quantity::Length)) && !has(&["rebound"]) {
         return make(Kind::DropHeight, unit_of(Quantity::Length)?);
     }
-    if has(INTERVAL) {
+    if has(INTERVAL) || has(TIME) && has(BETWEEN) {
         return make(Kind::Interval, unit_of(Quantity::Time)?);
     }
     if has(TIME) {
@@ -410,6 +434,7 @@ mod tests {
             ("time [ms]", vec!["time"], Some("ms")),
             ("Latest: Time (s)", vec!["time"], Some("s")),
             ("time_s_read_by_authors", vec!["time", "s", "read", "by", "authors"], None),
+            ("2nd bounce height", vec!["bounce", "2", "height"], None),
             ("(", vec![], None),
         ] {
             let (words, bracket) = words(cell);

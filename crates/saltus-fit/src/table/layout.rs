@@ -108,6 +108,7 @@ pub(super) fn table(
         return Err(error);
     }
     let mut notes = columns.notes.clone();
+    notes.extend(sheet.block.remarks.map(|line| format!("left aside: the text from line {line} on")));
     let what = reader.describe();
     if reader.skipped > 0 {
         notes.push(format!("{} rows kept and {} left out by the filter", reader.kept, reader.skipped));

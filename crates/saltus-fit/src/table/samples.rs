@@ -130,7 +130,10 @@ fn ordered(
         let message = format!("this time stands in line {} too, with another height", pair[0].line);
         return Err(sheet
             .line_error(pair[1].line, column, message)
-            .help("correct one of the two; tell recordings apart by a column 'trial'"));
+            .help(
+                "correct one of the two; tell recordings apart by a column 'trial'; where times are rounded to more than a frame, number the \
+                 frames instead, in a column 'frame' (--header frame,height_cm --fps 240)",
+            ));
     }
     let before = trial.readings.len();
     trial.readings.dedup_by(|b, a| a.time == b.time && a.height == b.height);

@@ -308,7 +308,8 @@ impl Row<'_> {
 
     /// The number in a cell, `None` if it is empty.
     pub(super) fn number(&self, index: usize) -> Result<Option<f64>, TableError> {
-        let cell = self.cell(index);
+        // A remark behind a number.
+        let cell = self.cell(index).split('#').next().unwrap_or_default().trim_end();
         if let Ok(value) = cell.parse::<f64>()
             && value.is_finite()
         {
@@ -320,11 +321,12 @@ impl Row<'_> {
         let wrong = |message: String, help: &str| Err(self.error(index, message).help(help));
         let shown = shown(cell);
         let plain = "write a plain number; the unit belongs in the header";
+        let remark = "write a plain number; the unit belongs in the header, and a remark behind a '#'";
         let value: Result<f64, _> = if cell.contains(',') {
             if !self.grid.decimal_comma() {
                 return wrong(
                     format!("'{shown}' has a comma in a table separated by commas"),
-                    "write a decimal point, or separate the cells by semicolons",
+                    "write a decimal point, or separate the cells by semicolons; write no separators of thousands",
                 );
             }
             if cell.contains('.') || cell.matches(',').count() > 1 {
@@ -339,7 +341,10 @@ impl Row<'_> {
         match value {
             Ok(value) if value.is_finite() => Ok(Some(value)),
             Ok(_) => wrong(format!("'{shown}' is not a finite number"), "take the row out"),
-            Err(_) => wrong(format!("'{shown}' is not a number"), plain),
+            Err(_) => {
+                let help = if cell.contains(char::is_whitespace) { remark } else { plain };
+                wrong(format!("'{shown}' is not a number"), help)
+            }
         }
     }
 

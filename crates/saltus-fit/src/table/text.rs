@@ -21,7 +21,60 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     // Old Macintosh files end their lines with a lone carriage return.
     let old = text.contains('\r') && !text.contains('\n');
     let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
+    let text = if let Some(at) = numero(&text) {
+        // As long as before: what stands where does not change.
+        let mut text = text.into_owned();
+        text.replace_range(at..=at, "n");
+        Cow::Owned(text)
+    } else {
+        text
+    };
+    let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
+}
+
+/// Where a first line begins with a `#` that is the name of a column, and no comment: `#,time (s)`.
+fn numero(text: &str) -> Option<usize> {
+    let at = text.find(|c: char| !c.is_whitespace())?;
+    let after = text[at..].strip_prefix('#')?.trim_start_matches(' ');
+    after.starts_with([',', ';', '\t']).then_some(at)
+}
+
+/// A text whose columns are made by runs of spaces, with a tab at the end of each run in their place; `None` if it is none.
+fn aligned(text: &str) -> Option<String> {
+    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let numbers = |line: &str| line.split_whitespace().all(|cell| cell.parse::<f64>().is_ok());
+    let width = lines().find(|line| numbers(line)).map(|line| line.split_whitespace().count())?;
+    let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ");
+    let rows = lines().filter(|line| numbers(line));
+    let of_spaces =
+        !text.contains(['\t', ';', ',']) && rows.clone().all(|line| line.split_whitespace().count() == width);
+    if width < 2 || !of_spaces || 2 * rows.count() < lines().count() || !lines().any(spaced) {
+        return None;
+    }
+    let mut found = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        // A name may hold single spaces, unless there are as many words as columns.
+        let least = if line.split_whitespace().count() == width { 1 } else { 2 };
+        let indent = line.len() - line.trim_start().len();
+        found.push_str(&line[..indent]);
+        let (inner, end) = line[indent..].split_at(line.trim().len());
+        let mut run = 0;
+        for c in inner.chars() {
+            if c == ' ' {
+                run += 1;
+                continue;
+            }
+            if run > 0 {
+                found.push_str(&" ".repeat(run - 1));
+                found.push(if run >= least { '\t' } else { ' ' });
+            }
+            run = 0;
+            found.push(c);
+        }
+        found.push_str(end);
+    }
+    Some(found)
 }
 
 fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {

@@ -34,6 +34,8 @@ pub(super) const INTERVAL: &[&str] = &[
     "zeitintervall",
     "flugzeit",
     "flugdauer",
+    "airtime",
+    "hangtime",
     "durata",
     "intervallo",
     "intervalli",
@@ -41,6 +43,8 @@ pub(super) const INTERVAL: &[&str] = &[
     "intervalo",
     "intervalos",
 ];
+/// With these a time is one between contacts: `air time`, `time between bounces`, `lap time`.
+pub(super) const BETWEEN: &[&str] = &["between", "air", "flight", "hang", "lap", "entre", "zwischen", "tra"];
 pub(super) const TIME: &[&str] = &[
     "time",
     "times",
@@ -157,6 +161,8 @@ pub(super) const BOUNCE: &[&str] = &[
     "contacts",
     "impacts",
     "hits",
+    "lap",
+    "laps",
     "aufprall",
     "aufpralle",
     "kontakt",
@@ -254,4 +260,16 @@ pub(super) fn is_vocabulary(word: &str) -> bool {
 /// The number of a bounce or a trial in a name; nobody counts further.
 pub(super) fn number(word: &str) -> Option<usize> {
     word.parse().ok().filter(|n| *n <= 1_000_000)
+}
+
+/// The number that a word such as `2nd` puts a bounce or a trial in.
+pub(super) fn ordinal(word: &str) -> Option<usize> {
+    let words = ["first", "second", "third", "fourth", "fifth", "sixth"];
+    let digits = ["st", "nd", "rd", "th"].iter().find_map(|end| word.strip_suffix(end)).and_then(number);
+    digits.or_else(|| words.iter().position(|w| *w == word).map(|n| n + 1))
+}
+
+/// The number of a trial: it may be a letter, as in `run B`.
+pub(super) fn of_trial(word: &str) -> Option<usize> {
+    number(word).or_else(|| ["a", "b", "c", "d", "e", "f"].iter().position(|letter| *letter == word).map(|n| n + 1))
 }

@@ -1,0 +1,71 @@
+//! Sheets as people bring them, each with a ball of 0.8: read as they are.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
+
+fn read(text: &str) -> Table {
+    Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn fit(text: &str) -> Report {
+    Fit::new().run(&read(text)).unwrap()
+}
+
+#[test]
+fn sheets_are_read_as_they_are() {
+    for text in [
+        // A telephone's stopwatch.
+        "Lap,Lap time,Total time\n1,00:00:03.200,00:00:03.200\n2,00:00:00.723,00:00:03.923\n3,00:00:00.578,00:00:04.501\n\
+         4,00:00:00.462,00:00:04.963\n5,00:00:00.370,00:00:05.333\n",
+        // A name that looks like the beginning of a comment.
+        "#,time between bounces (ms)\n1,722\n2,578\n3,463\n4,370\n5,296\n",
+        "# Ana\n\nBounce,Air time (s)\n1,0.722\n2,0.578\n3,0.463\n4,0.370\n5,0.296\n",
+        // Columns made by spaces.
+        "bounce  time(s)\n  1     3.200\n  2     3.923\n  3     4.501\n  4     4.963\n  5     5.333\n",
+        "Bounce no.   Height (cm)\n0   100\n1    64.1\n2    41.0\n3    26.2\n",
+        "Drop height,1st bounce height,2nd bounce height\n(cm),(cm),(cm)\n120,76.9,49.2\n100,64.1,41.0\n80,51.1,32.8\n",
+        "Drop (cm),Second bounce (cm),First bounce (cm)\n120,49.2,76.9\n100,41.0,64.1\n80,32.8,51.1\n",
+        // An average tells repeats from bounces.
+        "Trial,Drop (cm),Height 1 (cm),Height 2 (cm),Average (cm)\n1,100,64.1,63.8,63.95\n2,100,64.3,63.9,64.1\n3,80,51.0,51.4,51.2\n",
+        "bounce,run A (cm),run B (cm)\n0,100,100\n1,64.2,n/a\n2,,41.1\n3,26.1,26.3\n4,16.7,-\n",
+        // Remarks behind a number and below the table.
+        "bounce,height (cm)\n0,100\n1,64.1 # at its top\n2,41.0\n3,26.2\n\nMean ratio: 0.64\nMeasured on 3 May, by Ana\n",
+    ] {
+        let report = fit(text);
+        let cor = report.cor().unwrap_or_else(|| panic!("{text}{report}"));
+        assert!((cor.value - 0.8).abs() < 0.003, "{text}{report}");
+        assert_eq!(report.verdict(), Verdict::Trusted, "{text}{report}");
+    }
+    let left = fit("bounce,height (cm)\n0,100\n1,64.1\n2,41.0\n\nMean ratio: 0.64\n");
+    assert!(left.notes().iter().any(|note| note.contains("the text from line 6 on")), "{left}");
+}
+
+/// A place in a text whose columns are made by spaces is that of the file.
+#[test]
+fn what_is_no_number_is_shown_where_it_stands() {
+    for (text, place) in [
+        ("bounce  height_cm\n  0     100\n  1     sixty\n  2     41\n", "sheet.csv:3:9"),
+        ("bounce,height_cm\n0,100\nten,64\nMean of all\n3,26\n", "sheet.csv:3:1"),
+        ("bounce,height_cm\n0,100\nMean of all\n3,26\n", "sheet.csv:3:1"),
+    ] {
+        let error = Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains(place), "{error}");
+    }
+}
+
+#[test]
+fn two_balls_in_one_sheet_are_the_first_thing_said() {
+    let mut text = "ball,trial,bounce,height_cm\n".to_owned();
+    for (ball, e) in [("superball", 0.85f64), ("tennis", 0.7)] {
+        for trial in 0..3 {
+            for bounce in 0..5 {
+                let wobble = 0.1 * f64::from((7 * bounce + 3 * trial) % 5 - 2);
+                text += &format!("{ball},{trial},{bounce},{:.1}\n", 100.0 * e.powi(2 * bounce) + wobble);
+            }
+        }
+    }
+    let report = fit(&text);
+    assert_eq!(report.verdict(), Verdict::Doubtful, "{report}");
+    assert!(report.reason().contains("is not the same throughout"), "{report}");
+}
