@@ -3,7 +3,7 @@
 use crate::diagnose::{REJECT, of};
 use crate::estimate::{Kind, OneKind, Source, Sourced, one_kind};
 use crate::evidence::{Evidence, TrialEvidence};
-use crate::model::Heights;
+use crate::model::{Contacts, Heights};
 use crate::report::{Cor, Report, duration};
 use crate::settings::{differ, drift};
 use crate::statistics::NORMAL;
@@ -52,8 +52,9 @@ pub(crate) fn single<M: OneKind>(
         } else {
             format!("within its error the COR of the {what} is not below 1: they do not shrink from bounce to bounce")
         });
+        let between = if what == Contacts::METHOD { " (times between contacts are 'interval_s')" } else { "" };
         report.warnings.push(format!(
-            "without the bound COR <= 1 the {what} give {grown:.3}: are the readings in order, in the right column and unit, \
+            "without the bound COR <= 1 the {what} give {grown:.3}: are the readings in order, in the right column{between} and unit, \
              or was energy put in?"
         ));
         return of(free);

@@ -18,6 +18,10 @@ fn sheets_are_read_as_they_are() {
         // A telephone's stopwatch.
         "Lap,Lap time,Total time\n1,00:00:03.200,00:00:03.200\n2,00:00:00.723,00:00:03.923\n3,00:00:00.578,00:00:04.501\n\
          4,00:00:00.462,00:00:04.963\n5,00:00:00.370,00:00:05.333\n",
+        // Labels of a sound program, and places of a film.
+        "3.2000\t3.2000\tbounce 1\n3.9225\t3.9225\tbounce 2\n4.5005\t4.5005\t\n4.9629\t4.9629\tx\n5.3328\t5.3328\t\n",
+        "Start height (m),Height after 1st bounce (m),Height after 2nd bounce (m)\n1.2,0.769,0.492\n1,0.641,0.410\n0.8,0.511,0.328\n",
+        "n,Ball height (±0.5 cm)\n0,100\n1,64.1\n2,41.0\n3,26.2\n",
         // A name that looks like the beginning of a comment.
         "#,time between bounces (ms)\n1,722\n2,578\n3,463\n4,370\n5,296\n",
         "# Ana\n\nBounce,Air time (s)\n1,0.722\n2,0.578\n3,0.463\n4,0.370\n5,0.296\n",
@@ -52,6 +56,41 @@ fn what_is_no_number_is_shown_where_it_stands() {
         let error = Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string();
         assert!(error.contains(place), "{error}");
     }
+}
+
+/// What cannot be guessed is said, with what to do.
+#[test]
+fn what_is_ambiguous_is_named() {
+    let refused =
+        |text: &str| Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string();
+    let twice = refused("bounce,height_cm\n0,100\n1,64\n2,41\nbounce,height_cm\n0,100\n1,64\n");
+    assert!(twice.contains("sheet.csv:5:1: the names of the columns stand here again"), "{twice}");
+    let intervals = refused("bounce,time (s)\n1,0.722\n2,0.578\n3,0.463\n");
+    assert!(intervals.contains("'interval_s'"), "{intervals}");
+    let lying = refused("Bounce,0,1,2\nHeight (cm),100,64,41\n");
+    assert!(lying.contains("sheet.csv:1:8: '0' is no name of a column"), "{lying}");
+    let repeats = fit(
+        "drop (cm),bounce 1 (cm),bounce 2 (cm),bounce 3 (cm)\n120,76.5,77.2,76.9\n100,64.2,63.7,64.1\n80,51,51.5,51.1\n",
+    );
+    assert_ne!(repeats.verdict(), Verdict::Trusted, "{repeats}");
+    assert!(repeats.warnings().iter().any(|line| line.contains("if they are repeats")), "{repeats}");
+    let bounces = fit("drop (cm),bounce 1 (cm),bounce 2 (cm),bounce 3 (cm)\n120,76.5,49.2,31.5\n100,64.2,41,26.2\n");
+    assert!(bounces.warnings().iter().all(|line| !line.contains("if they are repeats")), "{bounces}");
+    // Two balls in one film: one is taken, and which is said.
+    let rows: String = (0..90)
+        .map(|n| {
+            let (t, fall) = (f64::from(n) / 60.0, (2.0f64 / 9.81).sqrt());
+            let s = t - fall;
+            let h = |e: f64| if s < 0.0 { 1.0 - 4.905 * t * t } else { (4.905 * s * (2.0 * e * fall - s)).max(0.0) };
+            format!("{t:.5},{:.4},{:.4}\n", h(0.8), h(0.7))
+        })
+        .collect();
+    let table = read(&format!("t (s),Ball A y (m),Ball B y (m)\n{rows}"));
+    assert!(
+        table.notes().iter().any(|note| note.contains("took 'Ball A y (m)' and not 'Ball B y (m)'")),
+        "{:?}",
+        table.notes()
+    );
 }
 
 #[test]

@@ -242,6 +242,13 @@ fn rounded_times_of_frames_are_restored() {
         // To a tenth of a frame, rounding costs little.
         assert!(step < 0.005 || narrower >= 9, "{rate} {step}: {narrower}");
     }
+    // Four digits, as Tracker writes them: 9.667E-1, 1.033E0.
+    let rows = (0..70).map(|n| f64::from(n) / 30.0);
+    let text = rows.fold("t\ty\n".to_owned(), |text, t| {
+        text + &format!("{t:.3E}\t{:.4}\n", height(t, 1.0, 0.05, 0.8) + noise.normal(0.002))
+    });
+    let report = fit(&text);
+    assert!(report.repairs().iter().any(|line| line.contains("frames a second, rounded to 1 ms")), "{report}");
     // A camera that does not keep time: what it wrote down is taken as it is.
     let mut text = "time_s,height_m\n".to_owned();
     let mut t = 0.0;

@@ -23,7 +23,9 @@ pub(super) struct Frames {
 /// The frames whose rounded times these are, ascending; `None` if they are not those of an even row, with or without gaps, or were hardly rounded.
 #[allow(clippy::cast_precision_loss)]
 pub(super) fn of(times: &[f64]) -> Option<Frames> {
-    let whole = |step: &f64| times.iter().all(|t| (t / step - (t / step).round()).abs() < 1e-6);
+    // Of times with so many significant digits the last are the coarsest.
+    let last = &times[3 * times.len() / 4..];
+    let whole = |step: &f64| last.iter().all(|t| (t / step - (t / step).round()).abs() < 1e-6);
     let rounded = STEPS.into_iter().find(whole).filter(|_| times.len() >= FEW)?;
     let steps = || times.windows(2).map(|w| w[1] - w[0]);
     let usual = median(&mut steps().collect::<Vec<f64>>())?;

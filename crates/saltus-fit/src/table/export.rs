@@ -62,6 +62,9 @@ impl Record {
     }
 }
 
+/// A label of a contact spans no more than this, s.
+const LABEL: f64 = 0.2;
+
 /// Records of the head that are looked at.
 const HEAD: usize = 16;
 
@@ -86,6 +89,9 @@ pub(super) fn blocks(grid: &Grid<'_>, options: &ReadOptions, fps: Option<f64>) -
     if let Some(found) = tracker(grid, &head, options) {
         return Ok(found);
     }
+    if let Some(block) = labels(grid, &head) {
+        return Ok(Recognised { what: Some("a track of labels (s)"), blocks: vec![block], tracks: false });
+    }
     if first.numbers {
         return one(bare(grid, first, options, fps)?);
     }
@@ -95,6 +101,19 @@ pub(super) fn blocks(grid: &Grid<'_>, options: &ReadOptions, fps: Option<f64>) -
     let mut block = Block { header: names, ..below(grid, head[header].at, at) };
     leave_remarks(grid, &mut block)?;
     Ok(side_by_side(&block).unwrap_or(Recognised { what: None, blocks: vec![block], tracks: false }))
+}
+
+/// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels stand at the contacts.
+fn labels(grid: &Grid<'_>, head: &[Record]) -> Option<Block> {
+    let number = |record: &Record, n: usize| record.cells[n].replace(',', ".").parse::<f64>().ok();
+    let label = |record: &Record| {
+        record.cells.len() == 3
+            && (record.cells[2].is_empty() || record.cells[2].starts_with(char::is_alphabetic))
+            && number(record, 0).zip(number(record, 1)).is_some_and(|(start, end)| start <= end && end - start < LABEL)
+    };
+    let first = head.first().filter(|_| grid.delimiter == b'\t' && head.len() > 2 && head.iter().all(label))?;
+    let header = vec!["time_s".to_owned(), String::new(), String::new()];
+    Some(Block { header, ..below(grid, first.at, first.at) })
 }
 
 /// Ends the rows before the sentences below them: `Mean ratio: 0.64`.

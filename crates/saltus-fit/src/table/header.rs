@@ -267,8 +267,12 @@ fn words(cell: &str) -> (Vec<String>, Option<String>) {
     let cell = cell[name.rfind(':').map_or(0, |colon| colon + 1)..].to_lowercase();
     let (name, bracket) = match (cell.rfind(['(', '[']), cell.trim_end().ends_with([')', ']'])) {
         (Some(open), true) => {
-            let inside = cell[open + 1..].trim_end().trim_end_matches([')', ']']).trim().to_owned();
-            (&cell[..open], Some(inside))
+            let inside = cell[open + 1..].trim_end().trim_end_matches([')', ']']).trim();
+            // The unit of `(± 0.5 cm)`.
+            let bare = inside.strip_prefix('±').or(inside.strip_prefix("+/-"));
+            let inside =
+                bare.map_or(inside, |b| b.trim_start_matches(|c: char| c.is_ascii_digit() || " .,".contains(c)));
+            (&cell[..open], Some(inside.to_owned()).filter(|inside| bare.is_none() || !inside.is_empty()))
         }
         _ => (cell.as_str(), None),
     };
@@ -287,6 +291,17 @@ fn is_trial(cell: &str) -> bool {
     let (words, _) = words(cell);
     words.first().is_some_and(|word| TRIAL.contains(&word.as_str()))
         && words.get(1).is_some_and(|n| of_trial(n).is_some())
+}
+
+/// The number of the bounce that a longer name ends in: `height after 2nd bounce`, `height after bounce 2`.
+fn bounce_named(words: &[String]) -> Option<usize> {
+    let of = |word: &String| BOUNCE.contains(&word.as_str());
+    let pair = words.get(1..)?.windows(2).find_map(|pair| match (of(&pair[0]), of(&pair[1])) {
+        (true, _) => number(&pair[1]),
+        (_, true) => ordinal(&pair[0]),
+        _ => None,
+    });
+    pair.filter(|n| *n > 0)
 }
 
 /// Whether a name is that of one of several bounces or repeats, such as `height 2 (cm)`.
@@ -333,7 +348,8 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
         (Some("t"), Some(n)) => return make(Kind::TimeAt(n), unit_of(Quantity::Time)?),
         _ => {}
     }
-    if let (Some(n), true) = (numbered, BOUNCE.contains(&first) || HEIGHT.contains(&first)) {
+    let of_bounce = || bounce_named(&words).filter(|_| !has(RELEASE) && !has(TRIAL) && !has(INTERVAL));
+    if let Some(n) = numbered.filter(|_| BOUNCE.contains(&first) || HEIGHT.contains(&first)).or_else(of_bounce) {
         return if is_unit(Quantity::Time) {
             make(Kind::TimeAt(n), unit_of(Quantity::Time)?)
         } else {
@@ -366,7 +382,7 @@ fn column(sheet: &Sheet<'_>, options: &ReadOptions, index: usize, cell: &str) ->
     if TRIAL.contains(&first) || REPEAT.contains(&first) {
         return make(Kind::Group, one);
     }
-    if SETTING.contains(&first) {
+    if SETTING.contains(&first) && !(has(HEIGHT) && is_unit(Quantity::Length)) {
         return make(Kind::Setting, one);
     }
     if has(HEIGHT) {
@@ -390,6 +406,11 @@ fn unknown(sheet: &Sheet<'_>, index: usize, cell: &str) -> TableError {
             (distance(&lower, known.split('_').next().unwrap_or(known)).min(distance(&shown(cell), known)), known)
         })
         .min_by_key(|(distance, _)| *distance);
+    if cell.trim().parse::<f64>().is_ok() {
+        return sheet
+            .header_error(index, format!("'{}' is no name of a column: the first line has to name them", shown(cell)))
+            .help("write such as 'bounce,height_cm' above the numbers, or give it by --header; readings stand below one another");
+    }
     let hint = match nearest {
         Some((distance, known)) if distance <= 2.max(lower.chars().count() / 3) => format!("did you mean '{known}'? "),
         _ => String::new(),
@@ -434,6 +455,7 @@ mod tests {
             ("time [ms]", vec!["time"], Some("ms")),
             ("Latest: Time (s)", vec!["time"], Some("s")),
             ("time_s_read_by_authors", vec!["time", "s", "read", "by", "authors"], None),
+            ("height (±0.5 cm)", vec!["height"], Some("cm")),
             ("2nd bounce height", vec!["bounce", "2", "height"], None),
             ("(", vec![], None),
         ] {

@@ -13,6 +13,7 @@ use super::sheet::{Row, Sheet, lines, shown};
 use super::stray;
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
+use crate::statistics::median;
 
 /// The layouts, each with the columns it needs.
 #[derive(Clone, Copy)]
@@ -132,10 +133,25 @@ pub(super) fn table(
     for trial in &mut table.trials {
         in_order(sheet, columns, trial, matches!(layout, Layout::Listed))?;
     }
+    if matches!(layout, Layout::BounceColumns) && alike(&table.trials) {
+        table.warnings.push(
+            "the rebounds of a row are alike: if they are repeats and not bounces one after another, name them 'trial 1', 'trial 2' (--header)"
+                .to_owned(),
+        );
+    }
     stray::warn(sheet, columns, &table.trials, &mut table.warnings)?;
     table.notes.insert(0, format!("read as {what}"));
     table.rows = kept;
     Ok(table)
+}
+
+/// Whether rebounds side by side are nearly as high as one another, and well below the release: more often repeats than bounces.
+fn alike(trials: &[Trial]) -> bool {
+    let falls = |first: bool| {
+        let pairs = trials.iter().flat_map(|t| t.readings.windows(2)).filter(|w| (w[0].bounce == 0) == first);
+        median(&mut pairs.filter_map(|w| Some(w[1].height? / w[0].height?)).collect::<Vec<f64>>())
+    };
+    falls(true).zip(falls(false)).is_some_and(|(drop, later)| later > 0.95 && drop < 0.9)
 }
 
 /// The columns filters name.

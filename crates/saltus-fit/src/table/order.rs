@@ -110,7 +110,7 @@ pub(super) fn in_order(
                     column,
                     format!("this time, {time} s, {what} that of the event before it, {before} s in line {line}"),
                 )
-                .help("times of one trial ascend; tell trials apart by a column 'trial'"));
+                .help("times of one trial ascend; tell trials apart by a column 'trial'; times between contacts belong in a column 'interval_s'"));
         }
         last = Some((time, reading.line));
     }

@@ -194,6 +194,11 @@ impl Sheet<'_> {
     pub(super) fn each_row(&self, mut visit: impl FnMut(&Row<'_>) -> Result<(), TableError>) -> Result<(), TableError> {
         self.grid.each_record(self.block.rows.clone(), self.block.line, |row| {
             row.refuse_extra_cells(self.block.header.len())?;
+            if row.cells().eq(self.block.header.iter()) {
+                return Err(row.error(0, "the names of the columns stand here again").help(
+                    "take this line out, and tell the tables apart by a column 'trial'; or put each into a file of its own: several are fitted together",
+                ));
+            }
             visit(row)?;
             Ok(true)
         })

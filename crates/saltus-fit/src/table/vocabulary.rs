@@ -93,6 +93,11 @@ pub(super) const HEIGHT: &[&str] = &[
     "hauteurs",
     "alturas",
     "altezze",
+    "ort",
+    "weg",
+    "lage",
+    "posición",
+    "posizione",
 ];
 pub(super) const AVERAGE: &[&str] =
     &["average", "mean", "avg", "moyenne", "mittelwert", "media", "moyennes", "durchschnitt", "mittel", "promedio"];
