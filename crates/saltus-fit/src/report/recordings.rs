@@ -38,7 +38,7 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         for (_, model) in report.models.iter().enumerate().filter(shown) {
             let chosen = if model.chosen { "   chosen" } else { "" };
             let cor = pair(model.cor.value, model.cor.standard_error);
-            writeln!(f, "  {:<46}{cor:>18}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
+            writeln!(f, "  {:<46} {cor:>17}   BIC {:>+7.1}{chosen}", model.about, model.bic)?;
             for under in &model.losses {
                 let places = digits(model.cor.standard_error);
                 let value = format!("{:.places$}", under.cor);
