@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::statistics::{chi_square_p, variance_ratio_p};
+use crate::statistics::{Line, chi_square_p, variance_ratio_p};
 use crate::table::Trial;
 
 /// From this many spare trials on, the spread within settings is the measure of that between them.
@@ -54,18 +54,10 @@ pub(crate) struct Drift {
 /// The straight line through the trials' own CORs, each weighing by its information; arguments as for [`differ`].
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn drift(separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
-    let trials = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (n as f64, s.0, s.1));
+    let trials = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
     let count = trials().count();
-    let (weight, place, shift) =
-        trials().fold((0.0, 0.0, 0.0), |sum, (n, w, shift)| (sum.0 + w, sum.1 + w * n, sum.2 + w * shift));
-    let (place, shift) = (place / weight, shift / weight);
-    let (square, product, all) = trials().fold((0.0, 0.0, 0.0), |sum, (n, w, s)| {
-        (sum.0 + w * (n - place).powi(2), sum.1 + w * (n - place) * (s - shift), sum.2 + w * (s - shift).powi(2))
-    });
-    let slope = product / square;
-    let gain = slope * product;
+    let line = Line::through(trials());
     let freedom = count.checked_sub(2).filter(|_| count >= ORDERED)?;
-    let p = variance_ratio_p(gain / ((all - gain).max(1e-300) / freedom as f64), 1, freedom)?;
-    let at = |n: f64| cor + shift + slope * (n - place);
-    Some(Drift { p, first: at(0.0), last: at(separate.len() as f64 - 1.0) })
+    let p = variance_ratio_p(line.explained / ((line.all - line.explained).max(1e-300) / freedom as f64), 1, freedom)?;
+    Some(Drift { p, first: cor + line.at(0.0), last: cor + line.at(separate.len() as f64 - 1.0) })
 }

@@ -1,4 +1,4 @@
-//! Tail probabilities and quantiles, with `None` where they mean nothing.
+//! Tail probabilities and quantiles, with `None` where they mean nothing; medians and straight lines.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 
@@ -40,6 +40,33 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     let n = values.len();
     let high = *values.get(n / 2)?;
     Some(if n % 2 == 1 { high } else { 0.5 * (values[n / 2 - 1] + high) })
+}
+
+/// A straight line y + b (x - x̄) through points.
+pub(crate) struct Line {
+    middle: (f64, f64),
+    pub(crate) slope: f64,
+    /// The weighted sum of squares about the points' mean, and what of it the line explains.
+    pub(crate) all: f64,
+    pub(crate) explained: f64,
+}
+
+impl Line {
+    /// Through points of a weight, x and y, by weighted least squares.
+    pub(crate) fn through(points: impl Iterator<Item = (f64, f64, f64)> + Clone) -> Self {
+        let (weight, x, y) = points.clone().fold((0.0, 0.0, 0.0), |s, (w, x, y)| (s.0 + w, s.1 + w * x, s.2 + w * y));
+        let middle = (x / weight, y / weight);
+        let (square, product, all) = points.fold((0.0, 0.0, 0.0), |s, (w, x, y)| {
+            let (x, y) = (x - middle.0, y - middle.1);
+            (s.0 + w * x * x, s.1 + w * x * y, s.2 + w * y * y)
+        });
+        let slope = product / square;
+        Self { middle, slope, all, explained: slope * product }
+    }
+
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        self.middle.1 + self.slope * (x - self.middle.0)
+    }
 }
 
 #[cfg(test)]

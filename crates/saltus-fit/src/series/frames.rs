@@ -1,6 +1,6 @@
 //! The times of frames that were written down rounded: 0.03, 0.07, 0.10, 0.13 s of a film with 30 frames a second.
 
-use crate::statistics::median;
+use crate::statistics::{Line, median};
 
 /// Times are written to one of these, s.
 const STEPS: [f64; 4] = [0.1, 0.01, 0.001, 1e-4];
@@ -21,7 +21,6 @@ pub(super) struct Frames {
 }
 
 /// The frames whose rounded times these are, ascending; `None` if they are not those of an even row, with or without gaps, or were hardly rounded.
-#[allow(clippy::cast_precision_loss)]
 pub(super) fn of(times: &[f64]) -> Option<Frames> {
     // Of times with so many significant digits the last are the coarsest.
     let last = &times[3 * times.len() / 4..];
@@ -37,13 +36,9 @@ pub(super) fn of(times: &[f64]) -> Option<Frames> {
         number
     });
     let numbers: Vec<f64> = std::iter::once(0.0).chain(later).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (middle, time) = (mean(&numbers), mean(times));
-    let (product, square) = numbers.iter().zip(times).fold((0.0, 0.0), |(product, square), (n, t)| {
-        (product + (n - middle) * (t - time), square + (n - middle).powi(2))
-    });
-    let frame = product / square;
-    let even: Vec<f64> = numbers.iter().map(|n| time + frame * (n - middle)).collect();
+    let line = Line::through(numbers.iter().zip(times).map(|(n, t)| (1.0, *n, *t)));
+    let frame = line.slope;
+    let even: Vec<f64> = numbers.iter().map(|n| line.at(*n)).collect();
     let worst = even.iter().zip(times).map(|(even, t)| (even - t).abs()).fold(0.0, f64::max);
     let rate = 1.0 / frame;
     (rate.is_finite() && worst > SLIGHT * frame && worst <= ROUNDED * rounded).then_some(Frames {
