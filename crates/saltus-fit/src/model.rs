@@ -5,6 +5,7 @@ mod drag;
 mod dual;
 mod flight;
 mod heights;
+mod lasting;
 mod law;
 mod trajectory;
 
@@ -13,5 +14,6 @@ pub(crate) use drag::Air;
 pub(crate) use dual::Dual;
 pub(crate) use flight::{Flight, FlightTrial};
 pub(crate) use heights::{Height, Heights};
+pub(crate) use lasting::{BEFORE, LASTING};
 pub(crate) use law::CorLaw;
-pub(crate) use trajectory::{FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+pub(crate) use trajectory::{FLOOR, GRAVITY, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};

@@ -190,7 +190,7 @@ fn recordings_tell_gravity_in_their_unit() {
     as_exact_as_their_errors(&two);
     let text = two.to_string();
     assert!(
-        text.contains("Trial 1: 220 samples; gravity 9.8") && text.contains("Trial 2: ") && text.contains(" m/s²;"),
+        text.contains("Trial 1: 219 samples; gravity 9.8") && text.contains("Trial 2: ") && text.contains(" m/s²;"),
         "{text}"
     );
     let pixels = fitted(&film("y_px", 240, |h| 800.0 - 600.0 * h), &ReadOptions::default()).to_string();

@@ -2,78 +2,21 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
+mod film;
 mod noise;
 
 use std::path::{Path, PathBuf};
 
+use film::{Ball, Contact, csv, noisy, report};
 use noise::Noise;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Track, Verdict};
 
-/// A ball dropped from `drop` at `release`, with quadratic drag, integrated in small steps: nothing of the crate's own formulas.
-struct Ball {
-    drop: f64,
-    release: f64,
-    gravity: f64,
-    drag: f64,
-    cor: fn(f64) -> f64,
-    /// How long an impact takes, on a linear spring with a damper.
-    contact: f64,
-}
-
-impl Ball {
-    /// Heights at `rate` samples per second, held until the release.
-    fn film(&self, rate: f64, seconds: f64) -> Vec<(f64, f64)> {
-        let dt = 2e-6;
-        let (mut t, mut h, mut v) = (self.release, self.drop, 0.0f64);
-        let count = (rate * seconds) as usize;
-        let (turns, damps) = (std::f64::consts::PI / self.contact, -(self.cor)(1.0).ln() / self.contact);
-        (0..count)
-            .map(|n| {
-                let at = n as f64 / rate;
-                while t < at {
-                    if h < 0.0 {
-                        // Speed first: this keeps the energy of a spring.
-                        v -= dt * ((turns * turns + damps * damps) * h + 2.0 * damps * v);
-                        h += dt * v;
-                        t += dt;
-                        continue;
-                    }
-                    let a = -self.gravity - self.drag * v * v.abs();
-                    let next = h + dt * (v + 0.5 * dt * a);
-                    v += dt * a;
-                    if self.contact == 0.0 && next <= 0.0 && v < 0.0 {
-                        v *= -(self.cor)(-v);
-                        h = 0.0;
-                    } else {
-                        h = next;
-                    }
-                    t += dt;
-                }
-                (at, h)
-            })
-            .collect()
-    }
-}
-
-fn csv(rows: &[(f64, f64)]) -> String {
-    rows.iter().fold("time_s,height_m\n".to_owned(), |text, (t, h)| text + &format!("{t:.6},{h:.6}\n"))
-}
-
-fn report(text: &str) -> Report {
-    let table = Table::parse("film.csv", text.as_bytes(), &ReadOptions::default()).expect("a table");
-    Fit::new().run(&table).expect("a report")
-}
-
-fn noisy(rows: &[(f64, f64)], noise: &mut Noise, sigma: f64) -> Vec<(f64, f64)> {
-    rows.iter().map(|&(t, h)| (t, h + noise.normal(sigma))).collect()
-}
-
 fn steel() -> Ball {
-    Ball { drop: 1.0, release: 0.1, gravity: 9.81, drag: 0.0, cor: |_| 0.8, contact: 0.0 }
+    Ball { drop: 1.0, release: 0.1, gravity: 9.81, drag: 0.0, cor: |_| 0.8, contact: Contact::Instant }
 }
 
 fn light() -> Ball {
-    Ball { drop: 1.2, release: 0.15, gravity: 9.81, drag: 0.12, cor: |_| 0.9, contact: 0.0 }
+    Ball { drop: 1.2, release: 0.15, gravity: 9.81, drag: 0.12, cor: |_| 0.9, contact: Contact::Instant }
 }
 
 /// The COR lies within three of its errors, which are not large.
@@ -325,47 +268,6 @@ fn a_film_without_drag_beside_films_with_drag() {
     let report = report(&text);
     assert!((report.cor().expect("a COR").value - 0.8).abs() < 0.005, "{report}");
     assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
-}
-
-/// A squash ball or a football stays on the floor for about 10 ms: without that time the COR would come out up to 0.01 too high.
-#[test]
-fn impacts_that_last_are_found() {
-    let mut noise = Noise(31);
-    let bounces: [fn(f64) -> f64; 2] = [|_| 0.65, |_| 0.8];
-    let (mut films, mut held) = (0, 0);
-    for rate in [30.0, 60.0, 240.0] {
-        for cor in bounces {
-            for k in 0..5 {
-                let ball = Ball { drop: 0.9 + 0.07 * f64::from(k), cor, contact: 0.01, ..steel() };
-                let report = report(&csv(&noisy(&ball.film(rate, 2.2), &mut noise, 1e-3)));
-                let contact = report.series()[0].contact.unwrap_or_else(|| panic!("{rate}: {report}"));
-                assert!((contact.value - 0.01).abs() < 4.0 * contact.standard_error, "{rate}: {report}");
-                assert!(contact.standard_error < 0.001, "{rate}: {report}");
-                assert!(report.notes().iter().any(|n| n.contains("ms on the floor at each impact")), "{report}");
-                assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
-                let interval = report.cor().expect("a COR");
-                assert!((interval.value - cor(1.0)).abs() < 0.003, "{rate}: {report}");
-                held += usize::from((interval.low..=interval.high).contains(&cor(1.0)));
-                films += 1;
-            }
-        }
-    }
-    // With impacts of no time hardly one would.
-    assert!(held * 5 >= films * 4, "{held} of {films}");
-}
-
-/// Of impacts that take no time nothing is said.
-#[test]
-fn impacts_that_take_no_time_are_left_so() {
-    let mut noise = Noise(32);
-    for rate in [30.0, 60.0, 240.0] {
-        for k in 0..5 {
-            let ball = Ball { drop: 0.9 + 0.07 * f64::from(k), ..steel() };
-            let report = report(&csv(&noisy(&ball.film(rate, 2.2), &mut noise, 1e-3)));
-            assert!(report.series()[0].contact.is_none() && !report.to_string().contains("impacts last"), "{report}");
-            holds(&report, 0.8, 0.002);
-        }
-    }
 }
 
 /// The last bounces before a ball lies still have two to four samples each: they are not used, and nothing is wrong with them.

@@ -3,15 +3,13 @@
 //! Between contacts the flight is known in closed form ([`Air`]), and so are the times of the contacts; their derivatives carry the
 //! shift of every later flight, so nothing needs adding for the jumps.
 //!
-//! A contact takes no time, or the time T of a linear spring with a damper, which is the same at every speed: half an oscillation, at the part
-//! x of which a ball that came at v is below the floor by (v T/π) eˣ sin πx, and leaves at e v.
-
-use std::f64::consts::PI;
+//! A contact takes no time, or some ([`Lasting`]).
 
 use nalgebra::DMatrix;
 
 use super::drag::{Air, Sloped};
 use super::dual::Dual;
+use super::lasting::{self, Lasting};
 use crate::least_squares::Bounds;
 use crate::successive::Model;
 
@@ -34,17 +32,18 @@ pub(crate) enum Law {
     Each,
 }
 
-/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, the time of a
-/// contact if it takes any, then those of the COR. Seen from a floor that drifts evenly the motion is the same.
+/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, those of
+/// contacts if they take time, then those of the COR. Seen from a floor that drifts evenly the motion is the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Trajectory<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) impacts: usize,
     pub(crate) drag: bool,
     pub(crate) drift: bool,
-    pub(crate) contact: bool,
+    /// Contacts take time; samples, of weight one, have this standard error.
+    pub(crate) contact: Option<f64>,
     pub(crate) law: Law,
-    /// The speed v₁ of the linear law.
+    /// The speed v₁ of the linear law and of contacts that take time.
     pub(crate) speed: f64,
     /// Where the first impact may be: the time of the start and how far from it.
     pub(crate) first: (f64, f64),
@@ -61,15 +60,22 @@ const DRAG: usize = 4;
 /// The least k times the range of heights: below it drag cannot be told from none.
 pub(crate) const LEAST_DRAG: f64 = 1e-7;
 
-/// The range of the time of a contact, in units of time in which G is one and so is the range of heights.
-pub(crate) const LASTING: Bounds = Bounds { low: 1e-4, high: 0.5 };
-
 /// An impact as the model has it: time of arrival, its speed, COR, each with derivatives by all unknowns.
 #[derive(Clone, Debug)]
 pub(crate) struct Impact {
     pub(crate) time: Dual,
     pub(crate) arrival: Dual,
     pub(crate) cor: Dual,
+    /// How long it lasts, if it takes time.
+    pub(crate) lasts: Option<Dual>,
+}
+
+impl Impact {
+    /// How far the ball is below the floor at a time within the contact; `None` at others.
+    fn depth(&self, time: f64) -> Option<Dual> {
+        let lasts = self.lasts.as_ref().filter(|lasts| time < self.time.value + lasts.value)?;
+        Some(lasting::depth([&self.time, lasts, &self.arrival, &self.cor], time))
+    }
 }
 
 /// The apex of a flight: when, and how high.
@@ -81,11 +87,16 @@ struct Apex {
 impl Trajectory<'_> {
     /// Where the unknowns of the COR begin.
     pub(crate) fn first_cor(&self) -> usize {
-        DRAG + usize::from(self.drag) + usize::from(self.drift) + usize::from(self.contact)
+        DRAG + usize::from(self.drag) + usize::from(self.drift) + self.contact.map_or(0, |_| lasting::UNKNOWNS)
     }
 
+    /// The place of the time of a contact.
     pub(crate) fn contact_place(&self) -> Option<usize> {
-        self.contact.then(|| self.first_cor() - 1)
+        self.lasting().map(|lasting| lasting.place)
+    }
+
+    fn lasting(&self) -> Option<Lasting> {
+        self.contact.map(|_| Lasting { place: self.first_cor() - lasting::UNKNOWNS, speed: self.speed })
     }
 
     pub(crate) fn drift_place(&self) -> Option<usize> {
@@ -134,35 +145,34 @@ impl Trajectory<'_> {
         let mut impacts = Vec::with_capacity(self.impacts);
         for n in 0..self.impacts {
             let cor = self.cor(values, n, &arrival);
+            let lasting = self.lasting().map(|lasting| (lasting, lasting.time(values, &arrival)));
+            let (cor, lasts) = match lasting {
+                Some((lasting, lasts)) => (lasting.cor(values, &cor, &lasts, &arrival), Some(lasts)),
+                None => (cor, None),
+            };
             let departure = cor.times(&arrival);
             let hop = air.hop(departure.value);
             let rise = self.chain(&hop.rise, &departure);
             let fall = self.chain(&hop.fall, &departure);
-            let leaves = self.contact_place().map_or_else(|| time.clone(), |j| time.plus(&unknown(j)));
+            let leaves = lasts.as_ref().map_or_else(|| time.clone(), |lasts| time.plus(lasts));
             let top = leaves.plus(&rise);
             let next = top.plus(&fall);
             let next_arrival = self.chain(&hop.arrival, &departure);
             apexes.push(Apex { time: top, height: floor.plus(&self.chain(&hop.height, &departure)) });
-            impacts.push(Impact { time, arrival, cor });
+            impacts.push(Impact { time, arrival, cor, lasts });
             (time, arrival) = (next, next_arrival);
         }
         (impacts, apexes)
     }
 
-    /// How far a ball is below the floor at a time within a contact that lasts `lasting`.
-    fn pressed(lasting: &Dual, impact: &Impact, time: f64) -> Dual {
-        let e = impact.cor.value.max(1e-9);
-        let x = (time - impact.time.value) / lasting.value;
-        let (sin, cos) = (PI * x).sin_cos();
-        let shape = e.powf(x) / PI;
-        let scale = impact.arrival.value * lasting.value;
-        let by_x = scale * shape * (e.ln() * sin + PI * cos);
-        let depth = scale * shape * sin;
-        let by_cor = impact.cor.mapped(0.0, depth * x / e);
-        let by_speed = impact.arrival.mapped(0.0, lasting.value * shape * sin);
-        let by_time = impact.time.mapped(0.0, -by_x / lasting.value);
-        let by_lasting = lasting.mapped(depth, (depth - x * by_x) / lasting.value);
-        by_lasting.plus(&by_cor).plus(&by_speed).plus(&by_time)
+    /// How far the ball is below the floor at each sample; 0 in flight.
+    pub(crate) fn depths(&self, values: &[f64]) -> Vec<f64> {
+        let impacts = self.impacts(values);
+        let depth = |sample: &Sample| {
+            let last = impacts.partition_point(|impact| impact.time.value <= sample.time).checked_sub(1)?;
+            impacts[last].depth(sample.time).map(|depth| depth.value)
+        };
+        self.samples.iter().map(|sample| depth(sample).unwrap_or(0.0)).collect()
     }
 
     pub(crate) fn impacts(&self, values: &[f64]) -> Vec<Impact> {
@@ -190,8 +200,8 @@ impl Model for Trajectory<'_> {
         if self.drift {
             ranges.push((Bounds { low: -1.0, high: 1.0 }, 0.05));
         }
-        if self.contact {
-            ranges.push((LASTING, 0.05));
+        if self.contact.is_some() {
+            ranges.extend(Lasting::ranges());
         }
         match self.law {
             Law::Constant => ranges.push((Bounds { low: 0.0, high: self.high }, 0.05)),
@@ -205,24 +215,21 @@ impl Model for Trajectory<'_> {
     }
 
     fn size(&self, _block: usize) -> (usize, usize) {
-        (self.samples.len(), 0)
+        (self.samples.len() + self.contact.map_or(0, |_| lasting::BEFORE.len()), 0)
     }
 
     fn fill(&self, _block: usize, values: &[f64], _own: &[f64], rows: &mut DMatrix<f64>) {
         let air = self.air(values);
         let (impacts, apexes) = self.course(values);
         let n = values.len();
-        let lasting = self.contact_place().map(|j| Dual::unknown(values[j], n, j));
         let mut flight = 0;
         for (i, sample) in self.samples.iter().enumerate() {
             while flight < impacts.len() && sample.time >= impacts[flight].time.value {
                 flight += 1;
             }
             let w = sample.weight;
-            let touching = lasting.as_ref().zip(flight.checked_sub(1).map(|last| &impacts[last]));
-            let touching = touching.filter(|(lasting, impact)| sample.time < impact.time.value + lasting.value);
-            let height = if let Some((lasting, impact)) = touching {
-                let depth = Self::pressed(lasting, impact, sample.time);
+            let below = flight.checked_sub(1).and_then(|last| impacts[last].depth(sample.time));
+            let height = if let Some(depth) = below {
                 for j in 0..n {
                     rows[(i, j)] = -w * depth.by[j];
                 }
@@ -246,6 +253,9 @@ impl Model for Trajectory<'_> {
             });
             rows[(i, n)] = w * (sample.height - height - drift);
         }
+        if let Some((lasting, error)) = self.lasting().zip(self.contact) {
+            lasting.fill(values, error, self.samples.len(), rows);
+        }
     }
 }
 
@@ -263,15 +273,15 @@ mod tests {
             impacts: 2,
             drag: true,
             drift: true,
-            contact: true,
+            contact: Some(0.01),
             law: Law::Linear,
             speed: 1.4,
             first: (0.0, 0.1),
             high: 1.5,
         };
-        let at = vec![0.02, 1.4, 0.01, 1.1, 0.1, 0.02, 0.3, 0.8, -0.05];
+        let at = vec![0.02, 1.4, 0.01, 1.1, 0.1, 0.02, 0.3, 0.15, 0.3, 0.8, -0.05];
         let rows = |values: &[f64]| {
-            let mut rows = DMatrix::zeros(samples.len(), values.len() + 1);
+            let mut rows = DMatrix::zeros(samples.len() + 2, values.len() + 1);
             model.fill(0, values, &[], &mut rows);
             rows
         };
@@ -282,7 +292,7 @@ mod tests {
                 near[j] += step;
                 rows(&near).column(at.len()).clone_owned()
             });
-            for i in 0..samples.len() {
+            for i in 0..samples.len() + 2 {
                 let numeric = (near[0][i] - near[1][i]) / 2e-6;
                 assert!((numeric - exact[(i, j)]).abs() < 1e-5, "{i}, {j}: {numeric} {}", exact[(i, j)]);
             }

@@ -11,8 +11,8 @@ use crate::spread::across;
 
 /// So much better a BIC must be before the other model is out of the question.
 const CLEAR: f64 = 6.0;
-/// A BIC that is worse by less hardly speaks against a model.
-const HARDLY: f64 = 3.0;
+/// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
+const STAYS: f64 = 0.01;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
 
@@ -76,7 +76,7 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
         let apart = (was.value - is.value).abs();
         if let Some(lasts) = contact {
             report.notes.push(format!(
-                "the ball stays {} on the floor at each impact: with impacts that take no time the BIC is {worse:.1} worse, and the COR would come \
+                "the ball stays {} on the floor at the first impact: with impacts that take no time the BIC is {worse:.1} worse, and the COR would come \
                  out as {:.3}",
                 milliseconds(lasts),
                 was.value
@@ -86,17 +86,30 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
         if undecided {
             let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
             doubts.push(format!(
-                "two models fit the samples alike (BIC apart by {worse:.1}): impacts that take no time give a COR of {:.3}, impacts that last one of {:.3}",
+                "two models fit the samples alike (BIC apart by {worse:.1}): the COR is {:.3} if impacts take no time, {:.3} if they do",
                 instant.value, lasting.value
             ));
         }
         let reach = pooled.quantile * was.standard_error;
         let wider = was.value - reach < low || was.value + reach > high;
         // Every impact takes some time.
-        if wider && (undecided || contact.is_none() && *worse < HARDLY) {
+        if wider && *worse < CLEAR {
             report.widened = Some("it takes in impacts that take time, and such that take none".to_owned());
             low = low.min(was.value - reach).max(0.0);
             high = high.max(was.value + reach);
+        }
+    }
+    if series.tracks.iter().all(|track| track.impacts.len() == 1) {
+        let higher =
+            |track: &Track| (1.0 - pooled.cor.value).max(0.0) * track.gravity.value * STAYS / track.impacts[0].speed;
+        let higher = series.tracks.iter().map(higher).fold(0.0, f64::max);
+        let lower = (low - higher).max(0.0);
+        if lower < low && higher > 0.1 * pooled.cor.standard_error {
+            report.widened = Some(format!(
+                "one impact does not show how long it lasts, and a ball that stays {:.0} ms on the floor would have a COR lower by {higher:.3}",
+                1e3 * STAYS
+            ));
+            low = lower;
         }
     }
     if varying(series, law, &mut doubts, (&mut low, &mut high)) {

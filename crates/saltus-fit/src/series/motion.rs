@@ -32,21 +32,21 @@ impl Course {
         if span > 0.0 { (0..pieces).map(piece).collect() } else { Vec::new() }
     }
 
-    /// The contact that follows a piece, drawn as a parabola that begins at the speed of arrival.
-    fn contact(&self, before: &Arc) -> Option<Arc> {
+    /// A contact after the piece before it, drawn as a parabola that begins at the speed of arrival.
+    fn contact(before: &Arc, lasts: f64) -> Arc {
         let [_, v, bend] = before.height;
         let arrival = -(v + 2.0 * bend * before.span);
-        let start = before.start + before.span;
-        let height = [0.0, -arrival, arrival / self.lasting];
-        (self.lasting > 0.0).then_some(Arc { start, span: self.lasting, height })
+        Arc { start: before.start + before.span, span: lasts, height: [0.0, -arrival, arrival / lasts] }
     }
 
     pub(crate) fn motion(&self, cor: f64) -> Motion {
         let (first, last) = (self.samples.first().map_or(0.0, |s| s.0), self.samples.last().map_or(0.0, |s| s.0));
         let mut flights = Vec::new();
         for (n, &apex) in self.apexes.iter().enumerate() {
-            let start = if n == 0 { first } else { self.contacts[n - 1] + self.lasting };
-            let contact = flights.last().and_then(|last| self.contact(last));
+            let impact = n.checked_sub(1).map(|last| (self.contacts[last], self.lasting[last]));
+            let start = impact.map_or(first, |(time, lasts)| time + lasts);
+            let lasts = impact.map(|(_, lasts)| lasts).filter(|&lasts| lasts > 0.0);
+            let contact = flights.last().zip(lasts).map(|(before, lasts)| Self::contact(before, lasts));
             flights.extend(contact);
             let end = self.contacts.get(n).copied().unwrap_or(last);
             flights.extend(self.pieces(apex, start, end));

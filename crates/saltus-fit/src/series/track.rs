@@ -8,7 +8,7 @@ use super::parabolas::{Sketch, sketch};
 use super::wild::wild;
 use crate::bounces::Measured;
 use crate::least_squares::Failure;
-use crate::model::{Dual, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+use crate::model::{BEFORE, Dual, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
 use crate::statistics::median;
 use crate::successive::{Fitted, fit};
 
@@ -26,6 +26,8 @@ const CLEAR: f64 = 6.0;
 const MOVED: f64 = 0.01;
 /// Candidates of k times the range of heights to start from.
 const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
+/// Samples whose scatter is less than this part of the range have this much.
+const LEAST_NOISE: f64 = 1e-9;
 /// The time of a contact to start from, in units in which G and the range of heights are one.
 const LASTS: f64 = 0.03;
 
@@ -134,8 +136,8 @@ pub(crate) struct Course {
     pub(crate) apexes: Vec<(f64, f64)>,
     pub(crate) gravity: f64,
     pub(crate) drag: f64,
-    /// The time of a contact.
-    pub(crate) lasting: f64,
+    /// How long each impact lasts.
+    pub(crate) lasting: Vec<f64>,
     /// Sample times, heights above the floor, and what the motion leaves of them.
     pub(crate) samples: Vec<(f64, f64, f64)>,
 }
@@ -250,7 +252,7 @@ impl Candidates {
         let bic = |of: &Self| {
             let one = |f: &Found| {
                 let loss: f64 = of.left(&f.fitted.shared, f.choice).iter().map(|r| huber_loss(r / sigma)).sum();
-                n * (loss / count).max(1e-18).ln() + f.fitted.shared.len() as f64 * n.ln()
+                n * (loss / count).max(1e-18).ln() + of.unknowns(f) as f64 * n.ln()
             };
             of.found.iter().map(one).fold(f64::INFINITY, f64::min) + if of.drift { CLEAR } else { 0.0 }
         };
@@ -276,7 +278,7 @@ impl Candidates {
             impacts: self.impacts(),
             drag,
             drift: self.drift,
-            contact: self.contact,
+            contact: self.contact.then_some(self.noise.max(LEAST_NOISE)),
             law,
             speed: self.sketch.speed,
             first: (0.0, 5.0 * step + 0.05),
@@ -319,7 +321,7 @@ impl Candidates {
     fn starts(&self, drag: bool) -> Vec<Vec<f64>> {
         let Sketch { speed, cors, .. } = &self.sketch;
         let drift: &[f64] = if self.drift { &[0.0] } else { &[] };
-        let lasts: &[f64] = if self.contact { &[LASTS] } else { &[] };
+        let lasts: &[f64] = if self.contact { &[LASTS, BEFORE[0].0, BEFORE[1].0] } else { &[] };
         let start = |air: &[f64], cors: &[f64]| [&[0.0, *speed, 0.0, 1.0], air, drift, lasts, cors].concat();
         if drag { DRAGS.iter().map(|&k| start(&[k], &self.cors_with(k))).collect() } else { vec![start(&[], cors)] }
     }
@@ -370,8 +372,8 @@ impl Candidates {
             values.clone_from(&fitted.shared);
             let left = self.left(&values, choice);
             let sigma = self.spread(&left);
-            for (sample, r) in samples.iter_mut().zip(&left) {
-                sample.weight = huber_weight(r / sigma).sqrt();
+            for ((sample, r), trust) in samples.iter_mut().zip(&left).zip(self.trust(&values, choice)) {
+                sample.weight = trust * huber_weight(r / sigma).sqrt();
             }
             last = Some((fitted, sigma));
             if moved < 1e-7 {
@@ -387,12 +389,20 @@ impl Candidates {
         Ok((!none).then_some(Found { choice, fitted, sigma, bic: 0.0, cor }))
     }
 
-    /// Sample less motion.
+    /// Sample less motion, as far as it is trusted.
     fn left(&self, values: &[f64], choice: Choice) -> Vec<f64> {
         let model = self.model(&self.samples, choice);
-        let mut rows = nalgebra::DMatrix::zeros(self.samples.len(), values.len() + 1);
+        let mut rows = nalgebra::DMatrix::zeros(crate::successive::Model::size(&model, 0).0, values.len() + 1);
         crate::successive::Model::fill(&model, 0, values, &[], &mut rows);
-        rows.column(values.len()).iter().zip(&self.samples).map(|(r, s)| r / s.weight).collect()
+        let trust = self.trust(values, choice);
+        rows.column(values.len()).iter().zip(trust).map(|(r, trust)| r * trust).collect()
+    }
+
+    /// What each sample weighs beside one in flight, since where a ball is within a contact is hardly known.
+    fn trust(&self, values: &[f64], choice: Choice) -> Vec<f64> {
+        let noise = self.noise.max(LEAST_NOISE);
+        let depths = self.model(&self.samples, choice).depths(values);
+        depths.into_iter().map(|depth| 1.0 / (depth / noise).hypot(1.0)).collect()
     }
 
     /// The robust standard deviation of residuals, not below what rounding leaves.
@@ -411,7 +421,7 @@ impl Candidates {
         let before = self.samples.iter().take_while(|s| s.time < first).count();
         let after = self.samples.len() - before;
         // Never more than a third of the fall, or of all that follows.
-        let head = left.iter().take_while(|r| out(r)).count().min(before / 3);
+        let head = left.iter().take_while(|r| out(r)).count().max(self.held(best, &left)).min(before / 3);
         let tail = left.iter().rev().take_while(|r| out(r)).count().min(after / 3);
         let kept = head..self.samples.len() - tail;
         let was = self.samples.len();
@@ -424,6 +434,18 @@ impl Candidates {
         self.left_out = (self.left_out.0 + head, self.left_out.1 + tail);
         self.wild += if drop_wild { wild_count } else { 0 };
         self.samples.len() < was
+    }
+
+    /// How many samples before the top of the fall follow a ball that is held there better than one that was thrown up.
+    fn held(&self, best: &Found, left: &[f64]) -> usize {
+        let model = self.model(&self.samples, best.choice);
+        let (air, apexes) = (model.air(&best.fitted.shared), model.apexes(&best.fitted.shared));
+        let rising = self.samples.iter().zip(left).take_while(|(sample, _)| sample.time < apexes[0].0);
+        let (thrown, at_rest) = rising.clone().fold((0.0, 0.0), |(thrown, at_rest), (sample, r)| {
+            let drop = air.drop(sample.time - apexes[0].0).value;
+            (thrown + r * r, at_rest + (r - drop).powi(2))
+        });
+        if at_rest < thrown { rising.count() } else { 0 }
     }
 
     /// BIC and the error of the COR for each model; residuals of neighbours are alike, which counts as fewer samples.
@@ -444,11 +466,16 @@ impl Candidates {
         let n = (left.len() as f64 / self.dependence.powi(2)).max(2.0);
         let least_loss = 1e-18 * left.len() as f64;
         for (i, loss) in losses.into_iter().enumerate() {
-            let unknowns = self.found[i].fitted.shared.len() as f64;
+            let unknowns = self.unknowns(&self.found[i]) as f64;
             let loss = loss.max(least_loss) / left.len() as f64;
             self.found[i].bic = n * loss.ln() + unknowns * n.ln();
             self.found[i].cor = self.cor(&self.found[i]);
         }
+    }
+
+    /// How many unknowns a model has, but for those of which something is known before.
+    fn unknowns(&self, found: &Found) -> usize {
+        found.fitted.shared.len() - if self.contact { BEFORE.len() } else { 0 }
     }
 
     /// The COR of a model: the mean over its impacts, each weighing by its own error.
@@ -467,7 +494,7 @@ impl Candidates {
 
     /// A quantity of the model with its standard error.
     fn measured(&self, found: &Found, x: &Dual) -> Measured {
-        let free = self.samples.len().saturating_sub(found.fitted.shared.len()).max(1) as f64;
+        let free = self.samples.len().saturating_sub(self.unknowns(found)).max(1) as f64;
         let scatter = (found.fitted.chi_square / free).max(0.0).sqrt().max(found.sigma);
         Measured { value: x.value, standard_error: found.fitted.error_of(&x.by) * scatter * self.dependence }
     }

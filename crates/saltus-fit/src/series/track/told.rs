@@ -11,13 +11,12 @@ impl Candidates {
         let mut list = Vec::new();
         let plural = |n: usize| if n == 1 { "sample" } else { "samples" };
         let (before, after) = self.left_out;
-        if before + after > 0 {
-            let brief = if self.brief { ", or bounced in too few samples" } else { "" };
-            list.push(format!(
-                "{before} {} before the fall and {after} {} after the last flight left out: the ball was held, caught or lay there{brief}",
-                plural(before),
-                plural(after)
-            ));
+        let brief = if self.brief { ", or bounced in too few samples" } else { "" };
+        let ends = [(before, "before the fall"), (after, "after the last flight")];
+        let ends: Vec<String> =
+            ends.iter().filter(|end| end.0 > 0).map(|(n, at)| format!("{n} {} {at}", plural(*n))).collect();
+        if !ends.is_empty() {
+            list.push(format!("{} left out: the ball was held, caught or lay there{brief}", ends.join(" and ")));
         }
         if self.wild > 0 {
             let n = self.wild;
@@ -58,8 +57,10 @@ impl Candidates {
         let floor = unknown(FLOOR, range, origin.1);
         let left = self.left(values, chosen.choice);
         let rms = range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
+        let fitted = model.impacts(values);
         let course = Course {
-            contacts: model.impacts(values).iter().map(|i| origin.0 + unit * i.time.value).collect(),
+            contacts: fitted.iter().map(|i| origin.0 + unit * i.time.value).collect(),
+            lasting: fitted.iter().map(|i| unit * i.lasts.as_ref().map_or(0.0, |lasts| lasts.value)).collect(),
             apexes: model
                 .apexes(values)
                 .iter()
@@ -67,7 +68,6 @@ impl Candidates {
                 .collect(),
             gravity: values[GRAVITY] * range / (unit * unit),
             drag: model.drag_place().map_or(0.0, |j| values[j] / range),
-            lasting: model.contact_place().map_or(0.0, |j| values[j] * unit),
             samples: self
                 .samples
                 .iter()
@@ -108,7 +108,7 @@ impl Candidates {
                 Variant {
                     law: name(f.choice.0),
                     drag: f.choice.1,
-                    unknowns: f.fitted.shared.len(),
+                    unknowns: self.unknowns(f),
                     rms: self.scale.range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt(),
                     bic: f.bic - least,
                     cor: f.cor,

@@ -1,0 +1,137 @@
+//! Films of balls whose impacts take time, as all do: what the program says of the COR, and how often its intervals hold the truth.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod film;
+mod noise;
+
+use film::{Ball, Contact, csv, noisy, report};
+use noise::Noise;
+use saltus_fit::{Report, Verdict};
+
+const CORS: [fn(f64) -> f64; 4] = [|_| 0.52, |_| 0.62, |_| 0.72, |_| 0.82];
+const SCATTER: [f64; 4] = [5e-4, 1e-3, 2e-3, 3e-3];
+
+/// So many films of each kind; the environment's FILMS asks for more.
+fn films() -> u32 {
+    std::env::var("FILMS").map_or(40, |n| n.parse().expect("FILMS is a number"))
+}
+
+/// One film of many, drop height, rebounds, scatter and length chosen by its number; and the least and greatest COR of its first three impacts.
+fn filmed(contact: Contact, rate: f64, n: u32) -> (Report, [f64; 2]) {
+    let mut noise = Noise(u64::from(n) + 1000 * rate as u64);
+    let ball = Ball {
+        drop: 0.8 + 0.4 * noise.uniform(),
+        release: noise.uniform() / rate,
+        gravity: 9.81,
+        drag: 0.0,
+        cor: CORS[n as usize % 4],
+        contact,
+    };
+    let seconds = 1.5 + noise.uniform();
+    let (heights, cors) = ball.watched(rate, seconds);
+    let scatter = SCATTER[n as usize / 4 % 4];
+    let first = &cors[..cors.len().min(3)];
+    let ends = [first.iter().copied().fold(f64::INFINITY, f64::min), first.iter().copied().fold(0.0, f64::max)];
+    (report(&csv(&noisy(&heights, &mut noise, scatter))), ends)
+}
+
+/// How many of the reports that are trusted hold a COR of the first three impacts, of how many.
+fn held(contact: Contact, rates: &[f64]) -> (u32, u32) {
+    let (mut held, mut trusted) = (0, 0);
+    for &rate in rates {
+        for n in 0..films() {
+            let (report, [least, most]) = filmed(contact, rate, n);
+            let cor = report.cor().unwrap_or_else(|| panic!("{report}"));
+            if report.verdict() == Verdict::Trusted {
+                trusted += 1;
+                held += u32::from(cor.low <= most && least <= cor.high);
+            }
+        }
+    }
+    println!(
+        "{contact:?}: {held} of {trusted} trusted intervals hold the truth, of {} films",
+        films() as usize * rates.len()
+    );
+    assert!(trusted as usize * 4 >= films() as usize * rates.len() * 3, "{contact:?}: only {trusted} are trusted");
+    (held, trusted)
+}
+
+fn nine_of_ten(kinds: impl IntoIterator<Item = Contact>) {
+    let counts: Vec<(u32, u32)> = kinds.into_iter().map(|contact| held(contact, &[30.0, 120.0])).collect();
+    let (held, trusted) = counts.iter().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+    assert!(10 * held >= 9 * trusted, "{held} of {trusted}");
+}
+
+#[test]
+fn intervals_of_balls_on_a_spring_hold_the_truth() {
+    nine_of_ten([0.005, 0.01, 0.02].map(Contact::Spring));
+}
+
+#[test]
+fn intervals_of_solid_balls_hold_the_truth() {
+    nine_of_ten([0.005, 0.01, 0.02].map(Contact::Solid));
+}
+
+#[test]
+fn intervals_of_impacts_that_take_no_time_hold_the_truth() {
+    let (held, trusted) = held(Contact::Instant, &[30.0, 60.0, 120.0, 240.0]);
+    assert!(100 * held >= 91 * trusted, "{held} of {trusted}");
+}
+
+/// A squash ball or a football stays on the floor for about 10 ms: without that time the COR would come out up to 0.01 too high.
+#[test]
+fn impacts_that_last_are_found() {
+    let mut noise = Noise(31);
+    for rate in [30.0, 60.0, 240.0] {
+        for cor in [CORS[1], CORS[3]] {
+            for k in 0..3 {
+                let (drop, contact) = (0.9 + 0.07 * f64::from(k), Contact::Spring(0.01));
+                let ball = Ball { drop, release: 0.1, gravity: 9.81, drag: 0.0, cor, contact };
+                let report = report(&csv(&noisy(&ball.film(rate, 2.2), &mut noise, 1e-3)));
+                let contact = report.series()[0].contact.unwrap_or_else(|| panic!("{rate}: {report}"));
+                assert!((contact.value - 0.01).abs() < 4.0 * contact.standard_error, "{rate}: {report}");
+                assert!(contact.standard_error < 0.002, "{rate}: {report}");
+                assert!(report.notes().iter().any(|n| n.contains("ms on the floor at the first impact")), "{report}");
+                assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
+                assert!((report.cor().expect("a COR").value - cor(1.0)).abs() < 0.006, "{rate}: {report}");
+            }
+        }
+    }
+}
+
+/// Of impacts that take no time nothing is said.
+#[test]
+fn impacts_that_take_no_time_are_left_so() {
+    let mut noise = Noise(32);
+    for rate in [30.0, 60.0, 240.0] {
+        for k in 0..5 {
+            let drop = 0.9 + 0.07 * f64::from(k);
+            let ball = Ball { drop, release: 0.1, gravity: 9.81, drag: 0.0, cor: CORS[3], contact: Contact::Instant };
+            let report = report(&csv(&noisy(&ball.film(rate, 2.2), &mut noise, 1e-3)));
+            assert!(report.series()[0].contact.is_none() && !report.to_string().contains("impacts last"), "{report}");
+            assert!((report.cor().expect("a COR").value - 0.82).abs() < 0.003, "{report}");
+        }
+    }
+}
+
+/// One impact does not show how long it takes: the interval reaches down to what it would be if it took some milliseconds.
+#[test]
+fn a_single_impact_may_take_time() {
+    let mut noise = Noise(34);
+    let (mut held, mut all) = (0, 0);
+    for cor in [CORS[0], CORS[2]] {
+        for k in 0..10 {
+            let (drop, contact) = (0.9 + 0.03 * f64::from(k), Contact::Spring(0.001 * f64::from(k + 1)));
+            let ball = Ball { drop, release: 0.05, gravity: 9.81, drag: 0.0, cor, contact };
+            let (heights, cors) = ball.watched(60.0, 0.85);
+            let report = report(&csv(&noisy(&heights, &mut noise, 1e-3)));
+            assert_eq!(report.series()[0].impacts.len(), 1, "{report}");
+            let interval = report.cor().expect("a COR");
+            held += usize::from((interval.low..=interval.high).contains(&cors[0]));
+            all += 1;
+            assert!(report.to_string().contains("does not show how long"), "{report}");
+        }
+    }
+    assert!(held + 2 >= all, "{held} of {all}");
+}
