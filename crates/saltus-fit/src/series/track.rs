@@ -1,6 +1,7 @@
 //! One recording: scaled, cut, fitted by every model, and told in its own units again.
 
 mod told;
+mod weigh;
 
 use super::Samples;
 use super::flights::{self, Flights, NoFlights};
@@ -8,9 +9,10 @@ use super::parabolas::{Sketch, sketch};
 use super::wild::wild;
 use crate::bounces::Measured;
 use crate::least_squares::Failure;
-use crate::model::{BEFORE, Dual, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
+use crate::model::{BEFORE, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, SPEED, Sample, TIME, Trajectory};
 use crate::statistics::median;
 use crate::successive::{Fitted, fit};
+pub(crate) use weigh::choose;
 
 /// Huber's constant: 95 % efficient for normal errors.
 const HUBER: f64 = 1.345;
@@ -18,12 +20,6 @@ const HUBER: f64 = 1.345;
 const WILD: f64 = 6.0;
 /// Starts are tried on so many samples at most.
 const COARSE: usize = 1500;
-/// More than so many times the noise from sample to sample is left for something else to explain,
-const UNEXPLAINED: f64 = 1.2;
-/// such as a drift of the camera, if its BIC is better by so much.
-const CLEAR: f64 = 6.0;
-/// A floor that moves by less than this part of the range, from the first sample to the last, stands still.
-const MOVED: f64 = 0.01;
 /// Candidates of k times the range of heights to start from.
 const DRAGS: [f64; 3] = [0.01, 0.1, 0.4];
 /// Samples whose scatter is less than this part of the range have this much.
@@ -230,47 +226,6 @@ impl Candidates {
         Ok(())
     }
 
-    /// The least robust standard deviation that any model leaves.
-    fn least(&self) -> f64 {
-        self.found.iter().map(|f| f.sigma).fold(f64::INFINITY, f64::min)
-    }
-
-    fn leaves_more_than_noise(&self) -> bool {
-        self.least() > UNEXPLAINED * self.noise
-    }
-
-    /// By how much the BIC of `other` is worse, both on the samples that are left to this one; a drift has to be clearly better.
-    fn gain(&self, other: &Self) -> f64 {
-        let samples = self.samples.iter().map(|s| Sample { weight: 1.0, ..*s }).collect();
-        let mut other = Self { samples, found: Vec::new(), ..other.clone() };
-        if other.fit_all().is_err() {
-            return 0.0;
-        }
-        let sigma = self.least().min(other.least());
-        let count = self.samples.len() as f64;
-        let n = (count / self.dependence.powi(2)).max(2.0);
-        let bic = |of: &Self| {
-            let one = |f: &Found| {
-                let loss: f64 = of.left(&f.fitted.shared, f.choice).iter().map(|r| huber_loss(r / sigma)).sum();
-                n * (loss / count).max(1e-18).ln() + of.unknowns(f) as f64 * n.ln()
-            };
-            of.found.iter().map(one).fold(f64::INFINITY, f64::min) + if of.drift { CLEAR } else { 0.0 }
-        };
-        bic(&other) - bic(self)
-    }
-
-    /// By BIC, with the one unknown more that drift is; neighbouring residuals are alike.
-    fn is_clearly_better_than(&self, other: &Self) -> bool {
-        let n = other.samples.len() as f64 / other.dependence.powi(2);
-        let gain = 2.0 * n * (other.least() / self.least()).ln() - n.ln();
-        let span = self.samples.last().map_or(0.0, |s| s.time) - self.samples.first().map_or(0.0, |s| s.time);
-        let moves = |f: &Found| {
-            let place = self.model(&self.samples, f.choice).drift_place();
-            place.is_some_and(|j| (f.fitted.shared[j] * span).abs() > MOVED)
-        };
-        gain > CLEAR && self.found.iter().all(moves) && 10 * self.samples.len() > 9 * other.samples.len()
-    }
-
     fn model<'a>(&self, samples: &'a [Sample], (law, drag): Choice) -> Trajectory<'a> {
         let step = (samples[samples.len() - 1].time - samples[0].time) / samples.len() as f64;
         Trajectory {
@@ -447,71 +402,6 @@ impl Candidates {
         });
         if at_rest < thrown { rising.count() } else { 0 }
     }
-
-    /// BIC and the error of the COR for each model; residuals of neighbours are alike, which counts as fewer samples.
-    fn weigh(&mut self) {
-        let sigma = self.found.iter().map(|f| f.sigma).fold(f64::INFINITY, f64::min);
-        let losses: Vec<f64> = self
-            .found
-            .iter()
-            .map(|f| self.left(&f.fitted.shared, f.choice).iter().map(|r| huber_loss(r / sigma)).sum())
-            .collect();
-        let best = (0..losses.len()).min_by(|&a, &b| losses[a].total_cmp(&losses[b])).unwrap_or(0);
-        let left = self.left(&self.found[best].fitted.shared, self.found[best].choice);
-        let clip: Vec<f64> = left.iter().map(|r| r.clamp(-3.0 * sigma, 3.0 * sigma)).collect();
-        let own: f64 = clip.iter().map(|r| r * r).sum();
-        let with_next: f64 = clip.windows(2).map(|w| w[0] * w[1]).sum();
-        let alike = if own > 0.0 { (with_next / own).clamp(0.0, 0.95) } else { 0.0 };
-        self.dependence = ((1.0 + alike) / (1.0 - alike)).sqrt();
-        let n = (left.len() as f64 / self.dependence.powi(2)).max(2.0);
-        let least_loss = 1e-18 * left.len() as f64;
-        for (i, loss) in losses.into_iter().enumerate() {
-            let unknowns = self.unknowns(&self.found[i]) as f64;
-            let loss = loss.max(least_loss) / left.len() as f64;
-            self.found[i].bic = n * loss.ln() + unknowns * n.ln();
-            self.found[i].cor = self.cor(&self.found[i]);
-        }
-    }
-
-    /// How many unknowns a model has, but for those of which something is known before.
-    fn unknowns(&self, found: &Found) -> usize {
-        found.fitted.shared.len() - if self.contact { BEFORE.len() } else { 0 }
-    }
-
-    /// The COR of a model: the mean over its impacts, each weighing by its own error.
-    fn cor(&self, found: &Found) -> Measured {
-        let impacts = self.model(&self.samples, found.choice).impacts(&found.fitted.shared);
-        let weights: Vec<f64> =
-            impacts.iter().map(|i| self.measured(found, &i.cor).standard_error.max(1e-9).powi(-2)).collect();
-        let total: f64 = weights.iter().sum();
-        let mut mean = Dual::constant(0.0, found.fitted.shared.len());
-        for (impact, weight) in impacts.iter().zip(&weights) {
-            let part = weight / total;
-            mean = mean.plus(&impact.cor.mapped(part * impact.cor.value, part));
-        }
-        self.measured(found, &mean)
-    }
-
-    /// A quantity of the model with its standard error.
-    fn measured(&self, found: &Found, x: &Dual) -> Measured {
-        let free = self.samples.len().saturating_sub(self.unknowns(found)).max(1) as f64;
-        let scatter = (found.fitted.chi_square / free).max(0.0).sqrt().max(found.sigma);
-        Measured { value: x.value, standard_error: found.fitted.error_of(&x.by) * scatter * self.dependence }
-    }
-}
-
-/// The model with the least BIC over all recordings together.
-pub(crate) fn choose(candidates: &[&Candidates]) -> Choice {
-    let total = |choice: &Choice| {
-        let one = |c: &&Candidates| {
-            let bic = |choice: Choice| c.found.iter().find(|f| f.choice == choice).map(|f| f.bic);
-            // A single impact has one law only; drag that is not there is none.
-            bic(*choice).or(bic((Law::Constant, choice.1))).or(bic((choice.0, false))).or(bic((Law::Constant, false)))
-        };
-        candidates.iter().filter_map(one).sum::<f64>()
-    };
-    let least = CHOICES.iter().min_by(|a, b| total(a).total_cmp(&total(b)));
-    least.copied().unwrap_or((Law::Constant, false))
 }
 
 /// The word for a law.
@@ -525,10 +415,6 @@ pub(super) fn name(law: Law) -> &'static str {
 
 fn huber_weight(z: f64) -> f64 {
     if z.abs() <= HUBER { 1.0 } else { HUBER / z.abs() }
-}
-
-fn huber_loss(z: f64) -> f64 {
-    if z.abs() <= HUBER { z * z } else { 2.0 * HUBER * z.abs() - HUBER * HUBER }
 }
 
 /// The unknowns' places are used by name; this one is implied by the order of the starts above.
