@@ -18,6 +18,10 @@ pub(crate) use weigh::choose;
 const HUBER: f64 = 1.345;
 /// A sample this many standard deviations away is no sample of the ball.
 const WILD: f64 = 6.0;
+/// Huber's weights are found so often at most; half as often for very many samples, where only a model that does not fit has need of more.
+const ROUNDS: usize = 12;
+/// Weights are settled where an unknown moves by less than this part of its error.
+const STAYS: f64 = 1e-3;
 /// Starts are tried on so many samples at most.
 const COARSE: usize = 1500;
 /// Candidates of k times the range of heights to start from.
@@ -317,21 +321,25 @@ impl Candidates {
         let mut values = best.shared;
         let mut samples = self.samples.clone();
         let mut last = None;
-        for _ in 0..12 {
+        for _ in 0..if self.samples.len() > COARSE { ROUNDS / 2 } else { ROUNDS } {
             let fitted = match fit(&self.model(&samples, choice), &values, vec![Vec::new()]) {
                 Ok(fitted) => fitted,
                 Err(Failure::NotIdentified | Failure::Malformed) => return Ok(None),
                 Err(failure) => return Err(failure),
             };
-            let moved = fitted.shared.iter().zip(&values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            values.clone_from(&fitted.shared);
+            let before = std::mem::replace(&mut values, fitted.shared.clone());
             let left = self.left(&values, choice);
             let sigma = self.spread(&left);
             for ((sample, r), trust) in samples.iter_mut().zip(&left).zip(self.trust(&values, choice)) {
                 sample.weight = trust * huber_weight(r / sigma).sqrt();
             }
+            let stays = |j: usize| {
+                let moved = (values[j] - before[j]).abs();
+                moved < 1e-7 || moved < STAYS * sigma * fitted.covariance[(j, j)].sqrt()
+            };
+            let settled = (0..values.len()).all(stays);
             last = Some((fitted, sigma));
-            if moved < 1e-7 {
+            if settled {
                 break;
             }
         }

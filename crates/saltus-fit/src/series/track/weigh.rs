@@ -23,10 +23,12 @@ impl Candidates {
 
     /// By how much the BIC of `other` is worse, both on the samples that are left to this one; a drift has to be clearly better.
     pub(super) fn gain(&self, other: &Self) -> f64 {
-        let samples = self.samples.iter().map(|s| Sample { weight: 1.0, ..*s }).collect();
-        let mut other = Self { samples, found: Vec::new(), ..other.clone() };
-        if other.fit_all().is_err() {
-            return 0.0;
+        let mut other = other.clone();
+        if !self.samples.iter().map(|s| s.time).eq(other.samples.iter().map(|s| s.time)) {
+            other.samples = self.samples.iter().map(|s| Sample { weight: 1.0, ..*s }).collect();
+            if other.fit_all().is_err() {
+                return 0.0;
+            }
         }
         let sigma = self.least().min(other.least());
         let count = self.samples.len() as f64;
