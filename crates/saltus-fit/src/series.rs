@@ -49,7 +49,7 @@ pub struct Track {
     pub drag: Option<Measured>,
     /// The speed at which the floor moves on the table's scale, as where the camera turns; none where it stands still.
     pub drift: Option<Measured>,
-    /// The time that the ball stays on the floor at each impact, in seconds; none where that is too short to be seen.
+    /// The time that the ball stays on the floor at the speed of about the first impact, in seconds; none where that is too short to be seen.
     pub contact: Option<Measured>,
     /// The height of the ball in contact with the floor, on the table's scale; where that drifts, at the first impact.
     pub floor: Measured,

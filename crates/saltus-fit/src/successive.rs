@@ -5,13 +5,16 @@
 //! Those of all blocks are reduced to one small triangle, which is solved within bounds and a trust region. This is exact, and a
 //! million rows cost one pass each step.
 
-use nalgebra::{DMatrix, DMatrixViewMut, DVector, Vector2, linalg::givens::GivensRotation};
+use nalgebra::{DMatrix, DVector};
 
 use crate::bounces::Measured;
 use crate::least_squares::{Bounds, Failure, solve, step};
 
 /// So many rows at a time are reflected, which a processor keeps close by.
 const PANEL: usize = 256;
+/// A column of rows this small beside the triangle's diagonal says nothing, nor one this small a part of the least diagonal that counts.
+const NOTHING: f64 = 1e-20;
+const LEAST: f64 = 1e-120;
 const STEPS: usize = 60;
 /// A step this small, relative to the unknown, is the last.
 const FINE: f64 = 1e-12;
@@ -63,7 +66,7 @@ impl Fitted {
     }
 }
 
-/// An upper triangle that rows are reflected or rotated into.
+/// An upper triangle that rows are reflected into.
 struct Triangle {
     width: usize,
     r: Vec<f64>,
@@ -74,45 +77,30 @@ impl Triangle {
         Self { width, r: vec![0.0; width * width] }
     }
 
-    /// Reflects rows into the triangle, column by column: of many rows far quicker than one after the other.
-    fn reflect(&mut self, rows: &mut DMatrixViewMut<f64>) {
+    /// Reflects rows into the triangle, column by column.
+    fn reflect(&mut self, rows: &mut DMatrix<f64>) {
         let w = self.width;
-        for j in 0..w {
-            let below = rows.column(j).norm_squared();
-            if below == 0.0 {
-                continue;
-            }
-            let here = &mut self.r[j * w..(j + 1) * w];
-            // The reflection of (here | rows) about 1 and v: the triangle's diagonal stays positive, and nothing cancels.
-            let length = here[j].hypot(below.sqrt());
-            let head = -below / (here[j] + length);
-            let scale = -head / length;
-            let (mut pivot, mut rest) = rows.columns_range_pair_mut(j, j + 1..);
-            pivot /= head;
-            here[j] = length;
-            for (k, mut column) in rest.column_iter_mut().enumerate() {
-                let s = scale * (here[j + 1 + k] + column.dot(&pivot));
-                here[j + 1 + k] -= s;
-                column.axpy(-s, &pivot, 1.0);
-            }
-        }
-    }
-
-    /// Rotates a row into the triangle, leaving it zero.
-    fn add(&mut self, row: &mut [f64]) {
-        let w = self.width;
-        for j in 0..w {
-            if row[j] == 0.0 {
-                continue;
-            }
-            let here = &mut self.r[j * w..(j + 1) * w];
-            let Some((rotation, length)) = GivensRotation::cancel_y(&Vector2::new(here[j], row[j])) else { continue };
-            let (c, s) = (rotation.c(), rotation.s());
-            here[j] = length;
-            for k in j + 1..w {
-                let (a, b) = (here[k], row[k]);
-                here[k] = c * a - s * b;
-                row[k] = s * a + c * b;
+        for from in (0..rows.nrows()).step_by(PANEL) {
+            let mut panel = rows.rows_mut(from, PANEL.min(rows.nrows() - from));
+            for j in 0..w {
+                let here = &mut self.r[j * w..(j + 1) * w];
+                let below = panel.column(j).norm_squared();
+                // Far below rounding, and far from where a square loses its digits.
+                if below.sqrt() <= NOTHING * here[j].max(LEAST) {
+                    continue;
+                }
+                // The reflection of (here | rows) about (1, pivot): the triangle's diagonal stays positive, and nothing cancels.
+                let length = here[j].hypot(below.sqrt());
+                let head = -below / (here[j] + length);
+                let scale = -head / length;
+                let (mut pivot, mut rest) = panel.columns_range_pair_mut(j, j + 1..);
+                pivot /= head;
+                here[j] = length;
+                for (here, mut column) in here[j + 1..].iter_mut().zip(rest.column_iter_mut()) {
+                    let s = scale * (*here + column.dot(&pivot));
+                    *here -= s;
+                    column.axpy(-s, &pivot, 1.0);
+                }
             }
         }
     }
@@ -265,9 +253,7 @@ fn each_block(
         }
         model.fill(block, shared, own, &mut filled);
         let cost = filled.column(width - 1).norm_squared();
-        for from in (0..m).step_by(PANEL) {
-            triangle.reflect(&mut filled.rows_mut(from, PANEL.min(m - from)));
-        }
+        triangle.reflect(&mut filled);
         if !cost.is_finite() || triangle.r.iter().any(|v| !v.is_finite()) {
             return Err(Failure::Malformed);
         }
@@ -281,17 +267,14 @@ fn linearise(model: &impl Model, shared: &[f64], own: &[f64], sizes: &[usize]) -
     let n = shared.len();
     let mut all = Triangle::new(n + 1);
     let mut tops = Vec::with_capacity(own.len() * (n + 2));
-    let mut row = Vec::with_capacity(n + 1);
+    let mut tails = Vec::with_capacity(sizes.len() * (n + 1) * (n + 1));
     let (mut cost, mut rows) = (0.0, 0);
     each_block(model, shared, own, sizes, |m, q, triangle, squares| {
         (cost, rows) = (cost + squares, rows + m.saturating_sub(q));
         tops.extend_from_slice(&triangle.r[..q * triangle.width]);
-        for i in q..triangle.width {
-            row.clear();
-            row.extend_from_slice(&triangle.row(i)[q..]);
-            all.add(&mut row);
-        }
+        (q..triangle.width).for_each(|i| tails.extend_from_slice(&triangle.row(i)[q..]));
     })?;
+    all.reflect(&mut DMatrix::from_row_slice(tails.len() / (n + 1), n + 1, &tails));
     let square = DMatrix::from_row_slice(n + 1, n + 1, &all.r);
     Ok(Linear { x: square.columns(0, n).into_owned(), y: square.column(n).into_owned(), tops, cost, rows })
 }

@@ -178,3 +178,18 @@ fn the_start_does_not_matter() {
         assert!((found.shared[0] - 0.896_008).abs() < 1e-6, "from {e}: {}", found.shared[0]);
     }
 }
+
+/// `RᵀR` is `XᵀX`, over several panels; numbers too small to be squared spoil nothing.
+#[test]
+fn reflections_keep_the_normal_equations() {
+    for tiny in [1.0, 1e-158, 1e-162, 0.0] {
+        let entry = |i: usize, j: usize| ((7 * i + 13 * j * j) as f64).sin() * if j == 1 { tiny } else { 1.0 };
+        let rows = DMatrix::from_fn(2 * PANEL + 3, 4, entry);
+        let mut triangle = Triangle::new(4);
+        triangle.reflect(&mut rows.clone());
+        let r = DMatrix::from_row_slice(4, 4, &triangle.r);
+        let apart = (r.tr_mul(&r) - rows.tr_mul(&rows)).abs().max();
+        assert!(apart < 1e-10, "{tiny}: {apart}");
+        assert!((0..4).all(|j| r[(j, j)] >= 0.0), "{tiny}: {r}");
+    }
+}
