@@ -111,7 +111,7 @@ pub(crate) fn single<M: OneKind>(
             chance(differ.p)
         ));
         settings_differ = true;
-        report.widened = Some("it takes in each of the balls, floors or drop heights".to_owned());
+        report.widen("it takes in each of the balls, floors or drop heights");
         (cor.low, cor.high) = (cor.low.min(differ.low.1), cor.high.max(differ.high.1));
         cor.standard_error = Some((cor.high - cor.low) / (2.0 * NORMAL));
         report.warnings.push(

@@ -114,9 +114,9 @@ pub struct Report {
     /// Heights are in pixels.
     #[serde(skip)]
     pub(crate) pixels: bool,
-    /// What the interval takes in beside the error of the COR, in words.
+    /// What the interval takes in beside the error of the COR, in words, each thing once.
     #[serde(skip)]
-    pub(crate) widened: Option<String>,
+    pub(crate) widened: Vec<String>,
     #[serde(skip)]
     pub(crate) ball: Option<f64>,
     #[serde(skip)]
@@ -154,11 +154,18 @@ impl Report {
             notes: Vec::new(),
             files: Vec::new(),
             pixels: false,
-            widened: None,
+            widened: Vec::new(),
             ball: None,
             motion: None,
             residuals: Vec::new(),
             points: Vec::new(),
+        }
+    }
+
+    /// The interval takes in something more; `why`, in words.
+    pub(crate) fn widen(&mut self, why: &str) {
+        if !self.widened.iter().any(|said| said == why) {
+            self.widened.push(why.to_owned());
         }
     }
 

@@ -77,7 +77,7 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) -> bool {
         {
             cor.low = cor.low.min(model.cor.value - reach).max(0.0);
             cor.high = cor.high.max(model.cor.value + reach);
-            report.widened = Some("it reaches out to models that fit as well, with another COR".to_owned());
+            report.widen("it reaches out to models that fit as well, with another COR");
         }
     }
     let decided = close.iter().any(|(_, model)| model.bic < -CLEAR);
@@ -87,7 +87,7 @@ pub(crate) fn models(report: &mut Report, list: &[ModelChoice]) -> bool {
         if let Some(cor) = &mut report.cor {
             cor.low = model.speeds.iter().map(|s| s.cor).fold(cor.low, f64::min);
             cor.high = model.speeds.iter().map(|s| s.cor).fold(cor.high, f64::max);
-            report.widened = Some("it takes in all that the COR may be under the models that fit".to_owned());
+            report.widen("it takes in all that the COR may be under the models that fit");
         }
     }
     // A COR of its own for every bounce explains nothing where something else does.
@@ -184,7 +184,7 @@ pub(crate) fn rest_on(report: &mut Report, wanted: CorModel, untried: Option<&st
     let (about, holds, as_good) = (gives(model), model.p.is_none_or(|p| p >= REJECT), model.bic < best + CLEAR);
     let (e, error, of_speed) = (model.cor.value, model.cor.standard_error, !model.speeds.is_empty());
     model.chosen = true;
-    report.widened = None;
+    report.widened.clear();
     report.cor = Some(Cor {
         value: e,
         standard_error: Some(error),
@@ -270,7 +270,7 @@ mod tests {
         assert!(report.reason.contains("or it depends on the speed of impact"), "{}", report.reason);
         assert!(report.reason.ends_with("the readings cannot tell which"), "{}", report.reason);
         let cor = report.cor.expect("a COR");
-        assert!(cor.low <= 0.75 && cor.high >= 0.85 && report.widened.is_some());
+        assert!(cor.low <= 0.75 && cor.high >= 0.85 && !report.widened.is_empty());
         models(&mut alone, &list(-0.6));
         assert!(!alone.reason.contains("cannot tell"), "{}", alone.reason);
     }

@@ -86,11 +86,10 @@ fn lopsided(report: &Report, cor: &Cor) -> Option<String> {
         return None;
     }
     let side = if above > below { "upwards" } else { "downwards" };
-    match &report.widened {
-        Some(why) => Some(format!("The interval is longer {side}: {why}.")),
-        None if cor.low <= 0.0 => Some("The interval ends at 0, below which there is no COR.".to_owned()),
-        None => None,
+    if report.widened.is_empty() {
+        return (cor.low <= 0.0).then(|| "The interval ends at 0, below which there is no COR.".to_owned());
     }
+    Some(format!("The interval is longer {side}: {}.", report.widened.join("; ")))
 }
 
 /// The COR bounce by bounce, for small tables.
@@ -445,4 +444,22 @@ pub(super) fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: 
         fresh = false;
     }
     writeln!(f, "{line}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{Source, Sourced};
+
+    #[test]
+    fn every_reason_for_a_longer_interval_is_told_once() {
+        let mut report = Report::new("t", Sourced { value: 9.81, source: Source::Assumed });
+        let cor = Cor { value: 0.8, standard_error: Some(0.01), low: 0.70, high: 0.82 };
+        assert_eq!(lopsided(&report, &cor), None);
+        for why in ["it takes in one thing", "it takes in another", "it takes in one thing"] {
+            report.widen(why);
+        }
+        let told = "The interval is longer downwards: it takes in one thing; it takes in another.";
+        assert_eq!(lopsided(&report, &cor).as_deref(), Some(told));
+    }
 }

@@ -8,11 +8,10 @@ use crate::estimate::Estimate;
 use crate::model::Law;
 use crate::report::{Cor, Report, Verdict, measured};
 use crate::spread::across;
+use crate::weigh::CLEAR;
 
-/// So much better a BIC must be before the other model is out of the question.
-const CLEAR: f64 = 6.0;
 /// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
-const STAYS: f64 = 0.01;
+const LASTS: f64 = 0.01;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
 
@@ -65,7 +64,7 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
                 about(choice),
                 cor.value
             ));
-            report.widened = Some("it takes in both models".to_owned());
+            report.widen("it takes in both models");
             low = low.min(cor.value - pooled.quantile * cor.standard_error).max(0.0);
             high = high.max(cor.value + pooled.quantile * cor.standard_error);
         }
@@ -94,26 +93,26 @@ pub(crate) fn judge(report: &mut Report, series: &Series) {
         let wider = was.value - reach < low || was.value + reach > high;
         // Every impact takes some time.
         if wider && *worse < CLEAR {
-            report.widened = Some("it takes in impacts that take time, and such that take none".to_owned());
+            report.widen("it takes in impacts that take time, and such that take none");
             low = low.min(was.value - reach).max(0.0);
             high = high.max(was.value + reach);
         }
     }
     if series.tracks.iter().all(|track| track.impacts.len() == 1) {
         let higher =
-            |track: &Track| (1.0 - pooled.cor.value).max(0.0) * track.gravity.value * STAYS / track.impacts[0].speed;
+            |track: &Track| (1.0 - pooled.cor.value).max(0.0) * track.gravity.value * LASTS / track.impacts[0].speed;
         let higher = series.tracks.iter().map(higher).fold(0.0, f64::max);
         let lower = (low - higher).max(0.0);
         if lower < low && higher > 0.1 * pooled.cor.standard_error {
-            report.widened = Some(format!(
+            report.widen(&format!(
                 "one impact does not show how long it lasts, and a ball that stays {:.0} ms on the floor would have a COR lower by {higher:.3}",
-                1e3 * STAYS
+                1e3 * LASTS
             ));
             low = lower;
         }
     }
     if varying(series, law, &mut doubts, (&mut low, &mut high)) {
-        report.widened = Some("it takes in the COR of every impact".to_owned());
+        report.widen("it takes in the COR of every impact");
     }
     roughness(report, series, &mut doubts);
     gravity(report, &series.tracks);

@@ -3,11 +3,10 @@
 use super::{CHOICES, Candidates, Choice, Found, HUBER, Sample};
 use crate::bounces::Measured;
 use crate::model::{BEFORE, Dual, Law};
+use crate::weigh::CLEAR;
 
-/// More than so many times the noise from sample to sample is left for something else to explain,
+/// More than so many times the noise from sample to sample is left for something else to explain, such as a drift of the camera.
 const UNEXPLAINED: f64 = 1.2;
-/// such as a drift of the camera, if its BIC is better by so much.
-const CLEAR: f64 = 6.0;
 /// A floor that moves by less than this part of the range, from the first sample to the last, stands still.
 const MOVED: f64 = 0.01;
 
