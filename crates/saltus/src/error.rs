@@ -71,6 +71,8 @@ pub enum ErrorKind {
     Model,
     /// The flow has not as many coordinates as the state.
     Dimension,
+    /// The series of the flow is that of another one: it does not start with the flow's slope.
+    Series,
     /// The flow is not finite, however short the step.
     Flow,
     /// The guard is not a number.
@@ -167,6 +169,9 @@ impl fmt::Display for Error {
                 f,
                 "the flow gives {said} and the state has {} coordinates: give both as many in this mode, here and in the resets that lead to it",
                 state.len()
+            )?,
+            ErrorKind::Series => f.write_str(
+                "the series does not start with the slope that the flow gives: write the same flow in Automaton::series and Automaton::flow",
             )?,
             ErrorKind::Flow => f.write_str(
                 "the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",

@@ -42,6 +42,7 @@ mod poly;
 #[cfg(feature = "num-dual")]
 pub mod return_map;
 mod reverse;
+mod series;
 mod simulation;
 mod state;
 pub mod step;
@@ -67,6 +68,7 @@ pub use hybrid::{Hybrid, Link, every};
 pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
 pub use observe::{Inspection, Observer};
 pub use reverse::{Invertible, Reversed};
+pub use series::{Jet, Series};
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
 pub use state::{Coords, State};
 pub use step::{Auto, Dop853, Rodas5P, Tsit5};

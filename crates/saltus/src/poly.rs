@@ -1,7 +1,7 @@
 //! Polynomials over a step, in the Bernstein basis: their coefficients bound them, and halving them isolates their roots.
 
 /// The highest degree handled.
-pub(crate) const MAX_DEGREE: usize = 12;
+pub(crate) const MAX_DEGREE: usize = 28;
 
 /// C(n, k) in row n.
 const BINOMIALS: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
@@ -209,6 +209,22 @@ fn value(weighted: &[f64], u: f64) -> f64 {
         weighted.iter().for_each(&mut step);
     }
     sum * power
+}
+
+/// Σ aₖ uᵏ and its derivative, where `of` gives aₖ of the list's number k: even and odd powers apart, half as long a chain.
+#[inline]
+pub(crate) fn value_and_slope<T>(a: &[T], of: impl Fn(&T) -> f64, u: f64) -> (f64, f64) {
+    let square = u * u;
+    let pairs = a.chunks_exact(2);
+    let mut even = pairs.remainder().first().map_or(0.0, &of);
+    let (mut odd, mut even_slope, mut odd_slope) = (0.0, 0.0, 0.0); // slopes by u²
+    for pair in pairs.rev() {
+        even_slope = even_slope * square + even;
+        odd_slope = odd_slope * square + odd;
+        even = even * square + of(&pair[0]);
+        odd = odd * square + of(&pair[1]);
+    }
+    (even + u * odd, odd + 2.0 * (u * even_slope + square * odd_slope))
 }
 
 /// The first fall through zero of c₀ + c₁ s + c₂ s² at s ≥ 0, with c₀ taken to be zero and its root skipped if `spent`.

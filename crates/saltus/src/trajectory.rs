@@ -6,6 +6,7 @@ use crate::automaton::Automaton;
 use crate::certificate::Doubts;
 use crate::copies::{copied, shown};
 use crate::observe::Inspection;
+use crate::poly::value_and_slope;
 use crate::state::State;
 use crate::time::Time;
 
@@ -14,9 +15,13 @@ use crate::time::Time;
 pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
     match coefficients {
         [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
+        _ if coefficients.len() > LONG => coefficients[0].with(|i| value_and_slope(coefficients, |c| c.get(i), s).0),
         _ => coefficients[0].with(|i| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c.get(i))),
     }
 }
+
+/// More coefficients than any stepper's dense output has.
+const LONG: usize = 9;
 
 /// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
 ///

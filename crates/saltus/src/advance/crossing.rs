@@ -2,7 +2,8 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{
-    Crossing, Evidence, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step, settle,
+    Crossing, FirstFall, Searched, Start, Undefined, first_fall_by_powers, first_fall_of_polynomial,
+    first_fall_on_step, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
@@ -14,6 +15,10 @@ use crate::trajectory::horner;
 
 use super::{Advance, Found};
 
+/// The roughness of a guard on a step as a part of how far it bends, over the part of the step from a spent root on.
+const ROUGH: f64 = 1e-6;
+/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
+const SURELY: f64 = 64.0 * f64::EPSILON;
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
@@ -34,22 +39,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge, first));
             let affine = self.automaton.affine(edge);
-            if affine && start != Start::Spent && self.stays_above(edge, now, c, limit / scale) {
-                observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence: Evidence::Excluded });
-                continue;
-            }
             let powers = if affine { self.stretched(edge, now, c, limit / scale, start, level) } else { None };
-            let p = powers.as_ref().and_then(Powers::bernstein);
-            let bend = if p.is_none() { self.bend(edge, now, c) } else { 0.0 };
+            let by_powers = powers.as_ref().map_or(FirstFall::Unclear, |powers| powers.first_fall(start));
+            let unclear = by_powers == FirstFall::Unclear;
+            let p = powers.as_ref().filter(|_| unclear).and_then(Powers::bernstein);
+            let bend = if unclear && p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
             let mut guard = |s: f64| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
             };
             let mut above = |s: f64| guard(s) - level;
-            let searched = match &p {
-                Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
-                None => first_fall_on_step(&mut above, limit, start, bend),
+            let searched = match (by_powers, &p) {
+                (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
+                (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
+                (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
+                _ => first_fall_on_step(&mut above, limit, start, bend),
             };
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, evidence } =
@@ -61,22 +66,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         Ok(found)
-    }
-
-    /// Whether an affine guard can have no fall along a polynomial over `0..=stretch` times its scale for the size of its powers alone: by far the
-    /// cheapest thing to see, with room for the digits that the guard's constant costs.
-    #[inline]
-    fn stays_above(&mut self, edge: A::Edge, now: Time, c: &[A::State], stretch: f64) -> bool {
-        self.memory.stats.guards += c.len() as u64 + 1;
-        let t = now.seconds();
-        let constant = self.automaton.guard(edge, t, &c[0].with(|_| 0.0));
-        let start = self.automaton.guard(edge, t, &c[0]);
-        let (mut most, mut power) = (0.0, stretch);
-        for c in &c[1..] {
-            most += (self.automaton.guard(edge, t, c) - constant).abs() * power;
-            power *= stretch;
-        }
-        exceeds(start, most, constant)
     }
 
     /// How far the guard bends along a polynomial: by its powers from the second on.
@@ -273,6 +262,20 @@ struct Powers {
 }
 
 impl Powers {
+    /// Where it first falls, as far as its powers show it at once.
+    fn first_fall(&self, start: Start) -> FirstFall {
+        let p = &self.p[..self.len];
+        let bend: f64 = p.iter().skip(2).map(|p| p.abs()).sum();
+        let scale = p[0].abs() + p[1].abs() + bend;
+        let margin = SURELY * scale;
+        // From a wall, be it spent or not, only the change counts.
+        if start == Start::Spent || p[0].abs() <= self.rounding + margin {
+            first_fall_by_powers(&p[1..], ROUGH * bend + margin)
+        } else {
+            first_fall_by_powers(p, self.rounding + margin)
+        }
+    }
+
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(&self.p[..self.len])?;

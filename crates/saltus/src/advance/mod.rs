@@ -4,6 +4,7 @@ mod closed;
 mod crossing;
 mod enter;
 mod exact;
+mod series;
 mod solved;
 mod stepped;
 
@@ -14,6 +15,7 @@ use crate::control::Controller;
 use crate::cross::{Crossing, Start};
 use crate::error::Error;
 use crate::observe::Observer;
+use crate::series::Tape;
 use crate::simulation::{Options, Stats, Stop};
 use crate::step::Stepper;
 use crate::time::Time;
@@ -166,6 +168,7 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) stepper: M,
     pub(crate) options: &'a Options,
     pub(crate) memory: &'a mut Memory<A::Edge>,
+    pub(crate) tape: &'a mut Tape,
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -223,8 +226,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.exact(mode, &solution, &within, observer)
             } else if !stepped && self.automaton.flown(mode, t, x, 0.0).is_some() {
                 self.closed(mode, x, &within, observer)
+            } else if stepped {
+                self.stepped(mode, *x, within, true, observer)
             } else {
-                self.stepped(mode, *x, within, observer)
+                self.by_series(mode, *x, within, observer)
             };
             match end? {
                 ArcEnd::Stop { stop: Stop::Time, time, state } => (time, state),

@@ -22,11 +22,13 @@ const MOST_PROBED: usize = 8;
 const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// From `x`, where the arc begins or (not `first`) has come to by other means.
     pub(super) fn stepped(
         &mut self,
         mode: A::Mode,
         mut x: A::State,
         mut clock: Clock,
+        mut first: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let mut slope = self.flow(mode, clock.now.seconds(), &x);
@@ -37,7 +39,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !slope.is_finite() {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
         }
-        let mut first = true;
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
         loop {

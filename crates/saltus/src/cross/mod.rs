@@ -3,11 +3,13 @@
 pub(crate) mod chebyshev;
 mod departure;
 mod looks;
+mod powers;
 mod refine;
 mod search;
 
 use crate::poly::{Bernstein, Shape};
 
+pub(crate) use powers::{FirstFall, first_fall as first_fall_by_powers};
 pub(crate) use refine::{narrowed, settle};
 use search::Search;
 

@@ -25,11 +25,13 @@ fn problems() -> Vec<Problem> {
     let mut p2 = vec![floor::drag(), ours::drag_ball(), ours::drag_stepped("Auto", Auto::default())];
     p2.push(ours::drag_stepped("Tsit5", Tsit5));
     p2.push(ours::drag_stepped("Dop853", Dop853));
+    p2.push(ours::drag_stepped(ours::SERIES, Auto::default()));
     p2.extend(diffsol::drag());
     p2.extend(differential_equations::drag());
     p2.extend(ivp::drag());
 
     let mut p3 = vec![ours::orbit("Dop853", Dop853), ours::orbit("Tsit5", Tsit5), diffsol::orbit()];
+    p3.push(ours::orbit(ours::SERIES, Auto::default()));
     p3.extend(differential_equations::orbit());
     p3.extend([ivp::orbit(Explicit::Dop853), ivp::orbit(Explicit::Dopri5)]);
     p3.extend(ode_solvers::orbit());
@@ -42,6 +44,7 @@ fn problems() -> Vec<Problem> {
     p4.push(russell_ode::stiff());
 
     let mut p5 = vec![ours::crossings("Tsit5", Tsit5), ours::crossings("Dop853", Dop853), diffsol::crossings()];
+    p5.push(ours::crossings(ours::SERIES, Auto::default()));
     p5.extend(differential_equations::crossings());
     p5.extend(ivp::crossings(Explicit::Dopri5));
     p5.extend(ivp::crossings(Explicit::Dop853));

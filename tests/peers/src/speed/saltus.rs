@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use saltus::step::Stepper;
-use saltus::{Automaton, Edges, Jump, Observer, Rodas5P, Simulation};
+use saltus::{Automaton, Edges, Jump, Observer, Rodas5P, Series, Simulation};
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Cor, Mode, Phase};
 
@@ -11,6 +11,8 @@ use super::contest::{Entry, Events, Log, Solve};
 use super::problems::{self, CROSSINGS, DRAG, VACUUM, arenstorf, van_der_pol};
 
 const SOLVER: &str = "saltus";
+/// The method that is no stepper.
+pub const SERIES: &str = "Taylor series";
 
 /// Keeps the times of the jumps by one edge.
 struct Times<'a, E> {
@@ -71,6 +73,11 @@ impl Automaton for Stepped {
     #[inline]
     fn flow(&self, rising: bool, _t: f64, x: &[f64; 2]) -> [f64; 2] {
         [x[1], self.0.smooth(rising, x[1])]
+    }
+    #[inline]
+    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
+        let (g, k) = (self.0.gravity, if rising { -self.0.drag } else { self.0.drag });
+        series.flow(|_t, [_, v]| [v, k * (v * v) - g])
     }
     #[inline]
     fn edges(&self, rising: bool) -> Edges<Turn> {
@@ -143,6 +150,7 @@ where
         Box::new(move |log| {
             let simulation =
                 Simulation::of(&automaton).stepper(stepper).tolerance(tolerance).absolute_tolerance(tolerance);
+            let simulation = if method == SERIES { simulation } else { simulation.stepped() };
             run(&simulation, log);
         })
     })
@@ -189,6 +197,16 @@ impl Automaton for Orbit {
     #[inline]
     fn flow(&self, (): (), _t: f64, x: &[f64; 4]) -> [f64; 4] {
         arenstorf::flow(*x)
+    }
+    #[inline]
+    fn series(&self, (): (), series: &mut Series<'_, [f64; 4]>) -> bool {
+        use arenstorf::MU;
+        series.flow(|_t, [x, y, u, v]| {
+            let (a, b) = (x + MU, x - (1.0 - MU));
+            let y2 = y * y;
+            let (p, q) = ((1.0 - MU) * (a * a + y2).powf(-1.5), MU * (b * b + y2).powf(-1.5));
+            [u, v, x + 2.0 * v - p * a - q * b, y - 2.0 * u - (p + q) * y]
+        })
     }
     fn edges(&self, (): ()) -> Edges<()> {
         Edges::none()
@@ -265,6 +283,10 @@ impl Automaton for Oscillator {
     #[inline]
     fn flow(&self, _: bool, _t: f64, x: &[f64; 2]) -> [f64; 2] {
         [x[1], -x[0]]
+    }
+    #[inline]
+    fn series(&self, _: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
+        series.flow(|_t, [x, v]| [v, -x])
     }
     #[inline]
     fn edges(&self, above: bool) -> Edges<bool> {

@@ -1,0 +1,185 @@
+//! Flows that are given over jets, and solved by their Taylor series.
+
+#![allow(clippy::unwrap_used)] // in what the tests share
+
+use proptest::prelude::*;
+use saltus::{Automaton, Dop853, Edges, ErrorKind, Hybrid, Series, Simulation, Stop};
+
+/// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a kink at rest.
+struct Ball {
+    gravity: f64,
+    drag: f64,
+    cor: f64,
+    whole: bool,
+}
+
+const BALL: Ball = Ball { gravity: 9.8, drag: 0.1, cor: 0.9, whole: false };
+
+impl Automaton for Ball {
+    type Mode = bool; // rising?
+    type State = [f64; 2];
+    type Edge = bool;
+
+    fn flow(&self, rising: bool, _t: f64, &[_, v]: &[f64; 2]) -> [f64; 2] {
+        let along = if self.whole { v.abs() } else { [-v, v][usize::from(rising)] };
+        [v, -self.gravity - self.drag * v * along]
+    }
+    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
+        let &Self { gravity, drag, whole, .. } = self;
+        let drag = if rising { drag } else { -drag };
+        if whole {
+            series.flow(|_t, [_, v]| [v, -gravity - drag.abs() * v * v.abs()])
+        } else {
+            series.flow(|_t, [_, v]| [v, -gravity - drag * (v * v)])
+        }
+    }
+    fn edges(&self, rising: bool) -> Edges<bool> {
+        Edges::from([rising && !self.whole])
+    }
+    fn guard(&self, apex: bool, _t: f64, x: &[f64; 2]) -> f64 {
+        x[usize::from(apex)]
+    }
+    fn affine(&self, _: bool) -> bool {
+        true
+    }
+    fn reset(&self, apex: bool, _t: f64, &[y, v]: &[f64; 2]) -> (bool, [f64; 2]) {
+        if apex { (false, [y, 0.0]) } else { (true, [0.0, -self.cor * v]) }
+    }
+}
+
+impl Ball {
+    /// When it strikes the floor, dropped from `height`, by formula.
+    fn impacts(&self, height: f64) -> impl Iterator<Item = f64> {
+        let (rate, cor) = ((self.gravity * self.drag).sqrt(), self.cor);
+        let (drag, mut t, mut rise, mut h) = (self.drag, 0.0, 0.0, height);
+        std::iter::from_fn(move || {
+            let speed = (-(-2.0 * drag * h).exp_m1()).sqrt(); // as parts of the speed that drag allows
+            t += rise + speed.atanh() / rate;
+            rise = (cor * speed).atan() / rate;
+            h = (cor * speed).powi(2).ln_1p() / (2.0 * drag);
+            Some(t)
+        })
+    }
+
+    /// The largest error among twenty impacts, and what the run cost.
+    fn run(&self, tolerance: f64) -> (f64, saltus::Stats) {
+        let jumps = if self.whole { 20 } else { 39 };
+        let simulation = Simulation::of(self).tolerance(tolerance).absolute_tolerance(tolerance).most_jumps(jumps);
+        let run = simulation.run(false, [10.0, 0.0], 0.0..100.0).unwrap();
+        let times: Vec<f64> =
+            run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(false)).map(saltus::Jump::t).collect();
+        assert_eq!(times.len(), 20);
+        let error = times.iter().zip(self.impacts(10.0)).map(|(t, exact)| (t - exact).abs()).fold(0.0, f64::max);
+        (error, run.stats)
+    }
+}
+
+#[test]
+fn digits_cost_little() {
+    let mut flows = Vec::new();
+    for digits in 4..=13 {
+        let tolerance = 0.1_f64.powi(digits);
+        let (error, stats) = BALL.run(tolerance);
+        assert!(error <= 10.0 * tolerance + 2e-15, "{error:e} at {tolerance:e}");
+        flows.push(stats.flows);
+    }
+    // Six digits more, from 1e-6 to 1e-12, cost less than 10 % each.
+    assert_eq!((flows[2], flows[8]), (656, 1124), "{flows:?}");
+}
+
+#[test]
+fn a_kink_is_not_gone_across_blindly() {
+    for tolerance in [1e-4, 1e-7, 1e-10] {
+        let (error, _) = Ball { whole: true, ..BALL }.run(tolerance);
+        assert!(error <= 100.0 * tolerance, "{error:e} at {tolerance:e}");
+    }
+}
+
+#[test]
+fn a_series_of_another_flow_is_refused() {
+    let other = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x]| [-1.01 * x]);
+    let error = Simulation::of(&other).run("decay", 1.0, 0.0..1.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Series);
+    assert_eq!(
+        error.to_string(),
+        "the series does not start with the slope that the flow gives: write the same flow in Automaton::series and Automaton::flow (t = 0, mode \"decay\", state [1.0])"
+    );
+    let flat = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x, _]| [-x, x]);
+    let error = Simulation::of(&flat).run("decay", 1.0, 0.0..1.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Dimension);
+}
+
+#[test]
+fn where_there_is_no_series_steps_go_on() {
+    // A tank that fills through a slit, x' = √x + 0.1: at x = 0 the root has no series.
+    let tank = Hybrid::new()
+        .mode("fill", |_t, x: &f64| x.max(0.0).sqrt() + 0.1)
+        .series("fill", |_t, [x]| [x.sqrt() + 0.1])
+        .edge("fill", "fill", |_t, x| 1.0 - x, |_t, _x| 0.25);
+    let run = Simulation::of(&tank).tolerance(1e-10).run("fill", 0.0, 0.0..3.0).unwrap();
+    // t = 2 (√x - 0.1 ln(√x + 0.1)) from 0 to 1
+    let full = 2.0 * (1.0 - 0.1 * (1.1_f64 / 0.1).ln());
+    assert!((run.trajectory.jumps()[0].t() - full).abs() < 1e-8);
+    assert_eq!(run.stop, Stop::Time);
+}
+
+#[test]
+fn any_unit_of_time_will_do() {
+    for rate in [1e-14, 1e-3, 1.0, 1e3, 1e14] {
+        let swing = Hybrid::new()
+            .mode("swing", move |_t, x: &[f64; 2]| [rate * x[1], -rate * x[0]])
+            .series("swing", move |_t, [x, v]| [rate * v, -rate * x]);
+        let end = std::f64::consts::TAU / rate;
+        let run = Simulation::of(&swing).tolerance(1e-12).run("swing", [1.0, 0.0], 0.0..end).unwrap();
+        assert!((run.state[0] - 1.0).abs() < 1e-11 && run.state[1].abs() < 1e-11, "{rate:e}: {:?}", run.state);
+        assert!(run.stats.steps <= 5, "{rate:e}: {} steps", run.stats.steps);
+    }
+}
+
+#[test]
+fn a_run_goes_on_from_a_checkpoint_to_the_bit() {
+    let simulation = Simulation::of(&BALL).most_jumps(30);
+    let mut course = simulation.start(false, [2.0, 0.0], 0.0..50.0).unwrap();
+    for _ in 0..11 {
+        course.advance(&mut ()).unwrap();
+    }
+    let pause = course.checkpoint();
+    let (one, other) = (course.finish(&mut ()).unwrap(), simulation.resume(pause).finish(&mut ()).unwrap());
+    assert_eq!((one.state, one.time, one.stats), (other.state, other.time, other.stats));
+}
+
+#[test]
+fn infinitely_many_impacts_have_their_limit() {
+    let ball = Ball { cor: 0.5, ..BALL };
+    let run = Simulation::of(&ball).tolerance(1e-12).run(false, [1.0, 0.0], 0.0..10.0).unwrap();
+    let limit = ball.impacts(1.0).nth(60).unwrap();
+    assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-10), "{:?}, {limit}", run.stop);
+}
+
+proptest! {
+    /// Damped oscillators, their guards and their trajectories by two methods that share nothing but the search.
+    #[test]
+    fn series_and_steps_agree(
+        rate in 0.3..8.0_f64, damping in 0.0..1.0_f64, force in -1.0..1.0_f64, level in -0.5..0.5_f64, kick in 0.5..2.0_f64,
+    ) {
+        let swing = Hybrid::new()
+            .mode("swing", move |t, &[x, v]: &[f64; 2]| [v, force * t.cos() - rate * rate * x.sin() - damping * v])
+            .series("swing", move |t, [x, v]| [v, force * t.cos() - rate * rate * x.sin() - damping * v])
+            .edge("swing", "swing", move |_t, x| x[0] - level, move |_t, x| [x[0], kick])
+            .affine("swing", "swing");
+        let simulation = Simulation::of(&swing).stepper(Dop853).tolerance(1e-11);
+        let start = [level + 0.5, 0.0];
+        let series = simulation.run("swing", start, 0.0..10.0).unwrap();
+        let steps = simulation.stepped().run("swing", start, 0.0..10.0).unwrap();
+        prop_assert_eq!(series.trajectory.jumps().len(), steps.trajectory.jumps().len());
+        for (a, b) in series.trajectory.jumps().iter().zip(steps.trajectory.jumps()) {
+            prop_assert!((a.t() - b.t()).abs() < 1e-7, "{} {}", a.t(), b.t());
+        }
+        for k in 0..100 {
+            let t = 0.0995 * f64::from(k);
+            let (Some(a), Some(b)) = (series.trajectory.at(t), steps.trajectory.at(t)) else { continue };
+            let near = series.trajectory.jumps().iter().any(|jump| (jump.t() - t).abs() < 1e-6);
+            prop_assert!(near || (a[0] - b[0]).abs() < 1e-6 && (a[1] - b[1]).abs() < 1e-5, "{t}: {a:?} {b:?}");
+        }
+    }
+}
