@@ -12,6 +12,10 @@ const FAR: f64 = 1e6 * f64::EPSILON;
 /// A ratio of durations that rounding has not brought below one.
 const CLEARLY_BELOW_ONE: f64 = 0.995;
 
+/// Ratios of durations are of one contraction if they differ by no more than this: one that is far below the others is of jumps that rounding keeps from being at
+/// one time.
+const ALIKE: f64 = 1e-3;
+
 /// Watches the durations between jumps for geometric contraction.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,7 +46,7 @@ impl Contraction {
 
     /// The time from the last jump to the limit, if the durations contract and the next one is shorter than the resolution of the time `elapsed`.
     ///
-    /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are all below one; with r the largest
+    /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are alike and all below one; with r the largest
     /// of them and S the last cycle's duration, what remains is at most S r/(1-r).
     ///
     /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing better can be had later:
@@ -64,10 +68,11 @@ impl Contraction {
             if known < cycle + 4 {
                 return None;
             }
-            let ratio = (0..4.max(cycle))
-                .filter(|i| i + cycle < known)
-                .map(|i| self.last(i) / self.last(i + cycle))
-                .fold(0.0, f64::max);
+            let ratios = (0..4.max(cycle)).filter(|i| i + cycle < known).map(|i| self.last(i) / self.last(i + cycle));
+            let (least, ratio) = ratios.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
+            if least < ALIKE * ratio {
+                return None;
+            }
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
             let longest = (0..cycle).map(|i| self.last(i)).fold(0.0, f64::max);
             (ratio < most && longest * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
@@ -110,6 +115,16 @@ mod tests {
     fn a_cascade_is_not_zeno() {
         let mut contraction = Contraction::new();
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
+            contraction.push(duration);
+            assert_eq!(contraction.remaining(LATE, false), None);
+        }
+    }
+
+    #[test]
+    fn jumps_that_are_all_but_at_one_time_are_not_zeno() {
+        // Swings of one length but for rounding, and two collisions a rounding apart.
+        let mut contraction = Contraction::new();
+        for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
             contraction.push(duration);
             assert_eq!(contraction.remaining(LATE, false), None);
         }

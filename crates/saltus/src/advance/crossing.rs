@@ -105,7 +105,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if start == Start::Spent && only_touched(&p, &guard, constant, &c[1], &mut self.memory.stats.guards) {
             p[1] = 0.0;
         }
-        Some(Powers { p, len: c.len(), rounding: 4.0 * f64::EPSILON * (constant.abs() + g.abs()) })
+        Some(Powers { p, len: c.len(), start: g, constant })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
@@ -257,22 +257,32 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
 struct Powers {
     p: [f64; MAX_DEGREE + 1],
     len: usize,
-    /// How far its value at the start may be off.
-    rounding: f64,
+    /// The guard at the start, and its constant.
+    start: f64,
+    constant: f64,
 }
 
 impl Powers {
+    /// How far its value at the start may be off.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
+    }
+
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
         let p = &self.p[..self.len];
         let bend: f64 = p.iter().skip(2).map(|p| p.abs()).sum();
-        let scale = p[0].abs() + p[1].abs() + bend;
-        let margin = SURELY * scale;
+        let most = p[1].abs() + bend;
+        // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
+        if start != Start::Spent && exceeds(self.start, most, self.constant) {
+            return FirstFall::Nowhere;
+        }
+        let margin = SURELY * (p[0].abs() + most);
         // From a wall, be it spent or not, only the change counts.
-        if start == Start::Spent || p[0].abs() <= self.rounding + margin {
+        if start == Start::Spent || p[0].abs() <= self.rounding() + margin {
             first_fall_by_powers(&p[1..], ROUGH * bend + margin)
         } else {
-            first_fall_by_powers(p, self.rounding + margin)
+            first_fall_by_powers(p, self.rounding() + margin)
         }
     }
 
@@ -280,7 +290,7 @@ impl Powers {
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(&self.p[..self.len])?;
         let bend = self.p[..self.len].iter().skip(2).map(|p| p.abs()).sum();
-        Some((p, self.rounding + 8.0 * f64::EPSILON * p.scale(), bend))
+        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), bend))
     }
 }
 

@@ -3,13 +3,14 @@
 use serde_json::{Value, json};
 
 use super::contest::{Entry, Events, Problem, Result};
+use super::saltus::SERIES;
 
-/// Of each solver and each way to find events, the fastest method.
+/// Of each solver and each way to find events, the fastest method; of saltus, which wants the flow over jets for them, Taylor series beside it.
 fn best<'a>(entries: &'a [Entry], results: &'a [Option<Result>]) -> Vec<(&'a Entry, Option<&'a Result>)> {
     let mut best: Vec<(&Entry, Option<&Result>)> = Vec::new();
     for (entry, result) in entries.iter().zip(results) {
-        let same =
-            |other: &&mut (&Entry, Option<&Result>)| other.0.solver == entry.solver && other.0.events == entry.events;
+        let kind = |entry: &Entry| (entry.solver, entry.events, entry.method == SERIES);
+        let same = |other: &&mut (&Entry, Option<&Result>)| kind(other.0) == kind(entry);
         let faster = |old: Option<&Result>| {
             result.as_ref().is_some_and(|new| old.is_none_or(|old| new.quartiles[1] < old.quartiles[1]))
         };

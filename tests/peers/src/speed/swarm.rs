@@ -10,7 +10,7 @@ use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Cor, Phase, Restitution};
 
 use super::problems::{Ball, DRAG};
-use super::saltus::{Stepped, Turn};
+use super::saltus::{SERIES, Stepped, Turn};
 use super::{differential_equations, diffsol, floor, ivp};
 
 /// A ball lies still when an impact would leave it less than this, in m/s: a bounce of 5e-8 m.
@@ -99,8 +99,16 @@ fn by_ball(ball: Ball, _: f64) -> usize {
 
 fn by_stepper(ball: Ball, tolerance: f64) -> usize {
     let automaton = Stepped(ball);
+    impacts(&automaton, Simulation::of(&automaton).stepper(Auto::default()).tolerance(tolerance).stepped())
+}
+
+fn by_series(ball: Ball, tolerance: f64) -> usize {
+    let automaton = Stepped(ball);
+    impacts(&automaton, Simulation::of(&automaton).tolerance(tolerance))
+}
+
+fn impacts(Stepped(ball): &Stepped, simulation: Simulation<'_, Stepped>) -> usize {
     let mut count = Count { count: 0, cor: ball.cor };
-    let simulation = Simulation::of(&automaton).stepper(Auto::default()).tolerance(tolerance);
     simulation.drive(false, [ball.height, 0.0], 0.0..END, &mut count).unwrap();
     count.count
 }
@@ -118,6 +126,7 @@ pub fn ways() -> Vec<Way> {
         },
         Way { tolerant: false, ..way("saltus", "Ball, closed form", by_ball) },
         way("saltus", "Auto", by_stepper),
+        way("saltus", SERIES, by_series),
         way("diffsol", "tsit45, apex split", |ball, tolerance| {
             counting(ball.cor, |impact| {
                 diffsol::bounce(ball, tolerance, impact);
