@@ -111,11 +111,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             self.memory.stats.flows += order as u64;
             series.read(c);
-            let finite = c[..=order].iter().all(State::is_finite);
             let reach = unit * reach(&self.options.tolerance, &c[..=order]);
+            if reach < f64::INFINITY {
+                return Ok(Some(Expansion { unit, order, reach }));
+            }
             // A series that ends may be a polynomial, or its numbers too small for this unit.
-            let last = unit != 1.0 || reach < f64::INFINITY && finite;
-            if last {
+            if unit != 1.0 {
+                let finite = c[..=order].iter().all(State::is_finite);
                 return Ok(finite.then_some(Expansion { unit, order, reach }));
             }
             unit = own_unit(&self.options.tolerance, x, &self.flow(mode, now.seconds(), x));
@@ -139,7 +141,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.flows += (order - known) as u64;
         series.read(c);
         let reach = expansion.unit * reach(&self.options.tolerance, &c[..=order]);
-        if reach > expansion.reach && c[..=order].iter().all(State::is_finite) {
+        if reach > expansion.reach && reach < f64::INFINITY {
             *expansion = Expansion { order, reach, ..*expansion };
         }
     }
@@ -213,7 +215,7 @@ fn order(relative: f64) -> usize {
     (3.0 - 0.6 * relative.ln()).clamp(ORDERS.0, ORDERS.1) as usize
 }
 
-/// Over how many units of time the last two coefficients are within the tolerance (À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, 3.2.1).
+/// Over how many units of time the last two coefficients are within the tolerance, without end if they are zero or no numbers (À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, 3.2.1).
 #[inline]
 fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     let p = c.len() - 1;
@@ -224,7 +226,7 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
         (last, before) = (last + a * a, before + b * b);
     }
     // The mean square of what is allowed in the power of -1/(2 k).
-    if last == 0.0 && before == 0.0 {
+    if last == 0.0 && before == 0.0 || !(last + before).is_finite() {
         return f64::INFINITY;
     }
     let [last, before] = [(p, last), (p - 1, before)].map(|(k, sum)| binary_logarithm(sum) / (2 * k) as f64);
