@@ -9,7 +9,7 @@ use std::hint::black_box;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use saltus::step::{Auto, Dop853, Rodas5P, Stepper, Tsit5};
-use saltus::{Automaton, Edges, Simulation};
+use saltus::{Automaton, Edges, Series, Simulation};
 
 const STEPS: u64 = 1000;
 
@@ -41,6 +41,10 @@ impl<const N: usize> Automaton for Turning<N> {
         std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -x[i - 1] })
     }
     #[inline]
+    fn series(&self, _: bool, series: &mut Series<'_, [f64; N]>) -> bool {
+        series.flow(|_t, x: [_; N]| std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -x[i - 1] }))
+    }
+    #[inline]
     fn edges(&self, mode: bool) -> Edges<bool> {
         if self.watch == Watch::Nothing { Edges::none() } else { Edges::from([mode]) }
     }
@@ -60,7 +64,7 @@ impl<const N: usize> Automaton for Turning<N> {
 
 fn steps<const N: usize>(bencher: Bencher, stepper: impl Stepper + Sync, watch: Watch) {
     let system = Turning::<N> { watch, wall: 2.0 };
-    let simulation = Simulation::of(&system).stepper(stepper).tolerance(1e-6).most_steps(STEPS);
+    let simulation = Simulation::of(&system).stepper(stepper).stepped().tolerance(1e-6).most_steps(STEPS);
     let start = std::array::from_fn(|i| if i % 2 == 0 { 1.0 } else { 0.0 });
     bencher
         .counter(ItemsCount::new(STEPS))
@@ -105,10 +109,11 @@ fn step_with_an_unpromised_guard<const N: usize>(bencher: Bencher) {
     steps::<N>(bencher, Tsit5, Watch::Unpromised);
 }
 
-fn crossings(bencher: Bencher, stepper: impl Stepper + Sync, tolerance: f64, watch: Watch) {
+fn crossings(bencher: Bencher, series: bool, tolerance: f64, watch: Watch) {
     const CROSSINGS: usize = 1000;
     let system = Turning::<2> { watch, wall: 0.0 };
-    let simulation = Simulation::of(&system).stepper(stepper).tolerance(tolerance).most_jumps(CROSSINGS);
+    let simulation = Simulation::of(&system).tolerance(tolerance).most_jumps(CROSSINGS);
+    let simulation = if series { simulation } else { simulation.stepped() };
     bencher
         .counter(ItemsCount::new(CROSSINGS))
         .bench(|| simulation.drive(true, black_box([1.0, 0.0]), 0.0..1e9, &mut ()).unwrap());
@@ -116,10 +121,20 @@ fn crossings(bencher: Bencher, stepper: impl Stepper + Sync, tolerance: f64, wat
 
 #[divan::bench(args = [1e-6, 1e-9, 1e-12])]
 fn crossing_of_a_promised_guard(bencher: Bencher, tolerance: f64) {
-    crossings(bencher, Auto::default(), tolerance, Watch::Promised);
+    crossings(bencher, false, tolerance, Watch::Promised);
 }
 
 #[divan::bench(args = [1e-6, 1e-9, 1e-12])]
 fn crossing_of_an_unpromised_guard(bencher: Bencher, tolerance: f64) {
-    crossings(bencher, Auto::default(), tolerance, Watch::Unpromised);
+    crossings(bencher, false, tolerance, Watch::Unpromised);
+}
+
+#[divan::bench(args = [1e-6, 1e-9, 1e-12])]
+fn crossing_of_a_promised_guard_by_series(bencher: Bencher, tolerance: f64) {
+    crossings(bencher, true, tolerance, Watch::Promised);
+}
+
+#[divan::bench(args = [1e-6, 1e-9, 1e-12])]
+fn crossing_of_an_unpromised_guard_by_series(bencher: Bencher, tolerance: f64) {
+    crossings(bencher, true, tolerance, Watch::Unpromised);
 }
