@@ -62,7 +62,7 @@ pub(crate) struct Options {
     pub(crate) most_evaluations: u64,
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
-    /// Whether modes that a formula solves are stepped through all the same.
+    /// Whether modes that a formula or a series solves are stepped through all the same.
     pub(crate) stepped: bool,
 }
 
@@ -100,7 +100,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
 }
 
 impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
-    /// Uses another stepper for the modes that have no exact solution.
+    /// Uses another stepper for the modes that have neither an exact solution nor a series.
     #[must_use]
     pub fn stepper<N: Stepper>(self, stepper: N) -> Simulation<'a, A, N> {
         Simulation { automaton: self.automaton, stepper, options: self.options }
@@ -174,7 +174,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// Steps through every mode, also where a formula solves it ([`Automaton::exact`], [`Automaton::flown`]): to see what the formula saves.
+    /// Steps through every mode by the stepper, also where a formula solves it ([`Automaton::exact`], [`Automaton::flown`]) or a series ([`Automaton::series`]): to
+    /// see what that saves.
     ///
     /// ```
     /// use saltus::nalgebra::{Vector2, vector};
@@ -405,7 +406,7 @@ pub struct Stats {
     pub rejected: u64,
     /// Arcs advanced by an exact solution.
     pub exact: u64,
-    /// Evaluations of flows.
+    /// Evaluations of flows; of one given over jets, each order of a series is one.
     pub flows: u64,
     /// Evaluations of guards.
     pub guards: u64,

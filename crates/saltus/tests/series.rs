@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // in what the tests share
 
 use proptest::prelude::*;
-use saltus::{Automaton, Dop853, Edges, ErrorKind, Hybrid, Series, Simulation, Stop};
+use saltus::{Automaton, Coords, Dop853, Edges, ErrorKind, Hybrid, Series, Simulation, Stop};
 
 /// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a kink at rest.
 struct Ball {
@@ -107,6 +107,15 @@ fn a_series_of_another_flow_is_refused() {
     let flat = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x, _]| [-x, x]);
     let error = Simulation::of(&flat).run("decay", 1.0, 0.0..1.0).unwrap_err().error;
     assert_eq!(error.kind(), ErrorKind::Dimension);
+    // The flow itself, of a list that can be of any length.
+    let short = Hybrid::new().mode("decay", |_t, _x: &Coords<3>| [1.0].into()).series("decay", |_t, [x, y]| [-x, y]);
+    let error = Simulation::of(&short).run("decay", [1.0, 2.0].into(), 0.0..1.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Dimension);
+    for nothing in [f64::INFINITY, f64::NAN] {
+        let none = Hybrid::new().mode("decay", move |_t, x: &f64| x * nothing).series("decay", |_t, [x]| [-x]);
+        let error = Simulation::of(&none).run("decay", 1.0, 0.0..1.0).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::Flow);
+    }
 }
 
 #[test]

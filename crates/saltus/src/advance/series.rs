@@ -1,10 +1,13 @@
 //! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and exact to the tolerance all along.
 
+use std::fmt;
+use std::ops::ControlFlow;
+
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
-use crate::poly::value_and_slope;
+use crate::poly::{MAX_DEGREE, value_and_slope};
 use crate::series::{MOST_COEFFICIENTS, Series};
 use crate::simulation::Stop;
 use crate::state::State;
@@ -15,8 +18,9 @@ use crate::trajectory::{Piece, horner};
 use super::exact::natural;
 use super::{Advance, ArcEnd, Clock};
 
-/// The lowest and the highest order.
-const ORDERS: (f64, f64) = (6.0, 28.0);
+/// The lowest and the highest order: no higher than guards along it can be bounded.
+const LOWEST: usize = 6;
+const HIGHEST: usize = MAX_DEGREE;
 /// How many orders more there are where they may save a step.
 const FURTHER: usize = 8;
 /// An arc is expected to last no longer than this many times the last one.
@@ -82,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let told = if close.span > 0.0 {
                 observer.piece(mode, &Piece::new(clock.now, close.span, unit, c))
             } else {
-                std::ops::ControlFlow::Continue(())
+                ControlFlow::Continue(())
             };
             return Ok(ArcEnd::after(Some(found.0), told, close.time, close.state));
         }
@@ -106,8 +110,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Ok(None);
             }
             if let Some(dimension) = series.mismatch() {
-                let place = Place::new(now.seconds(), mode, None::<A::Edge>, x);
-                return Err(Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string())));
+                return Err(wrong_dimension(dimension, mode, now, x));
             }
             self.memory.stats.flows += order as u64;
             series.read(c);
@@ -120,7 +123,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let finite = c[..=order].iter().all(State::is_finite);
                 return Ok(finite.then_some(Expansion { unit, order, reach }));
             }
-            unit = own_unit(&self.options.tolerance, x, &self.flow(mode, now.seconds(), x));
+            unit = own_unit(&self.options.tolerance, x, &self.slope(mode, now, x)?);
         }
     }
 
@@ -133,7 +136,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         expansion: &mut Expansion,
         c: &mut [A::State; MOST_COEFFICIENTS],
     ) {
-        let (known, order) = (expansion.order, (expansion.order + FURTHER).min(ORDERS.1 as usize));
+        let (known, order) = (expansion.order, (expansion.order + FURTHER).min(HIGHEST));
         let mut series = Series::around(self.tape, now.seconds(), x, known, order, expansion.unit);
         if order == known || !self.automaton.series(mode, &mut series) {
             return;
@@ -173,12 +176,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let allowed = c.len() as f64;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let (end, slope) = end_and_slope(c, h / unit);
-            let flow = self.flow(mode, now.after(h).seconds(), &end);
+            let flow = self.slope(mode, now.after(h), &end)?;
             let defect = end.with(|i| {
                 let off = (h * flow.get(i) - (h / unit) * slope.get(i)).abs();
                 (off - 64.0 * f64::EPSILON * (h * flow.get(i)).abs()).max(0.0)
             });
-            if end.is_finite() && tolerance.norm(&defect, &c[0], &end) <= allowed {
+            if end.is_finite() && flow.is_finite() && tolerance.norm(&defect, &c[0], &end) <= allowed {
                 return Ok(Some((h, end)));
             }
             self.memory.stats.rejected += 1;
@@ -188,16 +191,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
+    /// The flow, of as many coordinates as the state.
+    #[inline]
+    fn slope(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
+        let slope = self.flow(mode, time.seconds(), x);
+        if slope.len() == x.len() { Ok(slope) } else { Err(wrong_dimension(slope.len(), mode, time, x)) }
+    }
+
     /// An error where a series does not start with the slope of the flow.
     #[cold]
     fn same_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, first: &A::State, unit: f64) -> Result<(), Error> {
-        let flow = self.flow(mode, now.seconds(), x);
+        let flow = self.slope(mode, now, x)?;
         let most = (0..flow.len()).map(|i| flow.get(i).abs()).fold(0.0, f64::max);
-        if (0..flow.len()).all(|i| (first.get(i) / unit - flow.get(i)).abs() <= OTHER * most) {
+        if !flow.is_finite() || (0..flow.len()).all(|i| (first.get(i) / unit - flow.get(i)).abs() <= OTHER * most) {
             return Ok(());
         }
         Err(Error::new(ErrorKind::Series, Place::new(now.seconds(), mode, None::<A::Edge>, x)))
     }
+}
+
+#[cold]
+fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
+    let place = Place::new(time.seconds(), mode, None::<()>, x);
+    Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
 }
 
 /// A series as far as it is known.
@@ -212,10 +228,11 @@ struct Expansion {
 
 /// The order for a relative tolerance: the tighter, the higher.
 fn order(relative: f64) -> usize {
-    (3.0 - 0.6 * relative.ln()).clamp(ORDERS.0, ORDERS.1) as usize
+    ((3.0 - 0.6 * relative.ln()) as usize).clamp(LOWEST, HIGHEST)
 }
 
-/// Over how many units of time the last two coefficients are within the tolerance, without end if they are zero or no numbers (À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, 3.2.1).
+/// Over how many units of time the last two coefficients are within the tolerance (À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, 3.2.1): without end if
+/// they are zero, or no numbers.
 #[inline]
 fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     let p = c.len() - 1;
