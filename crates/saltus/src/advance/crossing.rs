@@ -272,7 +272,7 @@ impl Powers {
     fn first_fall(&self, start: Start) -> FirstFall {
         let p = &self.p[..self.len];
         let bend: f64 = p.iter().skip(2).map(|p| p.abs()).sum();
-        let most = p[1].abs() + bend;
+        let most = self.p[1].abs() + bend;
         // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
         if start != Start::Spent && exceeds(self.start, most, self.constant) {
             return FirstFall::Nowhere;

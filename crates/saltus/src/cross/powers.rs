@@ -115,3 +115,69 @@ fn exceeds(a: &[f64], margin: f64, from: &Terms, to: &Terms, depth: u32) -> bool
     let middle = Terms::at(a, 0.5 * (from.u + to.u));
     exceeds(a, margin, from, &middle, depth - 1) && exceeds(a, margin, &middle, to, depth - 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const MARGIN: f64 = 1e-13;
+
+    /// The powers of `scale` (1 + `bend` u²) Π (1 - u/rᵢ).
+    fn with_roots(roots: &[f64], scale: f64, bend: f64) -> Vec<f64> {
+        let times = |p: &[f64], q: &[f64]| -> Vec<f64> {
+            let mut product = vec![0.0; p.len() + q.len() - 1];
+            for (i, p) in p.iter().enumerate() {
+                for (j, q) in q.iter().enumerate() {
+                    product[i + j] += p * q;
+                }
+            }
+            product
+        };
+        roots.iter().fold(vec![scale, 0.0, scale * bend], |p, r| times(&p, &[1.0, -1.0 / r]))
+    }
+
+    #[test]
+    fn what_is_clear_is_said() {
+        assert_eq!(first_fall(&[1.0, -0.5], MARGIN), FirstFall::Nowhere);
+        assert_eq!(first_fall(&[1.0, 0.0, -4.0], MARGIN), FirstFall::At(0.5));
+        // sin(s)/s on 0..=3 and on 0..=3.5
+        let sine = |span: f64| -> Vec<f64> {
+            let mut term = 1.0;
+            let mut powers = vec![1.0];
+            for k in 1..=24_u32 {
+                term *= span / f64::from(k + 1);
+                powers.push([1.0, 0.0, -1.0, 0.0][k as usize % 4] * term);
+            }
+            powers
+        };
+        assert_eq!(first_fall(&sine(3.0), MARGIN), FirstFall::Nowhere);
+        let FirstFall::At(u) = first_fall(&sine(3.5), MARGIN) else { panic!() };
+        assert!((3.5 * u - std::f64::consts::PI).abs() < 1e-14);
+    }
+
+    #[test]
+    fn what_is_not_is_not() {
+        assert_eq!(first_fall(&[], MARGIN), FirstFall::Unclear);
+        assert_eq!(first_fall(&[0.0, -1.0], MARGIN), FirstFall::Unclear);
+        assert_eq!(first_fall(&[1.0, f64::NAN], MARGIN), FirstFall::Unclear);
+        assert_eq!(first_fall(&[1.0, f64::NEG_INFINITY], MARGIN), FirstFall::Unclear);
+        assert_eq!(first_fall(&with_roots(&[0.5, 0.5], 1.0, 0.0), MARGIN), FirstFall::Unclear);
+    }
+
+    proptest! {
+        /// Never another fall than the first, never none where there is one, however the roots lie.
+        #[test]
+        fn planted_roots(roots in prop::collection::vec(0.02..1.6_f64, 1..7), scale in 0.1..10.0_f64, bend in 0.0..2.0_f64) {
+            let mut roots = roots;
+            roots.sort_by(f64::total_cmp);
+            let a = with_roots(&roots, scale, bend);
+            let within = roots.iter().filter(|&&r| r <= 1.0).count();
+            match first_fall(&a, MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
+                FirstFall::At(u) => prop_assert!((u - roots[0]).abs() < 1e-4 * roots[0], "{u} {roots:?}"),
+                FirstFall::Nowhere => prop_assert_eq!(within, 0),
+                FirstFall::Unclear => {}
+            }
+        }
+    }
+}

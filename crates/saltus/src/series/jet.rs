@@ -10,6 +10,22 @@ use super::{MOST_COEFFICIENTS, Pass, Row};
 /// Has the arithmetic of `f64`, with `f64` on either side of an operator, and the functions that have a recurrence for their series (R. Moore, *Interval
 /// Analysis*, 1966, chapter 11; À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, doi:10.1080/10586458.2005.10128904). Only a
 /// flow that is given to [`Series::flow`](super::Series::flow) meets one.
+///
+/// ```
+/// use saltus::{Hybrid, Jet, Simulation};
+///
+/// fn drag<'j>(v: Jet<'j>, k: f64) -> Jet<'j> {
+///     -k * v * v.abs()
+/// }
+/// let (g, k) = (9.8, 0.1_f64);
+/// let fall = Hybrid::new()
+///     .mode("fall", move |_t, v: &f64| -g - k * v * v.abs())
+///     .series("fall", move |_t, [v]| [drag(v, k) - g]);
+/// let run = Simulation::of(&fall).tolerance(1e-12).run("fall", 0.0, 0.0..2.0)?;
+/// // v = -√(g/k) tanh(√(g k) t)
+/// assert!((run.state + (g / k).sqrt() * ((g * k).sqrt() * 2.0).tanh()).abs() < 1e-11);
+/// # Ok::<(), saltus::Error>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct Jet<'a>(Number<'a>);
 
