@@ -2,7 +2,7 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{
-    Crossing, FirstFall, Searched, Start, Undefined, first_fall_by_powers, first_fall_of_polynomial,
+    Crossing, FirstFall, ROUGH, Searched, Start, Undefined, first_fall_by_powers, first_fall_of_polynomial,
     first_fall_on_step, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
@@ -15,8 +15,6 @@ use crate::trajectory::horner;
 
 use super::{Advance, Found};
 
-/// The roughness of a guard on a step as a part of how far it bends, over the part of the step from a spent root on.
-const ROUGH: f64 = 1e-6;
 /// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
 const SURELY: f64 = 64.0 * f64::EPSILON;
 /// So much larger states are taken that a guard's constant costs their difference no digits.
@@ -268,10 +266,14 @@ impl Powers {
         4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
     }
 
+    /// How far it bends: by its powers from the second on.
+    fn bend(&self) -> f64 {
+        self.p[..self.len].iter().skip(2).map(|p| p.abs()).sum()
+    }
+
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
-        let p = &self.p[..self.len];
-        let bend: f64 = p.iter().skip(2).map(|p| p.abs()).sum();
+        let (p, bend) = (&self.p[..self.len], self.bend());
         let most = self.p[1].abs() + bend;
         // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
         if start != Start::Spent && exceeds(self.start, most, self.constant) {
@@ -289,8 +291,7 @@ impl Powers {
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(&self.p[..self.len])?;
-        let bend = self.p[..self.len].iter().skip(2).map(|p| p.abs()).sum();
-        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), bend))
+        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.bend()))
     }
 }
 

@@ -1,8 +1,5 @@
 //! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and exact to the tolerance all along.
 
-use std::fmt;
-use std::ops::ControlFlow;
-
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
 use crate::error::{Error, ErrorKind, Place};
@@ -13,9 +10,10 @@ use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
-use crate::trajectory::{Piece, horner};
+use crate::trajectory::Piece;
 
 use super::exact::natural;
+use super::stepped::{evened, wrong_dimension};
 use super::{Advance, ArcEnd, Clock};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
@@ -50,10 +48,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut c = [x; MOST_COEFFICIENTS];
         loop {
             let remaining = clock.end.since(clock.now);
-            if remaining <= 0.0 {
-                return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.now, state: x });
-            }
-            if let Some(stop) = self.options.exceeded(&self.memory.stats) {
+            if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
             let longest = remaining.min(self.options.longest_step);
@@ -82,13 +77,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, first) = (end, false);
                 continue;
             };
-            let close = self.close(found, clock.now, |s| horner(c, s / unit), remaining, false);
-            let told = if close.span > 0.0 {
-                observer.piece(mode, &Piece::new(clock.now, close.span, unit, c))
-            } else {
-                ControlFlow::Continue(())
-            };
-            return Ok(ArcEnd::after(Some(found.0), told, close.time, close.state));
+            return Ok(self.crossed(mode, found, clock.now, c, unit, remaining, observer));
         }
     }
 
@@ -165,14 +154,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if h == f64::INFINITY {
             h = LONGEST * unit * natural(c);
         }
-        // As the steppers do: rather two equal steps than one that is followed by a tiny one.
-        h = if h * 1.01 >= longest {
-            longest
-        } else if h * 2.0 > longest {
-            longest * 0.5
-        } else {
-            h
-        };
+        h = evened(h, longest);
         let allowed = c.len() as f64;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let (end, slope) = end_and_slope(c, h / unit);
@@ -191,13 +173,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
-    /// The flow, of as many coordinates as the state.
-    #[inline]
-    fn slope(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
-        let slope = self.flow(mode, time.seconds(), x);
-        if slope.len() == x.len() { Ok(slope) } else { Err(wrong_dimension(slope.len(), mode, time, x)) }
-    }
-
     /// An error where a series does not start with the slope of the flow.
     #[cold]
     fn same_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, first: &A::State, unit: f64) -> Result<(), Error> {
@@ -208,12 +183,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         Err(Error::new(ErrorKind::Series, Place::new(now.seconds(), mode, None::<A::Edge>, x)))
     }
-}
-
-#[cold]
-fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
-    let place = Place::new(time.seconds(), mode, None::<()>, x);
-    Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
 }
 
 /// A series as far as it is known.

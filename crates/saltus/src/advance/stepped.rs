@@ -1,5 +1,6 @@
 //! An arc whose flow is stepped.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
@@ -31,11 +32,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut first: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
-        let mut slope = self.flow(mode, clock.now.seconds(), &x);
-        if slope.len() != x.len() {
-            let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
-            return Err(Error::new(ErrorKind::Dimension, place).noting(Some(slope.len().to_string())));
-        }
+        let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
         }
@@ -43,10 +40,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let began = clock.now;
         loop {
             let remaining = clock.end.since(clock.now);
-            if remaining <= 0.0 {
-                return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.now, state: x });
-            }
-            if let Some(stop) = self.options.exceeded(&self.memory.stats) {
+            if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
             let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
@@ -86,14 +80,36 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Some((found, dense, scale)) => (*found, dense.as_ref(), *scale),
                 None => (rough, c, h),
             };
-            let close = self.close(found, clock.now, |s| horner(c, s / scale), remaining, false);
-            let told = if close.span > 0.0 {
-                observer.piece(mode, &Piece::new(clock.now, close.span, scale, c))
-            } else {
-                ControlFlow::Continue(())
-            };
-            return Ok(ArcEnd::after(Some(found.0), told, close.time, close.state));
+            return Ok(self.crossed(mode, found, clock.now, c, scale, remaining, observer));
         }
+    }
+
+    /// Why no further step is taken with so much of the span `remaining`, if none is.
+    #[inline]
+    pub(super) fn over(&self, remaining: f64) -> Option<Stop<A::Edge>> {
+        if remaining <= 0.0 { Some(Stop::Time) } else { self.options.exceeded(&self.memory.stats) }
+    }
+
+    /// The end of the arc at a crossing `found` on its last piece, of which the observer is told.
+    #[allow(clippy::too_many_arguments)]
+    #[inline]
+    pub(super) fn crossed(
+        &mut self,
+        mode: A::Mode,
+        found: (A::Edge, Crossing),
+        now: Time,
+        c: &[A::State],
+        scale: f64,
+        remaining: f64,
+        observer: &mut impl Observer<A>,
+    ) -> ArcEnd<A> {
+        let close = self.close(found, now, |s| horner(c, s / scale), remaining, false);
+        let told = if close.span > 0.0 {
+            observer.piece(mode, &Piece::new(now, close.span, scale, c))
+        } else {
+            ControlFlow::Continue(())
+        };
+        ArcEnd::after(Some(found.0), told, close.time, close.state)
     }
 
     /// A step that the error estimate accepts, and its size.
@@ -115,14 +131,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, order, longest),
         };
         loop {
-            // The last step is stretched or halved a little rather than followed by a tiny one.
-            let size = if h * 1.01 >= longest {
-                longest
-            } else if h * 2.0 > longest {
-                longest * 0.5
-            } else {
-                h
-            };
+            let size = evened(h, longest);
             let trial = self.trial(mode, t, x, slope, size);
             let norm = self.stepper.error(size, trial.as_ref(), |error| tolerance.norm(error, x, &trial.end));
             let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
@@ -172,6 +181,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             automaton.flow(mode, t, x)
         };
         self.stepper.dense(&mut flow, t, x, h, trial.as_ref())
+    }
+
+    /// The flow, of as many coordinates as the state.
+    #[inline]
+    pub(super) fn slope(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
+        let slope = self.flow(mode, time.seconds(), x);
+        if slope.len() == x.len() { Ok(slope) } else { Err(wrong_dimension(slope.len(), mode, time, x)) }
     }
 
     pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
@@ -312,4 +328,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         Ok(None)
     }
+}
+
+/// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
+#[inline]
+pub(super) fn evened(h: f64, longest: f64) -> f64 {
+    if h * 1.01 >= longest {
+        longest
+    } else if h * 2.0 > longest {
+        longest * 0.5
+    } else {
+        h
+    }
+}
+
+/// The flow, or its series, has another `dimension` than the state `x`.
+#[cold]
+pub(super) fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
+    let place = Place::new(time.seconds(), mode, None::<()>, x);
+    Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
 }

@@ -11,6 +11,7 @@ use crate::poly::{Bernstein, Shape};
 
 pub(crate) use powers::{FirstFall, first_fall as first_fall_by_powers};
 pub(crate) use refine::{narrowed, settle};
+pub(crate) use search::ROUGH;
 use search::Search;
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.

@@ -16,7 +16,7 @@ const FEW: f64 = 64.0;
 const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
 /// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
 /// higher powers carry the error of the step and the rounding of its stages.
-const ROUGH: f64 = 1e-6;
+pub(crate) const ROUGH: f64 = 1e-6;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
