@@ -1,19 +1,20 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
+use crate::copies::copied;
 use crate::cross::{
-    Crossing, FirstFall, ROUGH, Searched, Start, Undefined, first_fall_by_powers, first_fall_of_polynomial,
-    first_fall_on_step, settle,
+    Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step,
+    settle,
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
-use crate::poly::{Bernstein, MAX_DEGREE};
+use crate::poly::{Bernstein, MAX_DEGREE, value_and_slope};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 use crate::trajectory::horner;
 
-use super::{Advance, Found};
+use super::Advance;
 
 /// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
 const SURELY: f64 = 64.0 * f64::EPSILON;
@@ -32,25 +33,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         limit: f64,
         first: bool,
         observer: &mut impl Observer<A>,
-    ) -> Result<Found<A>, Error> {
-        let mut found: Found<A> = None;
+    ) -> Result<Option<OnStep<A>>, Error> {
+        let mut found: Option<OnStep<A>> = None;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge, first));
             let affine = self.automaton.affine(edge);
-            let powers = if affine { self.stretched(edge, now, c, limit / scale, start, level) } else { None };
-            let by_powers = powers.as_ref().map_or(FirstFall::Unclear, |powers| powers.first_fall(start));
+            let along = if affine { self.along(edge, now, c, limit / scale, start, level) } else { None };
+            let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;
-            let p = powers.as_ref().filter(|_| unclear).and_then(Powers::bernstein);
+            let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
             let bend = if unclear && p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-            let mut guard = |s: f64| {
+            let mut guard_of = |s: f64, x: &A::State| {
                 *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+                automaton.guard(edge, now.after(s).seconds(), x)
             };
+            let near = if let FirstFall::At(u) = by_powers { Some(Near::around(c, scale, u * limit)) } else { None };
+            let settled = near.and_then(|near| settle(|s| guard_of(s, &near.at(c, scale, s)) - level, near.s));
+            let mut guard = |s: f64| guard_of(s, &horner(c, s / scale));
             let mut above = |s: f64| guard(s) - level;
             let searched = match (by_powers, &p) {
-                (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
-                (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
+                (FirstFall::Nowhere | FirstFall::At(_), _) => Ok(Searched::solved(settled)),
                 (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
                 _ => first_fall_on_step(&mut above, limit, start, bend),
             };
@@ -59,8 +62,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
             observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             if let Some(crossing) = fall {
-                let both = found.and_then(|(first, found)| Some((first, together(&found, &crossing)?)));
-                found = both.or(Some((edge, crossing)));
+                let both =
+                    found.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &crossing)?, ..first }));
+                found = both.or(Some(OnStep { edge, crossing, near }));
             }
         }
         Ok(found)
@@ -77,7 +81,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     #[inline]
-    fn stretched(
+    fn along(
         &mut self,
         edge: A::Edge,
         now: Time,
@@ -85,7 +89,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         stretch: f64,
         start: Start,
         level: f64,
-    ) -> Option<Powers> {
+    ) -> Option<Along> {
         if c.len() > MAX_DEGREE + 1 {
             return None;
         }
@@ -93,17 +97,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let guard = |x: &A::State| self.automaton.guard(edge, t, x);
         let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
-        let mut p = [0.0; MAX_DEGREE + 1];
-        p[0] = g - level;
-        let mut power = stretch;
-        for (p, c) in p[1..].iter_mut().zip(&c[1..]) {
-            *p = less_constant(guard, constant, c) * power;
-            power *= stretch;
+        let mut powers = Powers::stretched(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
+        let count = &mut self.memory.stats.guards;
+        if start == Start::Spent && only_touched(powers.coefficients(), &guard, constant, &c[1], count) {
+            powers = powers.without_slope();
         }
-        if start == Start::Spent && only_touched(&p, &guard, constant, &c[1], &mut self.memory.stats.guards) {
-            p[1] = 0.0;
-        }
-        Some(Powers { p, len: c.len(), start: g, constant })
+        Some(Along { powers, start: g, constant })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
@@ -226,6 +225,65 @@ fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched 
     Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
 }
 
+/// The first crossing on a step.
+pub(super) struct OnStep<A: Automaton> {
+    pub(super) edge: A::Edge,
+    pub(super) crossing: Crossing,
+    /// The dense output near it, if its powers showed it.
+    pub(super) near: Option<Near<A::State>>,
+}
+
+copied!(OnStep);
+
+impl<A: Automaton> OnStep<A> {
+    /// The state after a time `s`, as the search saw it.
+    #[inline]
+    pub(super) fn at(&self, c: &[A::State], scale: f64, s: f64) -> A::State {
+        self.near.map_or_else(|| horner(c, s / scale), |near| near.at(c, scale, s))
+    }
+}
+
+/// A state on a dense output after a time, and its slope there: all that counts within rounding of it.
+#[derive(Clone, Copy)]
+pub(super) struct Near<S> {
+    pub(super) s: f64,
+    pub(super) state: S,
+    pub(super) slope: S,
+}
+
+/// How near, as a part of the time.
+const NEAR: f64 = 1e-10;
+
+impl<S: State> Near<S> {
+    #[inline]
+    pub(super) fn around(c: &[S], scale: f64, s: f64) -> Self {
+        let (u, per_second) = (s / scale, 1.0 / scale);
+        let mut slope = c[0];
+        let state = c[0].with(|i| {
+            let (value, rate) = value_and_slope(c, |c| c.get(i), u);
+            slope = slope.with(|j| if i == j { rate * per_second } else { slope.get(j) });
+            value
+        });
+        Self { s, state, slope }
+    }
+
+    /// The state after a time `s` on the same dense output.
+    #[inline]
+    pub(super) fn at(&self, c: &[S], scale: f64, s: f64) -> S {
+        let by = s - self.s;
+        if by.abs() > NEAR * self.s {
+            return horner(c, s / scale);
+        }
+        self.state.with(|i| self.state.get(i) + by * self.slope.get(i))
+    }
+
+    /// The same around another time within rounding.
+    #[inline]
+    pub(super) fn moved(&self, c: &[S], scale: f64, s: f64) -> Self {
+        Self { s, state: self.at(c, scale, s), slope: self.slope }
+    }
+}
+
 /// The end of an arc's last piece.
 pub(super) struct Close<S> {
     pub(super) span: f64,
@@ -251,47 +309,41 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
     (*inner, guard(inner))
 }
 
-/// A guard along a step in powers of time.
-struct Powers {
-    p: [f64; MAX_DEGREE + 1],
-    len: usize,
+/// An affine guard along a step in powers of time.
+struct Along {
+    powers: Powers,
     /// The guard at the start, and its constant.
     start: f64,
     constant: f64,
 }
 
-impl Powers {
+impl Along {
     /// How far its value at the start may be off.
     fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
     }
 
-    /// How far it bends: by its powers from the second on.
-    fn bend(&self) -> f64 {
-        self.p[..self.len].iter().skip(2).map(|p| p.abs()).sum()
-    }
-
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
-        let (p, bend) = (&self.p[..self.len], self.bend());
-        let most = self.p[1].abs() + bend;
+        let (powers, change) = (&self.powers, self.powers.change());
         // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
-        if start != Start::Spent && exceeds(self.start, most, self.constant) {
+        if start != Start::Spent && exceeds(self.start, change, self.constant) {
             return FirstFall::Nowhere;
         }
-        let margin = SURELY * (p[0].abs() + most);
+        let level = powers.coefficients()[0].abs();
+        let margin = SURELY * (level + change);
         // From a wall, be it spent or not, only the change counts.
-        if start == Start::Spent || p[0].abs() <= self.rounding() + margin {
-            first_fall_by_powers(&p[1..], ROUGH * bend + margin)
+        if start == Start::Spent || level <= self.rounding() + margin {
+            powers.first_fall_from(1, ROUGH * powers.bend() + margin)
         } else {
-            first_fall_by_powers(p, self.rounding() + margin)
+            powers.first_fall(self.rounding() + margin)
         }
     }
 
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
-        let p = Bernstein::from_powers(&self.p[..self.len])?;
-        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.bend()))
+        let p = Bernstein::from_powers(self.powers.coefficients())?;
+        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.powers.bend()))
     }
 }
 

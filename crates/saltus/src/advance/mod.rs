@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::control::Controller;
-use crate::cross::{Crossing, Start};
+use crate::cross::Start;
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::series::Tape;
@@ -59,8 +59,6 @@ struct Spent<E> {
 
 /// How many edges that were taken at one time, and go on falling, are remembered.
 const MOST_IDLE: usize = 16;
-
-type Found<A> = Option<(<A as Automaton>::Edge, Crossing)>;
 
 /// What is kept from arc to arc.
 #[derive(Clone, Copy)]

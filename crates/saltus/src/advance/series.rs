@@ -3,15 +3,16 @@
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::Observer;
-use crate::poly::{MAX_DEGREE, value_and_slope};
-use crate::series::{MOST_COEFFICIENTS, Series};
+use crate::observe::{Inspection, Observer};
+use crate::poly::MAX_DEGREE;
+use crate::series::{MOST_COEFFICIENTS, NextKink, RECIPROCALS, Series};
 use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 use crate::trajectory::Piece;
 
+use super::crossing::{Near, OnStep};
 use super::exact::natural;
 use super::stepped::{evened, wrong_dimension};
 use super::{Advance, ArcEnd, Clock};
@@ -27,6 +28,8 @@ const AS_LAST: f64 = 1.05;
 const SAFETY: f64 = 0.85;
 /// By how much a step is shortened at whose end the flow is not the slope of the series.
 const SHORTER: f64 = 0.5;
+/// How often a step is shortened for a kink that may be on it.
+const MOST_HALVINGS: usize = 4;
 /// How much of a slope may be missing at the start of a series before it is taken for that of another flow.
 const OTHER: f64 = 1e-6;
 /// How many of its natural times a step takes whose series ends.
@@ -46,39 +49,67 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let began = clock.now;
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
+        let mut held = Held(Vec::new());
+        self.tape.anew();
         loop {
             let remaining = clock.end.since(clock.now);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
             let longest = remaining.min(self.options.longest_step);
-            let wanted = longest.min(AS_LAST * self.memory.last_duration);
+            let wanted = longest.min(AS_LAST * self.memory.last_duration - clock.now.since(began));
             let Some(mut expansion) = self.expanded(mode, clock.now, &x, order, &mut c)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
-            if expansion.reach < wanted {
+            let mut ahead = self.ahead(&expansion, &c, longest);
+            if ahead.kink.is_none() && expansion.reach < wanted {
                 self.expand_further(mode, clock.now, &x, &mut expansion, &mut c);
+                ahead = self.ahead(&expansion, &c, longest);
             }
-            let Expansion { unit, order, reach } = expansion;
+            if let Some(place) = ahead.kink
+                && ahead.step <= 2.0 * resolution(clock.now.seconds())
+            {
+                self.tape.turn(place);
+                continue;
+            }
+            let Expansion { unit, order, .. } = expansion;
             let c = &c[..=order];
-            let Some((h, end)) = self.believed(mode, clock.now, c, unit, reach, longest)? else {
+            let way = Way { mode, now: clock.now, since: clock.now.since(began), remaining, first };
+            let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step, &mut held)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
+            held.0.drain(..).for_each(|inspection| observer.inspection(&inspection));
             self.memory.stats.steps += 1;
-            let last = h >= remaining;
-            let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
-            let found = self.first_crossing(mode, clock.now, c, unit, limit, first, observer)?;
-            let Some(found) = found else {
-                let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
-                clock.now = if last { clock.end } else { clock.now.after(h) };
-                if told.is_break() {
-                    return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });
-                }
-                (x, first) = (end, false);
-                continue;
-            };
-            return Ok(self.crossed(mode, found, clock.now, c, unit, remaining, observer));
+            if let Some(found) = found {
+                return Ok(self.crossed(mode, &found, clock.now, c, unit, remaining, observer));
+            }
+            let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
+            clock.now = if h >= remaining { clock.end } else { clock.now.after(h) };
+            if told.is_break() {
+                return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });
+            }
+            self.tape.anew_beyond(ahead.kink.filter(|_| h == ahead.step));
+            (x, first) = (end, false);
         }
+    }
+
+    /// How far a step may go by what is known of its series: no further than its last coefficients allow, nor beyond a kink.
+    #[inline]
+    fn ahead(&self, expansion: &Expansion, c: &[A::State; MOST_COEFFICIENTS], longest: f64) -> Ahead {
+        let &Expansion { unit, order, reach } = expansion;
+        let mut step = reach.min(longest);
+        if step == f64::INFINITY {
+            step = LONGEST * unit * natural(&c[..=order]);
+        }
+        step = evened(step, longest);
+        for _ in 0..MOST_HALVINGS {
+            match self.tape.next_kink(order, step / unit) {
+                NextKink::Nowhere => break,
+                NextKink::At { units, place } => return Ahead { step: units * unit, kink: Some(place) },
+                NextKink::Unclear { units } => step = SHORTER * units * unit,
+            }
+        }
+        Ahead { step, kink: None }
     }
 
     /// Works out the Taylor coefficients `c` of the solution from `x`, in units of a second, unless they are out of the range of numbers then. Nothing where there
@@ -138,39 +169,53 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// A step over which the series is believed, and where it ends: as long as its last coefficients allow, and no longer than the flow at its end agrees, which
-    /// it does not beyond a kink. Nothing if there is no such step.
+    /// A step of `h` or less over which the series is believed, and what ends it: no longer than the flow at its end agrees, which it does not beyond a switch.
+    /// Nothing if there is no such step.
     fn believed(
         &mut self,
-        mode: A::Mode,
-        now: Time,
+        way: &Way<A>,
         c: &[A::State],
         unit: f64,
-        reach: f64,
-        longest: f64,
-    ) -> Result<Option<(f64, A::State)>, Error> {
-        let tolerance = self.options.tolerance;
-        let mut h = reach.min(longest);
-        if h == f64::INFINITY {
-            h = LONGEST * unit * natural(c);
-        }
-        h = evened(h, longest);
-        let allowed = c.len() as f64;
+        mut h: f64,
+        held: &mut Held<A>,
+    ) -> Result<Option<Believed<A>>, Error> {
+        let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
-            let (end, slope) = end_and_slope(c, h / unit);
-            let flow = self.slope(mode, now.after(h), &end)?;
-            let defect = end.with(|i| {
-                let off = (h * flow.get(i) - (h / unit) * slope.get(i)).abs();
-                (off - 64.0 * f64::EPSILON * (h * flow.get(i)).abs()).max(0.0)
-            });
-            if end.is_finite() && flow.is_finite() && tolerance.norm(&defect, &c[0], &end) <= allowed {
-                return Ok(Some((h, end)));
+            let limit = if h >= remaining { h + 8.0 * f64::EPSILON * h.max(since + h) } else { h };
+            held.0.clear();
+            let found = self.first_crossing(mode, now, c, unit, limit, first, held);
+            let near = match &found {
+                Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),
+                Ok(Some(OnStep { crossing, .. })) => Near::around(c, unit, crossing.root),
+                _ => Near::around(c, unit, h),
+            };
+            if self.agrees(mode, now, &c[0], &near, c.len())? {
+                return Ok(Some(Believed { h, found: found?, end: near.state }));
             }
             self.memory.stats.rejected += 1;
             self.same_flow(mode, now, &c[0], &c[1], unit)?;
-            h *= SHORTER;
+            h = SHORTER * near.s;
         }
         Ok(None)
+    }
+
+    /// Whether the flow at the end of a step from `x` is the slope of the series there, as far as so many coefficients have it within the tolerance.
+    #[inline]
+    fn agrees(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        end: &Near<A::State>,
+        most: usize,
+    ) -> Result<bool, Error> {
+        let Near { s, state, slope } = end;
+        let flow = self.slope(mode, now.after(*s), state)?;
+        let defect = state.with(|i| {
+            let off = s * (flow.get(i) - slope.get(i)).abs();
+            (off - 64.0 * f64::EPSILON * (s * flow.get(i)).abs()).max(0.0)
+        });
+        Ok(state.is_finite() && flow.is_finite() && self.options.tolerance.norm(&defect, x, state) <= most as f64)
     }
 
     /// An error where a series does not start with the slope of the flow.
@@ -183,6 +228,39 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         Err(Error::new(ErrorKind::Series, Place::new(now.seconds(), mode, None::<A::Edge>, x)))
     }
+}
+
+/// Where a step starts.
+struct Way<A: Automaton> {
+    mode: A::Mode,
+    now: Time,
+    /// How long the arc has lasted, and how much of the span is left.
+    since: f64,
+    remaining: f64,
+    first: bool,
+}
+
+/// A step, the first crossing on it, and where the one or the other ends.
+struct Believed<A: Automaton> {
+    h: f64,
+    found: Option<OnStep<A>>,
+    end: A::State,
+}
+
+/// Holds back what was seen of guards until the step is believed.
+struct Held<A: Automaton>(Vec<Inspection<A>>);
+
+impl<A: Automaton> Observer<A> for Held<A> {
+    #[inline]
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        self.0.push(*inspection);
+    }
+}
+
+/// How far a step may go, and the place on the tape of the number that has its kink there, if one has.
+struct Ahead {
+    step: f64,
+    kink: Option<usize>,
 }
 
 /// A series as far as it is known.
@@ -215,36 +293,24 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     if last == 0.0 && before == 0.0 || !(last + before).is_finite() {
         return f64::INFINITY;
     }
-    let [last, before] = [(p, last), (p - 1, before)].map(|(k, sum)| binary_logarithm(sum) / (2 * k) as f64);
+    let [last, before] = [(p, last), (p - 1, before)].map(|(k, sum)| binary_logarithm(sum) * (0.5 * RECIPROCALS[k]));
     SAFETY * power_of_two(-last.max(before))
 }
 
 /// log₂ x to within 0.09, read off the number's exponent and mantissa (N. Schraudolph, Neural Computation 11 (1999) 853): all that a step's size needs, at a tenth of
 /// the time.
 fn binary_logarithm(x: f64) -> f64 {
-    x.to_bits() as f64 / MANTISSA - EXPONENT
+    x.to_bits().cast_signed() as f64 / MANTISSA - EXPONENT
 }
 
 /// 2ˣ, and up to six parts in a hundred more, likewise.
 fn power_of_two(x: f64) -> f64 {
-    if x < EXPONENT { f64::from_bits(((x + EXPONENT) * MANTISSA) as u64) } else { f64::INFINITY }
+    if x < EXPONENT { f64::from_bits(((x + EXPONENT) * MANTISSA).max(0.0) as i64 as u64) } else { f64::INFINITY }
 }
 
 /// A mantissa's unit in the place of an exponent's, and the exponent of one.
 const MANTISSA: f64 = (1_u64 << 52) as f64;
 const EXPONENT: f64 = 1023.0;
-
-/// Σ cₖ sᵏ and Σ k cₖ sᵏ⁻¹.
-#[inline]
-fn end_and_slope<S: State>(c: &[S], s: f64) -> (S, S) {
-    let mut slope = c[0];
-    let end = c[0].with(|i| {
-        let (value, rate) = value_and_slope(c, |c| c.get(i), s);
-        slope = slope.with(|j| if i == j { rate } else { slope.get(j) });
-        value
-    });
-    (end, slope)
-}
 
 /// Another unit of time than a second, a power of two of it, in which a state changes by about its size.
 #[cold]

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::control::first_step;
-use crate::cross::{Crossing, Evidence};
+use crate::cross::Evidence;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
@@ -14,7 +14,7 @@ use crate::step::{Stepper, Trial};
 use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{exceeds, is_rounding, less_constant};
+use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -75,10 +75,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
             };
-            let relocated = self.relocated(mode, clock.now, &x, &slope, c, h, rough, limit, first)?;
+            let relocated = self.relocated(mode, clock.now, &x, &slope, c, h, &rough, limit, first)?;
             let (found, c, scale) = match &relocated {
-                Some((found, dense, scale)) => (*found, dense.as_ref(), *scale),
-                None => (rough, c, h),
+                Some((found, dense, scale)) => (found, dense.as_ref(), *scale),
+                None => (&rough, c, h),
             };
             return Ok(self.crossed(mode, found, clock.now, c, scale, remaining, observer));
         }
@@ -96,20 +96,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn crossed(
         &mut self,
         mode: A::Mode,
-        found: (A::Edge, Crossing),
+        found: &OnStep<A>,
         now: Time,
         c: &[A::State],
         scale: f64,
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
-        let close = self.close(found, now, |s| horner(c, s / scale), remaining, false);
+        let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
         let told = if close.span > 0.0 {
             observer.piece(mode, &Piece::new(now, close.span, scale, c))
         } else {
             ControlFlow::Continue(())
         };
-        ArcEnd::after(Some(found.0), told, close.time, close.state)
+        ArcEnd::after(Some(found.edge), told, close.time, close.state)
     }
 
     /// A step that the error estimate accepts, and its size.
@@ -292,11 +292,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         slope: &A::State,
         c: &[A::State],
         scale: f64,
-        rough: (A::Edge, Crossing),
+        rough: &OnStep<A>,
         limit: f64,
         first: bool,
-    ) -> Result<Option<((A::Edge, Crossing), M::Dense<A::State>, f64)>, Error> {
-        let (edge, crossing) = rough;
+    ) -> Result<Option<(OnStep<A>, M::Dense<A::State>, f64)>, Error> {
+        let &OnStep { edge, crossing, .. } = rough;
         let mut h = crossing.outside;
         if h <= scale * 1e-9 {
             return Ok(None); // at the start, where the dense output is exact

@@ -9,7 +9,7 @@ mod search;
 
 use crate::poly::{Bernstein, Shape};
 
-pub(crate) use powers::{FirstFall, first_fall as first_fall_by_powers};
+pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
 pub(crate) use search::ROUGH;
 use search::Search;

@@ -20,28 +20,132 @@ pub(crate) enum FirstFall {
     Unclear,
 }
 
-/// Where Σ aₖ uᵏ, which is positive at its start and may be off by `margin`, first falls through zero on `0..=1`.
-///
-/// A root r is found by Newton's method. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
-/// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
-pub(crate) fn first_fall(a: &[f64], margin: f64) -> FirstFall {
-    let sum: f64 = a.iter().sum();
-    let Some((&start, rest)) = a.split_first() else { return FirstFall::Unclear };
-    if start <= margin || !sum.is_finite() {
+/// A polynomial on `0..=1` by its powers.
+pub(crate) struct Powers {
+    a: [f64; MAX_DEGREE + 1],
+    len: usize,
+    /// Of all but the first.
+    rest: Sums,
+}
+
+/// The sum of some numbers and that of their sizes.
+#[derive(Clone, Copy)]
+struct Sums {
+    sum: f64,
+    size: f64,
+}
+
+impl Sums {
+    fn of(a: &[f64]) -> Self {
+        a.iter().fold(Self { sum: 0.0, size: 0.0 }, |sums, &a| sums.and(a))
+    }
+
+    #[inline]
+    fn and(self, a: f64) -> Self {
+        Self { sum: self.sum + a, size: self.size + a.abs() }
+    }
+
+    /// How much the numbers below zero are below.
+    #[inline]
+    fn below(&self) -> f64 {
+        0.5 * (self.size - self.sum)
+    }
+}
+
+impl Powers {
+    /// `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of a `stretch`, the first of them that of one.
+    #[inline]
+    pub(crate) fn stretched<T>(start: f64, rest: &[T], mut of: impl FnMut(&T) -> f64, stretch: f64) -> Self {
+        let mut a = [0.0; MAX_DEGREE + 1];
+        a[0] = start;
+        // Two at a time, so that no number waits long for the one before.
+        let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
+        let (mut power, square) = (stretch, stretch * stretch);
+        let mut pairs = rest.chunks_exact(2);
+        let mut places = a[1..].chunks_exact_mut(2);
+        for (pair, place) in pairs.by_ref().zip(places.by_ref()) {
+            place[0] = of(&pair[0]) * power;
+            place[1] = of(&pair[1]) * (power * stretch);
+            (even, odd) = (even.and(place[0]), odd.and(place[1]));
+            power *= square;
+        }
+        if let ([last], Some(place)) = (pairs.remainder(), places.next()) {
+            place[0] = of(last) * power;
+            even = even.and(place[0]);
+        }
+        let rest_of = Sums { sum: even.sum + odd.sum, size: even.size + odd.size };
+        Self { a, len: 1 + rest.len(), rest: rest_of }
+    }
+
+    pub(crate) fn coefficients(&self) -> &[f64] {
+        &self.a[..self.len]
+    }
+
+    /// How much it changes by at most.
+    #[inline]
+    pub(crate) fn change(&self) -> f64 {
+        self.rest.size
+    }
+
+    /// How far it bends: by its powers from the second on.
+    #[inline]
+    pub(crate) fn bend(&self) -> f64 {
+        (self.rest.size - self.a[1].abs()).max(0.0)
+    }
+
+    /// The same with no slope at its start.
+    #[cold]
+    pub(crate) fn without_slope(mut self) -> Self {
+        self.a[1] = 0.0;
+        self.rest = Sums::of(&self.a[2..]);
+        self
+    }
+
+    /// Where the polynomial, which is positive at its start and may be off by `margin`, first falls through zero.
+    ///
+    /// A root r is found by Newton's method. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
+    /// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
+    #[inline]
+    pub(crate) fn first_fall(&self, margin: f64) -> FirstFall {
+        first_fall(self.coefficients(), self.rest.and(self.a[0]), margin)
+    }
+
+    /// The same of what is left from the power `k` on, of which the first is divided out.
+    #[inline]
+    pub(crate) fn first_fall_from(&self, k: usize, margin: f64) -> FirstFall {
+        let a = &self.coefficients()[k.min(self.len)..];
+        first_fall(a, if k == 1 { self.rest } else { Sums::of(a) }, margin)
+    }
+}
+
+fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
+    let (&[start, slope, ..], true) = (a, sums.size.is_finite()) else { return FirstFall::Unclear };
+    if start <= margin {
         return FirstFall::Unclear;
     }
-    if sum > margin {
-        return if is_above(a, margin) { FirstFall::Nowhere } else { FirstFall::Unclear };
+    if sums.sum > margin {
+        return if is_above(a, sums, margin) { FirstFall::Nowhere } else { FirstFall::Unclear };
     }
-    let Some(root) = root(a, start, rest.first().copied().unwrap_or(0.0), sum) else { return FirstFall::Unclear };
+    let Some(root) = root(a, start, slope, sums.sum) else { return FirstFall::Unclear };
+    let (factor, sums) = divided(a, root);
+    if is_above(&factor[..a.len() - 1], sums, margin) { FirstFall::At(root) } else { FirstFall::Unclear }
+}
+
+/// The Wₖ of a polynomial with a `root`.
+#[inline]
+fn divided(a: &[f64], root: f64) -> ([f64; MAX_DEGREE + 1], Sums) {
     let mut factor = [0.0; MAX_DEGREE + 1];
-    let (mut sum, mut power) = (0.0, 1.0);
-    for (w, a) in factor.iter_mut().zip(a) {
-        sum += a * power;
-        *w = sum;
-        power *= root;
+    let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
+    let (mut before, mut power, square) = (0.0, 1.0, root * root);
+    for (w, a) in factor.chunks_exact_mut(2).zip(a.chunks_exact(2)) {
+        let first = a[0] * power;
+        let both = first + a[1] * (power * root);
+        (w[0], w[1]) = (before + first, before + both);
+        (even, odd) = (even.and(w[0]), odd.and(w[1]));
+        before = w[1];
+        power *= square;
     }
-    if is_above(&factor[..a.len() - 1], margin) { FirstFall::At(root) } else { FirstFall::Unclear }
+    (factor, Sums { sum: even.sum + odd.sum, size: even.size + odd.size })
 }
 
 /// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1.
@@ -69,15 +173,18 @@ fn root(a: &[f64], start: f64, slope: f64, end: f64) -> Option<f64> {
 }
 
 /// Whether Σ aₖ uᵏ exceeds `margin` on `0..=1`.
-fn is_above(a: &[f64], margin: f64) -> bool {
-    let (rising, falling) = a.iter().fold((0.0, 0.0), |(up, down), a| (up + a.max(0.0), down + (-a).max(0.0)));
-    let Some((&first, rest)) = a.split_first() else { return false };
-    if first - falling > margin {
-        return true;
-    }
-    let slope = rest.first().map_or(0.0, |a| a.max(0.0));
-    let start = Terms { u: 0.0, rising: first.max(0.0), slope, falling: (-first).max(0.0) };
-    exceeds(a, margin, &start, &Terms { u: 1.0, rising, slope: 0.0, falling }, DEEPEST)
+#[inline]
+fn is_above(a: &[f64], sums: Sums, margin: f64) -> bool {
+    let falling = sums.below();
+    a[0] - falling > margin || is_above_in_parts(a, sums, margin)
+}
+
+/// The same where the terms that fall could outweigh the first.
+fn is_above_in_parts(a: &[f64], sums: Sums, margin: f64) -> bool {
+    let slope = a.get(1).map_or(0.0, |a| a.max(0.0));
+    let start = Terms { u: 0.0, rising: a[0].max(0.0), slope, falling: (-a[0]).max(0.0) };
+    let end = Terms { u: 1.0, rising: sums.sum + sums.below(), slope: 0.0, falling: sums.below() };
+    exceeds(a, margin, &start, &end, DEEPEST)
 }
 
 /// The terms of either sign at a place `u`: both sums are convex, and rise with it.
@@ -139,6 +246,7 @@ mod tests {
 
     #[test]
     fn what_is_clear_is_said() {
+        let first_fall = |a: &[f64], margin: f64| first_fall(a, Sums::of(a), margin);
         assert_eq!(first_fall(&[1.0, -0.5], MARGIN), FirstFall::Nowhere);
         assert_eq!(first_fall(&[1.0, 0.0, -4.0], MARGIN), FirstFall::At(0.5));
         // sin(s)/s on 0..=3 and on 0..=3.5
@@ -158,6 +266,7 @@ mod tests {
 
     #[test]
     fn what_is_not_is_not() {
+        let first_fall = |a: &[f64], margin: f64| first_fall(a, Sums::of(a), margin);
         assert_eq!(first_fall(&[], MARGIN), FirstFall::Unclear);
         assert_eq!(first_fall(&[0.0, -1.0], MARGIN), FirstFall::Unclear);
         assert_eq!(first_fall(&[1.0, f64::NAN], MARGIN), FirstFall::Unclear);
@@ -173,7 +282,8 @@ mod tests {
             roots.sort_by(f64::total_cmp);
             let a = with_roots(&roots, scale, bend);
             let within = roots.iter().filter(|&&r| r <= 1.0).count();
-            match first_fall(&a, MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
+            let powers = Powers::stretched(a[0], &a[1..], |a| *a, 1.0);
+            match powers.first_fall(MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
                 FirstFall::At(u) => prop_assert!((u - roots[0]).abs() < 1e-4 * roots[0], "{u} {roots:?}"),
                 FirstFall::Nowhere => prop_assert_eq!(within, 0),
                 FirstFall::Unclear => {}

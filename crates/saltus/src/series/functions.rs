@@ -11,14 +11,11 @@ impl Jet<'_> {
         1.0 / self
     }
 
-    /// |a|: a or -a, whichever is positive just after the present time.
+    /// |a|: a or -a, whichever is positive just after the present time. A step ends where it would be the other.
     #[inline]
     #[must_use]
     pub fn abs(self) -> Self {
-        self.function(f64::abs, |k, a, _| {
-            let leading = a[..=k].iter().map(std::cell::Cell::get).find(|&a| a != 0.0);
-            if leading.is_some_and(|leading| leading < 0.0) { -a[k].get() } else { a[k].get() }
-        })
+        self.signed()
     }
 
     /// aⁿ.

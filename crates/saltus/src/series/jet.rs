@@ -97,6 +97,21 @@ impl<'a> Jet<'a> {
         Self::at(pass, place)
     }
 
+    /// The number times its sign just after the present time, that of its first coefficient that is not zero.
+    #[inline]
+    pub(super) fn signed(self) -> Self {
+        let Placed(pass, place) = self.0 else { return self.value().abs().into() };
+        Self::next(pass, |k, c| {
+            let a = pass.row(place);
+            let leading = (0..k).find(|&j| a[j].get() != 0.0);
+            let same = match leading {
+                Some(j) => c[j] == a[j],
+                None => pass.kinks.sign(place, a[k].get()) > 0.0,
+            };
+            if same { a[k].get() } else { -a[k].get() }
+        })
+    }
+
     /// Gives `self` and `other`, which only hold places as yet, their next coefficients `next(k, a, c, d)`, where a are those of the number `of` which they are
     /// functions, c and d theirs known so far.
     #[inline]
@@ -143,9 +158,10 @@ pub(super) fn squared(a: &Row, k: usize) -> f64 {
         return a[0].get() * a[0].get();
     }
     let half = k.div_ceil(2);
-    let inner = dot(&a[1..half], &a[k + 1 - half..k]);
+    let inner = 2.0 * dot(&a[1..half], &a[k + 1 - half..k]);
     let middle = if k.is_multiple_of(2) { a[k / 2].get() * a[k / 2].get() } else { 0.0 };
-    2.0 * (inner + a[0].get() * a[k].get()) + middle
+    // The latest coefficient comes last, so that nothing else waits for it.
+    (inner + middle) + (2.0 * a[0].get()) * a[k].get()
 }
 
 /// Σ j aⱼ bₖ₋ⱼ for j from 1 to `last`, which is at most k.
@@ -185,8 +201,8 @@ impl Add for Jet<'_> {
         self.operation(
             other,
             |a, b| a + b,
-            |k, a, b, _| of_constant(k, a) + b[k].get(),
-            |k, a, b| a[k].get() + of_constant(k, b),
+            |k, a, b, _| if k == 0 { a + b[0].get() } else { b[k].get() },
+            |k, a, b| if k == 0 { a[0].get() + b } else { a[k].get() },
             |k, a, b, _| a[k].get() + b[k].get(),
         )
     }
@@ -199,8 +215,8 @@ impl Sub for Jet<'_> {
         self.operation(
             other,
             |a, b| a - b,
-            |k, a, b, _| of_constant(k, a) - b[k].get(),
-            |k, a, b| a[k].get() - of_constant(k, b),
+            |k, a, b, _| if k == 0 { a - b[0].get() } else { -b[k].get() },
+            |k, a, b| if k == 0 { a[0].get() - b } else { a[k].get() },
             |k, a, b, _| a[k].get() - b[k].get(),
         )
     }

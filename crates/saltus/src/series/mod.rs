@@ -2,11 +2,13 @@
 
 mod functions;
 mod jet;
+mod kinks;
 
 use std::cell::Cell;
 use std::fmt;
 
 pub use jet::Jet;
+pub(crate) use kinks::{Kinks, NextKink};
 
 use crate::state::State;
 
@@ -95,7 +97,7 @@ impl<S: fmt::Debug> fmt::Debug for Series<'_, S> {
 }
 
 /// 1/k.
-const RECIPROCALS: [f64; MOST_COEFFICIENTS] = {
+pub(crate) const RECIPROCALS: [f64; MOST_COEFFICIENTS] = {
     let mut list = [0.0; MOST_COEFFICIENTS];
     let mut k = 1;
     while k < MOST_COEFFICIENTS {
@@ -111,12 +113,14 @@ pub(crate) struct Tape {
     rows: Vec<Row>,
     /// In place of rows that there are too few of.
     spare: Row,
+    kinks: Kinks,
 }
 
 /// One way through a flow: each number is found at its place on the tape, and gets its coefficient `k`.
 struct Pass<'a> {
     rows: &'a [Row],
     spare: &'a Row,
+    kinks: &'a Kinks,
     k: usize,
     /// The place of the next number.
     next: Cell<usize>,
@@ -131,7 +135,7 @@ impl Pass<'_> {
 
 impl Tape {
     pub(crate) const fn new() -> Self {
-        Self { rows: Vec::new(), spare: zeros() }
+        Self { rows: Vec::new(), spare: zeros(), kinks: Kinks::new() }
     }
 
     /// The first coefficients of time and of the state.
@@ -153,6 +157,29 @@ impl Tape {
         }
     }
 
+    /// Before a series that does not go on from the one before.
+    pub(crate) fn anew(&mut self) {
+        self.kinks.clear();
+    }
+
+    /// Before a series from the end of the one before, where the number at the place of a `kink` changes its sign.
+    pub(crate) fn anew_beyond(&mut self, kink: Option<usize>) {
+        self.kinks.clear_but(kink);
+        if let Some(place) = kink {
+            self.kinks.turn(place);
+        }
+    }
+
+    /// The next kink of the flow along a series of this `order`, up to so many units of time.
+    pub(crate) fn next_kink(&self, order: usize, span: f64) -> NextKink {
+        self.kinks.next(|place| &self.rows[place], order, span)
+    }
+
+    /// The number at a place changes its sign where the series starts.
+    pub(crate) fn turn(&mut self, place: usize) {
+        self.kinks.turn(place);
+    }
+
     /// Coefficient `k` of the flow, given those of the state up to the same; or how many rows that takes, if there are fewer.
     #[inline]
     fn pass<const N: usize>(
@@ -160,7 +187,7 @@ impl Tape {
         k: usize,
         flow: &impl for<'j> Fn(Jet<'j>, [Jet<'j>; N]) -> [Jet<'j>; N],
     ) -> Result<[f64; N], usize> {
-        let pass = Pass { rows: &self.rows, spare: &self.spare, k, next: Cell::new(1 + N) };
+        let pass = Pass { rows: &self.rows, spare: &self.spare, kinks: &self.kinks, k, next: Cell::new(1 + N) };
         let slope = flow(Jet::at(&pass, 0), std::array::from_fn(|i| Jet::at(&pass, 1 + i)));
         let slope = slope.map(|slope| slope.coefficient(k));
         let needed = pass.next.get();
