@@ -11,13 +11,18 @@ pub(crate) struct Tolerance {
 }
 
 impl Tolerance {
+    /// What is allowed in a coordinate of these values.
+    #[inline]
+    pub(crate) const fn allowed(&self, before: f64, after: f64) -> f64 {
+        self.absolute + self.relative * before.abs().max(after.abs())
+    }
+
     /// The root mean square of the error in units of what is allowed; at most 1 is good.
     #[inline]
     pub(crate) fn norm<S: State>(&self, error: &S, before: &S, after: &S) -> f64 {
         let mut sum = 0.0;
         for i in 0..error.len() {
-            let allowed = self.absolute + self.relative * before.get(i).abs().max(after.get(i).abs());
-            let ratio = error.get(i) / allowed;
+            let ratio = error.get(i) / self.allowed(before.get(i), after.get(i));
             sum += ratio * ratio;
         }
         #[allow(clippy::cast_precision_loss)]

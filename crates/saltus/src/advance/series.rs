@@ -211,11 +211,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<bool, Error> {
         let Near { s, state, slope } = end;
         let flow = self.slope(mode, now.after(*s), state)?;
-        let defect = state.with(|i| {
-            let off = s * (flow.get(i) - slope.get(i)).abs();
-            (off - 64.0 * f64::EPSILON * (s * flow.get(i)).abs()).max(0.0)
-        });
-        Ok(state.is_finite() && flow.is_finite() && self.options.tolerance.norm(&defect, x, state) <= most as f64)
+        let off = |i: usize| s * ((flow.get(i) - slope.get(i)).abs() - 64.0 * f64::EPSILON * flow.get(i).abs());
+        let agrees = |i: usize| off(i) <= most as f64 * self.options.tolerance.allowed(x.get(i), state.get(i));
+        Ok(state.is_finite() && (0..state.len()).all(agrees))
     }
 
     /// An error where a series does not start with the slope of the flow.
