@@ -22,7 +22,7 @@ const SURELY: f64 = 64.0 * f64::EPSILON;
 const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// The earliest crossing within `0..=limit` of a dense output.
+    /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards were searched.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn first_crossing(
         &mut self,
@@ -32,7 +32,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         scale: f64,
         limit: f64,
         first: bool,
-        observer: &mut impl Observer<A>,
+        mut observer: Option<&mut impl Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         for edge in self.automaton.edges(mode).iter() {
@@ -60,7 +60,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, evidence } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
-            observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+            if let Some(observer) = &mut observer {
+                observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+            }
             if let Some(crossing) = fall {
                 let both =
                     found.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &crossing)?, ..first }));
@@ -255,7 +257,7 @@ pub(super) struct Near<S> {
 const NEAR: f64 = 1e-10;
 
 impl<S: State> Near<S> {
-    #[inline]
+    #[inline(never)] // once for each kind of state, not for each model and stepper
     pub(super) fn around(c: &[S], scale: f64, s: f64) -> Self {
         let (u, per_second) = (s / scale, 1.0 / scale);
         let mut slope = c[0];
@@ -272,9 +274,15 @@ impl<S: State> Near<S> {
     pub(super) fn at(&self, c: &[S], scale: f64, s: f64) -> S {
         let by = s - self.s;
         if by.abs() > NEAR * self.s {
-            return horner(c, s / scale);
+            return Self::far(c, s / scale);
         }
         self.state.with(|i| self.state.get(i) + by * self.slope.get(i))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn far(c: &[S], u: f64) -> S {
+        horner(c, u)
     }
 
     /// The same around another time within rounding.

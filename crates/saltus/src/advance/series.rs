@@ -183,7 +183,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let limit = if h >= remaining { h + 8.0 * f64::EPSILON * h.max(since + h) } else { h };
             held.0.clear();
-            let found = self.first_crossing(mode, now, c, unit, limit, first, held);
+            let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut *held));
             let near = match &found {
                 Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),
                 Ok(Some(OnStep { crossing, .. })) => Near::around(c, unit, crossing.root),

@@ -24,13 +24,13 @@ const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x`, where the arc begins or (not `first`) has come to by other means.
-    pub(super) fn stepped(
+    pub(super) fn stepped<O: Observer<A>>(
         &mut self,
         mode: A::Mode,
         mut x: A::State,
         mut clock: Clock,
         mut first: bool,
-        observer: &mut impl Observer<A>,
+        observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
@@ -63,7 +63,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
-            let found = if clear { None } else { self.first_crossing(mode, clock.now, c, h, limit, first, observer)? };
+            let found = if clear {
+                None
+            } else {
+                self.first_crossing(mode, clock.now, c, h, limit, first, Some(&mut *observer))?
+            };
             let Some(rough) = found else {
                 // Where guards were looked at, the state goes on from where they were seen last.
                 let state = if clear { trial.end } else { horner(c, 1.0) };
@@ -75,7 +79,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
             };
-            let relocated = self.relocated(mode, clock.now, &x, &slope, c, h, &rough, limit, first)?;
+            let relocated = match self.relocated(mode, clock.now, &x, &slope, c, h, &rough, limit) {
+                Some(Closer { dense, h, ahead }) => self
+                    .first_crossing(mode, clock.now, dense.as_ref(), h, ahead, first, None::<&mut O>)?
+                    .map(|found| (found, dense, h)),
+                None => None,
+            };
             let (found, c, scale) = match &relocated {
                 Some((found, dense, scale)) => (found, dense.as_ref(), *scale),
                 None => (&rough, c, h),
@@ -282,8 +291,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,
-    /// looked at close to its end, where it errs by the square of the correction only.
-    #[allow(clippy::too_many_arguments, clippy::type_complexity)]
+    /// to be looked at close to its end, where it errs by the square of the correction only.
+    #[allow(clippy::too_many_arguments)]
     fn relocated(
         &mut self,
         mode: A::Mode,
@@ -294,12 +303,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         scale: f64,
         rough: &OnStep<A>,
         limit: f64,
-        first: bool,
-    ) -> Result<Option<(OnStep<A>, M::Dense<A::State>, f64)>, Error> {
+    ) -> Option<Closer<M::Dense<A::State>>> {
         let &OnStep { edge, crossing, .. } = rough;
         let mut h = crossing.outside;
         if h <= scale * 1e-9 {
-            return Ok(None); // at the start, where the dense output is exact
+            return None; // at the start, where the dense output is exact
         }
         let near = (crossing.inside - scale * 1e-3).max(0.0);
         let mut guard = |s: f64| {
@@ -311,23 +319,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for _ in 0..3 {
             let trial = self.trial(mode, now.seconds(), x, slope, h);
             if !(trial.end.is_finite() && trial.slope.is_finite()) {
-                return Ok(None);
+                return None;
             }
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.memory.stats.guards += 1;
             let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
             if shift.is_nan() || shift.abs() > 0.1 * h {
-                return Ok(None);
+                return None;
             }
             if shift.abs() <= 1e-5 * h {
                 let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
-                let found = self.first_crossing(mode, now, dense.as_ref(), h, ahead, first, &mut ())?;
-                return Ok(found.map(|found| (found, dense, h)));
+                return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);
         }
-        Ok(None)
+        None
     }
+}
+
+/// A step `h` that ends closer to a crossing, and how far `ahead` that may be.
+struct Closer<D> {
+    dense: D,
+    h: f64,
+    ahead: f64,
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
