@@ -21,7 +21,7 @@ pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
 }
 
 /// More coefficients than any stepper's dense output has.
-const LONG: usize = 9;
+pub(crate) const LONG: usize = 9;
 
 /// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
 ///

@@ -12,7 +12,7 @@ use crate::poly::{Bernstein, MAX_DEGREE, value_and_slope};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
-use crate::trajectory::horner;
+use crate::trajectory::{LONG, horner};
 
 use super::Advance;
 
@@ -35,25 +35,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut observer: Option<&mut impl Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
+        let mut powers = Powers::new();
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge, first));
             let affine = self.automaton.affine(edge);
-            let along = if affine { self.along(edge, now, c, limit / scale, start, level) } else { None };
+            let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;
             let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
             let bend = if unclear && p.is_none() { self.bend(edge, now, c) } else { 0.0 };
             let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-            let mut guard_of = |s: f64, x: &A::State| {
-                *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), x)
+            // Where the dense output is long, it is summed up once.
+            let near = match by_powers {
+                FirstFall::At(u) if c.len() > LONG => Some(Near::around(c, scale, u * limit)),
+                _ => None,
             };
-            let near = if let FirstFall::At(u) = by_powers { Some(Near::around(c, scale, u * limit)) } else { None };
-            let settled = near.and_then(|near| settle(|s| guard_of(s, &near.at(c, scale, s)) - level, near.s));
-            let mut guard = |s: f64| guard_of(s, &horner(c, s / scale));
+            let mut guard = |s: f64| {
+                *count += 1;
+                automaton.guard(edge, now.after(s).seconds(), &at(&near, c, scale, s))
+            };
             let mut above = |s: f64| guard(s) - level;
             let searched = match (by_powers, &p) {
-                (FirstFall::Nowhere | FirstFall::At(_), _) => Ok(Searched::solved(settled)),
+                (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
+                (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
                 (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
                 _ => first_fall_on_step(&mut above, limit, start, bend),
             };
@@ -82,8 +86,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
+    #[allow(clippy::too_many_arguments)]
     #[inline]
-    fn along(
+    fn along<'p>(
         &mut self,
         edge: A::Edge,
         now: Time,
@@ -91,7 +96,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         stretch: f64,
         start: Start,
         level: f64,
-    ) -> Option<Along> {
+        powers: &'p mut Powers,
+    ) -> Option<Along<'p>> {
         if c.len() > MAX_DEGREE + 1 {
             return None;
         }
@@ -99,10 +105,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let guard = |x: &A::State| self.automaton.guard(edge, t, x);
         let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
-        let mut powers = Powers::stretched(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
+        powers.fill(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
         let count = &mut self.memory.stats.guards;
         if start == Start::Spent && only_touched(powers.coefficients(), &guard, constant, &c[1], count) {
-            powers = powers.without_slope();
+            powers.drop_slope();
         }
         Some(Along { powers, start: g, constant })
     }
@@ -231,7 +237,7 @@ fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched 
 pub(super) struct OnStep<A: Automaton> {
     pub(super) edge: A::Edge,
     pub(super) crossing: Crossing,
-    /// The dense output near it, if its powers showed it.
+    /// The dense output near it, if it is long and its powers showed the crossing.
     pub(super) near: Option<Near<A::State>>,
 }
 
@@ -241,7 +247,16 @@ impl<A: Automaton> OnStep<A> {
     /// The state after a time `s`, as the search saw it.
     #[inline]
     pub(super) fn at(&self, c: &[A::State], scale: f64, s: f64) -> A::State {
-        self.near.map_or_else(|| horner(c, s / scale), |near| near.at(c, scale, s))
+        at(&self.near, c, scale, s)
+    }
+}
+
+/// The state after a time `s` on a dense output that may be known `near` it.
+#[inline]
+fn at<S: State>(near: &Option<Near<S>>, c: &[S], scale: f64, s: f64) -> S {
+    match near {
+        Some(near) => near.at(c, scale, s),
+        None => horner(c, s / scale),
     }
 }
 
@@ -318,14 +333,14 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
 }
 
 /// An affine guard along a step in powers of time.
-struct Along {
-    powers: Powers,
+struct Along<'p> {
+    powers: &'p Powers,
     /// The guard at the start, and its constant.
     start: f64,
     constant: f64,
 }
 
-impl Along {
+impl Along<'_> {
     /// How far its value at the start may be off.
     fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
@@ -333,7 +348,7 @@ impl Along {
 
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
-        let (powers, change) = (&self.powers, self.powers.change());
+        let (powers, change) = (self.powers, self.powers.change());
         // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
         if start != Start::Spent && exceeds(self.start, change, self.constant) {
             return FirstFall::Nowhere;

@@ -79,15 +79,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
             };
-            let relocated = match self.relocated(mode, clock.now, &x, &slope, c, h, &rough, limit) {
-                Some(Closer { dense, h, ahead }) => self
-                    .first_crossing(mode, clock.now, dense.as_ref(), h, ahead, first, None::<&mut O>)?
-                    .map(|found| (found, dense, h)),
+            let closer = self.closer(mode, clock.now, &x, &slope, c, h, &rough, limit);
+            let again = match &closer {
+                Some(Closer { dense, h, ahead }) => {
+                    self.first_crossing(mode, clock.now, dense.as_ref(), *h, *ahead, first, None::<&mut O>)?
+                }
                 None => None,
             };
-            let (found, c, scale) = match &relocated {
-                Some((found, dense, scale)) => (found, dense.as_ref(), *scale),
-                None => (&rough, c, h),
+            let (found, c, scale) = match (&again, &closer) {
+                (Some(again), Some(closer)) => (again, closer.dense.as_ref(), closer.h),
+                _ => (&rough, c, h),
             };
             return Ok(self.crossed(mode, found, clock.now, c, scale, remaining, observer));
         }
@@ -293,7 +294,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,
     /// to be looked at close to its end, where it errs by the square of the correction only.
     #[allow(clippy::too_many_arguments)]
-    fn relocated(
+    fn closer(
         &mut self,
         mode: A::Mode,
         now: Time,

@@ -53,16 +53,21 @@ impl Sums {
 }
 
 impl Powers {
-    /// `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of a `stretch`, the first of them that of one.
+    /// Room for one: filled where it stands, it need not be carried about.
     #[inline]
-    pub(crate) fn stretched<T>(start: f64, rest: &[T], mut of: impl FnMut(&T) -> f64, stretch: f64) -> Self {
-        let mut a = [0.0; MAX_DEGREE + 1];
-        a[0] = start;
+    pub(crate) const fn new() -> Self {
+        Self { a: [0.0; MAX_DEGREE + 1], len: 0, rest: Sums { sum: 0.0, size: 0.0 } }
+    }
+
+    /// Becomes `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of a `stretch`, the first of them that of one.
+    #[inline]
+    pub(crate) fn fill<T>(&mut self, start: f64, rest: &[T], mut of: impl FnMut(&T) -> f64, stretch: f64) {
+        self.a[0] = start;
         // Two at a time, so that no number waits long for the one before.
         let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
         let (mut power, square) = (stretch, stretch * stretch);
         let mut pairs = rest.chunks_exact(2);
-        let mut places = a[1..].chunks_exact_mut(2);
+        let mut places = self.a[1..].chunks_exact_mut(2);
         for (pair, place) in pairs.by_ref().zip(places.by_ref()) {
             place[0] = of(&pair[0]) * power;
             place[1] = of(&pair[1]) * (power * stretch);
@@ -73,8 +78,8 @@ impl Powers {
             place[0] = of(last) * power;
             even = even.and(place[0]);
         }
-        let rest_of = Sums { sum: even.sum + odd.sum, size: even.size + odd.size };
-        Self { a, len: 1 + rest.len(), rest: rest_of }
+        self.len = 1 + rest.len();
+        self.rest = Sums { sum: even.sum + odd.sum, size: even.size + odd.size };
     }
 
     pub(crate) fn coefficients(&self) -> &[f64] {
@@ -93,12 +98,11 @@ impl Powers {
         (self.rest.size - self.a[1].abs()).max(0.0)
     }
 
-    /// The same with no slope at its start.
+    /// Takes away the slope at its start.
     #[cold]
-    pub(crate) fn without_slope(mut self) -> Self {
+    pub(crate) fn drop_slope(&mut self) {
         self.a[1] = 0.0;
-        self.rest = Sums::of(&self.a[2..]);
-        self
+        self.rest = Sums::of(&self.a[2..self.len]);
     }
 
     /// Where the polynomial, which is positive at its start and may be off by `margin`, first falls through zero.
@@ -127,14 +131,14 @@ fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
         return if is_above(a, sums, margin) { FirstFall::Nowhere } else { FirstFall::Unclear };
     }
     let Some(root) = root(a, start, slope, sums.sum) else { return FirstFall::Unclear };
-    let (factor, sums) = divided(a, root);
+    let mut factor = [0.0; MAX_DEGREE + 1];
+    let sums = divide(a, root, &mut factor);
     if is_above(&factor[..a.len() - 1], sums, margin) { FirstFall::At(root) } else { FirstFall::Unclear }
 }
 
-/// The Wₖ of a polynomial with a `root`.
+/// Puts down the Wₖ of a polynomial with a `root`.
 #[inline]
-fn divided(a: &[f64], root: f64) -> ([f64; MAX_DEGREE + 1], Sums) {
-    let mut factor = [0.0; MAX_DEGREE + 1];
+fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
     let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
     let (mut before, mut power, square) = (0.0, 1.0, root * root);
     for (w, a) in factor.chunks_exact_mut(2).zip(a.chunks_exact(2)) {
@@ -145,7 +149,7 @@ fn divided(a: &[f64], root: f64) -> ([f64; MAX_DEGREE + 1], Sums) {
         before = w[1];
         power *= square;
     }
-    (factor, Sums { sum: even.sum + odd.sum, size: even.size + odd.size })
+    Sums { sum: even.sum + odd.sum, size: even.size + odd.size }
 }
 
 /// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1.
@@ -282,7 +286,8 @@ mod tests {
             roots.sort_by(f64::total_cmp);
             let a = with_roots(&roots, scale, bend);
             let within = roots.iter().filter(|&&r| r <= 1.0).count();
-            let powers = Powers::stretched(a[0], &a[1..], |a| *a, 1.0);
+            let mut powers = Powers::new();
+            powers.fill(a[0], &a[1..], |a| *a, 1.0);
             match powers.first_fall(MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
                 FirstFall::At(u) => prop_assert!((u - roots[0]).abs() < 1e-4 * roots[0], "{u} {roots:?}"),
                 FirstFall::Nowhere => prop_assert_eq!(within, 0),

@@ -93,7 +93,8 @@ impl Kink {
             return NextKink::Nowhere;
         }
         let (place, sign) = (self.place, self.sign);
-        let powers = Powers::stretched(sign * row[0].get(), &row[1..=order], |c| sign * c.get(), span);
+        let mut powers = Powers::new();
+        powers.fill(sign * row[0].get(), &row[1..=order], |c| sign * c.get(), span);
         let a = powers.coefficients();
         let margin = SURELY * (a[0].abs() + powers.change());
         // What it leaves zero by, if it starts there.
