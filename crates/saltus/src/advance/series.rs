@@ -69,7 +69,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if let Some(place) = ahead.kink
                 && ahead.step <= 2.0 * resolution(clock.now.seconds())
             {
-                self.tape.turn(place);
+                self.tape.turn(place); // at once: no step is that short
                 continue;
             }
             let Expansion { unit, order, .. } = expansion;
