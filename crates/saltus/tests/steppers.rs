@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)] // in what the tests share
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
-use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
+use saltus::step::{Dop853, Rodas5P, Stepper, Trial, Tsit5};
 use saltus::{Coords, Hybrid, Run, Simulation, State, Stop};
 
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
@@ -216,4 +216,55 @@ fn dense_output_is_as_good_as_the_tolerance() {
     check(Dop853, 1e-8, 1e-6);
     check(Dop853, 1e-12, 1e-10);
     check(Rodas5P, 1e-8, 1e-6);
+}
+
+// --- a stepper of one's own ---
+
+/// Heun's method, whose dense output is a straight line.
+#[derive(Clone, Copy)]
+struct Heun;
+
+impl Stepper for Heun {
+    type Stages<S: State> = S;
+    type Dense<S: State> = [S; 2];
+
+    fn error_order(&self) -> f64 {
+        2.0
+    }
+    fn trial<S: State>(&self, flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S, slope: &S, h: f64) -> Trial<S, S> {
+        let ahead = flow(t + h, &x.with(|i| x.get(i) + h * slope.get(i)));
+        let end = x.with(|i| x.get(i) + 0.5 * h * (slope.get(i) + ahead.get(i)));
+        let error = x.with(|i| 0.5 * h * (ahead.get(i) - slope.get(i)));
+        Trial { slope: flow(t + h, &end), end, stages: error }
+    }
+    fn error<S: State>(&self, _: f64, trial: Trial<&S, &S>, norm: impl Fn(&S) -> f64) -> f64 {
+        norm(trial.stages)
+    }
+    fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, trial: Trial<&S, &S>) -> [S; 2] {
+        [*x, x.with(|i| trial.end.get(i) - x.get(i))]
+    }
+}
+
+#[test]
+fn a_dense_output_may_be_a_straight_line() {
+    let ball = Hybrid::new()
+        .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+        .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.8 * x[1]])
+        .affine("flight", "flight");
+    let run = Simulation::of(&ball).stepper(Heun).tolerance(1e-6).longest_step(1e-3).most_jumps(3);
+    let run = run.run("flight", [1.0, 0.0], 0.0..10.0).unwrap();
+    let first = (2.0 / 9.81_f64).sqrt();
+    for (jump, exact) in run.trajectory.jumps().iter().zip([first, 2.6 * first, 3.88 * first]) {
+        assert!((jump.t() - exact).abs() < 1e-4, "{} {exact}", jump.t());
+    }
+    assert_eq!(run.trajectory.jumps().len(), 3);
+    // Sent on downwards, it falls at once from the root that is spent.
+    let through = Hybrid::new()
+        .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+        .edge("flight", "flight", |_t, x| x[0], |_t, _x| [0.0, -0.1])
+        .affine("flight", "flight");
+    let end = Simulation::of(&through).stepper(Heun).tolerance(1e-4).longest_step(1e-3).most_jumps(3);
+    let end = end.run("flight", [1.0, 0.0], 0.0..0.6).unwrap();
+    assert_eq!((end.stop, end.trajectory.jumps().len()), (Stop::Time, 1));
+    assert!(end.state[0] < 0.0, "{:?}", end.state);
 }

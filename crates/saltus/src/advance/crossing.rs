@@ -107,7 +107,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
         powers.fill(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
         let count = &mut self.memory.stats.guards;
-        if start == Start::Spent && only_touched(powers.coefficients(), &guard, constant, &c[1], count) {
+        if let (Start::Spent, Some(slope)) = (start, c.get(1))
+            && only_touched(powers.coefficients(), &guard, constant, slope, count)
+        {
             powers.drop_slope();
         }
         Some(Along { powers, start: g, constant })
@@ -208,7 +210,7 @@ pub(super) fn only_touched<S: State>(
     x: &S,
     count: &mut u64,
 ) -> bool {
-    powers[1] < 0.0 && powers[2] < 0.0 && is_rounding(guard, constant, x, count)
+    matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, x, count)
 }
 
 /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
