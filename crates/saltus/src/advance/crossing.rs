@@ -16,8 +16,6 @@ use crate::trajectory::{LONG, horner};
 
 use super::Advance;
 
-/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
-const SURELY: f64 = 64.0 * f64::EPSILON;
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
@@ -350,18 +348,17 @@ impl Along<'_> {
 
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
-        let (powers, change) = (self.powers, self.powers.change());
+        let powers = self.powers;
         // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
-        if start != Start::Spent && exceeds(self.start, change, self.constant) {
+        if start != Start::Spent && exceeds(self.start, powers.change(), self.constant) {
             return FirstFall::Nowhere;
         }
-        let level = powers.coefficients()[0].abs();
-        let margin = SURELY * (level + change);
+        let margin = powers.rounding();
         // From a wall, be it spent or not, only the change counts.
-        if start == Start::Spent || level <= self.rounding() + margin {
-            powers.first_fall_from(1, ROUGH * powers.bend() + margin)
+        if start == Start::Spent || powers.coefficients()[0].abs() <= self.rounding() + margin {
+            powers.first_fall(1, ROUGH * powers.bend() + margin)
         } else {
-            powers.first_fall(self.rounding() + margin)
+            powers.first_fall(0, self.rounding() + margin)
         }
     }
 

@@ -14,7 +14,7 @@ use crate::trajectory::Piece;
 
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
-use super::stepped::{evened, wrong_dimension};
+use super::stepped::{evened, searched, wrong_dimension};
 use super::{Advance, ArcEnd, Clock};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
@@ -50,7 +50,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
         let mut held = Held(Vec::new());
-        self.tape.anew();
+        self.tape.anew(None);
         loop {
             let remaining = clock.end.since(clock.now);
             if let Some(stop) = self.over(remaining) {
@@ -88,7 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if told.is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });
             }
-            self.tape.anew_beyond(ahead.kink.filter(|_| h == ahead.step));
+            self.tape.anew(ahead.kink.filter(|_| h == ahead.step));
             (x, first) = (end, false);
         }
     }
@@ -181,7 +181,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
-            let limit = if h >= remaining { h + 8.0 * f64::EPSILON * h.max(since + h) } else { h };
+            let limit = searched(h, remaining, since);
             held.0.clear();
             let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut *held));
             let near = match &found {

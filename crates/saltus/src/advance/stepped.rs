@@ -62,7 +62,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.step = Some(0.1 * h);
                 continue;
             }
-            let limit = if last { h + 8.0 * f64::EPSILON * h.max(clock.now.since(began)) } else { h };
+            let limit = searched(h, remaining, clock.now.since(began));
             let found = if clear {
                 None
             } else {
@@ -355,6 +355,12 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
     } else {
         h
     }
+}
+
+/// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc began: the last one a few roundings past its end.
+#[inline]
+pub(super) fn searched(h: f64, remaining: f64, since: f64) -> f64 {
+    if h >= remaining { h + 8.0 * f64::EPSILON * h.max(since) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

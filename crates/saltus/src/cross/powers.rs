@@ -9,6 +9,9 @@ const CLOSE: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
 
+/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
+const SURELY: f64 = 64.0 * f64::EPSILON;
+
 /// Where a polynomial on `0..=1` first falls through zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FirstFall {
@@ -36,13 +39,20 @@ struct Sums {
 }
 
 impl Sums {
+    const ZERO: Self = Self { sum: 0.0, size: 0.0 };
+
     fn of(a: &[f64]) -> Self {
-        a.iter().fold(Self { sum: 0.0, size: 0.0 }, |sums, &a| sums.and(a))
+        a.iter().fold(Self::ZERO, |sums, &a| sums.and(a))
     }
 
     #[inline]
     fn and(self, a: f64) -> Self {
         Self { sum: self.sum + a, size: self.size + a.abs() }
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        Self { sum: self.sum + other.sum, size: self.size + other.size }
     }
 
     /// How much the numbers below zero are below.
@@ -56,7 +66,7 @@ impl Powers {
     /// Room for one: filled where it stands, it need not be carried about.
     #[inline]
     pub(crate) const fn new() -> Self {
-        Self { a: [0.0; MAX_DEGREE + 1], len: 0, rest: Sums { sum: 0.0, size: 0.0 } }
+        Self { a: [0.0; MAX_DEGREE + 1], len: 0, rest: Sums::ZERO }
     }
 
     /// Becomes `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of a `stretch`, the first of them that of one.
@@ -64,7 +74,7 @@ impl Powers {
     pub(crate) fn fill<T>(&mut self, start: f64, rest: &[T], mut of: impl FnMut(&T) -> f64, stretch: f64) {
         self.a[0] = start;
         // Two at a time, so that no number waits long for the one before.
-        let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
+        let [mut even, mut odd] = [Sums::ZERO; 2];
         let (mut power, square) = (stretch, stretch * stretch);
         let mut pairs = rest.chunks_exact(2);
         let mut places = self.a[1..].chunks_exact_mut(2);
@@ -79,7 +89,7 @@ impl Powers {
             even = even.and(place[0]);
         }
         self.len = 1 + rest.len();
-        self.rest = Sums { sum: even.sum + odd.sum, size: even.size + odd.size };
+        self.rest = even.plus(odd);
     }
 
     pub(crate) fn coefficients(&self) -> &[f64] {
@@ -90,6 +100,18 @@ impl Powers {
     #[inline]
     pub(crate) fn change(&self) -> f64 {
         self.rest.size
+    }
+
+    /// How far the rounding of its terms may take it.
+    #[inline]
+    pub(crate) fn rounding(&self) -> f64 {
+        SURELY * (self.a[0].abs() + self.change())
+    }
+
+    /// What it is at 1.
+    #[inline]
+    pub(crate) fn end(&self) -> f64 {
+        self.a[0] + self.rest.sum
     }
 
     /// How far it bends: by its powers from the second on.
@@ -105,32 +127,30 @@ impl Powers {
         self.rest = Sums::of(&self.a[2..self.len]);
     }
 
-    /// Where the polynomial, which is positive at its start and may be off by `margin`, first falls through zero.
+    /// Where what is left from the power `k` on, of which the first is divided out, first falls through zero: it may be off by `margin`, and is positive
+    /// at its start.
     ///
     /// A root r is found by Newton's method. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
     /// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
-    #[inline]
-    pub(crate) fn first_fall(&self, margin: f64) -> FirstFall {
-        first_fall(self.coefficients(), self.rest.and(self.a[0]), margin)
-    }
-
-    /// The same of what is left from the power `k` on, of which the first is divided out.
-    #[inline]
-    pub(crate) fn first_fall_from(&self, k: usize, margin: f64) -> FirstFall {
+    pub(crate) fn first_fall(&self, k: usize, margin: f64) -> FirstFall {
         let a = &self.coefficients()[k.min(self.len)..];
-        first_fall(a, if k == 1 { self.rest } else { Sums::of(a) }, margin)
+        let sums = match k {
+            0 => self.rest.and(self.a[0]),
+            1 => self.rest,
+            _ => Sums::of(a),
+        };
+        first_fall(a, sums, margin)
     }
 }
 
 fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
-    let (&[start, slope, ..], true) = (a, sums.size.is_finite()) else { return FirstFall::Unclear };
-    if start <= margin {
+    if !(a.first().is_some_and(|&start| start > margin) && sums.size.is_finite()) {
         return FirstFall::Unclear;
     }
     if sums.sum > margin {
         return if is_above(a, sums, margin) { FirstFall::Nowhere } else { FirstFall::Unclear };
     }
-    let Some(root) = root(a, start, slope, sums.sum) else { return FirstFall::Unclear };
+    let Some(root) = root(a, sums.sum) else { return FirstFall::Unclear };
     let mut factor = [0.0; MAX_DEGREE + 1];
     let sums = divide(a, root, &mut factor);
     if is_above(&factor[..a.len() - 1], sums, margin) { FirstFall::At(root) } else { FirstFall::Unclear }
@@ -139,7 +159,7 @@ fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
 /// Puts down the Wₖ of a polynomial with a `root`.
 #[inline]
 fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
-    let [mut even, mut odd] = [Sums { sum: 0.0, size: 0.0 }; 2];
+    let [mut even, mut odd] = [Sums::ZERO; 2];
     let (mut before, mut power, square) = (0.0, 1.0, root * root);
     for (w, a) in factor.chunks_exact_mut(2).zip(a.chunks_exact(2)) {
         let first = a[0] * power;
@@ -149,11 +169,12 @@ fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
         before = w[1];
         power *= square;
     }
-    Sums { sum: even.sum + odd.sum, size: even.size + odd.size }
+    even.plus(odd)
 }
 
-/// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1.
-fn root(a: &[f64], start: f64, slope: f64, end: f64) -> Option<f64> {
+/// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1, where it is `end`.
+fn root(a: &[f64], end: f64) -> Option<f64> {
+    let &[start, slope, ..] = a else { return None };
     // Where the parabola with this start, slope and end falls.
     let bend = end - start - slope;
     let discriminant = (slope * slope - 4.0 * bend * start).max(0.0).sqrt();
@@ -288,7 +309,7 @@ mod tests {
             let within = roots.iter().filter(|&&r| r <= 1.0).count();
             let mut powers = Powers::new();
             powers.fill(a[0], &a[1..], |a| *a, 1.0);
-            match powers.first_fall(MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
+            match powers.first_fall(0, MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
                 FirstFall::At(u) => prop_assert!((u - roots[0]).abs() < 1e-4 * roots[0], "{u} {roots:?}"),
                 FirstFall::Nowhere => prop_assert_eq!(within, 0),
                 FirstFall::Unclear => {}

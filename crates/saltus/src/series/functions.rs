@@ -11,13 +11,6 @@ impl Jet<'_> {
         1.0 / self
     }
 
-    /// |a|: a or -a, whichever is positive just after the present time. A step ends where it would be the other.
-    #[inline]
-    #[must_use]
-    pub fn abs(self) -> Self {
-        self.signed()
-    }
-
     /// aⁿ.
     #[inline]
     #[must_use]

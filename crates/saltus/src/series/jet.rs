@@ -97,12 +97,14 @@ impl<'a> Jet<'a> {
         Self::at(pass, place)
     }
 
-    /// The number times its sign just after the present time, that of its first coefficient that is not zero.
+    /// |a|: a or -a, whichever is positive just after the present time. A step ends where it would be the other.
     #[inline]
-    pub(super) fn signed(self) -> Self {
+    #[must_use]
+    pub fn abs(self) -> Self {
         let Placed(pass, place) = self.0 else { return self.value().abs().into() };
         Self::next(pass, |k, c| {
             let a = pass.row(place);
+            // The first coefficient that is not zero decides.
             let leading = (0..k).find(|&j| a[j].get() != 0.0);
             let same = match leading {
                 Some(j) => c[j] == a[j],

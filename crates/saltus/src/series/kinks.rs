@@ -5,11 +5,7 @@ use std::cell::RefCell;
 use super::Row;
 use crate::cross::{FirstFall, Powers};
 
-/// How far a number must be from zero, as a part of what it changes by, not to be there but for rounding.
-const SURELY: f64 = 64.0 * f64::EPSILON;
-
 /// A number of which a flow takes the absolute value.
-#[derive(Clone, Copy)]
 struct Kink {
     /// Its place among the numbers that the flow comes by.
     place: usize,
@@ -23,7 +19,6 @@ struct Kink {
 pub(crate) struct Kinks(RefCell<Vec<Kink>>);
 
 /// The next kink along a series.
-#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum NextKink {
     /// None as far as was asked.
     Nowhere,
@@ -38,10 +33,7 @@ impl Kinks {
         Self(RefCell::new(Vec::new()))
     }
 
-    pub(super) fn clear(&mut self) {
-        self.0.get_mut().clear();
-    }
-
+    /// Forgets all but the one at a place, if that is where a series is to start.
     pub(super) fn clear_but(&mut self, kept: Option<usize>) {
         self.0.get_mut().retain(|kink| Some(kink.place) == kept);
     }
@@ -71,44 +63,44 @@ impl Kinks {
 
     /// The next kink along a series of this `order` with these `rows`, up to so many units of time.
     pub(super) fn next<'a>(&self, rows: impl Fn(usize) -> &'a Row, order: usize, span: f64) -> NextKink {
-        let (mut next, mut span) = (NextKink::Nowhere, span);
+        let (mut next, mut span, mut unclear) = (NextKink::Nowhere, span, false);
         let kinks = self.0.borrow();
-        let mut unclear = 0;
+        let fall = |kink: &Kink, span: f64| kink.fall(rows(kink.place), order, span);
         for kink in kinks.iter() {
-            match kink.next(rows(kink.place), order, span) {
-                NextKink::Nowhere => {}
-                NextKink::Unclear { .. } => unclear += 1,
-                at @ NextKink::At { units, .. } => (next, span) = (at, units),
+            match fall(kink, span) {
+                FirstFall::Nowhere => {}
+                FirstFall::Unclear => unclear = true,
+                FirstFall::At(u) => {
+                    span *= u;
+                    next = NextKink::At { units: span, place: kink.place };
+                }
             }
         }
         // What is not clear up to another kink, or beyond it?
-        let still = |kink: &Kink| matches!(kink.next(rows(kink.place), order, span), NextKink::Unclear { .. });
-        if unclear > 0 && kinks.iter().any(still) { NextKink::Unclear { units: span } } else { next }
+        unclear = unclear && kinks.iter().any(|kink| fall(kink, span) == FirstFall::Unclear);
+        if unclear { NextKink::Unclear { units: span } } else { next }
     }
 }
 
 impl Kink {
-    fn next(&self, row: &Row, order: usize, span: f64) -> NextKink {
-        if self.sign == 0.0 {
-            return NextKink::Nowhere;
+    /// Where on the way to `span` the number falls through zero from the side on which it starts: at once, if it starts at zero and is about to.
+    fn fall(&self, row: &Row, order: usize, span: f64) -> FirstFall {
+        let sign = self.sign;
+        if sign == 0.0 {
+            return FirstFall::Nowhere;
         }
-        let (place, sign) = (self.place, self.sign);
         let mut powers = Powers::new();
         powers.fill(sign * row[0].get(), &row[1..=order], |c| sign * c.get(), span);
-        let a = powers.coefficients();
-        let margin = SURELY * (a[0].abs() + powers.change());
+        let (a, margin) = (powers.coefficients(), powers.rounding());
         // What it leaves zero by, if it starts there.
-        let Some(leading) = a.iter().position(|a| a.abs() > margin) else { return NextKink::Unclear { units: span } };
+        let Some(leading) = a.iter().position(|a| a.abs() > margin) else { return FirstFall::Unclear };
         if leading > 0 && a[leading] < 0.0 && !self.turned {
-            return NextKink::At { units: 0.0, place };
+            return FirstFall::At(0.0);
         }
-        let fall = if leading == 0 { powers.first_fall(margin) } else { powers.first_fall_from(leading, margin) };
-        match fall {
-            FirstFall::Nowhere => NextKink::Nowhere,
+        match powers.first_fall(leading, margin) {
             // At the very end it is the next step's.
-            FirstFall::At(_) if a.iter().sum::<f64>() >= -margin => NextKink::Nowhere,
-            FirstFall::At(u) => NextKink::At { units: u * span, place },
-            FirstFall::Unclear => NextKink::Unclear { units: span },
+            FirstFall::At(_) if powers.end() >= -margin => FirstFall::Nowhere,
+            fall => fall,
         }
     }
 }

@@ -8,7 +8,8 @@ use std::cell::Cell;
 use std::fmt;
 
 pub use jet::Jet;
-pub(crate) use kinks::{Kinks, NextKink};
+use kinks::Kinks;
+pub(crate) use kinks::NextKink;
 
 use crate::state::State;
 
@@ -157,16 +158,11 @@ impl Tape {
         }
     }
 
-    /// Before a series that does not go on from the one before.
-    pub(crate) fn anew(&mut self) {
-        self.kinks.clear();
-    }
-
-    /// Before a series from the end of the one before, where the number at the place of a `kink` changes its sign.
-    pub(crate) fn anew_beyond(&mut self, kink: Option<usize>) {
+    /// Before a series from another state: one at which the number at the place of a `kink` changes its sign, if it does.
+    pub(crate) fn anew(&mut self, kink: Option<usize>) {
         self.kinks.clear_but(kink);
         if let Some(place) = kink {
-            self.kinks.turn(place);
+            self.turn(place);
         }
     }
 
