@@ -122,8 +122,8 @@ pub trait Automaton {
     /// of an order that the tolerance asks for: a whole arc is often one or two of them, and a further digit costs little.
     ///
     /// Worth it where crossings are many or errors are to be small, and the flow is smooth and not stiff. It must be the same flow as
-    /// [`flow`](Self::flow), which is looked at where each step ends: beyond a switch the two differ, and the step is shortened. It ends of itself at the kinks of [`Jet::abs`](crate::Jet::abs). Where there is no series (√x at x = 0), the
-    /// stepper goes on. Asked only where [`exact`](Self::exact) and [`flown`](Self::flown) say nothing.
+    /// [`flow`](Self::flow), which is looked at where each step ends: beyond a switch the two differ, and the step is shortened. At the kinks of
+    /// [`Jet::abs`](crate::Jet::abs) it ends of itself. Where there is no series (√x at x = 0), the stepper goes on. Asked only where [`exact`](Self::exact) and [`flown`](Self::flown) say nothing.
     ///
     /// ```
     /// use saltus::nalgebra::{Vector2, vector};

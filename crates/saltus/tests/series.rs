@@ -127,6 +127,18 @@ fn kinks_of_all_kinds() {
 }
 
 #[test]
+fn two_kinks_at_once() {
+    // One number is about to change its sign, another starts at zero.
+    let apart = Hybrid::new()
+        .mode("part", |_t, &[x, y]: &[f64; 2]| [-1.0 - 0.1 * x.abs(), 1.0 + 0.1 * y.abs()])
+        .series("part", |_t, [x, y]| [-1.0 - 0.1 * x.abs(), 1.0 + 0.1 * y.abs()]);
+    let run = Simulation::of(&apart).tolerance(1e-12).run("part", [1e-17, 0.0], 0.0..1.0).unwrap();
+    let end = 10.0 * 0.1_f64.exp_m1();
+    assert!((run.state[0] + end).abs() < 1e-14 && (run.state[1] - end).abs() < 1e-14, "{:?}", run.state);
+    assert_eq!((run.stats.steps, run.stats.rejected), (1, 0), "{:?}", run.stats);
+}
+
+#[test]
 fn a_series_of_another_flow_is_refused() {
     let other = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x]| [-1.01 * x]);
     let error = Simulation::of(&other).run("decay", 1.0, 0.0..1.0).unwrap_err().error;

@@ -70,6 +70,7 @@ impl Kinks {
             match fall(kink, span) {
                 FirstFall::Nowhere => {}
                 FirstFall::Unclear => unclear = true,
+                FirstFall::At(0.0) => return NextKink::At { units: 0.0, place: kink.place },
                 FirstFall::At(u) => {
                     span *= u;
                     next = NextKink::At { units: span, place: kink.place };
