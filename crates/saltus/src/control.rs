@@ -17,16 +17,22 @@ impl Tolerance {
         self.absolute + self.relative * before.abs().max(after.abs())
     }
 
-    /// The root mean square of the error in units of what is allowed; at most 1 is good.
+    /// The mean square of the error in units of what is allowed; at most 1 is good.
     #[inline]
-    pub(crate) fn norm<S: State>(&self, error: &S, before: &S, after: &S) -> f64 {
+    pub(crate) fn square<S: State>(&self, error: &S, before: &S, after: &S) -> f64 {
         let mut sum = 0.0;
         for i in 0..error.len() {
             let ratio = error.get(i) / self.allowed(before.get(i), after.get(i));
             sum += ratio * ratio;
         }
         #[allow(clippy::cast_precision_loss)]
-        (sum / error.len().max(1) as f64).sqrt()
+        let count = error.len().max(1) as f64;
+        sum / count
+    }
+
+    /// Its root.
+    pub(crate) fn norm<S: State>(&self, error: &S, before: &S, after: &S) -> f64 {
+        self.square(error, before, after).sqrt()
     }
 }
 
@@ -35,9 +41,10 @@ impl Tolerance {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
+    /// The power of h with which the square of the error shrinks.
     order: f64,
     predictive: bool,
-    /// The logarithm of the error accepted last, and the step it was made with.
+    /// The logarithm of the square of the error accepted last, and the step it was made with.
     previous: f64,
     step: f64,
     rejected: bool,
@@ -47,19 +54,19 @@ impl Controller {
     const SAFETY: f64 = 0.9;
     const SMALLEST: f64 = 0.2;
     const LARGEST: f64 = 10.0;
-    /// The logarithm of 1e-4, below which an error is not remembered.
-    const LEAST: f64 = -9.210_340_371_976_182;
+    /// The logarithm of the square of 1e-4, below which an error is not remembered.
+    const LEAST: f64 = -18.420_680_743_952_367;
 
     pub(crate) fn new<M: Stepper>(stepper: &M) -> Self {
-        let order = stepper.error_order();
+        let order = 2.0 * stepper.error_order();
         Self { order, predictive: stepper.predictive(), previous: Self::LEAST, step: 0.0, rejected: false }
     }
 
-    /// By which factor to change the step `h` after an error of `norm`, and whether to accept it.
+    /// By which factor to change the step `h` after an error of this `square`, and whether to accept it.
     #[inline]
-    pub(crate) fn judge(&mut self, norm: f64, h: f64) -> (bool, f64) {
-        if norm <= 1.0 {
-            let error = norm.max(1e-10).ln();
+    pub(crate) fn judge(&mut self, square: f64, h: f64) -> (bool, f64) {
+        if square <= 1.0 {
+            let error = square.max(1e-20).ln();
             let factor = if self.predictive {
                 let plain = (-error / self.order).exp();
                 if self.step > 0.0 {
@@ -77,7 +84,8 @@ impl Controller {
             (true, (Self::SAFETY * factor).clamp(Self::SMALLEST, most))
         } else {
             self.rejected = true;
-            let factor = if norm.is_finite() { Self::SAFETY * (-norm.ln() / self.order).exp() } else { Self::SMALLEST };
+            let factor =
+                if square.is_finite() { Self::SAFETY * (-square.ln() / self.order).exp() } else { Self::SMALLEST };
             (false, factor.clamp(Self::SMALLEST, Self::SAFETY))
         }
     }

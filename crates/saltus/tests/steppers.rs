@@ -237,8 +237,8 @@ impl Stepper for Heun {
         let error = x.with(|i| 0.5 * h * (ahead.get(i) - slope.get(i)));
         Trial { slope: flow(t + h, &end), end, stages: error }
     }
-    fn error<S: State>(&self, _: f64, trial: Trial<&S, &S>, norm: impl Fn(&S) -> f64) -> f64 {
-        norm(trial.stages)
+    fn error<S: State>(&self, _: f64, trial: Trial<&S, &S>, square: impl Fn(&S) -> f64) -> f64 {
+        square(trial.stages)
     }
     fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, trial: Trial<&S, &S>) -> [S; 2] {
         [*x, x.with(|i| trial.end.get(i) - x.get(i))]

@@ -143,9 +143,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         loop {
             let size = evened(h, longest);
             let trial = self.trial(mode, t, x, slope, size);
-            let norm = self.stepper.error(size, trial.as_ref(), |error| tolerance.norm(error, x, &trial.end));
-            let finite = norm.is_finite() && trial.end.is_finite() && trial.slope.is_finite();
-            let (accepted, factor) = self.memory.controller.judge(if finite { norm } else { f64::INFINITY }, size);
+            let error = self.stepper.error(size, trial.as_ref(), |error| tolerance.square(error, x, &trial.end));
+            let finite = !error.is_nan() && trial.end.is_finite() && trial.slope.is_finite();
+            let (accepted, factor) = self.memory.controller.judge(if finite { error } else { f64::INFINITY }, size);
             if accepted {
                 self.memory.stats.steps += 1;
                 self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });

@@ -60,8 +60,8 @@ impl Stepper for Auto {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
-        self.0.error(h, trial, norm)
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, square: impl Fn(&S) -> f64) -> f64 {
+        self.0.error(h, trial, square)
     }
 
     #[inline]

@@ -81,11 +81,11 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, square: impl Fn(&S) -> f64) -> f64 {
         let Trial { end, slope, stages } = trial;
         match stages {
-            Either::Loose(stages) => L::default().error(h, Trial { end, slope, stages }, norm),
-            Either::Tight(stages) => T::default().error(h, Trial { end, slope, stages }, norm),
+            Either::Loose(stages) => L::default().error(h, Trial { end, slope, stages }, square),
+            Either::Tight(stages) => T::default().error(h, Trial { end, slope, stages }, square),
         }
     }
 

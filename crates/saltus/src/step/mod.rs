@@ -65,10 +65,11 @@ pub trait Stepper: Copy {
         h: f64,
     ) -> Trial<S, Self::Stages<S>>;
 
-    /// How large the estimated local error of a trial is, as `norm` measures the error of a state.
+    /// The square of how large the estimated local error of a trial is, as `square` measures the error of a state.
     ///
-    /// A method with one estimate returns `norm` of it; one with several combines their norms.
-    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, norm: impl Fn(&S) -> f64) -> f64;
+    /// A method with one estimate returns `square` of it; one with several combines their squares. At most 1 is accepted. The next step waits
+    /// for the answer: no root is taken.
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, square: impl Fn(&S) -> f64) -> f64;
 
     /// How far each coordinate of the dense output is from the start of the step at most; `None` where only the dense output itself can tell.
     ///
@@ -133,8 +134,9 @@ fn difference<S: State>(y: &S, x: &S) -> S {
     x.with(|i| y.get(i) - x.get(i))
 }
 
-/// So few coordinates fit one register. More are packed by the optimiser across stages, such that those that are ready wait for those that are not:
-/// to look whether the state is finite between two stages costs less than that, on the Arenstorf orbit by a sixth of the run.
+/// So few coordinates fit one register. More would be packed by the optimiser as it finds them, such that those that are ready wait for those that are not:
+/// places, known from the speeds of an earlier stage, for speeds. To look at each coordinate by itself, whether it is finite, keeps them apart and costs less
+/// than that wait, on the Arenstorf orbit a fifth of the run.
 const PACKED: usize = 2;
 
 /// The stages of an explicit step, kept as differences dₖ from the slope at its start.
@@ -153,28 +155,48 @@ impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
     /// The state that is `c` of the step ahead by these weights. The last difference, for which the others have waited, enters last.
     #[inline]
     fn state<const N: usize>(&self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
-        let Self { x, slope, h, .. } = self;
-        x.with(|i| {
-            let along = |rest: f64| x.get(i) + h * (c * slope.get(i) + rest);
-            match (weights.split_last(), differences.split_last()) {
-                (Some((weight, weights)), Some((last, earlier))) => {
-                    let earlier: f64 = weights.iter().zip(earlier).map(|(w, d)| w * d.get(i)).sum();
-                    along(earlier) + (h * weight) * last.get(i)
-                }
-                _ => along(0.0),
+        self.x.with(|i| self.coordinate(i, c, weights, differences))
+    }
+
+    /// Coordinate `i` of it.
+    #[inline]
+    fn coordinate<const N: usize>(&self, i: usize, c: f64, weights: &[f64; N], differences: [&S; N]) -> f64 {
+        let along = |rest: f64| self.x.get(i) + self.h * (c * self.slope.get(i) + rest);
+        match (weights.split_last(), differences.split_last()) {
+            (Some((weight, weights)), Some((last, earlier))) => {
+                let earlier: f64 = weights.iter().zip(earlier).map(|(w, d)| w * d.get(i)).sum();
+                along(earlier) + (self.h * weight) * last.get(i)
             }
-        })
+            _ => along(0.0),
+        }
     }
 
     /// The flow there, less the one at the start; where the state has overflowed, the step fails without it.
     #[inline]
     fn next<const N: usize>(&mut self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
-        let state = self.state(c, weights, differences);
-        if state.len() > PACKED && !state.is_finite() {
+        let mut overflown = false;
+        let apart = self.x.len() > PACKED;
+        let state = self.x.with(|i| seen(self.coordinate(i, c, weights, differences), apart, &mut overflown));
+        if overflown {
             return state;
         }
-        difference(&(self.flow)(self.t + c * self.h, &state), self.slope)
+        let flow = (self.flow)(self.t + c * self.h, &state);
+        self.slope.with(|i| seen(flow.get(i) - self.slope.get(i), apart, &mut overflown))
     }
+}
+
+/// The value; kept `apart` from others by a look whether it is finite, with a call on the rare path that the optimiser must assume to change what it knows.
+#[inline]
+fn seen(value: f64, apart: bool, overflown: &mut bool) -> f64 {
+    #[cold]
+    #[inline(never)]
+    fn note(overflown: &mut bool) {
+        *overflown = true;
+    }
+    if apart && !value.is_finite() {
+        note(overflown);
+    }
+    value
 }
 
 /// The coefficient of θ² with which the polynomial that starts at `x` and has these `first` (of θ) and `higher` (of θ³, θ⁴, …)
@@ -228,10 +250,10 @@ mod testing {
         let mut flow = |t: f64, x: &f64| x * t.cos();
         let (t, x) = (0.3_f64, 0.3_f64.sin().exp());
         let slope = flow(t, &x);
-        let mut size = |h: f64| {
+        let mut square = |h: f64| {
             let trial = stepper.trial(&mut flow, t, &x, &slope, h);
-            stepper.error(h, trial.as_ref(), |e| e.abs())
+            stepper.error(h, trial.as_ref(), |e| e * e)
         };
-        (size(h) / size(0.5 * h)).log2()
+        0.5 * (square(h) / square(0.5 * h)).log2()
     }
 }

@@ -182,8 +182,8 @@ impl Stepper for Rodas5P {
     }
 
     #[inline]
-    fn error<S: State>(&self, _: f64, trial: Trial<&S, &([S; 8], S)>, norm: impl Fn(&S) -> f64) -> f64 {
-        norm(&trial.stages.0[7])
+    fn error<S: State>(&self, _: f64, trial: Trial<&S, &([S; 8], S)>, square: impl Fn(&S) -> f64) -> f64 {
+        square(&trial.stages.0[7])
     }
 
     #[inline]

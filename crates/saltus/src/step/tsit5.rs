@@ -75,9 +75,9 @@ impl Stepper for Tsit5 {
     }
 
     #[inline]
-    fn error<S: State>(&self, h: f64, trial: Trial<&S, &[S; 6]>, norm: impl Fn(&S) -> f64) -> f64 {
+    fn error<S: State>(&self, h: f64, trial: Trial<&S, &[S; 6]>, square: impl Fn(&S) -> f64) -> f64 {
         let last = last(trial);
-        norm(&trial.end.with(|i| h * weighted(&E, all(trial, &last), i)))
+        square(&trial.end.with(|i| h * weighted(&E, all(trial, &last), i)))
     }
 
     #[inline]
