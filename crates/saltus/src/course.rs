@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Clock, Memory};
+use crate::advance::{Advance, ArcEnd, Clock, Held, Memory};
 use crate::automaton::Automaton;
 use crate::error::{Error, ErrorKind, Place, listed};
 use crate::observe::Observer;
@@ -41,6 +41,7 @@ pub struct Course<'a, A: Automaton, M = Auto> {
     options: Options,
     at: Checkpoint<A>,
     tape: Tape,
+    held: Held<A>,
 }
 
 /// Where a run stands just after a jump, handed on to the next arc: read back from where it is kept, it would be waited for, by a fifth of a ball's impact.
@@ -151,7 +152,7 @@ impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
 
 impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, at: Checkpoint<A>) -> Self {
-        Self { automaton, stepper, options, at, tape: Tape::new() }
+        Self { automaton, stepper, options, at, tape: Tape::new(), held: Held::default() }
     }
 
     /// The time reached.
@@ -244,11 +245,11 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     #[inline]
     fn arc_and_jump(&mut self, stand: &mut Stand<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
-        let Self { automaton, stepper, options, at, tape } = self;
+        let Self { automaton, stepper, options, at, tape, held } = self;
         // x is x⁺ of the last jump, or the initial state.
         let Stand { mode, state: x, now: began, instant } = *stand;
         let memory = &mut at.memory;
-        let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory, tape };
+        let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory, tape, held };
         let clock = Clock { now: began, ..at.clock };
         let (edge, time, before) = match arc.arc(mode, &x, &clock, observer)? {
             ArcEnd::Crossing { edge, time, before } => (edge, time, before),

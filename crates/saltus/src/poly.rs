@@ -215,14 +215,14 @@ fn value(weighted: &[f64], u: f64) -> f64 {
 #[inline]
 pub(crate) fn value_and_slope<T>(a: &[T], of: impl Fn(&T) -> f64, u: f64) -> (f64, f64) {
     let square = u * u;
-    let pairs = a.chunks_exact(2);
-    let mut even = pairs.remainder().first().map_or(0.0, &of);
+    let (pairs, last) = a.as_chunks();
+    let mut even = last.first().map_or(0.0, &of);
     let (mut odd, mut even_slope, mut odd_slope) = (0.0, 0.0, 0.0); // slopes by u²
-    for pair in pairs.rev() {
+    for [a, b] in pairs.iter().rev() {
         even_slope = even_slope * square + even;
         odd_slope = odd_slope * square + odd;
-        even = even * square + of(&pair[0]);
-        odd = odd * square + of(&pair[1]);
+        even = even * square + of(a);
+        odd = odd * square + of(b);
     }
     (even + u * odd, odd + 2.0 * (u * even_slope + square * odd_slope))
 }

@@ -8,6 +8,8 @@ mod series;
 mod solved;
 mod stepped;
 
+pub(crate) use series::Held;
+
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
@@ -167,6 +169,7 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) options: &'a Options,
     pub(crate) memory: &'a mut Memory<A::Edge>,
     pub(crate) tape: &'a mut Tape,
+    pub(crate) held: &'a mut Held<A>,
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {

@@ -49,7 +49,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let began = clock.now;
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
-        let mut held = Held(Vec::new());
         self.tape.anew(None);
         loop {
             let remaining = clock.end.since(clock.now);
@@ -75,10 +74,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Expansion { unit, order, .. } = expansion;
             let c = &c[..=order];
             let way = Way { mode, now: clock.now, since: clock.now.since(began), remaining, first };
-            let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step, &mut held)? else {
+            let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
-            held.0.drain(..).for_each(|inspection| observer.inspection(&inspection));
+            self.held.0.iter().for_each(|inspection| observer.inspection(inspection));
             self.memory.stats.steps += 1;
             if let Some(found) = found {
                 return Ok(self.crossed(mode, &found, clock.now, c, unit, remaining, observer));
@@ -177,13 +176,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         c: &[A::State],
         unit: f64,
         mut h: f64,
-        held: &mut Held<A>,
     ) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let limit = searched(h, remaining, since);
+            let mut held = std::mem::take(self.held);
             held.0.clear();
-            let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut *held));
+            let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut held));
+            *self.held = held;
             let near = match &found {
                 Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),
                 Ok(Some(OnStep { crossing, .. })) => Near::around(c, unit, crossing.root),
@@ -246,7 +246,13 @@ struct Believed<A: Automaton> {
 }
 
 /// Holds back what was seen of guards until the step is believed.
-struct Held<A: Automaton>(Vec<Inspection<A>>);
+pub(crate) struct Held<A: Automaton>(Vec<Inspection<A>>);
+
+impl<A: Automaton> Default for Held<A> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
 
 impl<A: Automaton> Observer<A> for Held<A> {
     #[inline]

@@ -76,17 +76,16 @@ impl Powers {
         // Two at a time, so that no number waits long for the one before.
         let [mut even, mut odd] = [Sums::ZERO; 2];
         let (mut power, square) = (stretch, stretch * stretch);
-        let mut pairs = rest.chunks_exact(2);
-        let mut places = self.a[1..].chunks_exact_mut(2);
-        for (pair, place) in pairs.by_ref().zip(places.by_ref()) {
-            place[0] = of(&pair[0]) * power;
-            place[1] = of(&pair[1]) * (power * stretch);
+        let (pairs, last) = rest.as_chunks();
+        let (places, _) = self.a[1..].as_chunks_mut();
+        for ([a, b], place) in pairs.iter().zip(&mut *places) {
+            *place = [of(a) * power, of(b) * (power * stretch)];
             (even, odd) = (even.and(place[0]), odd.and(place[1]));
             power *= square;
         }
-        if let ([last], Some(place)) = (pairs.remainder(), places.next()) {
-            place[0] = of(last) * power;
-            even = even.and(place[0]);
+        if let ([last], Some([place, _])) = (last, places.get_mut(pairs.len())) {
+            *place = of(last) * power;
+            even = even.and(*place);
         }
         self.len = 1 + rest.len();
         self.rest = even.plus(odd);
@@ -161,10 +160,10 @@ fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
 fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
     let [mut even, mut odd] = [Sums::ZERO; 2];
     let (mut before, mut power, square) = (0.0, 1.0, root * root);
-    for (w, a) in factor.chunks_exact_mut(2).zip(a.chunks_exact(2)) {
-        let first = a[0] * power;
-        let both = first + a[1] * (power * root);
-        (w[0], w[1]) = (before + first, before + both);
+    for (w, [a, b]) in factor.as_chunks_mut().0.iter_mut().zip(a.as_chunks().0) {
+        let first = a * power;
+        let both = first + b * (power * root);
+        *w = [before + first, before + both];
         (even, odd) = (even.and(w[0]), odd.and(w[1]));
         before = w[1];
         power *= square;
