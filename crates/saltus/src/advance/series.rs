@@ -170,13 +170,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// A step of `h` or less over which the series is believed, and what ends it: no longer than the flow at its end agrees, which it does not beyond a switch.
     /// Nothing if there is no such step.
-    fn believed(
-        &mut self,
-        way: &Way<A>,
-        c: &[A::State],
-        unit: f64,
-        mut h: f64,
-    ) -> Result<Option<Believed<A>>, Error> {
+    fn believed(&mut self, way: &Way<A>, c: &[A::State], unit: f64, mut h: f64) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let limit = searched(h, remaining, since);

@@ -1,11 +1,13 @@
 //! The first fall of a polynomial by its powers, where they show it to be the only one up to there.
 
-use crate::poly::{MAX_DEGREE, value_and_slope};
+use crate::poly::MAX_DEGREE;
 
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
 const DEEPEST: u32 = 4;
-/// A correction of the root by this part of it leaves an error of its square.
-const CLOSE: f64 = 1e-8;
+/// Where the last correction is this part of the root, and the bend's part of the correction as small, what is left is rounding: their squares' product.
+const CLOSE: f64 = 1e-6;
+/// Closer than this a root is not known if it may be two.
+const CLOSEST: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
 
@@ -129,7 +131,8 @@ impl Powers {
     /// Where what is left from the power `k` on, of which the first is divided out, first falls through zero: it may be off by `margin`, and is positive
     /// at its start.
     ///
-    /// A root r is found by Newton's method. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
+    /// A root r is found by Chebyshev's method (J. Traub, *Iterative Methods for the Solution of Equations*, 1964, 5.2): Newton's with a term for the bend, of
+    /// order three, for little more than the wait for the value itself. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
     /// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
     pub(crate) fn first_fall(&self, k: usize, margin: f64) -> FirstFall {
         let a = &self.coefficients()[k.min(self.len)..];
@@ -181,19 +184,43 @@ fn root(a: &[f64], end: f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, 1.0);
     let mut u = if guess > low && guess <= high { guess } else { 0.5 };
     for _ in 0..MOST_CORRECTIONS {
-        let (value, slope) = value_and_slope(a, |a| *a, u);
+        let [value, slope, bend] = value_slope_and_bend(a, u);
         if value > 0.0 {
             low = u;
         } else {
             high = u;
         }
-        let next = u - value / slope;
-        if (next - u).abs() <= CLOSE * u {
+        let by = value / slope;
+        let bent = by * (bend / slope);
+        let next = u - by * (1.0 + bent);
+        let off = (next - u).abs();
+        if off <= CLOSEST * u || off <= CLOSE * u && bent.abs() <= CLOSE {
             return (next <= 1.0).then_some(next);
         }
         u = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     None
+}
+
+/// The value, the slope and half the second derivative at `u`, in two chains each.
+#[inline]
+fn value_slope_and_bend(a: &[f64], u: f64) -> [f64; 3] {
+    let square = u * u;
+    let (pairs, last) = a.as_chunks::<2>();
+    let mut value = [last.first().copied().unwrap_or(0.0), 0.0];
+    let [mut slope, mut bend] = [[0.0; 2]; 2]; // by u²
+    for pair in pairs.iter().rev() {
+        for i in 0..2 {
+            bend[i] = bend[i] * square + slope[i];
+            slope[i] = slope[i] * square + value[i];
+            value[i] = value[i] * square + pair[i];
+        }
+    }
+    [
+        value[0] + u * value[1],
+        value[1] + 2.0 * (u * slope[0] + square * slope[1]),
+        slope[0] + 3.0 * u * slope[1] + 4.0 * square * (bend[0] + u * bend[1]),
+    ]
 }
 
 /// Whether Σ aₖ uᵏ exceeds `margin` on `0..=1`.
@@ -268,6 +295,24 @@ mod tests {
         roots.iter().fold(vec![scale, 0.0, scale * bend], |p, r| times(&p, &[1.0, -1.0 / r]))
     }
 
+    /// How well its rounded powers let a root be known.
+    fn within_rounding(a: &[f64], root: f64) -> f64 {
+        let [_, slope, _] = value_slope_and_bend(a, root);
+        let size = a.iter().rev().fold(0.0, |size, a| size * root + a.abs());
+        1e-14 * (root + size / slope.abs())
+    }
+
+    #[test]
+    fn roots_that_lie_close() {
+        for digits in 1..=12 {
+            // The second is just beyond the end.
+            let off = 0.1_f64.powi(digits);
+            let a = with_roots(&[1.0 - off, 1.0 + 2.0 * off], 1.0, 0.3);
+            let u = root(&a, Sums::of(&a).sum).unwrap();
+            assert!((u - (1.0 - off)).abs() <= within_rounding(&a, u), "{digits} {u}");
+        }
+    }
+
     #[test]
     fn what_is_clear_is_said() {
         let first_fall = |a: &[f64], margin: f64| first_fall(a, Sums::of(a), margin);
@@ -309,7 +354,7 @@ mod tests {
             let mut powers = Powers::new();
             powers.fill(a[0], &a[1..], |a| *a, 1.0);
             match powers.first_fall(0, MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
-                FirstFall::At(u) => prop_assert!((u - roots[0]).abs() < 1e-4 * roots[0], "{u} {roots:?}"),
+                FirstFall::At(u) => prop_assert!((u - roots[0]).abs() <= within_rounding(&a, roots[0]), "{u} {roots:?}"),
                 FirstFall::Nowhere => prop_assert_eq!(within, 0),
                 FirstFall::Unclear => {}
             }
