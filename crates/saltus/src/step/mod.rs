@@ -19,6 +19,8 @@ pub use either::Either;
 pub use rodas5p::Rodas5P;
 pub use tsit5::Tsit5;
 
+use std::ops::RangeInclusive;
+
 use crate::state::State;
 
 /// A one-step method with an error estimate and dense output.
@@ -134,10 +136,10 @@ fn difference<S: State>(y: &S, x: &S) -> S {
     x.with(|i| y.get(i) - x.get(i))
 }
 
-/// So few coordinates fit one register. More would be packed by the optimiser as it finds them, such that those that are ready wait for those that are not:
-/// places, known from the speeds of an earlier stage, for speeds. To look at each coordinate by itself, whether it is finite, keeps them apart and costs less
-/// than that wait, on the Arenstorf orbit a fifth of the run.
-const PACKED: usize = 2;
+/// The differences of so many coordinates are all in registers. There the optimiser packs them as it finds them, such that those that are ready wait for those that
+/// are not: places, known from the speeds of an earlier stage, for speeds. To look at each by itself, whether it is finite, keeps them apart, and costs less than that
+/// wait: on the Arenstorf orbit a fifth of the run. One or two are best packed, and more are in memory.
+const APART: RangeInclusive<usize> = 3..=6;
 
 /// The stages of an explicit step, kept as differences dₖ from the slope at its start.
 ///
@@ -155,46 +157,40 @@ impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
     /// The state that is `c` of the step ahead by these weights. The last difference, for which the others have waited, enters last.
     #[inline]
     fn state<const N: usize>(&self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
-        self.x.with(|i| self.coordinate(i, c, weights, differences))
-    }
-
-    /// Coordinate `i` of it.
-    #[inline]
-    fn coordinate<const N: usize>(&self, i: usize, c: f64, weights: &[f64; N], differences: [&S; N]) -> f64 {
-        let along = |rest: f64| self.x.get(i) + self.h * (c * self.slope.get(i) + rest);
-        match (weights.split_last(), differences.split_last()) {
-            (Some((weight, weights)), Some((last, earlier))) => {
-                let earlier: f64 = weights.iter().zip(earlier).map(|(w, d)| w * d.get(i)).sum();
-                along(earlier) + (self.h * weight) * last.get(i)
+        let Self { x, slope, h, .. } = self;
+        x.with(|i| {
+            let along = |rest: f64| x.get(i) + h * (c * slope.get(i) + rest);
+            match (weights.split_last(), differences.split_last()) {
+                (Some((weight, weights)), Some((last, earlier))) => {
+                    let earlier: f64 = weights.iter().zip(earlier).map(|(w, d)| w * d.get(i)).sum();
+                    along(earlier) + (h * weight) * last.get(i)
+                }
+                _ => along(0.0),
             }
-            _ => along(0.0),
-        }
+        })
     }
 
-    /// The flow there, less the one at the start; where the state has overflowed, the step fails without it.
+    /// The flow there, less the one at the start.
     #[inline]
     fn next<const N: usize>(&mut self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
-        let mut overflown = false;
-        let apart = self.x.len() > PACKED;
-        let state = self.x.with(|i| seen(self.coordinate(i, c, weights, differences), apart, &mut overflown));
-        if overflown {
-            return state;
-        }
+        let state = self.state(c, weights, differences);
         let flow = (self.flow)(self.t + c * self.h, &state);
-        self.slope.with(|i| seen(flow.get(i) - self.slope.get(i), apart, &mut overflown))
+        let less = |i: usize| flow.get(i) - self.slope.get(i);
+        if APART.contains(&flow.len()) { self.slope.with(|i| apart(less(i))) } else { self.slope.with(less) }
     }
 }
 
-/// The value; kept `apart` from others by a look whether it is finite, with a call on the rare path that the optimiser must assume to change what it knows.
+/// The value, which is not packed with others: the optimiser leaves apart what a call may come between. What this one notes is of no use.
 #[inline]
-fn seen(value: f64, apart: bool, overflown: &mut bool) -> f64 {
+fn apart(value: f64) -> f64 {
     #[cold]
     #[inline(never)]
-    fn note(overflown: &mut bool) {
-        *overflown = true;
+    fn note(odd: &mut bool) {
+        *odd = true;
     }
-    if apart && !value.is_finite() {
-        note(overflown);
+    let mut odd = false;
+    if !value.is_finite() {
+        note(&mut odd);
     }
     value
 }
