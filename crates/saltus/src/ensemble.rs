@@ -72,14 +72,18 @@ fn chunks<T: Send, B>(
     /// What a chunk may take before the next is no larger, and how large one gets.
     const LONG: Duration = Duration::from_millis(25);
     const LARGEST: usize = 1 << 14;
+    /// In how many parts for each thread a chunk is made, so that none waits long for the last of another.
+    const PARTS: usize = 64;
 
-    let mut size = rayon::current_num_threads();
+    let threads = rayon::current_num_threads();
+    let mut size = threads;
     let mut results = Vec::new();
     let mut start = range.start;
     while start < range.end {
         let end = range.end.min(start.saturating_add(size));
         let clock = Instant::now();
-        (start..end).into_par_iter().map(run).collect_into_vec(&mut results);
+        let part = (end - start).div_ceil(PARTS * threads);
+        (start..end).into_par_iter().with_max_len(part).map(run).collect_into_vec(&mut results);
         let took = clock.elapsed();
         for (k, result) in (start..end).zip(results.drain(..)) {
             each(k, result)?;
