@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release --example accuracy` measures and rewrites the tables of `docs/accuracy.md` and its pictures.
 
+mod dragged;
 mod page;
 mod systems;
 
