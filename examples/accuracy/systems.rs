@@ -177,16 +177,12 @@ pub(crate) fn table() -> Answer {
 /// A closed orbit about Earth and Moon.
 pub(crate) fn arenstorf() -> Answer {
     let mu = 0.012_277_471;
-    let orbit = Hybrid::new().mode("orbit", move |_t, x: &Vector4<f64>| {
-        let (a, b) = (x[0] + mu, x[0] - (1.0 - mu));
-        let (d1, d2) = ((a * a + x[1] * x[1]).powf(1.5), (b * b + x[1] * x[1]).powf(1.5));
-        let far = 1.0 - mu;
-        vector![
-            x[2],
-            x[3],
-            x[0] + 2.0 * x[3] - far * a / d1 - mu * b / d2,
-            x[1] - 2.0 * x[2] - far * x[1] / d1 - mu * x[1] / d2
-        ]
+    let orbit = Hybrid::new().mode("orbit", move |_t, s: &Vector4<f64>| {
+        let (x, y, u, v) = (s[0], s[1], s[2], s[3]);
+        let (a, b) = (x + mu, x - (1.0 - mu));
+        let (d1, d2) = (a * a + y * y, b * b + y * y);
+        let (p, q) = ((1.0 - mu) / (d1 * d1.sqrt()), mu / (d2 * d2.sqrt()));
+        vector![u, v, x + 2.0 * v - p * a - q * b, y - 2.0 * u - (p + q) * y]
     });
     let orbit = orbit.series("orbit", move |_t, [x, y, u, v]| {
         let (a, b) = (x + mu, x - (1.0 - mu));
