@@ -174,7 +174,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         name: &'static str,
         flow: impl for<'j> Fn(Jet<'j>, [Jet<'j>; N]) -> [Jet<'j>; N] + Send + Sync + 'a,
     ) -> Self {
-        let before = self.entry_of(name).series.replace(Box::new(move |series| series.flow(&flow)));
+        let before = self.entry_of(name).series.replace(Box::new(move |series| series.flow(|t, x| flow(t, x))));
         self.twice = self.twice.or(before.map(|_| ("series", name)));
         self
     }

@@ -38,7 +38,7 @@ enum Number<'a> {
 use Number::{Constant, Placed};
 
 impl<'a> Jet<'a> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(pass: &'a Pass<'a>, place: usize) -> Self {
         Self(Placed(pass, place))
     }
@@ -50,7 +50,7 @@ impl<'a> Jet<'a> {
         self.coefficient(0)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn coefficient(self, k: usize) -> f64 {
         match self.0 {
             Constant(a) if k == 0 => a,
@@ -61,7 +61,7 @@ impl<'a> Jet<'a> {
 
     /// `of` the value of a constant; for another number the next place on the tape, whose coefficient k is `next(k, a, c)`, where a are its
     /// coefficients and c those known so far of the result.
-    #[inline]
+    #[inline(always)]
     pub(super) fn function(self, of: impl FnOnce(f64) -> f64, next: impl FnOnce(usize, &Row, &Row) -> f64) -> Self {
         match self.0 {
             Constant(a) => of(a).into(),
@@ -70,7 +70,7 @@ impl<'a> Jet<'a> {
     }
 
     /// The same for two numbers, `of` which both are constants, or `left` or `right` alone is.
-    #[inline]
+    #[inline(always)]
     fn operation(
         self,
         other: Self,
@@ -88,7 +88,7 @@ impl<'a> Jet<'a> {
     }
 
     /// The number at the next place.
-    #[inline]
+    #[inline(always)]
     fn next(pass: &'a Pass<'a>, coefficient: impl FnOnce(usize, &Row) -> f64) -> Self {
         let (place, k) = (pass.next.get(), pass.k % MOST_COEFFICIENTS);
         pass.next.set(place + 1);
@@ -198,7 +198,7 @@ fn of_constant(k: usize, a: f64) -> f64 {
 
 impl Add for Jet<'_> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.operation(
             other,
@@ -212,7 +212,7 @@ impl Add for Jet<'_> {
 
 impl Sub for Jet<'_> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self.operation(
             other,
@@ -226,7 +226,7 @@ impl Sub for Jet<'_> {
 
 impl Mul for Jet<'_> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         if let (Placed(_, a), Placed(_, b)) = (self.0, other.0)
             && a == b
@@ -246,7 +246,7 @@ impl Mul for Jet<'_> {
 impl Div for Jet<'_> {
     type Output = Self;
     /// From a = c b, of which cₖ b₀ is one term.
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let rest = |k: usize, b: &Row, c: &Row| convolved(&c[..k], &b[1..=k]);
         self.operation(
@@ -261,7 +261,7 @@ impl Div for Jet<'_> {
 
 impl Neg for Jet<'_> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self.function(|a| -a, |k, a, _| -a[k].get())
     }
@@ -272,26 +272,26 @@ macro_rules! mixed {
     ($($operator:ident $method:ident $assign:ident $in_place:ident;)*) => {$(
         impl $operator<f64> for Jet<'_> {
             type Output = Self;
-            #[inline]
+            #[inline(always)]
             fn $method(self, other: f64) -> Self {
                 $operator::$method(self, Self::from(other))
             }
         }
         impl<'a> $operator<Jet<'a>> for f64 {
             type Output = Jet<'a>;
-            #[inline]
+            #[inline(always)]
             fn $method(self, other: Jet<'a>) -> Jet<'a> {
                 $operator::$method(Jet::from(self), other)
             }
         }
         impl $assign for Jet<'_> {
-            #[inline]
+            #[inline(always)]
             fn $in_place(&mut self, other: Self) {
                 *self = $operator::$method(*self, other);
             }
         }
         impl $assign<f64> for Jet<'_> {
-            #[inline]
+            #[inline(always)]
             fn $in_place(&mut self, other: f64) {
                 *self = $operator::$method(*self, Self::from(other));
             }
