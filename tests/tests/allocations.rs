@@ -32,3 +32,20 @@ fn steps_with_every_kind_of_guard() {
     });
     assert_eq!(counted.count_total, 0);
 }
+
+#[test]
+fn series_make_room_once_for_a_run() {
+    let ball = Hybrid::new()
+        .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8 - 0.1 * x[1] * x[1].abs()])
+        .series("flight", |_t, [_, v]| [v, -9.8 - 0.1 * (v * v.abs())])
+        .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.9 * x[1]])
+        .affine("flight", "flight");
+    let allocations = |jumps: usize| {
+        let simulation = Simulation::of(&ball).most_jumps(jumps);
+        let counted = measure(|| {
+            simulation.drive("flight", vector![1.0, 0.0], 0.0..100.0, &mut ()).unwrap();
+        });
+        counted.count_total
+    };
+    assert_eq!(allocations(3), allocations(30));
+}

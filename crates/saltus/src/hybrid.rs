@@ -174,7 +174,9 @@ impl<'a, S: State> Hybrid<'a, S> {
         name: &'static str,
         flow: impl for<'j> Fn(Jet<'j>, [Jet<'j>; N]) -> [Jet<'j>; N] + Send + Sync + 'a,
     ) -> Self {
-        let before = self.entry_of(name).series.replace(Box::new(move |series| series.flow(|t, x| flow(t, x))));
+        #[allow(clippy::redundant_closure)] // the flow is inlined here; a reference to it would be called at every pass
+        let series = Box::new(move |series: &mut Series<'_, S>| series.flow(|t, x| flow(t, x)));
+        let before = self.entry_of(name).series.replace(series);
         self.twice = self.twice.or(before.map(|_| ("series", name)));
         self
     }

@@ -131,7 +131,7 @@ impl Powers {
     /// Where what is left from the power `k` on, of which the first is divided out, first falls through zero: it may be off by `margin`, and is positive
     /// at its start.
     ///
-    /// A root r is found by Chebyshev's method (J. Traub, *Iterative Methods for the Solution of Equations*, 1964, 5.2): Newton's with a term for the bend, of
+    /// A root r is found by Chebyshev's method (J. Traub, *Iterative Methods for the Solution of Equations*, 1964, chapter 5): Newton's with a term for the bend, of
     /// order three, for little more than the wait for the value itself. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
     /// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
     pub(crate) fn first_fall(&self, k: usize, margin: f64) -> FirstFall {
