@@ -71,7 +71,7 @@ fn a_cor_that_depends_on_speed_is_written_as_its_law() {
     let truth = run(&format!("gravity = 9.81\n{law}\nball = {{ height = \"3 m\" }}\n"));
     let fit = Fit::new().sigma_time(1e-5).model(CorModel::Linear);
     let report = fit.run(&read("clicks", &contacts(&truth, 12))).unwrap();
-    assert_eq!(report.models().iter().find(|model| model.chosen).map(|model| model.name.as_str()), Some("linear"));
+    assert_eq!(report.models().iter().find(|model| model.chosen).map(|model| model.name), Some(CorModel::Linear));
     let (toml, fitted) = scene(&report);
     let found = fitted.law(0, 0).unwrap();
     assert!(matches!(found, Law::Knots(_)), "{toml}");

@@ -1,28 +1,20 @@
-//! From a table to a report.
+//! From a table to a report: the stages in order.
 
-use crate::bootstrap;
-use crate::bounces::{self, Setting};
-use crate::choice::CorModel;
-use crate::diagnose::{self, Findings};
+use crate::compare::{self, Wanted};
 use crate::error::FitError;
-use crate::estimate::{self, Kind, Source, Sourced, one_kind};
 use crate::evidence::Evidence;
-use crate::joint;
+use crate::finding::FindingKind;
 use crate::model::{Contacts, Heights};
-use crate::motion;
-use crate::outliers;
-use crate::ratio;
-use crate::report::Report;
-use crate::robust::Loss;
-use crate::series;
-use crate::table::{Event, Reading, Table};
-use crate::tolerance;
-use crate::weigh;
+use crate::quantity::{CorModel, Loss, Source, Sourced};
+use crate::report::{Extras, Report};
+use crate::solve::fits::{Fits, Known};
+use crate::solve::series::{self, Series};
+use crate::solve::{bootstrap, kind, outliers, tolerance};
+use crate::table::{Reading, Table};
+use crate::verdict;
 
 /// Gravity where nobody states it, m/s².
 const GRAVITY: f64 = 9.81;
-/// More lines of repairs than this are counted, not listed.
-const LISTED: usize = 20;
 
 /// What is known beside the table, and the fit itself.
 ///
@@ -178,146 +170,84 @@ impl Fit {
     /// Those of [`Fit::run`].
     pub fn run_with(&self, table: &Table, progress: &mut dyn FnMut(usize)) -> Result<Report, FitError> {
         self.check()?;
+        let known = self.known(table);
+        let evidence = self.evidence(table, &known)?;
+        let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
+        if !fits.any()
+            && let Some(series) = series::fit(table, !self.no_repair)?
+        {
+            return Ok(self.report_of_recordings(&fits, series));
+        }
+        let mut comparison = compare::all(&fits, &self.wanted())?;
+        let extras = self.extras(&fits, progress)?;
+        let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model);
+        if self.bootstrap.is_some() && extras.bootstrap.is_none() {
+            judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
+        }
+        Ok(Report::build(&fits, comparison, extras, judgement, self.ball))
+    }
+
+    /// What is known before anything is fitted: gravity, and the errors of reading as far as somebody states them.
+    fn known(&self, table: &Table) -> Known {
         let gravity = sourced(self.gravity, table.metadata.gravity)
             .unwrap_or(Sourced { value: GRAVITY, source: Source::Assumed });
         let frame = table.metadata.frame_rate.map(|rate| 1.0 / rate);
-        let known_height =
+        let sigma_height =
             sourced(self.sigma_height, table.metadata.sigma_height).or(stated_by_rows(table, |r| r.sigma_height));
-        let known_time = sourced(self.sigma_time, table.metadata.sigma_time)
+        let sigma_time = sourced(self.sigma_time, table.metadata.sigma_time)
             .or(stated_by_rows(table, |r| r.sigma_time))
             .or(frame.map(|frame| Sourced { value: frame / 12f64.sqrt(), source: Source::FrameRate }));
-        let mut evidence = Evidence::of(table, known_time.map(|s| s.value), !self.no_repair);
+        Known { gravity, sigma_height, sigma_time, frame }
+    }
+
+    /// The readings in order, without those that are none of the ball.
+    fn evidence(&self, table: &Table, known: &Known) -> Result<Evidence, FitError> {
+        let mut evidence = Evidence::of(table, known.sigma_time.map(|s| s.value), !self.no_repair);
         if !self.no_repair {
-            let error = |known: Option<Sourced>| (known.map_or(0.01, |s| s.value), known.is_some());
-            let (sigma, stated) = error(known_height);
             let drop = |evidence: &mut Evidence, wrong: &[(usize, usize)]| evidence.drop_heights(table, wrong);
-            evidence = outliers::without::<Heights>(evidence, sigma, stated, drop)?;
-            let (sigma, stated) = error(known_time);
+            evidence = outliers::without::<Heights>(evidence, known.sigma_height, drop)?;
             // Where bounces scatter, times have errors that add up, and none stands alone.
-            if stated {
+            if known.sigma_time.is_some() {
                 let drop = |evidence: &mut Evidence, wrong: &[(usize, usize)]| evidence.drop_moments(table, wrong);
-                evidence = outliers::without::<Contacts>(evidence, sigma, stated, drop)?;
+                evidence = outliers::without::<Contacts>(evidence, known.sigma_time, drop)?;
             }
         }
-        if table.metadata.intervals && estimate::add_up(&evidence, known_time)? {
+        if table.metadata.intervals && kind::add_up(&evidence, known.sigma_time)? {
             evidence.trials.iter_mut().for_each(|t| t.added_up = true);
         }
-        let heights: Option<Kind<Heights>> = one_kind(&evidence, known_height)?;
-        let times: Option<Kind<Contacts>> = estimate::times(&evidence, known_time)?;
-        let assumed = Sourced { value: 0.01, source: Source::Assumed };
-        let sigma_height = heights.as_ref().map(|k| k.sigma).or(known_height).unwrap_or(assumed);
-        let sigma_time = times.as_ref().map(|k| k.sigma).or(known_time).unwrap_or(assumed);
-        let setting =
-            Setting { gravity: gravity.value, sigma_height: sigma_height.value, sigma_time: sigma_time.value };
+        Ok(evidence)
+    }
 
-        let mut report = Report::new(table.name(), gravity);
-        report.ball = self.ball;
-        report.pixels = table.metadata.pixels;
-        report.files.clone_from(&table.files);
-        let has = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
-        report.sigma_height =
-            (table.zero_rebounds > 0 || has(|r| r.event == Event::Apex && r.height.is_some())).then_some(sigma_height);
-        report.sigma_time = has(|r| r.event == Event::Contact).then_some(sigma_time);
-        report.frame_rate = table.metadata.frame_rate;
-        report.trials = table.trials().len();
-        report.notes.clone_from(&table.notes);
-        report.repairs = listed(table.repairs.iter().chain(&evidence.repairs));
-        report.warnings.clone_from(&table.warnings);
-        report.bounces = bounces::list(&evidence, &setting);
+    /// What the caller wants of the comparison with other models.
+    fn wanted(&self) -> Wanted {
+        let losses = Loss::ALL.into_iter().zip(self.losses).filter(|(_, wanted)| *wanted);
+        Wanted { losses: losses.map(|(loss, _)| loss).collect(), model: self.model, ball: self.ball }
+    }
 
-        if heights.is_none()
-            && times.is_none()
-            && let Some(found) = series::fit(table, !self.no_repair)?
-        {
-            series::judge(&mut report, &found);
-            (report.motion, report.points, report.residuals) = found.picture();
-            report.series = found.tracks;
-            if self.model.is_some() {
-                report
-                    .warnings
-                    .push("a series chooses its model by itself: what was asked for is not heeded".to_owned());
-            }
-            return Ok(report);
+    /// What is computed where it was asked for: the CORs that tolerances allow, profiles of the cost, a bootstrap.
+    fn extras(&self, fits: &Fits<'_>, progress: &mut dyn FnMut(usize)) -> Result<Extras, FitError> {
+        let mut extras = Extras::default();
+        if let Some((kind, within)) = fits.heights.as_ref().zip(self.tolerance_height) {
+            extras.allowed.extend(tolerance::allowed(fits.evidence, kind, within)?);
         }
-
-        let joint = joint::joint(&evidence, gravity.value, sigma_height.value, sigma_time.value)?;
-        if let Some(joint) = &joint {
-            let agreement = joint::agreement(joint, &evidence, gravity.value, table.metadata.frame_rate);
-            if agreement.p.is_some_and(|p| p < diagnose::REJECT) {
-                if joint.thinned() > 1 {
-                    report.notes.push(format!("what could explain it was tried on one trial in {}", joint.thinned()));
-                }
-                report.hypotheses = joint::hypotheses(joint, sigma_height.value, sigma_time.value, frame)?;
-            }
-            report.agreement = Some(agreement);
-        } else if let Some(kind) = heights.as_ref().filter(|k| k.trend.is_some_and(|p| p < diagnose::REJECT)) {
-            let one_cor = (kind.fitted.shared[0].exp(), gravity.value, sigma_height.value);
-            report.hypotheses.extend(joint::height_zero(&evidence, one_cor)?);
-        }
-        let means = bounces::means(&evidence, &setting);
-        let read_as_zero = evidence.trials.iter().any(|t| !t.zeros.is_empty());
-        let ratio = if read_as_zero || self.losses.contains(&true) {
-            ratio::estimate(&evidence, sigma_height.value)
-        } else {
-            None
-        };
-        let findings = Findings {
-            heights,
-            times,
-            means,
-            joint,
-            table,
-            evidence: &evidence,
-            sigma_height: sigma_height.value,
-            ball: self.ball,
-            ratio,
-        };
-        diagnose::judge(&mut report, &findings);
-        if let Some((kind, within)) = findings.heights.as_ref().zip(self.tolerance_height) {
-            report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
-        }
-        if let Some((kind, within)) = findings.times.as_ref().zip(self.tolerance_time) {
-            report.allowed.extend(tolerance::allowed(&evidence, kind, within)?);
+        if let Some((kind, within)) = fits.times.as_ref().zip(self.tolerance_time) {
+            extras.allowed.extend(tolerance::allowed(fits.evidence, kind, within)?);
         }
         if self.profiles {
-            report.profiles = findings.profiles();
+            extras.profiles = fits.profiles();
         }
         if let Some(draws) = self.bootstrap {
-            let setting = bootstrap::Setting {
-                gravity: gravity.value,
-                sigma_height,
-                sigma_time,
-                joint: findings.joint.is_some(),
-                times: findings.times.is_some(),
-            };
-            report.bootstrap = bootstrap::run(&evidence, &setting, draws, progress)?;
-            if report.bootstrap.is_none() {
-                report.warnings.push("no bootstrap: it draws whole trials, and needs at least five".to_owned());
-            }
+            extras.bootstrap = bootstrap::run(fits, draws, progress)?;
         }
-        let losses: Vec<Loss> =
-            Loss::ALL.into_iter().zip(self.losses).filter(|(_, wanted)| *wanted).map(|(loss, _)| loss).collect();
-        let (models, losses) = rayon::join(
-            || diagnose::models(&mut report, &findings, (sigma_height, sigma_time), (&losses, self.model)),
-            || findings.losses(&losses),
-        );
-        let compared = models?;
-        report.models = compared.models;
-        report.estimates.extend(losses?);
-        if let Some(wanted) = self.model {
-            weigh::rest_on(&mut report, wanted, compared.untried.as_deref());
-        }
+        Ok(extras)
+    }
 
-        let (motions, release_is_fitted) = match (&findings.joint, &findings.times, &findings.heights) {
-            (Some(joint), _, _) => (motion::of_joint(joint, &evidence), false),
-            (None, Some(times), _) => (motion::of_times(times, &evidence, gravity.value), false),
-            (None, None, Some(heights)) => (motion::of_heights(heights, &evidence, gravity.value), true),
-            (None, None, None) => (Vec::new(), false),
-        };
-        let sigmas = (sigma_height.value, sigma_time.value);
-        (report.points, report.residuals) = motion::beside(&motions, &evidence, sigmas, release_is_fitted);
-        report.motion = motions.into_iter().next().map(|(_, motion)| motion);
-        Ok(report)
+    fn report_of_recordings(&self, fits: &Fits<'_>, series: Series) -> Report {
+        let (mut judgement, estimates, models) = verdict::of_recordings(fits, &series);
+        if self.model.is_some() {
+            judgement.note(FindingKind::ModelNotHeeded);
+        }
+        Report::build_of_recordings(fits, series, estimates, models, judgement)
     }
 
     fn check(&self) -> Result<(), FitError> {
@@ -344,21 +274,9 @@ fn sourced(stated: Option<f64>, table: Option<f64>) -> Option<Sourced> {
 }
 
 /// The root mean square of the errors that rows state; it stands for the error of a row that states none.
-#[allow(clippy::cast_precision_loss)]
 fn stated_by_rows(table: &Table, sigma: fn(&Reading) -> Option<f64>) -> Option<Sourced> {
     let stated = || table.trials().iter().flat_map(|t| t.readings()).filter_map(sigma);
     let count = stated().count();
     let value = (stated().map(|s| s * s).sum::<f64>() / count as f64).sqrt();
     (count > 0 && value.is_finite() && value > 0.0).then_some(Sourced { value, source: Source::Table })
-}
-
-/// The first lines, and how many more there are.
-fn listed<'a>(lines: impl Iterator<Item = &'a String>) -> Vec<String> {
-    let mut lines: Vec<String> = lines.cloned().collect();
-    if lines.len() > LISTED {
-        let more = lines.len() - LISTED;
-        lines.truncate(LISTED);
-        lines.push(format!("and {more} more of the kind"));
-    }
-    lines
 }

@@ -2,6 +2,13 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 
+/// A fit less probable than this by chance is rejected.
+pub(crate) const REJECT: f64 = 0.01;
+/// From this many trials on, the spread between them sets the error.
+pub(crate) const REPLICATED: usize = 5;
+/// From this many degrees of freedom on, the scatter can stand for a reading error that nobody stated.
+pub(crate) const SCATTER: usize = 4;
+
 /// The 97.5 % point of the normal distribution.
 pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
 

@@ -91,7 +91,7 @@ fn a_profile_is_the_cost_with_the_cor_held() {
     let report = Fit::new().sigma_height(sigma).profiles(true).run(&Table::from_heights(&heights).unwrap()).unwrap();
     assert_eq!(report.profiles().len(), 1);
     let profile = &report.profiles()[0];
-    assert_eq!((profile.method.as_str(), profile.points.len()), ("heights", 121));
+    assert_eq!((profile.method.name(), profile.points.len()), ("heights", 121));
     for point in &profile.points {
         let e = point.cor;
         let model: Vec<f64> = (0..4).map(|n| e.powi(2 * n)).collect();

@@ -1,6 +1,6 @@
 //! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the profile of the cost.
 
-use saltus_fit::{Measure, Motion, Report, Verdict};
+use saltus_fit::{Measure, Method, Motion, Report, Verdict};
 use saltus_plot::{
     Arc, Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke,
 };
@@ -9,7 +9,7 @@ use saltus_plot::{
 pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     let motion = report.motion()?;
     let points = report.points().iter().map(|point| {
-        let mut measured = Measured::new(point.time, point.height).mark(mark(&point.label));
+        let mut measured = Measured::new(point.time, point.height).mark(mark(point.mark));
         if let Some(sigma) = point.sigma_time {
             measured = measured.time_error(sigma);
         }
@@ -18,7 +18,7 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
         }
         measured
     });
-    let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(&r.label)));
+    let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(r.mark)));
     let mut picture = HeightTime::new(&report.title())
         .motion(&label(report, motion), arcs(motion))
         .measured(points)
@@ -103,12 +103,9 @@ fn impacts(report: &Report) -> Option<Result<String, PlotError>> {
 /// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every trial, and of the fitted motion.
 pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     let motion = report.motion()?;
-    let number = |label: &str| match label {
-        "release" => Some(0.0),
-        label => label.strip_prefix("apex ")?.parse::<f64>().ok(),
-    };
-    let read = report.points().iter().filter(|point| point.height > 0.0);
-    let read: Vec<_> = read.filter_map(|point| Some((number(&point.label)?, point))).collect();
+    let apexes = [saltus_fit::Mark::Release, saltus_fit::Mark::Apex];
+    let read = report.points().iter().filter(|point| point.height > 0.0 && apexes.contains(&point.mark));
+    let read: Vec<_> = read.map(|point| (count(point.number), point)).collect();
     let fitted = motion.release_height.map(|height| (0.0, height)).into_iter();
     let fitted: Vec<[f64; 2]> =
         fitted.chain((1_u32..).map(f64::from).zip(motion.apexes.iter().copied())).map(|(n, h)| [n, h]).collect();
@@ -140,12 +137,17 @@ pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     Some(chart.svg())
 }
 
+#[allow(clippy::cast_precision_loss)] // a number of bounces
+fn count(number: usize) -> f64 {
+    number as f64
+}
+
 /// The number of each flight between two contacts that were read, and the height that its duration means without air.
 fn intervals(report: &Report) -> Vec<[f64; 2]> {
-    let contact = |label: &str| label.strip_prefix("contact ")?.parse::<f64>().ok();
+    let contact = |point: &saltus_fit::Point| (point.mark == saltus_fit::Mark::Contact).then(|| count(point.number));
     let pairs = report.points().windows(2).filter(|w| w[0].trial == w[1].trial);
     let next = pairs.filter_map(|w| {
-        let (n, m) = (contact(&w[0].label)?, contact(&w[1].label)?);
+        let (n, m) = (contact(&w[0])?, contact(&w[1])?);
         (m == n + 1.0).then(|| [n, report.gravity().value * (w[1].time - w[0].time).powi(2) / 8.0])
     });
     next.collect()
@@ -164,9 +166,9 @@ pub(super) fn profile(report: &Report) -> Option<Result<String, PlotError>> {
         let least = profile.points.iter().map(|point| point.chi_square).fold(f64::INFINITY, f64::min);
         let above = profile.points.iter().map(|point| [point.cor, point.chi_square - least]);
         let shown: Vec<[f64; 2]> = above.filter(|[_, cost]| *cost <= DRAWN).collect();
-        let name = match profile.method.as_str() {
-            "joint" => "heights and times together",
-            method => method,
+        let name = match profile.method {
+            Method::Joint => "heights and times together",
+            method => method.name(),
         };
         reach = shown.iter().fold(reach, |[low, high], [cor, _]| [low.min(*cor), high.max(*cor)]);
         chart = chart.line(name, Stroke::polygon(&shown));
@@ -185,15 +187,16 @@ pub(super) fn profile(report: &Report) -> Option<Result<String, PlotError>> {
 /// The speed at a contact as it was read: from the height before it, else from the flight before it, the mean over trials.
 fn speed(report: &Report, bounce: usize) -> Option<f64> {
     let g = report.gravity().value;
-    let apex = if bounce == 1 { "release".to_owned() } else { format!("apex {}", bounce - 1) };
-    let contact = |n: usize| format!("contact {n}");
+    let apex = (if bounce == 1 { saltus_fit::Mark::Release } else { saltus_fit::Mark::Apex }, bounce - 1);
+    let contact = |n: usize| (saltus_fit::Mark::Contact, n);
+    let which = |p: &saltus_fit::Point| (p.mark, p.number);
     let points = report.points();
-    let heights = points.iter().filter(|p| p.label == apex).map(|p| (2.0 * g * p.height.max(0.0)).sqrt());
+    let heights = points.iter().filter(|p| which(p) == apex).map(|p| (2.0 * g * p.height.max(0.0)).sqrt());
     let mut speeds: Vec<f64> = heights.collect();
     if speeds.is_empty() {
-        let ends = points.iter().filter(|p| p.label == contact(bounce));
+        let ends = points.iter().filter(|p| which(p) == contact(bounce));
         let flight = |end: &saltus_fit::Point| {
-            let before = |p: &&saltus_fit::Point| p.trial == end.trial && p.label == contact(bounce - 1);
+            let before = |p: &&saltus_fit::Point| p.trial == end.trial && which(p) == contact(bounce - 1);
             points.iter().find(before).map(|start| 0.5 * g * (end.time - start.time))
         };
         speeds.extend(ends.filter_map(flight));
@@ -220,11 +223,11 @@ fn arcs(motion: &Motion) -> impl Iterator<Item = Arc> {
     motion.flights.iter().map(|flight| Arc::new(flight.start, flight.span, flight.height.to_vec()))
 }
 
-fn mark(label: &str) -> Mark {
-    match label.split(' ').next() {
-        Some("release") => Mark::Release,
-        Some("contact") => Mark::Contact,
-        Some("apex") => Mark::Apex,
+fn mark(of: saltus_fit::Mark) -> Mark {
+    match of {
+        saltus_fit::Mark::Release => Mark::Release,
+        saltus_fit::Mark::Contact => Mark::Contact,
+        saltus_fit::Mark::Apex => Mark::Apex,
         _ => Mark::Sample,
     }
 }

@@ -2,17 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::least_squares::Bounds;
-use crate::successive::Model;
-
-/// A time: after how many flights, whether at the apex of the next one, when (s), its standard error (s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment {
-    pub(crate) flights: usize,
-    pub(crate) apex: bool,
-    pub(crate) time: f64,
-    pub(crate) sigma: f64,
-}
+use super::problem::{Bounds, Model};
+use crate::evidence::Moment;
 
 /// Times of contacts (and apexes). Shared: e, and on request a trend. Own: a, τ.
 ///

@@ -2,13 +2,18 @@
 
 use nalgebra::DMatrix;
 
-use super::contacts::Moment;
 use super::drag::{Air, Sloped};
 use super::dual::Dual;
-use super::heights::Height;
 use super::law::CorLaw;
-use crate::least_squares::Bounds;
-use crate::successive::Model;
+use super::problem::{Bounds, Model};
+use crate::evidence::{Evidence, Height, Moment, TrialEvidence};
+
+/// A table with more readings is left to the models of one COR.
+pub(crate) const READINGS: usize = 5000;
+/// More bounces than this in a trial are not followed one by one.
+pub(crate) const FOLLOWED: usize = 1000;
+/// No contact of a ball lasts longer, s.
+pub(crate) const LONGEST_CONTACT: f64 = 0.02;
 
 /// What one trial offers to the joint fit.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +26,42 @@ pub(crate) struct FlightTrial {
     pub(crate) heights: Vec<Height>,
     /// `flights` counts from the first contact: contact 1 is after 0 flights.
     pub(crate) moments: Vec<Moment>,
+}
+
+impl FlightTrial {
+    /// Trials with at least one rebound height and times that fix a clock, with their places in the table; every error is filled in.
+    pub(crate) fn of_both(evidence: &Evidence, sigma_height: f64, sigma_time: f64) -> Vec<(usize, Self)> {
+        let rebounds = |t: &TrialEvidence| t.heights.iter().any(|h| h.0 > 0);
+        let timed = |t: &TrialEvidence| t.moments.len() + usize::from(t.release_time.is_some()) >= 2;
+        let of = |t: &TrialEvidence| {
+            let heights = t.heights.iter().filter(|h| h.0 > 0);
+            Self {
+                release: t.release_height,
+                release_time: t.release_time,
+                heights: heights.map(|&(n, h, s)| (n, h, s.unwrap_or(sigma_height))).collect(),
+                moments: t.moments(sigma_time),
+            }
+        };
+        evidence.trials.iter().filter(|t| rebounds(t) && timed(t)).map(|t| (t.trial, of(t))).collect()
+    }
+
+    /// Trials by their heights alone, with a release height that is a reading like the others.
+    pub(crate) fn of_heights(evidence: &Evidence, sigma: f64) -> Vec<Self> {
+        let one = |heights: Vec<Height>| Self {
+            release: heights.first().filter(|h| h.0 == 0).map(|h| (h.1, Some(h.2))),
+            // No reading asks for the time; a known one keeps the clock from being an unknown.
+            release_time: Some(0.0),
+            heights: heights.into_iter().filter(|h| h.0 > 0).collect(),
+            moments: Vec::new(),
+        };
+        evidence.heights(sigma).into_iter().filter(|h| h.len() > 1).map(one).collect()
+    }
+
+    /// Trials by their times alone: neither the height nor the time of release is used.
+    pub(crate) fn of_times(evidence: &Evidence, sigma: f64) -> Vec<Self> {
+        let one = |moments| Self { moments, ..Self::default() };
+        evidence.moments(sigma).into_iter().filter(|m| m.len() > 2).map(one).collect()
+    }
 }
 
 /// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball comes back after leaving at e vₙ; heights

@@ -2,11 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::least_squares::Bounds;
-use crate::successive::Model;
-
-/// A height: after how many contacts, how high (m), its standard error (m).
-pub(crate) type Height = (usize, f64, f64);
+use super::problem::{Bounds, Model};
+use crate::evidence::Height;
 
 /// Heights against the number of contacts. Shared: L = ln e, and on request a trend. Own: a = ln h₀.
 ///

@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 use nalgebra::DMatrix;
 
 use super::dual::Dual;
-use super::trajectory::GRAVITY;
-use crate::least_squares::Bounds;
+use super::places::GRAVITY;
+use super::problem::Bounds;
 
 /// The unknowns of contacts, side by side among all: T, s and κ.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! How the COR may depend on the bounce, or on the speed of impact.
 
 use super::dual::{Dual, Slopes};
-use crate::least_squares::Bounds;
+use super::problem::Bounds;
 
 /// A law for the COR. Speeds are in m/s; beyond the range of speeds it was made for, a law is continued.
 #[derive(Clone, Debug, Default, PartialEq)]

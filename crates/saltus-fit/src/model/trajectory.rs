@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 use super::drag::{Air, Sloped};
 use super::dual::Dual;
 use super::lasting::{self, Lasting};
-use crate::least_squares::Bounds;
-use crate::successive::Model;
+use super::places::{DRAG, FLOOR, GRAVITY, SPEED, TIME};
+use super::problem::{Bounds, Model};
 
 /// One sample of a series: when, how high, and the square root of its weight over its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,12 +50,6 @@ pub(crate) struct Trajectory<'a> {
     /// The largest COR.
     pub(crate) high: f64,
 }
-
-pub(crate) const TIME: usize = 0;
-pub(crate) const SPEED: usize = 1;
-pub(crate) const FLOOR: usize = 2;
-pub(crate) const GRAVITY: usize = 3;
-const DRAG: usize = 4;
 
 /// The least k times the range of heights: below it drag cannot be told from none.
 pub(crate) const LEAST_DRAG: f64 = 1e-7;

@@ -11,12 +11,12 @@ fn decimals(least: i32, error: f64) -> usize {
 }
 
 /// A number and its error with the same decimals, three at least, as a COR has them.
-pub(crate) fn pair(value: f64, error: f64) -> String {
+pub(super) fn pair(value: f64, error: f64) -> String {
     with_error(value, error, digits(error))
 }
 
 /// The same with no more decimals than the error asks for.
-pub(crate) fn measured(value: f64, error: f64) -> String {
+pub(super) fn measured(value: f64, error: f64) -> String {
     with_error(value, error, decimals(0, error))
 }
 
@@ -42,12 +42,12 @@ pub(super) fn number(x: f64) -> String {
 }
 
 /// A length in mm or cm.
-pub(crate) fn length(metres: f64) -> String {
+pub(super) fn length(metres: f64) -> String {
     if metres >= 0.001 { format!("{} cm", figures(100.0 * metres)) } else { format!("{} mm", figures(1000.0 * metres)) }
 }
 
 /// A duration in ms or s.
-pub(crate) fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     if seconds < 1.0 { format!("{} ms", figures(1000.0 * seconds)) } else { format!("{} s", figures(seconds)) }
 }
 

@@ -2,12 +2,12 @@
 
 use std::fmt::{self, Formatter};
 
-use super::Report;
+use super::contract::Report;
+use super::lines::paragraph;
 use super::numbers::{digits, figures, measured, pair};
-use super::text::paragraph;
-use crate::choice::{ModelChoice, UnderLoss};
-use crate::robust::Loss;
-use crate::series::Track;
+use super::words::loss_words;
+use crate::solve::choice::{ModelChoice, UnderLoss};
+use crate::solve::series::Track;
 
 /// More impacts than this are left to the JSON.
 const IMPACTS: usize = 12;
@@ -46,7 +46,7 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
                 let gap = places + 5;
                 let line = format!(
                     "    {:<44}{value:>width$}{:gap$}   {}",
-                    by(&under.loss),
+                    format!("by {}", loss_words(under.loss)),
                     "",
                     beside(under),
                     width = 18 - gap
@@ -77,11 +77,6 @@ fn errors_differ(report: &Report) -> bool {
     let chosen = report.models.iter().find(|m| m.chosen).map(|m| m.cor.standard_error);
     let reported = report.cor.and_then(|cor| cor.standard_error);
     chosen.zip(reported).is_some_and(|(a, b)| (a - b).abs() > ANOTHER * a.max(b))
-}
-
-fn by(loss: &str) -> String {
-    let words = Loss::ALL.into_iter().find(|known| known.name() == loss).map_or(loss, |known| known.words());
-    format!("by {words}")
 }
 
 /// What a model gives beside a COR under another loss.

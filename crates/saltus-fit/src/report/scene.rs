@@ -2,10 +2,13 @@
 
 use std::fmt::Write;
 
-use super::{Report, Verdict};
-use crate::choice::ModelChoice;
-use crate::motion::Motion;
-use crate::series::in_metres;
+use super::contract::Report;
+use super::motion::Motion;
+use super::residual::{Mark, Point};
+use crate::quantity::CorModel;
+use crate::solve::choice::ModelChoice;
+use crate::solve::series::in_metres;
+use crate::verdict::Verdict;
 
 /// A scene has so many points of a COR over speed at most.
 const KNOTS: usize = 16;
@@ -29,7 +32,7 @@ impl Report {
     /// ```
     #[must_use]
     pub fn scene(&self) -> Option<String> {
-        let motion = self.motion.as_ref().filter(|_| self.verdict != Verdict::Refused)?;
+        let motion = self.motions.first().filter(|_| self.verdict != Verdict::Refused)?;
         let metres = in_metres(motion.gravity, self.gravity.value);
         let scale = if metres { 1.0 } else { self.gravity.value / motion.gravity };
         let law = self.law(scale);
@@ -70,7 +73,7 @@ impl Report {
         if velocity != 0.0 {
             let _ = writeln!(scene, "velocity = \"{} m/s\"", figures(velocity * scale, 6));
         }
-        if let Some(diameter) = self.ball {
+        if let Some(diameter) = self.ball_m {
             let _ = writeln!(scene, "diameter = \"{} m\"", figures(diameter, 6));
         }
         if motion.cor.max(law.iter().fold(0.0, |most, [_, e]| most.max(*e))) > LOSSLESS {
@@ -84,16 +87,8 @@ impl Report {
     /// The height and the velocity at the start: of the motion, which has one COR; where the COR has a law and there is no film, as they were read.
     fn start(&self, motion: &Motion, law: bool) -> Option<[f64; 2]> {
         let [height, velocity, _] = motion.flights.first()?.height;
-        if !law || !self.series.is_empty() {
-            return Some([height, velocity]);
-        }
-        let read = |label: &str| self.points.iter().find(|point| point.trial == 0 && point.label == label);
-        let flight = read("contact 1").zip(read("contact 2")).map(|(a, b)| b.time - a.time);
-        Some(match (motion.release_height, read("release"), flight) {
-            (Some(_), Some(release), _) => [release.height, 0.0],
-            (None, _, Some(flight)) => [0.0, 0.5 * motion.gravity * flight],
-            _ => [height, velocity],
-        })
+        let read = self.start.filter(|_| law && self.series.is_empty());
+        Some(read.unwrap_or([height, velocity]))
     }
 
     fn chosen(&self) -> Option<&ModelChoice> {
@@ -110,7 +105,9 @@ impl Report {
     fn law(&self, scale: f64) -> Vec<[f64; 2]> {
         let Some(chosen) = self.chosen() else { return Vec::new() };
         let mut points: Vec<[f64; 2]> = chosen.speeds.iter().map(|at| [at.speed, at.cor]).collect();
-        if let Some(track) = self.series.first().filter(|_| !chosen.name.starts_with("constant")) {
+        if let Some(track) =
+            self.series.first().filter(|_| !matches!(chosen.name, CorModel::Constant | CorModel::ConstantDrag))
+        {
             points = track.impacts.iter().map(|impact| [impact.speed, impact.cor.value]).collect();
         }
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -118,6 +115,18 @@ impl Report {
         let (count, last) = (points.len().min(KNOTS), points.len().saturating_sub(1));
         let spread = (0..count).map(|k| points[if count > 1 { k * last / (count - 1) } else { 0 }]);
         spread.map(|[speed, cor]| [speed * scale, cor.clamp(0.0, 1.0)]).collect()
+    }
+}
+
+/// Height and velocity at the start of the first motion, as they were read.
+pub(super) fn as_read(motions: &[Motion], points: &[Point]) -> Option<[f64; 2]> {
+    let motion = motions.first()?;
+    let read = |which: (Mark, usize)| points.iter().find(|p| p.trial == 0 && (p.mark, p.number) == which);
+    let flight = read((Mark::Contact, 1)).zip(read((Mark::Contact, 2))).map(|(a, b)| b.time - a.time);
+    match (motion.release_height, read((Mark::Release, 0)), flight) {
+        (Some(_), Some(release), _) => Some([release.height, 0.0]),
+        (None, _, Some(flight)) => Some([0.0, 0.5 * motion.gravity * flight]),
+        _ => None,
     }
 }
 

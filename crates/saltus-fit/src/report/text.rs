@@ -2,17 +2,18 @@
 
 use std::fmt::{self, Formatter};
 
+use super::contract::Report;
+use super::lines::{capital, paragraph, section};
 use super::numbers::{digits, duration, figures, length, measured, number, pair, signed};
-use super::{Cor, Report};
-use crate::alone::chance;
-use crate::bounces::{BounceCor, Measured};
-use crate::diagnose::REJECT;
-use crate::estimate::{Estimate, Source, Sourced};
-use crate::joint::{Agreement, Generous, Hypothesis};
-use crate::robust::Loss;
+use super::recordings;
+use super::words::{chance, method_short, short, widening};
+use crate::compare::explain::{Agreement, Conflict, Generous, Hypothesis};
+use crate::quantity::{Measured, Method, Readings, Source, Sourced};
+use crate::solve::bounces::BounceCor;
+use crate::solve::estimate::Estimate;
+use crate::statistics::REJECT;
+use crate::verdict::Cor;
 
-/// Lines are broken before this column.
-const WIDTH: usize = 96;
 /// Tables of more bounces than this are left to the JSON.
 const BOUNCES: usize = 12;
 /// An interval whose sides differ by less, as a part of it, is even enough.
@@ -20,8 +21,24 @@ const LOPSIDED: f64 = 0.1;
 /// So many conflicting contacts are shown.
 const CONFLICTS: usize = 6;
 
+/// The COR and its standard error, with as many digits as that leaves it: `0.7812 ± 0.0009`.
+impl fmt::Display for Cor {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.standard_error {
+            Some(error) => f.write_str(&pair(self.value, error)),
+            None => write!(f, "{:.3}", self.value),
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write(self, f)
+    }
+}
+
 /// Writes the report.
-pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
+fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     writeln!(f, "{}: {}", report.table, report.verdict.to_string().to_uppercase())?;
     paragraph(f, 2, 2, &format!("{}.", capital(&report.reason)))?;
     if let Some(cor) = &report.cor {
@@ -31,8 +48,8 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         }
     }
     bounces(report, f)?;
-    super::recordings::write(report, f)?;
-    if report.agreement.as_ref().is_some_and(rejected) {
+    recordings::write(report, f)?;
+    if report.agreement.as_ref().is_some_and(Agreement::rejected) {
         if let Some(agreement) = &report.agreement {
             disagreement(report, agreement, f)?;
         }
@@ -51,19 +68,15 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         )?;
     }
     section(f, "Left out or mended", &report.repairs)?;
-    let mut mind = report.agreement.as_ref().filter(|a| rejected(a)).map_or_else(Vec::new, |a| caveats(report, a));
+    let mut mind = report.agreement.as_ref().filter(|a| a.rejected()).map_or_else(Vec::new, |a| caveats(report, a));
     mind.extend(report.warnings.iter().map(|w| capital(w)));
     section(f, "Keep in mind", &mind)?;
     footer(report, f)
 }
 
-fn rejected(agreement: &Agreement) -> bool {
-    agreement.p.is_some_and(|p| p < REJECT)
-}
-
 fn headline(report: &Report, cor: &Cor) -> String {
     match cor.standard_error {
-        Some(_) if report.agreement.as_ref().is_some_and(rejected) => {
+        Some(_) if report.agreement.as_ref().is_some_and(Agreement::rejected) => {
             format!("between {:.2} and {:.2}: the table does not settle on one number", cor.low, cor.high)
         }
         Some(error) => {
@@ -81,7 +94,7 @@ fn cell(cor: Option<Measured>) -> String {
 /// Why the interval reaches further to one side of the COR, where it does.
 fn lopsided(report: &Report, cor: &Cor) -> Option<String> {
     let (below, above) = (cor.value - cor.low, cor.high - cor.value);
-    let settled = cor.standard_error.is_some() && !report.agreement.as_ref().is_some_and(rejected);
+    let settled = cor.standard_error.is_some() && !report.agreement.as_ref().is_some_and(Agreement::rejected);
     if !settled || (above - below).abs() < LOPSIDED * (above + below) {
         return None;
     }
@@ -89,7 +102,10 @@ fn lopsided(report: &Report, cor: &Cor) -> Option<String> {
     if report.widened.is_empty() {
         return (cor.low <= 0.0).then(|| "The interval ends at 0, below which there is no COR.".to_owned());
     }
-    Some(format!("The interval is longer {side}: {}.", report.widened.join("; ")))
+    Some(format!(
+        "The interval is longer {side}: {}.",
+        report.widened.iter().map(widening).collect::<Vec<_>>().join("; ")
+    ))
 }
 
 /// The COR bounce by bounce, for small tables.
@@ -115,11 +131,11 @@ fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     for BounceCor { bounce, heights, times } in list {
         row(&format!("bounce {bounce}"), &cell(*heights), &cell(*times))?;
     }
-    let mean = |method: &str| {
+    let mean = |method: Method| {
         let found = report.estimates.iter().find(|e| e.method == method)?;
         found.value.zip(found.standard_error).map(|(value, standard_error)| Measured { value, standard_error })
     };
-    let (h, t) = (mean("heights-mean"), mean("times-mean"));
+    let (h, t) = (mean(Method::HeightsMean), mean(Method::TimesMean));
     if h.is_some() || t.is_some() {
         row("mean", &cell(h), &cell(t))?;
     }
@@ -131,21 +147,14 @@ fn bounces(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
 
 /// The least-squares fits and how well they describe the readings.
 fn methods(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
-    let shown = |e: &&Estimate| !e.method.ends_with("mean") && !e.method.starts_with("series");
+    let aside = [Method::HeightsMean, Method::TimesMean, Method::Series, Method::SeriesDrag];
+    let shown = |e: &&Estimate| !aside.contains(&e.method);
     if !report.estimates.iter().any(|e| shown(&e)) {
         return Ok(());
     }
     writeln!(f, "\nBy method")?;
     for estimate in report.estimates.iter().filter(shown) {
-        let name = match estimate.method.as_str() {
-            "joint" => "heights and times",
-            "first-flight" => "drop height, first flight",
-            "heights-unbounded" => "heights, COR > 1 allowed",
-            "times-unbounded" => "times, COR > 1 allowed",
-            other => other,
-        };
-        let loss = Loss::of(name);
-        let name = loss.map_or_else(|| name.to_owned(), |(readings, loss)| format!("{readings}, {}", loss.words()));
+        let (name, loss) = (method_short(estimate.method), estimate.method.loss());
         let value = match (estimate.value, estimate.standard_error) {
             (Some(value), Some(error)) => pair(value, error),
             (Some(value), None) if loss.is_some() => format!("{value:.4}"),
@@ -174,7 +183,7 @@ fn allowed(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
         .allowed
         .iter()
         .map(|a| {
-            let shown = |x: f64| if a.readings == "heights" { length(x) } else { duration(x) };
+            let shown = |x: f64| if a.readings == Readings::Heights { length(x) } else { duration(x) };
             match a.range {
                 Some((low, high)) => format!(
                     "every one of the {} within {}: the COR is from {low:.4} to {high:.4} ({} would be enough for {:.4})",
@@ -198,7 +207,7 @@ fn allowed(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
 
 /// What a joint fit shows when it fails.
 fn disagreement(report: &Report, agreement: &Agreement, f: &mut Formatter<'_>) -> fmt::Result {
-    let Some(joint) = report.estimates.iter().find(|e| e.method == "joint") else { return Ok(()) };
+    let Some(joint) = report.estimates.iter().find(|e| e.method == Method::Joint) else { return Ok(()) };
     writeln!(f, "\nHeights and times together, in free flight with g = {} m/s²", report.gravity.value)?;
     let p = agreement.p.unwrap_or(0.0);
     let text = format!(
@@ -214,7 +223,7 @@ fn disagreement(report: &Report, agreement: &Agreement, f: &mut Formatter<'_>) -
     writeln!(f, "\n  contact      measured   from the heights          apart")?;
     let mut worst: Vec<_> = agreement.conflicts.iter().collect();
     if worst.len() > CONFLICTS {
-        let size = |c: &&crate::Conflict| (c.measured_s - c.predicted_s).abs();
+        let size = |c: &&Conflict| (c.measured_s - c.predicted_s).abs();
         worst.sort_by(|a, b| size(b).total_cmp(&size(a)));
         worst.truncate(CONFLICTS);
     }
@@ -272,25 +281,13 @@ fn explanations(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     }
     let named: Vec<String> = poor
         .iter()
-        .map(|h| format!("{} (chi-square {} on {})", short(&h.name), number(h.chi_square), h.degrees_of_freedom))
+        .map(|h| format!("{} (chi-square {} on {})", short(h.name), number(h.chi_square), h.degrees_of_freedom))
         .collect();
     if !named.is_empty() {
         let verb = if named.len() == 1 { "does" } else { "do" };
         paragraph(f, 2, 4, &format!("- {} {verb} not explain it.", capital(&in_words(&named))))?;
     }
     Ok(())
-}
-
-fn short(name: &str) -> &str {
-    match name {
-        "height-zero" => "a wrong zero of the height scale",
-        "cor-per-bounce" => "a COR of its own for every bounce",
-        "clock-lag" => "a late or early clock",
-        "air-drag" => "air drag",
-        "cor-of-speed" => "a COR that depends on speed",
-        "missed-contact" => "an overlooked contact",
-        other => other,
-    }
 }
 
 fn explanation(hypothesis: &Hypothesis) -> String {
@@ -356,7 +353,7 @@ fn generously(generous: &Generous) -> String {
 /// What must not be concluded from a table whose columns contradict each other.
 fn caveats(report: &Report, agreement: &Agreement) -> Vec<String> {
     let mut list = Vec::new();
-    let value = |method: &str| report.estimates.iter().find(|e| e.method == method).and_then(|e| e.value);
+    let value = |method: Method| report.estimates.iter().find(|e| e.method == method).and_then(|e| e.value);
     if let Some(total) = &agreement.total_time {
         let heights: Vec<String> = total.heights_m.iter().take(4).map(|h| figures(100.0 * h)).collect();
         list.push(format!(
@@ -366,9 +363,9 @@ fn caveats(report: &Report, agreement: &Agreement) -> Vec<String> {
             in_words(&heights)
         ));
         // Rest comes after (1 + e)/(1 − e) falls.
-        let fall = report.motion.as_ref().and_then(|m| m.flights.first().map(|a| a.span)).unwrap_or(0.0);
+        let fall = report.motions.first().and_then(|m| m.flights.first().map(|a| a.span)).unwrap_or(0.0);
         let rest = |e: f64| fall * (1.0 + e) / (1.0 - e);
-        let cors = [Some(total.cor), value("heights-mean"), value("joint"), value("times-mean")];
+        let cors = [Some(total.cor), value(Method::HeightsMean), value(Method::Joint), value(Method::TimesMean)];
         let ends: Vec<f64> = cors.into_iter().flatten().filter(|e| *e < 1.0).map(rest).collect();
         let (first, last) =
             (ends.iter().copied().fold(f64::INFINITY, f64::min), ends.iter().copied().fold(0.0, f64::max));
@@ -379,18 +376,6 @@ fn caveats(report: &Report, agreement: &Agreement) -> Vec<String> {
         }
     }
     list
-}
-
-fn section(f: &mut Formatter<'_>, title: &str, lines: &[String]) -> fmt::Result {
-    if lines.is_empty() {
-        return Ok(());
-    }
-    writeln!(f, "\n{title}")?;
-    for line in lines {
-        let end = if line.ends_with(['.', '?']) { "" } else { "." };
-        paragraph(f, 2, 4, &format!("- {line}{end}"))?;
-    }
-    Ok(())
 }
 
 /// Where the reading errors and gravity come from.
@@ -415,51 +400,4 @@ fn footer(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     parts.push(format!("g = {} m/s² ({})", report.gravity.value, from(report.gravity)));
     writeln!(f)?;
     paragraph(f, 0, 2, &format!("Readings: {}.", parts.join(", ")))
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Writes a paragraph broken at spaces, with its own indent for the first line.
-pub(super) fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: &str) -> fmt::Result {
-    let mut line = " ".repeat(first);
-    let mut used = first;
-    let mut fresh = true;
-    for word in text.split_whitespace() {
-        let length = word.chars().count();
-        if !fresh && used + 1 + length > WIDTH {
-            writeln!(f, "{line}")?;
-            line = " ".repeat(rest);
-            used = rest;
-            fresh = true;
-        }
-        if !fresh {
-            line.push(' ');
-            used += 1;
-        }
-        line.push_str(word);
-        used += length;
-        fresh = false;
-    }
-    writeln!(f, "{line}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::estimate::{Source, Sourced};
-
-    #[test]
-    fn every_reason_for_a_longer_interval_is_told_once() {
-        let mut report = Report::new("t", Sourced { value: 9.81, source: Source::Assumed });
-        let cor = Cor { value: 0.8, standard_error: Some(0.01), low: 0.70, high: 0.82 };
-        assert_eq!(lopsided(&report, &cor), None);
-        for why in ["it takes in one thing", "it takes in another", "it takes in one thing"] {
-            report.widen(why);
-        }
-        let told = "The interval is longer downwards: it takes in one thing; it takes in another.";
-        assert_eq!(lopsided(&report, &cor).as_deref(), Some(told));
-    }
 }

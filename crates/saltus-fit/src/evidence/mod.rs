@@ -1,0 +1,261 @@
+//! What the readings of a table say, trial by trial, in the form the models ask for.
+
+mod mend;
+
+use mend::{Contact, Repair, mend, usual};
+
+use crate::finding::{At, Finding, FindingKind};
+use crate::quantity::Readings;
+use crate::statistics::median;
+use crate::table::{Event, Reading, Table};
+
+/// A height: after how many contacts, how high (m), its standard error (m).
+pub(crate) type Height = (usize, f64, f64);
+
+/// A time: after how many flights, whether at the apex of the next one, when (s), its standard error (s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moment {
+    pub(crate) flights: usize,
+    pub(crate) apex: bool,
+    pub(crate) time: f64,
+    pub(crate) sigma: f64,
+}
+
+/// By so much the first ratio of intervals is above the later ones if the first is a fall; exactly it would be twice.
+const RELEASED: f64 = 1.25;
+
+/// At least so many pairs of contacts show that each was heard twice: within each they are no further apart than this, s,
+const PAIRS: usize = 3;
+const ECHO: f64 = 0.05;
+/// and all flights between pairs are so many times longer.
+const APART: f64 = 3.0;
+
+/// The evidence of one trial.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TrialEvidence {
+    /// Its place among the trials of the table.
+    pub(crate) trial: usize,
+    pub(crate) release_height: Option<(f64, Option<f64>)>,
+    pub(crate) release_time: Option<f64>,
+    /// Number of contacts before, height, stated error; the release is number 0.
+    pub(crate) heights: Vec<(usize, f64, Option<f64>)>,
+    /// Bounces whose rebound was read as zero.
+    pub(crate) zeros: Vec<usize>,
+    /// The errors of the times are those of the intervals, which add up.
+    pub(crate) added_up: bool,
+    /// Flights since contact 1, whether at an apex, time, stated error.
+    pub(crate) moments: Vec<(usize, bool, f64, Option<f64>)>,
+}
+
+/// The evidence of a table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Evidence {
+    pub(crate) trials: Vec<TrialEvidence>,
+    /// What was done to put the readings in order.
+    pub(crate) repairs: Vec<Finding>,
+    /// How many contacts were left out because they follow from nothing else.
+    pub(crate) adrift: usize,
+}
+
+impl Evidence {
+    /// Sorts the readings of a table into heights and moments, and mends the contacts if that is wanted; `sigma_time` is the error stated
+    /// for times, if any.
+    pub(crate) fn of(table: &Table, sigma_time: Option<f64>, repair: bool) -> Self {
+        let mut evidence = Self::default();
+        for (trial, source) in table.trials().iter().enumerate() {
+            let mut found = TrialEvidence { trial, ..TrialEvidence::default() };
+            for r in source.readings() {
+                match r.event {
+                    Event::Release => {
+                        found.release_time = r.time;
+                        if let Some(height) = r.height.filter(|h| *h > 0.0) {
+                            found.release_height = Some((height, r.sigma_height));
+                            found.heights.push((0, height, r.sigma_height));
+                        }
+                    }
+                    Event::Apex => {
+                        if let Some(height) = r.height.filter(|h| *h > 0.0) {
+                            found.heights.push((r.bounce, height, r.sigma_height));
+                        }
+                        if r.height == Some(0.0) {
+                            found.zeros.push(r.bounce);
+                        }
+                        if let (Some(time), Some(flights)) = (r.time, r.bounce.checked_sub(1)) {
+                            found.moments.push((flights, true, time, r.sigma_time));
+                        }
+                    }
+                    Event::Contact => {
+                        if let (Some(time), Some(flights)) = (r.time, r.bounce.checked_sub(1)) {
+                            found.moments.push((flights, false, time, r.sigma_time));
+                        }
+                    }
+                    Event::Sample => {}
+                }
+            }
+            evidence.trials.push(found);
+        }
+        if repair {
+            evidence.pairs(table);
+            evidence.releases(table);
+            evidence.mend(table, sigma_time);
+        }
+        evidence
+    }
+
+    /// Whether the errors of the times are those of the intervals, which add up.
+    pub(crate) fn added_up(&self) -> bool {
+        self.trials.iter().any(|t| t.added_up)
+    }
+
+    /// Finds trials whose contacts were all heard twice: the second of every pair is left out.
+    fn pairs(&mut self, table: &Table) {
+        for trial in &mut self.trials {
+            let plain = trial.moments.iter().enumerate().all(|(n, m)| m.0 == n && !m.1);
+            if !plain || trial.moments.len() < 2 * PAIRS || trial.heights.iter().any(|h| h.0 > 0) {
+                continue;
+            }
+            let flights: Vec<f64> = trial.moments.windows(2).map(|w| w[1].2 - w[0].2).collect();
+            let longest = flights.iter().copied().step_by(2).fold(0.0, f64::max);
+            let shortest = flights.iter().copied().skip(1).step_by(2).fold(f64::INFINITY, f64::min);
+            if longest > ECHO || shortest < APART * longest {
+                continue;
+            }
+            let heard = trial.moments.len();
+            trial.moments = trial.moments.iter().step_by(2).enumerate().map(|(n, m)| (n, m.1, m.2, m.3)).collect();
+            let pairs = FindingKind::Pairs { heard, apart_s: longest };
+            self.repairs.push(Finding::note(pairs).at(at(table, trial.trial)));
+        }
+    }
+
+    /// Finds releases that stand among the contacts: a first time of exactly 0, and a flight after it that is the fall, half a flight.
+    ///
+    /// From the release the times between are 1, 2e, 2e², …; from a contact 1, e, e², …
+    fn releases(&mut self, table: &Table) {
+        let first = |t: &TrialEvidence| {
+            let bare = t.release_time.is_none() && t.heights.iter().all(|h| h.0 == 0) && t.moments.len() > 3;
+            bare && t.moments.first() == Some(&(0, false, 0.0, t.moments[0].3))
+        };
+        let starts: Vec<usize> = (0..self.trials.len()).filter(|&n| first(&self.trials[n])).collect();
+        let mut later: Vec<f64> =
+            self.trials.iter().flat_map(|t| t.ratios().filter(|r| r.0 > 1).map(|r| r.3)).collect();
+        let ratios = |n: &usize| self.trials[*n].ratios().find(|r| r.0 == 1).map(|r| r.3);
+        let mut early: Vec<f64> = starts.iter().filter_map(ratios).collect();
+        let (Some(early), Some(later)) = (median(&mut early), median(&mut later)) else { return };
+        if early < RELEASED * later {
+            return;
+        }
+        for n in starts {
+            let trial = &mut self.trials[n];
+            trial.moments.remove(0);
+            trial.moments.iter_mut().for_each(|m| m.0 -= 1);
+            trial.release_time = Some(0.0);
+            self.repairs.push(Finding::note(FindingKind::ReleaseAmongContacts).at(at(table, trial.trial)));
+        }
+    }
+
+    /// Finds contacts that were missed, heard twice or misread.
+    fn mend(&mut self, table: &Table, sigma_time: Option<f64>) {
+        let Some(ratio) = usual(self.trials.iter().flat_map(|t| t.ratios().map(|r| r.3)).collect()) else { return };
+        for trial in &mut self.trials {
+            let contacts: Vec<Contact> = trial
+                .moments
+                .iter()
+                .enumerate()
+                .filter(|(_, m)| !m.1)
+                .map(|(place, m)| Contact { flights: m.0, time: m.2, place })
+                .collect();
+            // Gaps that the table itself numbers, and apexes between contacts, are what they are.
+            let plain =
+                contacts.len() == trial.moments.len() && contacts.windows(2).all(|w| w[1].flights == w[0].flights + 1);
+            let (mended, repairs) = mend(&contacts, ratio, sigma_time.unwrap_or(0.0));
+            // Heights are told by the number of the contact before them: where there are any, numbers stay.
+            if !plain || repairs.is_empty() || trial.heights.iter().any(|h| h.0 > 0) {
+                continue;
+            }
+            trial.moments = mended.iter().map(|c| (c.flights, false, c.time, trial.moments[c.place].3)).collect();
+            self.adrift += repairs.iter().map(Repair::adrift).sum::<usize>();
+            self.repairs.extend(repairs.iter().map(|r| Finding::note(r.finding()).at(at(table, trial.trial))));
+        }
+    }
+
+    /// Leaves out heights, named by trial and place.
+    pub(crate) fn drop_heights(&mut self, table: &Table, wrong: &[(usize, usize)]) {
+        for &(trial, n) in wrong.iter().rev() {
+            let found = &mut self.trials[trial];
+            let (bounce, height, _) = found.heights.remove(n);
+            let left_out = FindingKind::HeightLeftOut { height_m: height };
+            self.repairs.push(Finding::note(left_out).at(at(table, found.trial).bounce(bounce)));
+        }
+    }
+
+    /// Leaves out times, named by trial and place.
+    pub(crate) fn drop_moments(&mut self, table: &Table, wrong: &[(usize, usize)]) {
+        for &(trial, n) in wrong.iter().rev() {
+            let found = &mut self.trials[trial];
+            let (flights, _, time, _) = found.moments.remove(n);
+            let left_out = FindingKind::TimeLeftOut { time_s: time };
+            self.repairs.push(Finding::note(left_out).at(at(table, found.trial).bounce(flights + 1)));
+        }
+    }
+
+    /// Heights by trial with every error filled in.
+    pub(crate) fn heights(&self, sigma: f64) -> Vec<Vec<Height>> {
+        self.trials.iter().map(|t| t.heights.iter().map(|&(n, h, s)| (n, h, s.unwrap_or(sigma))).collect()).collect()
+    }
+
+    /// Moments by trial with every error filled in, counted from each trial's first.
+    pub(crate) fn moments(&self, sigma: f64) -> Vec<Vec<Moment>> {
+        self.trials.iter().map(|t| t.moments(sigma)).collect()
+    }
+}
+
+/// Whether a table has readings of a kind.
+pub(crate) fn has(table: &Table, kind: Readings) -> bool {
+    let any = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
+    match kind {
+        Readings::Heights => table.zero_rebounds > 0 || any(|r| r.event == Event::Apex && r.height.is_some()),
+        Readings::Times => any(|r| r.event == Event::Contact),
+    }
+}
+
+/// A trial as a place for findings: named where the table holds several.
+pub(crate) fn at(table: &Table, trial: usize) -> At {
+    let label = table.trials().get(trial).map_or("", crate::table::Trial::label);
+    let several = table.trials().len() > 1;
+    let name = if label.is_empty() && several { format!("trial {}", trial + 1) } else { label.to_owned() };
+    At { trial: several.then_some(trial), name, ..At::default() }
+}
+
+impl TrialEvidence {
+    pub(crate) fn moments(&self, sigma: f64) -> Vec<Moment> {
+        self.moments
+            .iter()
+            .map(|&(flights, apex, time, s)| Moment { flights, apex, time, sigma: s.unwrap_or(sigma) })
+            .collect()
+    }
+
+    /// The moment after so many flights, of a contact or the apex after it: they are in order.
+    pub(crate) fn moment(&self, flights: usize, apex: bool) -> Option<&(usize, bool, f64, Option<f64>)> {
+        let place = self.moments.binary_search_by_key(&(flights, apex), |m| (m.0, m.1)).ok()?;
+        self.moments.get(place)
+    }
+
+    /// The time of a contact by number.
+    pub(crate) fn contact(&self, number: usize) -> Option<f64> {
+        self.moment(number.checked_sub(1)?, false).map(|m| m.2)
+    }
+
+    /// The flights between neighbouring contacts: the number of the contact before, the time it takes.
+    pub(crate) fn intervals(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let contacts = || self.moments.iter().filter(|m| !m.1);
+        contacts().zip(contacts().skip(1)).filter(|(a, b)| b.0 == a.0 + 1).map(|(a, b)| (b.0, b.2 - a.2))
+    }
+
+    /// Neighbouring intervals: the number of flights up to the contact between, both intervals, their ratio.
+    pub(crate) fn ratios(&self) -> impl Iterator<Item = (usize, f64, f64, f64)> + '_ {
+        self.intervals()
+            .zip(self.intervals().skip(1))
+            .filter(|(a, b)| b.0 == a.0 + 1 && a.1 > 0.0)
+            .map(|(a, b)| (a.0, a.1, b.1, b.1 / a.1))
+    }
+}

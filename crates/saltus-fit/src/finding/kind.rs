@@ -1,0 +1,285 @@
+//! What can be found.
+
+use serde::{Deserialize, Serialize};
+
+use super::detail::{Basis, By, Cause, Gives, Missing, Untried};
+use crate::quantity::{CorModel, Measured, Readings, Sourced};
+
+/// What was found, with its numbers: SI units, but for recordings of unknown scale.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
+#[allow(missing_docs)] // docs/fitting-inside.md lists every kind with what raises it; the fields are named in full.
+pub enum FindingKind {
+    // The reading of the table, in the reader's words.
+    ReadNote {
+        text: String,
+    },
+    ReadRepair {
+        text: String,
+    },
+    ReadWarning {
+        text: String,
+    },
+    /// What was stated of the way that heights count, where the ball then falls upwards.
+    FallsUpwards {
+        text: String,
+    },
+
+    // Evidence: contacts and heights put in order.
+    Pairs {
+        heard: usize,
+        apart_s: f64,
+    },
+    ReleaseAmongContacts,
+    ContactMissed {
+        after_s: f64,
+    },
+    ContactTwice {
+        at_s: f64,
+    },
+    ContactMisread {
+        at_s: f64,
+    },
+    RunEnded {
+        at_s: f64,
+        left_out: usize,
+        before: bool,
+    },
+    HeightLeftOut {
+        height_m: f64,
+    },
+    TimeLeftOut {
+        time_s: f64,
+    },
+
+    // Recordings: samples put in order.
+    SameTime {
+        samples: usize,
+    },
+    FramesRestored {
+        rate: f64,
+        rounded_s: f64,
+    },
+    Thinned {
+        samples: usize,
+        every: usize,
+    },
+    TurnedOver,
+    EndsLeftOut {
+        before: usize,
+        after: usize,
+        brief: bool,
+    },
+    WildLeftOut {
+        samples: usize,
+    },
+    NoBounce {
+        samples: usize,
+    },
+    TooFewSamples {
+        samples: usize,
+    },
+    MotionUndetermined,
+    NoSamples,
+
+    // One kind of reading.
+    Unbounded {
+        readings: Readings,
+        cor: f64,
+    },
+    Grows {
+        readings: Readings,
+        surely: bool,
+    },
+    JustEnough {
+        readings: Readings,
+    },
+    SpreadDecides {
+        readings: Readings,
+        times: f64,
+    },
+    Misfit {
+        readings: Readings,
+        chi_square: f64,
+        degrees_of_freedom: usize,
+    },
+    Widened {
+        times: f64,
+    },
+    ErrorsTooLarge {
+        readings: Readings,
+        times: f64,
+    },
+    Lossless {
+        readings: Readings,
+    },
+    SettingsDiffer {
+        readings: Readings,
+        low: (String, f64),
+        high: (String, f64),
+        p: f64,
+    },
+    MeanOfSettings,
+    Loud {
+        readings: Readings,
+        part: f64,
+    },
+    OrderDrift {
+        first: f64,
+        last: f64,
+        p: f64,
+    },
+    DropsDiffer {
+        spread: f64,
+        drops: usize,
+    },
+    BouncesScatter {
+        readings: Readings,
+        scatter: f64,
+        sigma: Sourced,
+    },
+    Trend {
+        p: f64,
+    },
+    TrendCauses,
+
+    // Heights and times, and the table as a whole.
+    SigmaAssumed {
+        heights: bool,
+        times: bool,
+    },
+    Disagree,
+    Adrift {
+        read: usize,
+        adrift: usize,
+    },
+    FewFollow {
+        read: usize,
+        used: usize,
+    },
+    ZeroTooHigh {
+        height_m: f64,
+    },
+    MethodsDiffer {
+        first: By,
+        first_cor: f64,
+        second: By,
+        second_cor: f64,
+    },
+    FirstFlightDiffers {
+        cor: f64,
+    },
+    Vague {
+        low: f64,
+        high: f64,
+    },
+    FirstFlightAlone,
+    NoReboundRead {
+        high: f64,
+    },
+    OneHeight,
+    OneContact,
+    OneFlight,
+    Undetermined,
+    ExplanationsThinned {
+        every: usize,
+    },
+    NoBootstrap {
+        trials: usize,
+    },
+
+    // Models beside one COR.
+    NotCompared {
+        untried: Untried,
+    },
+    SpeedNotTried {
+        bounces: usize,
+        factor: f64,
+        needs_bounces: usize,
+        needs_factor: f64,
+    },
+    ModelFits {
+        model: CorModel,
+        missing: Option<Missing>,
+        bic: f64,
+        better: bool,
+        gives: Gives,
+    },
+    OneCorFails {
+        causes: Vec<Cause>,
+    },
+    MeasureZero,
+    ErrorDecides {
+        readings: Readings,
+        sigma: Sourced,
+        model: CorModel,
+        about_best: f64,
+        about_one: f64,
+        doubted: bool,
+    },
+    ModelNotFitted {
+        model: CorModel,
+        untried: Option<Untried>,
+        instead: bool,
+    },
+    ModelMisfit {
+        model: CorModel,
+        gives: Gives,
+    },
+    ModelBeaten {
+        model: CorModel,
+        gives: Gives,
+    },
+    ModelNotHeeded,
+
+    // Recordings: the motion.
+    DragNeeded {
+        bic: f64,
+        cor_without: f64,
+    },
+    ContactShows {
+        contact_s: Measured,
+        bic: f64,
+        cor_without: f64,
+    },
+    ModelsAlike {
+        bic: f64,
+        model: CorModel,
+        cor: f64,
+        other: CorModel,
+        other_cor: f64,
+    },
+    ContactOpen {
+        bic: f64,
+        cor_instant: f64,
+        cor_lasting: f64,
+    },
+    ImpactsDiffer {
+        low: f64,
+        high: f64,
+    },
+    Rough {
+        rms: f64,
+        noise: f64,
+    },
+    FloorDrifts {
+        part_per_second: f64,
+    },
+    ManyWild {
+        wild: usize,
+        samples: usize,
+    },
+    GravityOff {
+        gravity: f64,
+        expected: f64,
+        pixels: bool,
+    },
+    GainsSpeed,
+    OneRecording,
+
+    /// What a trusted COR rests on.
+    RestsOn {
+        basis: Basis,
+    },
+}

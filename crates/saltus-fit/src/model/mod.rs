@@ -1,0 +1,23 @@
+//! The models of motion: what the heights and times of a bouncing ball should be.
+
+mod contacts;
+mod drag;
+mod dual;
+mod flight;
+mod heights;
+mod lasting;
+mod law;
+mod places;
+mod problem;
+mod trajectory;
+
+pub(crate) use contacts::Contacts;
+pub(crate) use drag::Air;
+pub(crate) use dual::Dual;
+pub(crate) use flight::{FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, READINGS};
+pub(crate) use heights::Heights;
+pub(crate) use lasting::{BEFORE, LASTING};
+pub(crate) use law::CorLaw;
+pub(crate) use places::{FLOOR, GRAVITY, SPEED, TIME};
+pub(crate) use problem::{Bounds, Model};
+pub(crate) use trajectory::{LEAST_DRAG, Law, Sample, Trajectory};

@@ -1,0 +1,18 @@
+//! The report: the verdict, the COR, and everything it rests on, for people and for programs.
+
+mod build;
+mod contract;
+mod film;
+mod lines;
+mod motion;
+mod numbers;
+mod recordings;
+mod residual;
+mod scene;
+mod text;
+mod words;
+
+pub(crate) use build::Extras;
+pub use contract::Report;
+pub use motion::{Arc, Motion};
+pub use residual::{Mark, Measure, Point, Residual};

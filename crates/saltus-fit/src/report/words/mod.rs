@@ -1,0 +1,97 @@
+//! The one place where findings become sentences.
+//!
+//! A sentence begins with a small letter and has no full stop: it may stand after the name of its trial, or in a list.
+
+mod models;
+mod names;
+mod repairs;
+mod verdict;
+
+use std::fmt::{self, Display, Formatter};
+
+use super::numbers::duration;
+use crate::finding::{Finding, FindingKind, Widening};
+
+pub(super) use names::{about, loss_words, method_about, method_short, settles, short, supposes};
+
+/// The list of a report that a finding stands in, where the verdict does not rest on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Section {
+    /// What was left out or mended before the fit.
+    Repairs,
+    /// How the table was read, and what was not tried.
+    Notes,
+    /// What to keep in mind.
+    Warnings,
+}
+
+/// Where a finding stands.
+pub(super) fn section(kind: &FindingKind) -> Section {
+    match kind {
+        FindingKind::ReadRepair { .. }
+        | FindingKind::Pairs { .. }
+        | FindingKind::ReleaseAmongContacts
+        | FindingKind::ContactMissed { .. }
+        | FindingKind::ContactTwice { .. }
+        | FindingKind::ContactMisread { .. }
+        | FindingKind::RunEnded { .. }
+        | FindingKind::HeightLeftOut { .. }
+        | FindingKind::TimeLeftOut { .. }
+        | FindingKind::SameTime { .. }
+        | FindingKind::FramesRestored { .. }
+        | FindingKind::Thinned { .. }
+        | FindingKind::TurnedOver
+        | FindingKind::EndsLeftOut { .. }
+        | FindingKind::WildLeftOut { .. } => Section::Repairs,
+        FindingKind::ReadNote { .. }
+        | FindingKind::ExplanationsThinned { .. }
+        | FindingKind::NotCompared { .. }
+        | FindingKind::SpeedNotTried { .. }
+        | FindingKind::DragNeeded { .. }
+        | FindingKind::ContactShows { .. }
+        | FindingKind::RestsOn { .. } => Section::Notes,
+        _ => Section::Warnings,
+    }
+}
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if !self.at.name.is_empty() {
+            write!(f, "{}: ", self.at.name)?;
+        }
+        f.write_str(&sentence(self))
+    }
+}
+
+fn sentence(finding: &Finding) -> String {
+    let kind = &finding.kind;
+    let words = repairs::words(finding).or_else(|| models::words(kind)).or_else(|| verdict::words(finding));
+    // Every kind has words: a test makes one of each.
+    words.unwrap_or_default()
+}
+
+/// Why the interval reaches further.
+pub(super) fn widening(widening: &Widening) -> String {
+    match widening {
+        Widening::Settings => "it takes in each of the balls, floors or drop heights".to_owned(),
+        Widening::Models => "it reaches out to models that fit as well, with another COR".to_owned(),
+        Widening::Speeds => "it takes in all that the COR may be under the models that fit".to_owned(),
+        Widening::BothModels => "it takes in both models".to_owned(),
+        Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
+        Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
+        Widening::SingleImpact { contact_s, lower } => format!(
+            "one impact does not show how long it lasts, and a ball that stays {} on the floor would have a COR lower by {lower:.3}",
+            duration(*contact_s)
+        ),
+    }
+}
+
+/// A probability for people, with the sign before it.
+pub(super) fn chance(p: f64) -> String {
+    match p {
+        p if p >= 0.0095 => format!("= {p:.2}"),
+        p if p >= 0.000_95 => format!("= {p:.3}"),
+        p if p > 0.0 => format!("= {p:.0e}"),
+        _ => "< 1e-300".to_owned(),
+    }
+}

@@ -1,0 +1,90 @@
+//! Readings that are no readings of the ball: found by the sum of absolute residuals, which a third of them hardly moves.
+
+use super::one::{OneKind, identified};
+use super::robust;
+use crate::error::FitError;
+use crate::evidence::Evidence;
+use crate::quantity::{Loss, Sourced};
+use crate::statistics::median;
+
+/// A reading this many standard errors from the robust fit is left out.
+const FAR: f64 = 5.0;
+/// The same where the standard error is only the scatter of the others.
+const FAR_BY_SCATTER: f64 = 8.0;
+/// With fewer readings to spare nobody can tell which are wrong; without a stated error, it takes twice as many.
+const SPARE: usize = 4;
+/// More than this part cannot be outliers: then it is the model that is wrong.
+const MOST: f64 = 0.4;
+/// More than this part of the trials cannot be outliers for the most part: then the trials differ.
+const MOST_TRIALS: f64 = 0.25;
+/// Where many are wild a second look finds those that the first ones hid.
+const ROUNDS: usize = 3;
+
+/// The evidence without the readings that do not belong to the model: `drop` takes them out by trial and place.
+pub(crate) fn without<M: OneKind>(
+    evidence: Evidence,
+    known: Option<Sourced>,
+    drop: impl Fn(&mut Evidence, &[(usize, usize)]),
+) -> Result<Evidence, FitError> {
+    let (sigma, stated) = (known.map_or(M::ASSUMED, |s| s.value), known.is_some());
+    let mut left = evidence.clone();
+    let mut dropped = 0;
+    for _ in 0..ROUNDS {
+        let (wrong, count) = find::<M>(&left, sigma, stated)?;
+        if wrong.is_empty() {
+            break;
+        }
+        dropped += wrong.len();
+        if dropped as f64 > MOST * (count + dropped - wrong.len()) as f64 {
+            return Ok(evidence);
+        }
+        drop(&mut left, &wrong);
+    }
+    Ok(left)
+}
+
+/// For each trial the places of readings that do not belong to the model; empty where all do.
+///
+/// Beside them the number of readings that were looked at. `stated` says whether the errors are known: then a reading must be far off by them, and not only by the scatter of the others.
+fn find<M: OneKind>(evidence: &Evidence, sigma: f64, stated: bool) -> Result<(Vec<(usize, usize)>, usize), FitError> {
+    let none = Ok((Vec::new(), 0));
+    let model = M::with_sigma(evidence, sigma);
+    if !model.usable() {
+        return none;
+    }
+    let Some(start) = identified(M::READINGS.name(), model.minimise())? else { return none };
+    if start.freedom < if stated { SPARE } else { 2 * SPARE } {
+        return none;
+    }
+    // A clean table needs no second look: nothing is far off by the scatter that least squares finds.
+    let scatter = (start.chi_square / start.freedom as f64).sqrt();
+    if stated && scatter < 1.5 {
+        return none;
+    }
+    let found = identified(M::READINGS.name(), robust::fit(&model, Loss::Absolute, &start.shared, &start.own, false));
+    let Ok(Some(Some(found))) = found else { return none };
+    let mut sizes: Vec<f64> = found.left.iter().flatten().map(|r| r.abs()).collect();
+    let count = sizes.len();
+    // As many residuals are zero as there are unknowns: they say nothing of the scatter.
+    sizes.sort_unstable_by(f64::total_cmp);
+    let unknowns = count - start.freedom;
+    let Some(middle) = median(&mut sizes[unknowns.min(count - 1)..]) else { return none };
+    let own = 1.4826 * middle;
+    let scale = if stated { own.max(1.0) } else { own.max(1e-6) };
+    let limit = if stated { FAR } else { FAR_BY_SCATTER };
+    let far = |r: &f64| r.abs() > limit * scale;
+    let wrong: Vec<(usize, usize)> = found
+        .left
+        .iter()
+        .enumerate()
+        .flat_map(|(trial, left)| left.iter().enumerate().filter(|(_, r)| far(r)).map(move |(n, _)| (trial, n)))
+        .collect();
+    // Where most of a trial is far off it is not its readings that are wrong: the trial is another one.
+    let most_of = |trial: usize, left: &Vec<f64>| 2 * wrong.iter().filter(|(of, _)| *of == trial).count() > left.len();
+    let others = found.left.iter().enumerate().filter(|(trial, left)| most_of(*trial, left)).count();
+    if others as f64 > MOST_TRIALS * found.left.len() as f64 {
+        return none;
+    }
+    let few = wrong.len() as f64 <= MOST * count as f64 && count - wrong.len() >= unknowns + 2;
+    Ok((if few { wrong } else { Vec::new() }, count))
+}

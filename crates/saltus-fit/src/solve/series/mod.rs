@@ -1,0 +1,94 @@
+//! Series of heights in time: a tracked ball, frame by frame.
+//!
+//! The series is cut into flights, parabolas give a first sketch, and the whole motion is fitted through every sample, with drag and
+//! without, with one COR, one that depends on speed, and one for every impact; and again with impacts that last. What the samples prefer decides.
+//! Neither gravity nor the scale nor the unit of time enters the COR, so they are fitted too, and reported.
+
+mod flights;
+mod frames;
+mod parabolas;
+mod pool;
+mod recording;
+mod samples;
+mod track;
+mod wild;
+
+use crate::error::FitError;
+use crate::evidence::at;
+use crate::finding::{Finding, FindingKind};
+use crate::table::Table;
+use flights::NoFlights;
+pub(crate) use pool::Pooled;
+pub(crate) use recording::{Course, in_metres};
+pub use recording::{Impact, Track, Variant};
+use samples::samples;
+pub(crate) use track::Choice;
+
+use super::one::identified;
+
+/// What became of every series of a table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Series {
+    pub(crate) tracks: Vec<Track>,
+    pub(crate) pooled: Option<Pooled>,
+    /// The same with contacts that take no time where these do, and the other way round; and by how much its BIC is worse.
+    pub(crate) otherwise: Option<(Pooled, f64)>,
+    /// Trials whose series show no bounce that can be fitted, and why.
+    pub(crate) refused: Vec<Finding>,
+    /// What was done to put the samples in order.
+    pub(crate) repairs: Vec<Finding>,
+    /// What was stated about the way that heights count, where the ball then falls upwards.
+    pub(crate) falls_upwards: Option<String>,
+}
+
+/// Fits every series of the table, with wild samples left out if `repair`; `None` if it has none.
+pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitError> {
+    let mut series = Series { falls_upwards: table.metadata.falls_upwards.map(str::to_owned), ..Series::default() };
+    let mut seen = false;
+    let mut recordings = Vec::new();
+    for (n, trial) in table.trials().iter().enumerate() {
+        let Some((samples, repairs)) = samples(trial, table.metadata.oriented, repair) else { continue };
+        seen = true;
+        let place = at(table, n);
+        let found = match track::Recording::of(n, &samples, repair) {
+            Ok(found) => Some(found),
+            Err(track::Refusal::Flights(why)) => {
+                let samples = samples.times.len();
+                let kind = match why {
+                    NoFlights::NoBounce => FindingKind::NoBounce { samples },
+                    NoFlights::TooFew => FindingKind::TooFewSamples { samples },
+                };
+                series.refused.push(Finding::refusal(kind).at(place.clone()));
+                None
+            }
+            Err(track::Refusal::Fit(failure)) => {
+                let unidentified: Option<()> = identified("a series of heights", Err(failure))?;
+                debug_assert!(unidentified.is_none());
+                series.refused.push(Finding::refusal(FindingKind::MotionUndetermined).at(place.clone()));
+                None
+            }
+        };
+        recordings.push((place, repairs, found));
+    }
+    if !seen {
+        return Ok(None);
+    }
+    let fitted = || recordings.iter().filter_map(|(_, _, found)| found.as_ref());
+    // Positive where contacts that take time are better.
+    let gain: f64 = fitted().filter_map(track::Recording::gain).sum();
+    let under = |lasting: bool| {
+        let candidates: Vec<&track::Candidates> = fitted().map(|found| found.under(lasting)).collect();
+        let choice = track::weigh::choose(&candidates);
+        let tracks: Vec<Track> = candidates.iter().filter_map(|candidates| candidates.track(choice)).collect();
+        (pool::pool(&tracks, choice), tracks)
+    };
+    (series.pooled, series.tracks) = under(gain > 0.0);
+    if fitted().any(|found| found.gain().is_some()) {
+        series.otherwise = under(gain <= 0.0).0.map(|pooled| (pooled, gain.abs()));
+    }
+    for (place, mut repairs, found) in recordings {
+        repairs.extend(found.iter().flat_map(|found| found.under(gain > 0.0).repairs()));
+        series.repairs.extend(repairs.into_iter().map(|kind| Finding::note(kind).at(place.clone())));
+    }
+    Ok(Some(series))
+}

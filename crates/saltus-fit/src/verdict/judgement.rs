@@ -1,0 +1,115 @@
+//! A verdict in the making: the COR so far, and the findings.
+
+use serde::{Deserialize, Serialize};
+
+use crate::finding::{Finding, FindingKind, Severity, Widening};
+use crate::solve::estimate::Estimate;
+use crate::statistics::NORMAL;
+use crate::word::words;
+
+words! {
+    /// Whether the COR may be believed.
+    pub enum Verdict {
+        /// The readings determine the COR, fit the model, and the methods agree.
+        Trusted = "trusted",
+        /// A number can be given, but something speaks against it; the reason and the warnings say what.
+        Doubtful = "doubtful",
+        /// The readings do not determine a COR.
+        Refused = "refused",
+    }
+}
+
+/// The COR with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Cor {
+    /// The COR, without unit.
+    pub value: f64,
+    /// Its standard error; none where only a limit is known.
+    pub standard_error: Option<f64>,
+    /// The lower end of the 95 % interval.
+    pub low: f64,
+    /// The upper end of the 95 % interval.
+    pub high: f64,
+}
+
+impl Cor {
+    /// The COR of an estimate, where it has one with a range.
+    pub(crate) fn of(estimate: &Estimate) -> Option<Self> {
+        let (value, low, high) = (estimate.value?, estimate.low?, estimate.high?);
+        Some(Self { value, standard_error: estimate.standard_error, low, high })
+    }
+
+    /// A COR that is known to lie in a range, and no better.
+    pub(crate) fn within(value: f64, low: f64, high: f64) -> Self {
+        Self { value, standard_error: Some((high - low) / (2.0 * NORMAL)), low, high }
+    }
+}
+
+/// The COR and the findings, as the stages fill them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Judgement {
+    pub(crate) cor: Option<Cor>,
+    pub(crate) findings: Vec<Finding>,
+    /// What the interval takes in beside the error of the COR, each thing once.
+    pub(crate) widened: Vec<Widening>,
+}
+
+impl Judgement {
+    pub(crate) fn note(&mut self, kind: FindingKind) {
+        self.findings.push(Finding::note(kind));
+    }
+
+    pub(crate) fn doubt(&mut self, kind: FindingKind) {
+        self.findings.push(Finding::doubt(kind));
+    }
+
+    pub(crate) fn refuse(&mut self, kind: FindingKind) {
+        self.findings.push(Finding::refusal(kind));
+    }
+
+    /// The interval reaches out to `low` and `high`, for a reason; nothing is done where it holds both already.
+    pub(crate) fn reach(&mut self, low: f64, high: f64, why: Widening) {
+        let Some(cor) = &mut self.cor else { return };
+        if low < cor.low || high > cor.high {
+            (cor.low, cor.high) = (cor.low.min(low).max(0.0), cor.high.max(high));
+            self.widen(why);
+        }
+    }
+
+    /// The interval takes in something more.
+    pub(crate) fn widen(&mut self, why: Widening) {
+        if !self.widened.contains(&why) {
+            self.widened.push(why);
+        }
+    }
+
+    fn gravest(&self) -> Severity {
+        let any = |severity: Severity| self.findings.iter().any(|f| f.severity == severity);
+        if any(Severity::Refusal) {
+            Severity::Refusal
+        } else if any(Severity::Doubt) {
+            Severity::Doubt
+        } else {
+            Severity::Note
+        }
+    }
+
+    pub(crate) fn verdict(&self) -> Verdict {
+        match (self.gravest(), &self.cor) {
+            (Severity::Refusal, _) | (_, None) => Verdict::Refused,
+            (Severity::Doubt, _) => Verdict::Doubtful,
+            (Severity::Note, _) => Verdict::Trusted,
+        }
+    }
+
+    /// The place of the finding that the verdict rests on: the first of the gravest, or what a trusted COR rests on.
+    pub(crate) fn leading(&self) -> Option<usize> {
+        let gravest = self.gravest();
+        let leads = |f: &Finding| match gravest {
+            Severity::Note => matches!(f.kind, FindingKind::RestsOn { .. }),
+            grave => f.severity == grave,
+        };
+        self.findings.iter().position(leads)
+    }
+}

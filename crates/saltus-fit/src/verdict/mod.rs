@@ -1,0 +1,63 @@
+//! The verdict: what the fits amount to, and what speaks against them.
+
+mod judgement;
+mod series;
+mod single;
+mod weigh;
+mod whole;
+
+use crate::compare::Comparison;
+use crate::compare::explain::Agreement;
+use crate::finding::{Finding, FindingKind};
+use crate::quantity::{CorModel, Readings};
+use crate::solve::choice::ModelChoice;
+use crate::solve::estimate::Estimate;
+use crate::solve::fits::Fits;
+use crate::solve::series::Series;
+
+pub(crate) use judgement::Judgement;
+pub use judgement::{Cor, Verdict};
+
+/// What was said of the table when it was read, and what was done to put its readings in order.
+fn begun(fits: &Fits<'_>) -> Judgement {
+    let table = fits.table;
+    let notes = table.notes.iter().map(|text| FindingKind::ReadNote { text: text.clone() });
+    let repairs = table.repairs.iter().map(|text| FindingKind::ReadRepair { text: text.clone() });
+    let warnings = table.warnings.iter().map(|text| FindingKind::ReadWarning { text: text.clone() });
+    let findings = notes.chain(repairs).chain(warnings).map(Finding::note);
+    Judgement { findings: findings.chain(fits.evidence.repairs.iter().cloned()).collect(), ..Judgement::default() }
+}
+
+/// Judges heights and times, and the models beside one COR; `wanted` is the model that was asked for.
+pub(crate) fn of_readings(fits: &Fits<'_>, comparison: &mut Comparison, wanted: Option<CorModel>) -> Judgement {
+    let mut judgement = begun(fits);
+    let agreement = comparison.agreement.as_ref();
+    if let (Some(joint), true) = (&fits.joint, agreement.is_some_and(Agreement::rejected))
+        && joint.thinned() > 1
+    {
+        judgement.note(FindingKind::ExplanationsThinned { every: joint.thinned() });
+    }
+    whole::judge(&mut judgement, fits, agreement);
+    let compared = &mut comparison.compared;
+    judgement.findings.append(&mut compared.notes);
+    let doubted = weigh::models(&mut judgement, &compared.models);
+    if let Some(kind) = compared.kind {
+        let sigma = match kind {
+            Readings::Heights => fits.sigma_height,
+            Readings::Times => fits.sigma_time,
+        };
+        weigh::error_decides(&mut judgement, &compared.models, (kind, sigma), doubted);
+    }
+    if let Some(wanted) = wanted {
+        weigh::rest_on(&mut judgement, wanted, compared);
+    }
+    judgement
+}
+
+/// Judges the fit of all recordings; with it come the estimates and the models of the report.
+pub(crate) fn of_recordings(fits: &Fits<'_>, series: &Series) -> (Judgement, Vec<Estimate>, Vec<ModelChoice>) {
+    let mut judgement = begun(fits);
+    let pixels = fits.table.metadata.pixels;
+    let (estimates, models) = series::judge(&mut judgement, series, (fits.gravity, pixels));
+    (judgement, estimates, models)
+}

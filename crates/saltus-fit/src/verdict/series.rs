@@ -1,0 +1,217 @@
+//! What the recordings amount to, and what speaks against it.
+
+use super::judgement::{Cor, Judgement};
+use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
+use crate::model::Law;
+use crate::quantity::{Measured, Method, Sourced};
+use crate::solve::choice::{CLEAR, ModelChoice, of_recording};
+use crate::solve::estimate::Estimate;
+use crate::solve::series::{Choice, Pooled, Series, Track, in_metres};
+use crate::solve::spread::across;
+
+/// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
+const LASTS: f64 = 0.01;
+/// A motion that leaves this many times the noise does not follow the samples.
+const ROUGH: f64 = 6.0;
+/// Two CORs that differ by less are the same for any purpose of a film.
+const SAME: f64 = 0.005;
+
+/// Judges the fit of all recordings; fills the estimates and the models of the report.
+pub(crate) fn judge(
+    judgement: &mut Judgement,
+    series: &Series,
+    (gravity, pixels): (Sourced, bool),
+) -> (Vec<Estimate>, Vec<ModelChoice>) {
+    judgement.findings.extend(series.repairs.iter().cloned());
+    if let Some(text) = &series.falls_upwards {
+        judgement.doubt(FindingKind::FallsUpwards { text: text.clone() });
+    }
+    let Some(pooled) = &series.pooled else {
+        judgement.findings.extend(series.refused.iter().cloned());
+        if series.refused.is_empty() {
+            judgement.refuse(FindingKind::NoSamples);
+        }
+        return (Vec::new(), Vec::new());
+    };
+    // What one recording does not show, others do.
+    judgement.findings.extend(series.refused.iter().map(|f| Finding { severity: Severity::Note, ..f.clone() }));
+    let estimates = estimates(judgement, series, pooled);
+    judgement.cor = estimates.first().and_then(Cor::of);
+    let models = rivals(judgement, pooled);
+    let contact = contact_time(&series.tracks);
+    if let Some((other, worse)) = &series.otherwise {
+        impact_time(judgement, pooled, (other, *worse), contact);
+    }
+    single_impact(judgement, series, pooled);
+    varying(judgement, pooled);
+    roughness(judgement, series);
+    gravity_off(judgement, &series.tracks, (gravity.value, pixels));
+    let e = pooled.cor;
+    if e.value - 2.0 * e.standard_error > 1.0 {
+        judgement.doubt(FindingKind::GainsSpeed);
+    }
+    if series.tracks.len() == 1 {
+        judgement.note(FindingKind::OneRecording);
+    }
+    let air = match (pooled.choice.1, cause_is_open(pooled)) {
+        (_, true) => Air::DragOrSpeed,
+        (true, false) => Air::Drag,
+        (false, false) => Air::None,
+    };
+    let recordings = series.tracks.len();
+    judgement.note(FindingKind::RestsOn { basis: Basis::Recordings { recordings, air, contact_s: contact } });
+    (estimates, models)
+}
+
+/// The COR with drag and without, that of the chosen model first.
+fn estimates(judgement: &mut Judgement, series: &Series, pooled: &Pooled) -> Vec<Estimate> {
+    let drag = pooled.choice.1;
+    let of = |drag: bool, cor: Measured| {
+        let method = if drag { Method::SeriesDrag } else { Method::Series };
+        let trials = series.tracks.len();
+        Estimate { trials, ..Estimate::new(method, cor.value, cor.standard_error, pooled.quantile) }
+    };
+    let mut list = vec![of(drag, pooled.cor)];
+    if let Some(&(_, cor, worse)) = pooled.rivals.iter().find(|r| r.0.1 != drag) {
+        list.push(of(!drag, cor));
+        if drag && worse >= CLEAR {
+            judgement.note(FindingKind::DragNeeded { bic: worse, cor_without: cor.value });
+        }
+    }
+    list
+}
+
+/// Whether a COR differs from another by more than both errors and by more than matters.
+fn differs(a: Measured, b: Measured) -> bool {
+    let apart = (a.value - b.value).abs();
+    apart > 2.0 * a.standard_error.hypot(b.standard_error) && apart > SAME
+}
+
+/// The models beside the chosen one: where one fits as well with another COR, the interval takes in both.
+fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
+    let name = |choice: Choice| of_recording(choice.0, choice.1);
+    let mut models = Vec::new();
+    for &(choice, cor, worse) in &pooled.rivals {
+        let chosen = choice == pooled.choice;
+        models.push(ModelChoice { chosen, ..ModelChoice::new(name(choice), cor, worse) });
+        if worse < CLEAR && differs(cor, pooled.cor) {
+            judgement.doubt(FindingKind::ModelsAlike {
+                bic: worse,
+                model: name(pooled.choice),
+                cor: pooled.cor.value,
+                other: name(choice),
+                other_cor: cor.value,
+            });
+            let reach = pooled.quantile * cor.standard_error;
+            judgement.reach(cor.value - reach, cor.value + reach, Widening::BothModels);
+        }
+    }
+    models
+}
+
+/// Impacts that take time beside such that take none.
+fn impact_time(judgement: &mut Judgement, pooled: &Pooled, (other, worse): (&Pooled, f64), contact: Option<Measured>) {
+    let (was, is) = (other.cor, pooled.cor);
+    if let Some(contact_s) = contact {
+        judgement.note(FindingKind::ContactShows { contact_s, bic: worse, cor_without: was.value });
+    }
+    if worse >= CLEAR {
+        return;
+    }
+    if differs(was, is) {
+        let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
+        let (cor_instant, cor_lasting) = (instant.value, lasting.value);
+        judgement.doubt(FindingKind::ContactOpen { bic: worse, cor_instant, cor_lasting });
+    }
+    // Every impact takes some time.
+    let reach = pooled.quantile * was.standard_error;
+    judgement.reach(was.value - reach, was.value + reach, Widening::ImpactTime);
+}
+
+/// One impact does not show how long it lasts, and a ball that stayed on the floor would look as if its COR were higher.
+fn single_impact(judgement: &mut Judgement, series: &Series, pooled: &Pooled) {
+    let Some(cor) = judgement.cor.filter(|_| series.tracks.iter().all(|track| track.impacts.len() == 1)) else {
+        return;
+    };
+    let higher =
+        |track: &Track| (1.0 - pooled.cor.value).max(0.0) * track.gravity.value * LASTS / track.impacts[0].speed;
+    let lower = series.tracks.iter().map(higher).fold(0.0, f64::max);
+    if lower > 0.1 * pooled.cor.standard_error {
+        judgement.reach(cor.low - lower, cor.high, Widening::SingleImpact { contact_s: LASTS, lower });
+    }
+}
+
+/// The time of a contact, over all recordings that show one.
+fn contact_time(tracks: &[Track]) -> Option<Measured> {
+    let times: Vec<Measured> = tracks.iter().filter_map(|track| track.contact).collect();
+    across(&times).map(|across| across.mean)
+}
+
+/// Whether air drag, and no drag but a COR that depends on speed, fit alike.
+fn cause_is_open(pooled: &Pooled) -> bool {
+    let one_of_two = |(law, drag): Choice| drag == (law == Law::Constant);
+    let other =
+        |rival: &(Choice, Measured, f64)| rival.0.1 != pooled.choice.1 && one_of_two(rival.0) && rival.2 < CLEAR;
+    one_of_two(pooled.choice) && pooled.rivals.iter().any(other)
+}
+
+/// Whether the COR differs from impact to impact by more than errors and a hundredth; then the interval takes that in.
+fn varying(judgement: &mut Judgement, pooled: &Pooled) {
+    if pooled.choice.0 == Law::Constant {
+        return;
+    }
+    let by = |a: &&Measured, b: &&Measured| a.value.total_cmp(&b.value);
+    let (Some(least), Some(most)) = (pooled.impacts.iter().min_by(by), pooled.impacts.iter().max_by(by)) else {
+        return;
+    };
+    let apart = most.value - least.value;
+    if apart > 0.01 && apart > 3.0 * most.standard_error.hypot(least.standard_error) {
+        judgement.doubt(FindingKind::ImpactsDiffer { low: least.value, high: most.value });
+        let (low, high) = (least.value - 2.0 * least.standard_error, most.value + 2.0 * most.standard_error);
+        judgement.reach(low, high, Widening::EveryImpact);
+    }
+}
+
+fn roughness(judgement: &mut Judgement, series: &Series) {
+    let range = |t: &Track| t.course.apexes.iter().map(|a| a.1).fold(0.0, f64::max);
+    let rough = |t: &&Track| t.rms > ROUGH * t.noise && t.rms > 0.01 * range(t);
+    if let Some(track) = series.tracks.iter().find(rough) {
+        judgement.doubt(FindingKind::Rough { rms: track.rms, noise: track.noise });
+    }
+    for (track, drift) in series.tracks.iter().filter_map(|t| Some((t, t.drift?))) {
+        let drifts = Finding::note(FindingKind::FloorDrifts { part_per_second: drift.value / range(track) });
+        judgement.findings.push(drifts.at(track.place()));
+    }
+    let wild: usize = series.tracks.iter().map(|t| t.left_out[2]).sum();
+    let all: usize = series.tracks.iter().map(|t| t.samples).sum();
+    if wild * 20 > all {
+        judgement.note(FindingKind::ManyWild { wild, samples: wild + all });
+    }
+}
+
+/// Gravity is fitted, so it tells whether scale and clock are right; the COR depends on neither.
+fn gravity_off(judgement: &mut Judgement, tracks: &[Track], (expected, pixels): (f64, bool)) {
+    let gravity = tracks.iter().map(|t| t.gravity.value).sum::<f64>() / tracks.len() as f64;
+    if !in_metres(gravity, expected) {
+        judgement.note(FindingKind::GravityOff { gravity, expected, pixels });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drag_and_a_cor_of_speed_may_be_alike() {
+        let cor = Measured { value: 0.8, standard_error: 0.01 };
+        let open = |choice: Choice, other: Choice, worse: f64| {
+            let rivals = vec![(choice, cor, 0.0), (other, cor, worse)];
+            cause_is_open(&Pooled { choice, cor, quantile: 2.0, rivals, impacts: Vec::new() })
+        };
+        let (drag, linear, plain) = ((Law::Constant, true), (Law::Linear, false), (Law::Constant, false));
+        assert!(open(drag, linear, 2.4) && open(linear, drag, 2.4) && open(drag, (Law::Each, false), 5.9));
+        // Another model is out of the question, or supposes both or neither of them.
+        assert!(!open(drag, linear, 6.1) && !open(plain, drag, 1.0) && !open(drag, plain, 1.0));
+        assert!(!open(drag, (Law::Linear, true), 1.0) && !open(linear, (Law::Linear, true), 1.0));
+    }
+}
