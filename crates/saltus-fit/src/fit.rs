@@ -4,7 +4,7 @@ use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::finding::FindingKind;
-use crate::model::{Contacts, Heights};
+use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
 use crate::quantity::{CorModel, Loss, Source, Sourced};
 use crate::report::{Extras, Report};
 use crate::solve::fits::{Fits, Known};
@@ -12,9 +12,6 @@ use crate::solve::series::{self, Series};
 use crate::solve::{bootstrap, kind, outliers, tolerance};
 use crate::table::{Reading, Table};
 use crate::verdict;
-
-/// Gravity where nobody states it, m/s².
-const GRAVITY: f64 = 9.81;
 
 /// What is known beside the table, and the fit itself.
 ///
@@ -44,6 +41,7 @@ pub struct Fit {
     tolerance_time: Option<f64>,
     bootstrap: Option<(usize, u64)>,
     ball: Option<f64>,
+    drag: Option<f64>,
     model: Option<CorModel>,
 }
 
@@ -79,6 +77,15 @@ impl Fit {
     #[must_use]
     pub fn ball(mut self, metres: f64) -> Self {
         self.ball = Some(metres);
+        self
+    }
+
+    /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion of a
+    /// recording is fitted with it. Without it, it is fitted where the samples show it; else that of an ordinary ball, 0 to 0.022, is allowed for in
+    /// the interval.
+    #[must_use]
+    pub fn drag(mut self, per_metre: f64) -> Self {
+        self.drag = Some(per_metre);
         self
     }
 
@@ -174,7 +181,7 @@ impl Fit {
         let evidence = self.evidence(table, &known)?;
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()
-            && let Some(series) = series::fit(table, !self.no_repair)?
+            && let Some(series) = series::fit(table, !self.no_repair, self.drag)?
         {
             return Ok(self.report_of_recordings(&fits, series));
         }
@@ -190,7 +197,7 @@ impl Fit {
     /// What is known before anything is fitted: gravity, and the errors of reading as far as somebody states them.
     fn known(&self, table: &Table) -> Known {
         let gravity = sourced(self.gravity, table.metadata.gravity)
-            .unwrap_or(Sourced { value: GRAVITY, source: Source::Assumed });
+            .unwrap_or(Sourced { value: STANDARD_GRAVITY, source: Source::Assumed });
         let frame = table.metadata.frame_rate.map(|rate| 1.0 / rate);
         let sigma_height =
             sourced(self.sigma_height, table.metadata.sigma_height).or(stated_by_rows(table, |r| r.sigma_height));
@@ -261,6 +268,12 @@ impl Fit {
         ];
         for (name, value) in options {
             if let Some(value) = value.filter(|v| !v.is_finite() || *v <= 0.0) {
+                return Err(FitError::Option { name, value });
+            }
+        }
+        // None at all is as good as any.
+        for (name, value) in [("drag", self.drag)] {
+            if let Some(value) = value.filter(|v| !v.is_finite() || *v < 0.0) {
                 return Err(FitError::Option { name, value });
             }
         }

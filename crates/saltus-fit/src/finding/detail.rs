@@ -231,4 +231,20 @@ pub enum Widening {
     },
     /// The COR of every impact.
     EveryImpact,
+    /// The drag of an ordinary ball, which the readings do not show.
+    Air {
+        /// The most drag that is allowed for, 1/m.
+        most_per_m: f64,
+        /// By how much the COR may be higher.
+        share: f64,
+    },
+    /// A pattern in what the motion leaves of the samples.
+    Misfit {
+        /// What the motion leaves, and the scatter from sample to sample, in the recording's unit.
+        rms: f64,
+        /// The scatter from sample to sample.
+        noise: f64,
+        /// By how much the COR may be off.
+        share: f64,
+    },
 }

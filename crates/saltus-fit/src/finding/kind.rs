@@ -276,6 +276,24 @@ pub enum FindingKind {
         pixels: bool,
     },
     GainsSpeed,
+    /// A film that keeps more of its speed than any ball.
+    KeepsAll,
+    /// Films of one bounce each ask for more drag than an ordinary ball has.
+    DragUnheld {
+        drag_per_m: f64,
+        cor_with: f64,
+    },
+    /// The drag that was fitted is that of no ball.
+    DragUnphysical {
+        drag_per_m: f64,
+    },
+    /// Films of one table in pixels whose gravity is not the same.
+    GravitiesDiffer {
+        low: f64,
+        high: f64,
+    },
+    /// A quantity that the COR rests on is not determined.
+    GravityUndetermined,
     OneRecording,
 
     /// What a trusted COR rests on.

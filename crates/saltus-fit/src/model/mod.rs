@@ -7,6 +7,7 @@ mod flight;
 mod heights;
 mod lasting;
 mod law;
+mod physics;
 mod places;
 mod problem;
 mod trajectory;
@@ -18,6 +19,7 @@ pub(crate) use flight::{FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, READINGS
 pub(crate) use heights::Heights;
 pub(crate) use lasting::{BEFORE, LASTING};
 pub(crate) use law::CorLaw;
+pub(crate) use physics::{LOSSLESS, ORDINARY_DRAG, PHYSICAL_DRAG, STANDARD_GRAVITY, VAGUE};
 pub(crate) use places::{FLOOR, GRAVITY, SPEED, TIME};
 pub(crate) use problem::{Bounds, Model};
 pub(crate) use trajectory::{LEAST_DRAG, Law, Sample, Trajectory};

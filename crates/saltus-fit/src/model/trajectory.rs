@@ -39,6 +39,8 @@ pub(crate) struct Trajectory<'a> {
     pub(crate) samples: &'a [Sample],
     pub(crate) impacts: usize,
     pub(crate) drag: bool,
+    /// The drag where it is not unknown: 0 for none.
+    pub(crate) held: f64,
     pub(crate) drift: bool,
     /// Contacts take time; samples, of weight one, have this standard error.
     pub(crate) contact: Option<f64>,
@@ -102,7 +104,7 @@ impl Trajectory<'_> {
     }
 
     pub(crate) fn air(&self, values: &[f64]) -> Air {
-        Air { gravity: values[GRAVITY], drag: if self.drag { values[DRAG] } else { 0.0 } }
+        Air { gravity: values[GRAVITY], drag: if self.drag { values[DRAG] } else { self.held } }
     }
 
     fn chain(&self, outer: &Sloped, x: &Dual) -> Dual {
@@ -266,6 +268,7 @@ mod tests {
             samples: &samples,
             impacts: 2,
             drag: true,
+            held: 0.0,
             drift: true,
             contact: Some(0.01),
             law: Law::Linear,

@@ -95,10 +95,15 @@ fn cell(cor: Option<Measured>) -> String {
 fn lopsided(report: &Report, cor: &Cor) -> Option<String> {
     let (below, above) = (cor.value - cor.low, cor.high - cor.value);
     let settled = cor.standard_error.is_some() && !report.agreement.as_ref().is_some_and(Agreement::rejected);
-    if !settled || (above - below).abs() < LOPSIDED * (above + below) {
+    let even = (above - below).abs() < LOPSIDED * (above + below);
+    if !settled || even && report.widened.is_empty() {
         return None;
     }
-    let side = if above > below { "upwards" } else { "downwards" };
+    let side = match above > below {
+        _ if even => "than the scatter of the readings",
+        true => "upwards",
+        false => "downwards",
+    };
     if report.widened.is_empty() {
         return (cor.low <= 0.0).then(|| "The interval ends at 0, below which there is no COR.".to_owned());
     }

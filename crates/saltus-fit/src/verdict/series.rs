@@ -2,17 +2,22 @@
 
 use super::judgement::{Cor, Judgement};
 use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
-use crate::model::Law;
+use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG, VAGUE};
 use crate::quantity::{Measured, Method, Sourced};
 use crate::solve::choice::{CLEAR, ModelChoice, of_recording};
 use crate::solve::estimate::Estimate;
 use crate::solve::series::{Choice, Pooled, Series, Track, in_metres};
 use crate::solve::spread::across;
+use crate::statistics::NORMAL;
 
 /// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
 const LASTS: f64 = 0.01;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
+/// Gravity that differs from film to film by this factor is that of another scale or clock: a camera that stands still keeps it to a hundredth or two.
+const MOVED: f64 = 1.05;
+/// Two numbers further apart than so many standard errors differ: one chance in a hundred.
+const DIFFER: f64 = 2.576;
 /// Two CORs that differ by less are the same for any purpose of a film.
 const SAME: f64 = 0.005;
 
@@ -37,6 +42,8 @@ pub(crate) fn judge(
     judgement.findings.extend(series.refused.iter().map(|f| Finding { severity: Severity::Note, ..f.clone() }));
     let estimates = estimates(judgement, series, pooled);
     judgement.cor = estimates.first().and_then(Cor::of);
+    unseen_air(judgement, &series.tracks, pooled);
+    misfit(judgement, &series.tracks, pooled);
     let models = rivals(judgement, pooled);
     let contact = contact_time(&series.tracks);
     if let Some((other, worse)) = &series.otherwise {
@@ -46,9 +53,9 @@ pub(crate) fn judge(
     varying(judgement, pooled);
     roughness(judgement, series);
     gravity_off(judgement, &series.tracks, (gravity.value, pixels));
-    let e = pooled.cor;
-    if e.value - 2.0 * e.standard_error > 1.0 {
-        judgement.doubt(FindingKind::GainsSpeed);
+    physical(judgement, &series.tracks, pooled);
+    if series.falls_upwards.is_none() {
+        determined(judgement, &series.tracks);
     }
     if series.tracks.len() == 1 {
         judgement.note(FindingKind::OneRecording);
@@ -87,6 +94,15 @@ fn differs(a: Measured, b: Measured) -> bool {
     apart > 2.0 * a.standard_error.hypot(b.standard_error) && apart > SAME
 }
 
+/// Whether a rival answers so far outside the interval that reaching out to it would more than double it: then the interval was that of
+/// another question.
+fn outside(judgement: &Judgement, rival: f64) -> bool {
+    judgement.cor.is_some_and(|cor| {
+        let twice = 2.0 * cor.low - cor.value..=2.0 * cor.high - cor.value;
+        !twice.contains(&rival) && (rival - cor.value).abs() > SAME
+    })
+}
+
 /// The models beside the chosen one: where one fits as well with another COR, the interval takes in both.
 fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
     let name = |choice: Choice| of_recording(choice.0, choice.1);
@@ -95,13 +111,15 @@ fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
         let chosen = choice == pooled.choice;
         models.push(ModelChoice { chosen, ..ModelChoice::new(name(choice), cor, worse) });
         if worse < CLEAR && differs(cor, pooled.cor) {
-            judgement.doubt(FindingKind::ModelsAlike {
+            let kind = FindingKind::ModelsAlike {
                 bic: worse,
                 model: name(pooled.choice),
                 cor: pooled.cor.value,
                 other: name(choice),
                 other_cor: cor.value,
-            });
+            };
+            let severity = if outside(judgement, cor.value) { Severity::Doubt } else { Severity::Note };
+            judgement.findings.push(Finding::new(severity, kind));
             let reach = pooled.quantile * cor.standard_error;
             judgement.reach(cor.value - reach, cor.value + reach, Widening::BothModels);
         }
@@ -121,7 +139,9 @@ fn impact_time(judgement: &mut Judgement, pooled: &Pooled, (other, worse): (&Poo
     if differs(was, is) {
         let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
         let (cor_instant, cor_lasting) = (instant.value, lasting.value);
-        judgement.doubt(FindingKind::ContactOpen { bic: worse, cor_instant, cor_lasting });
+        let severity = if outside(judgement, was.value) { Severity::Doubt } else { Severity::Note };
+        let kind = FindingKind::ContactOpen { bic: worse, cor_instant, cor_lasting };
+        judgement.findings.push(Finding::new(severity, kind));
     }
     // Every impact takes some time.
     let reach = pooled.quantile * was.standard_error;
@@ -153,6 +173,32 @@ fn cause_is_open(pooled: &Pooled) -> bool {
     let other =
         |rival: &(Choice, Measured, f64)| rival.0.1 != pooled.choice.1 && one_of_two(rival.0) && rival.2 < CLEAR;
     one_of_two(pooled.choice) && pooled.rivals.iter().any(other)
+}
+
+/// Drag that no recording shows, as far as each allows it; the ball is the same.
+fn unseen_air(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
+    let airs: Vec<Measured> = tracks.iter().filter_map(|track| track.air).collect();
+    if airs.len() < tracks.len() {
+        return;
+    }
+    let mean = |of: fn(&Measured) -> f64| airs.iter().map(of).sum::<f64>() / airs.len() as f64;
+    let (shift, spread) = (mean(|air| air.value), mean(|air| air.standard_error));
+    let (centre, reach) = (pooled.cor.value + shift, pooled.quantile * pooled.cor.standard_error.hypot(spread));
+    let share = shift + NORMAL * spread;
+    judgement.reach(centre - reach, centre + reach, Widening::Air { most_per_m: ORDINARY_DRAG, share });
+}
+
+/// A pattern in what is left, beyond the noise of the samples.
+fn misfit(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
+    let share = (tracks.iter().map(|track| track.reach.powi(2)).sum::<f64>() / tracks.len() as f64).sqrt();
+    let Some(worst) = tracks.iter().max_by(|a, b| a.reach.total_cmp(&b.reach)) else { return };
+    let Some(cor) = judgement.cor else { return };
+    let wider = |side: f64| side.hypot(NORMAL * share);
+    let (low, high) =
+        (pooled.cor.value - wider(pooled.cor.value - cor.low), pooled.cor.value + wider(cor.high - pooled.cor.value));
+    if share > 0.0 {
+        judgement.reach(low, high, Widening::Misfit { rms: worst.rms, noise: worst.noise, share });
+    }
 }
 
 /// Whether the COR differs from impact to impact by more than errors and a hundredth; then the interval takes that in.
@@ -189,11 +235,52 @@ fn roughness(judgement: &mut Judgement, series: &Series) {
     }
 }
 
+/// A motion whose gravity may be anything is none. (Of a ball that falls upwards the way that heights count is to blame.)
+fn determined(judgement: &mut Judgement, tracks: &[Track]) {
+    if tracks.iter().any(|t| NORMAL * t.gravity.standard_error > t.gravity.value) {
+        judgement.refuse(FindingKind::GravityUndetermined);
+    }
+}
+
+/// Whether all that the COR rests on is determined and within physics.
+fn physical(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
+    let e = pooled.cor;
+    if e.value > LOSSLESS {
+        let gains = e.value - NORMAL * e.standard_error > 1.0;
+        judgement.doubt(if gains { FindingKind::GainsSpeed } else { FindingKind::KeepsAll });
+    }
+    if let Some(Cor { low, high, .. }) = judgement.cor.filter(|cor| cor.high - cor.low > VAGUE) {
+        judgement.doubt(FindingKind::Vague { low, high });
+    }
+    let free = || tracks.iter().filter_map(|track| track.free_drag);
+    if pooled.choice.1 {
+        let drag_per_m = free().map(|drag| drag.value).fold(0.0, f64::max);
+        if drag_per_m > PHYSICAL_DRAG {
+            judgement.doubt(FindingKind::DragUnphysical { drag_per_m });
+        }
+    } else if tracks.iter().all(|track| track.impacts.len() == 1)
+        && let Some(drag) = free().find(|drag| drag.value - DIFFER * drag.standard_error > ORDINARY_DRAG)
+        && let Some((_, cor, _)) = pooled.rivals.iter().find(|rival| rival.0.1)
+    {
+        judgement.doubt(FindingKind::DragUnheld { drag_per_m: drag.value, cor_with: cor.value });
+        let reach = pooled.quantile * cor.standard_error;
+        judgement.reach(cor.value - reach, cor.value + reach, Widening::BothModels);
+    }
+}
+
 /// Gravity is fitted, so it tells whether scale and clock are right; the COR depends on neither.
 fn gravity_off(judgement: &mut Judgement, tracks: &[Track], (expected, pixels): (f64, bool)) {
     let gravity = tracks.iter().map(|t| t.gravity.value).sum::<f64>() / tracks.len() as f64;
     if !in_metres(gravity, expected) {
         judgement.note(FindingKind::GravityOff { gravity, expected, pixels });
+    }
+    let by = |a: &&Track, b: &&Track| a.gravity.value.total_cmp(&b.gravity.value);
+    if let Some((least, most)) = tracks.iter().min_by(by).zip(tracks.iter().max_by(by)).filter(|_| pixels) {
+        let (low, high) = (least.gravity, most.gravity);
+        let surely = high.value - low.value > DIFFER * high.standard_error.hypot(low.standard_error);
+        if surely && high.value > MOVED * low.value {
+            judgement.doubt(FindingKind::GravitiesDiffer { low: low.value, high: high.value });
+        }
     }
 }
 

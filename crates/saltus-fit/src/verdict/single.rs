@@ -4,6 +4,7 @@ use super::judgement::{Cor, Judgement};
 use crate::compare::settings::{differ, drift};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{FindingKind, Widening};
+use crate::model::LOSSLESS;
 use crate::quantity::{Readings, Source, Sourced};
 use crate::solve::kind::{Kind, one_kind};
 use crate::solve::one::OneKind;
@@ -14,8 +15,6 @@ use crate::table::Trial;
 const LOUD: f64 = 0.1;
 /// A fit more probable than this has reading errors that were stated too large.
 const TOO_GOOD: f64 = 0.999;
-/// No ball is known to keep more of its speed.
-const LOSSLESS: f64 = 0.995;
 
 /// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated their error: the tallest height, the longest interval.
 fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {

@@ -5,6 +5,7 @@ use super::single::single;
 use crate::compare::explain::Agreement;
 use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind};
+use crate::model::VAGUE;
 use crate::quantity::{Method, Readings, Source, Sourced};
 use crate::solve::fits::Fits;
 use crate::table::Event;
@@ -13,8 +14,6 @@ use crate::table::Event;
 const TOO_HIGH: f64 = 5.0;
 /// Times that do not follow from the others are a doubt if there is one for fewer than so many that do.
 const ADRIFT: usize = 3;
-/// A 95 % interval wider than this says hardly anything.
-const VAGUE: f64 = 0.5;
 /// Two CORs further apart than so many standard errors differ: one chance in a hundred.
 const DIFFER: f64 = 2.576;
 /// The COR of the first flight, which needs gravity and the height of release, is shown where it is so many standard errors away.

@@ -79,6 +79,14 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::BothModels => "it takes in both models".to_owned(),
         Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
+        Widening::Air { most_per_m, share } => format!(
+            "the drag of an ordinary ball (up to k = {most_per_m} /m), which the readings do not show, would make the COR higher by {share:.3}: \
+             state what drag the ball has (--drag)"
+        ),
+        Widening::Misfit { rms, noise, share } => format!(
+            "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \
+             the lens, the scale and the tracking"
+        ),
         Widening::SingleImpact { contact_s, lower } => format!(
             "one impact does not show how long it lasts, and a ball that stays {} on the floor would have a COR lower by {lower:.3}",
             duration(*contact_s)

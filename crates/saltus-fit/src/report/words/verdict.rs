@@ -234,6 +234,23 @@ fn recordings(kind: &FindingKind) -> Option<String> {
                  and heights do"
             )
         }
+        FindingKind::KeepsAll => {
+            "the ball keeps more of its speed than any ball does: what was tracked is no free flight, or the picture is bent".to_owned()
+        }
+        FindingKind::DragUnheld { drag_per_m, cor_with } => format!(
+            "the flights ask for more drag than an ordinary ball has (k = {drag_per_m:.2} /m, and then a COR of {cor_with:.3}), but one bounce does not \
+             tell air drag from a bent picture: state the drag of the ball (--drag), or film a second bounce"
+        ),
+        FindingKind::DragUnphysical { drag_per_m } => format!(
+            "the drag that fits, k = {drag_per_m:.2} /m, is that of no ball: the picture is bent, or the ball did not fall freely"
+        ),
+        FindingKind::GravitiesDiffer { low, high } => format!(
+            "gravity is {low:.0} px/s\u{b2} in one film and {high:.0} in another: the camera was moved, or frames are missing; fit each by itself, \
+             or film a rule beside the ball (--scale)"
+        ),
+        FindingKind::GravityUndetermined => {
+            "the samples do not determine the motion: its gravity may be anything up to twice as large or nothing".to_owned()
+        }
         FindingKind::GainsSpeed => "the ball gains speed at its impacts, as if each added energy".to_owned(),
         FindingKind::OneRecording => {
             "one recording: its error is that of the fit; another drop of the same ball may differ by more".to_owned()

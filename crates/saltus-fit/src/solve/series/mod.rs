@@ -41,8 +41,8 @@ pub(crate) struct Series {
     pub(crate) falls_upwards: Option<String>,
 }
 
-/// Fits every series of the table, with wild samples left out if `repair`; `None` if it has none.
-pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitError> {
+/// Fits every series of the table, with wild samples left out if `repair`, drag held at `drag` (1/m) where that is stated; `None` if it has none.
+pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Option<Series>, FitError> {
     let mut series = Series { falls_upwards: table.metadata.falls_upwards.map(str::to_owned), ..Series::default() };
     let mut seen = false;
     let mut recordings = Vec::new();
@@ -50,7 +50,7 @@ pub(crate) fn fit(table: &Table, repair: bool) -> Result<Option<Series>, FitErro
         let Some((samples, repairs)) = samples(trial, table.metadata.oriented, repair) else { continue };
         seen = true;
         let place = at(table, n);
-        let found = match track::Recording::of(n, &samples, repair) {
+        let found = match track::Recording::of(n, &samples, (repair, drag)) {
             Ok(found) => Some(found),
             Err(track::Refusal::Flights(why)) => {
                 let samples = samples.times.len();

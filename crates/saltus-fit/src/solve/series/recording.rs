@@ -35,6 +35,15 @@ pub struct Track {
     pub noise: f64,
     /// The models tried, that with the least BIC first.
     pub models: Vec<Variant>,
+    /// What drag that was not fitted can do to the COR.
+    #[serde(skip)]
+    pub(crate) air: Option<Measured>,
+    /// The drag of the model of one COR that leaves it free, 1/m by the recording's own gravity.
+    #[serde(skip)]
+    pub(crate) free_drag: Option<Measured>,
+    /// What a pattern as large as the motion leaves can do to the COR.
+    #[serde(skip)]
+    pub(crate) reach: f64,
     #[serde(skip)]
     pub(crate) course: Course,
 }

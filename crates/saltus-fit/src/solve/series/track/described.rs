@@ -62,7 +62,7 @@ impl Candidates {
                 .map(|(t, h)| (origin.0 + unit * t, range * (h - values[FLOOR])))
                 .collect(),
             gravity: values[GRAVITY] * range / (unit * unit),
-            drag: model.drag_place().map_or(0.0, |j| values[j] / range),
+            drag: model.air(values).drag / range,
             samples: self
                 .samples
                 .iter()
@@ -89,6 +89,9 @@ impl Candidates {
             rms,
             noise: range * self.noise,
             models: self.variants(),
+            air: self.unseen_air(chosen),
+            reach: self.misfit(chosen, &left),
+            free_drag: self.free_drag(),
             course,
         })
     }

@@ -1,5 +1,6 @@
 //! One recording: scaled, cut, fitted by every model, and told in its own units again.
 
+mod air;
 mod described;
 pub(super) mod weigh;
 
@@ -77,8 +78,9 @@ pub(crate) struct Recording {
 
 impl Recording {
     /// Fits every model to one series.
-    pub(crate) fn of(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
-        let rough = Candidates::cut(trial, series, repair)?;
+    pub(crate) fn of(trial: usize, series: &Samples, (repair, drag): (bool, Option<f64>)) -> Result<Self, Refusal> {
+        let mut rough = Candidates::cut(trial, series, repair)?;
+        rough.hold(drag);
         let instant = rough.clone().fitted(repair)?;
         // After a single impact the height of the floor does the same; where one COR has no use for such a time, it would only follow noise.
         let lasting = (instant.impacts() > 1).then(|| Candidates { contact: true, ..rough }.fitted(repair).ok());
@@ -122,6 +124,9 @@ pub(crate) struct Candidates {
     drift: bool,
     /// Contacts take time.
     contact: bool,
+    /// The drag of models that leave it no unknown, in scaled units; and whether it was stated, so that no model leaves it unknown.
+    held: f64,
+    stated: bool,
     /// By how much the errors grow because neighbouring residuals are alike.
     dependence: f64,
 }
@@ -183,6 +188,8 @@ impl Candidates {
             found: Vec::new(),
             drift: false,
             contact: false,
+            held: 0.0,
+            stated: false,
             dependence: 1.0,
         })
     }
@@ -220,6 +227,7 @@ impl Candidates {
             samples,
             impacts: self.impacts(),
             drag,
+            held: self.held,
             drift: self.drift,
             contact: self.contact.then_some(self.noise.max(LEAST_NOISE)),
             law,
@@ -232,7 +240,7 @@ impl Candidates {
     /// Fits all models, each COR for itself first: the others start from there, or from the sketch where so many are not determined.
     fn fit_all(&mut self) -> Result<(), Failure> {
         self.found.clear();
-        for drag in [false, true] {
+        for drag in [false, true].into_iter().filter(|drag| !(*drag && self.stated)) {
             let own = self.starts(drag);
             let each = self.best((Law::Each, drag), &own)?;
             let near: Vec<&[f64]> = match &each {
