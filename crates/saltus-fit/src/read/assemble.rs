@@ -10,7 +10,7 @@ use super::heading::{At, Heading, What};
 use super::layout::{Layout, Track, layout, tracks};
 use super::order::{in_order, renumbered, summed};
 use super::region::Region;
-use super::rows::{Row, Rows, sifted};
+use super::rows::{Row, Rows};
 use super::samples;
 use super::stray;
 use super::units::{Scale, Unit};
@@ -47,10 +47,10 @@ type Found = Option<(f64, Option<f64>)>;
 pub(super) fn table(
     region: &Region<'_>,
     columns: &mut Columns,
+    mut rows: Rows,
     options: &ReadOptions,
     metadata: Metadata,
 ) -> Result<Table, TableError> {
-    let mut rows = sifted(region, columns)?;
     let skipped = filtered(region, &mut rows, options)?;
     if rows.rows.is_empty() {
         if skipped > 0 {

@@ -76,8 +76,8 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Recognises the columns of a table; `fps` is the frame rate, where one is known.
-    pub(super) fn of(region: &Region<'_>, options: &ReadOptions, fps: Option<f64>) -> Result<Self, TableError> {
+    /// What the names of the columns say of them, and what they are beside one another.
+    pub(super) fn named(region: &Region<'_>, options: &ReadOptions) -> Result<Self, TableError> {
         let mut found =
             Self { columns: Vec::new(), aside: Vec::new(), notes: Vec::new(), warnings: Vec::new(), unscaled: false };
         for text in &region.header {
@@ -88,20 +88,30 @@ impl Columns {
         found.groups(region, options)?;
         found.chosen(region, options)?;
         found.not_understood(region)?;
-        found.drops();
+        found.drops(region);
         found.statistics(region)?;
         found.repeats(region);
-        found.infer(region, options)?;
-        found.frames(region, fps)?;
-        found.clocks();
-        found.scales(region, options)?;
-        found.unique(region)?;
-        found.unscaled = found.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
-        for column in found.columns.iter_mut().filter(|c| c.holds(What::Height)) {
+        Ok(found)
+    }
+
+    /// Gives the columns their quantities and units, by the rows that hold readings; `fps` is the frame rate, where one is known.
+    pub(super) fn measure(
+        &mut self,
+        region: &Region<'_>,
+        options: &ReadOptions,
+        fps: Option<f64>,
+    ) -> Result<(), TableError> {
+        self.infer(region, options)?;
+        self.frames(region, fps)?;
+        self.clocks();
+        self.scales(region, options)?;
+        self.unique(region)?;
+        self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
+        for column in self.columns.iter_mut().filter(|c| c.holds(What::Height)) {
             column.zero = options.zero.unwrap_or(0.0);
             column.sign = if options.down == Some(true) { -1.0 } else { 1.0 };
         }
-        Ok(found)
+        Ok(())
     }
 
     fn push(&mut self, heading: Heading) {

@@ -9,10 +9,11 @@ use super::grid::{Grid, View};
 use super::heading::Heading;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
+use super::rows::sifted;
 use super::text::text;
 use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
-use super::{Doubt, Event, ReadOptions, Reading, Table, assemble, pool};
+use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool};
 use crate::error::TableError;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
@@ -47,17 +48,41 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     let mut metadata = grid.metadata()?;
     metadata.frame_rate = options.fps.or(metadata.frame_rate);
     metadata.oriented = options.down.is_some();
-    let Recognised { what, mut regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
-    if regions.is_empty() {
-        return Err(no_table(grid, options));
+    let Recognised { what, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
+    let found = if regions.is_empty() {
+        Err(no_table(grid, options))
+    } else {
+        joined_up(grid, regions, tracks, options, metadata)
+    };
+    let found = match found {
+        // Names that stand in the first column, one below the other.
+        Err(error) if what.is_none() && options.header.is_none() => {
+            let turned = programs::turned(grid);
+            let read = turned.map(|region| joined_up(grid, vec![region], false, options, metadata));
+            read.and_then(Result::ok).ok_or(error)
+        }
+        found => found,
+    };
+    let mut table = found?;
+    if let Some(what) = what {
+        table.notes.insert(0, format!("recognised as {what}"));
     }
+    Ok(table)
+}
+
+/// The tables of a grid, one by one and then together.
+fn joined_up<'a>(
+    grid: &'a Grid<'a>,
+    mut regions: Vec<Region<'a>>,
+    tracks: bool,
+    options: &ReadOptions,
+    metadata: Metadata,
+) -> Result<Table, TableError> {
     filmed(&mut regions, metadata.frame_rate);
     let several = regions.len() > 1;
     let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
-    for (n, region) in regions.iter().enumerate() {
-        let found = Columns::of(region, options, metadata.frame_rate)
-            .and_then(|mut columns| assemble::table(region, &mut columns, options, metadata));
-        match found {
+    for (n, region) in regions.iter_mut().enumerate() {
+        match one(region, options, metadata) {
             Ok(mut table) => {
                 titled(region, &mut table);
                 let label =
@@ -67,10 +92,8 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
             // A table below another, of something else.
             Err(error) if n > 0 && error.is_of_nothing() => {
                 let text = region.header.join(" ");
-                aside.push(
-                    LeftAside::new(Kind::Text, super::grid::shown(&text), Why::NoTable)
-                        .at(grid.line(region.header_row)),
-                );
+                let left = LeftAside::new(Kind::Text, super::grid::shown(&text), Why::NoTable);
+                aside.push(left.at(grid.line(region.header_row)));
             }
             Err(error) => failed = failed.or(Some(error)),
         }
@@ -85,10 +108,16 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
         table.notes.push(format!("left aside, as it hardly moves: {} (choose with --column)", still.join(", ")));
         table.left_aside.extend(still.into_iter().map(|name| LeftAside::new(Kind::Track, name, Why::Still)));
     }
-    if let Some(what) = what {
-        table.notes.insert(0, format!("recognised as {what}"));
-    }
     Ok(table)
+}
+
+/// The table of a region: its columns by their names, the rows that hold readings, the quantities, and then the trials.
+fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
+    let mut columns = Columns::named(region, options)?;
+    let rows = sifted(region, &columns)?;
+    region.rows = rows.rows.iter().map(|row| row.at).collect();
+    columns.measure(region, options, metadata.frame_rate)?;
+    assemble::table(region, &mut columns, rows, options, metadata)
 }
 
 /// Places without a clock are a film, a row a frame, if the frame rate is known.
@@ -124,7 +153,7 @@ fn titled(region: &Region<'_>, table: &mut Table) {
 fn no_table(grid: &Grid<'_>, options: &ReadOptions) -> TableError {
     let view = View { grid, across: false };
     let region = region::nearest(view);
-    match Columns::of(&region, options, None) {
+    match Columns::named(&region, options) {
         Err(error) => error,
         Ok(_) => region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"),
     }

@@ -57,15 +57,19 @@ pub(super) fn tables<'a>(
         return Ok(vec![bare(view, options, fps)?].into());
     }
     let found = region::tables(view);
-    let across = View { grid, across: true };
-    let turned = || region::tables(across).into_iter().filter(|r| !r.rows.is_empty()).take(1).collect::<Vec<_>>();
-    let found = if found.is_empty() { turned() } else { found };
+    let found = if found.is_empty() { turned(grid).into_iter().collect() } else { found };
     if let [one] = found.as_slice()
         && let Some(recognised) = side_by_side(one)
     {
         return Ok(recognised);
     }
     Ok(found.into())
+}
+
+/// The table whose names stand in the first column, one below the other.
+pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
+    let found = region::tables(View { grid, across: true });
+    found.into_iter().find(|region| !region.rows.is_empty())
 }
 
 /// The column of a row with this text.

@@ -254,8 +254,9 @@ fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
             .all(|n| cell(lower, n).is_empty() || !cell(upper, n).is_empty())
             .then(|| (0..width).map(name).collect());
     }
-    // A title stands alone in the first cell.
-    if upper.iter().skip(1).all(String::is_empty) {
+    // A title stands alone, above the first name.
+    let first = |line: &[String]| line.iter().position(|cell| !cell.is_empty());
+    if upper.iter().filter(|cell| !cell.is_empty()).count() == 1 && first(upper) <= first(lower) {
         return None;
     }
     // A merged cell holds its text in the first of the columns that it spans.

@@ -1,5 +1,7 @@
 //! What part columns play beside one another: means and errors, repeats and bounces, clocks and intervals; and their quantity and unit.
 
+use std::collections::BTreeSet;
+
 use super::ReadOptions;
 use super::aside::Why;
 use super::cell::{Cell, clock};
@@ -13,12 +15,12 @@ use crate::error::TableError;
 use crate::statistics::median;
 
 impl Columns {
-    /// `Drop` is the height of release beside trials; beside readings that say what they are it only counts.
-    pub(super) fn drops(&mut self) {
+    /// `Drop` is the height of release beside trials; beside readings that say what they are it may only count, and then holds 1, 2, 3.
+    pub(super) fn drops(&mut self, region: &Region<'_>) {
         let trials = self.values().any(|(_, _, v)| !v.trial.is_empty() || !v.group.is_empty());
         let rows = self.values().any(|(_, c, v)| !v.or_trial && v.at != At::Release && (c.unit.is_some() || !trials));
-        for column in &mut self.columns {
-            if column.unit.is_none() && column.value().is_some_and(|v| v.or_trial) && rows {
+        for (index, column) in self.columns.iter_mut().enumerate() {
+            if rows && column.unit.is_none() && column.value().is_some_and(|v| v.or_trial) && counts(region, index) {
                 column.kind = Kind::Trial;
             }
         }
@@ -383,6 +385,16 @@ impl Columns {
         }
         Ok(())
     }
+}
+
+/// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them left out.
+fn counts(region: &Region<'_>, index: usize) -> bool {
+    let cells = || region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+    let numbers: Option<BTreeSet<usize>> = cells().map(|cell| cell.parse().ok()).collect();
+    numbers.is_some_and(|numbers| {
+        let first = numbers.first().copied().unwrap_or(2);
+        first < 2 && numbers.iter().enumerate().all(|(n, number)| *number == first + n)
+    })
 }
 
 /// A rebound is read down to this part of its neighbour.
