@@ -26,6 +26,19 @@ pub struct TableError {
     place: Option<Box<Place>>,
     message: String,
     help: Option<String>,
+    kind: Kind,
+}
+
+/// What an error asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Kind {
+    /// A file or a cell to be corrected.
+    #[default]
+    Fault,
+    /// A question that an option answers.
+    Question,
+    /// There is no table of bounces.
+    Nothing,
 }
 
 /// Where in the file: 1-based line and column (in characters), and the line as it stands.
@@ -55,7 +68,7 @@ impl Place {
 
 impl TableError {
     pub(crate) fn new(name: &str, message: impl Into<String>) -> Self {
-        Self { name: name.to_owned(), place: None, message: message.into(), help: None }
+        Self { name: name.to_owned(), place: None, message: message.into(), help: None, kind: Kind::Fault }
     }
 
     pub(crate) fn at(mut self, place: Place) -> Self {
@@ -66,6 +79,26 @@ impl TableError {
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// It is a question that an option answers.
+    pub(crate) fn question(self) -> Self {
+        Self { kind: Kind::Question, ..self }
+    }
+
+    /// There is no table of bounces, rather than one that is wrong.
+    pub(crate) fn nothing(self) -> Self {
+        Self { kind: Kind::Nothing, ..self }
+    }
+
+    pub(crate) fn is_of_nothing(&self) -> bool {
+        self.kind == Kind::Nothing
+    }
+
+    /// Whether two readings are possible, and an option that the message names says which is meant.
+    #[must_use]
+    pub fn is_question(&self) -> bool {
+        self.kind == Kind::Question
     }
 
     /// Where it is and what is wrong, without the line itself.

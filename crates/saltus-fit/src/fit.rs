@@ -6,11 +6,12 @@ use crate::evidence::Evidence;
 use crate::finding::FindingKind;
 use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
 use crate::quantity::{CorModel, Loss, Source, Sourced};
-use crate::report::{Extras, Report};
+use crate::read::{Reading, Table};
+use crate::report::{Extras, Group, Report};
 use crate::solve::fits::{Fits, Known};
+use crate::solve::one::OneKind;
 use crate::solve::series::{self, Series};
 use crate::solve::{bootstrap, kind, outliers, tolerance};
-use crate::table::{Reading, Table};
 use crate::verdict;
 
 /// What is known beside the table, and the fit itself.
@@ -177,7 +178,16 @@ impl Fit {
     /// Those of [`Fit::run`].
     pub fn run_with(&self, table: &Table, progress: &mut dyn FnMut(usize)) -> Result<Report, FitError> {
         self.check()?;
+        let groups = table.groups();
+        if groups.len() > 1 {
+            let fit = |name: &&str| Ok(Group::new(name, self.run_with(&table.of_group(name), progress)?));
+            let groups: Vec<Group> = groups.iter().map(fit).collect::<Result<_, FitError>>()?;
+            let like = groups[0].report.clone();
+            return Ok(Report::of_groups(table, groups, &like));
+        }
         let known = self.known(table);
+        let table = &*table
+            .at_gravity(known.gravity.value, known.sigma_time.map_or(<Contacts as OneKind>::ASSUMED, |s| s.value));
         let evidence = self.evidence(table, &known)?;
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()

@@ -118,10 +118,10 @@ fn vernier_writes_csv_and_text() {
     let table = read(runs.as_bytes(), &plain());
     assert_eq!((table.trials().len(), table.trials()[1].label()), (2, "Run 2"));
     assert_eq!((samples(&table, 0), samples(&table, 1)), (expected.to_vec(), vec![(0.0, 2.0), (0.1, 1.9)]));
-    let sets = "Vernier Format 3\nx\nA\nTime\tPos\nt\ty\ns\tm\n\n0\t1\n0.1\t0.9\n0\t0\nVernier Format 3\nx\nB\nTime\tPosition\nt\ty\ns\tm\n\n0\t2\n";
+    let sets = "Vernier Format 3\nx\nA\nTime\tPoz\nt\ty\ns\tm\n\n0\t1\n0.1\t0.9\n0\t0\nVernier Format 3\nx\nB\nTime\tPosition\nt\ty\ns\tm\n\n0\t2\n";
     let broken = refuse(sets.as_bytes(), &plain());
-    assert_eq!((broken.line(), broken.column()), (Some(4), Some(6)), "{broken}");
-    let two = read(sets.replace("Pos\n", "Position\n").as_bytes(), &plain());
+    assert_eq!((broken.line(), broken.column()), (Some(4), Some(1)), "{broken}");
+    let two = read(sets.replace("Poz\n", "Position\n").as_bytes(), &plain());
     assert_eq!((two.trials().len(), samples(&two, 1)), (2, vec![(0.0, 2.0)]));
 }
 

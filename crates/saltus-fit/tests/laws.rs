@@ -211,9 +211,13 @@ fn two_balls_are_not_pooled_in_silence() {
         Fit::new().sigma_height(0.002).run(&parse(&text)).unwrap()
     };
     let different = table(0.7);
-    assert_eq!(different.verdict(), Verdict::Doubtful, "{different}");
-    assert!(different.reason().contains("ball blue") && different.reason().contains("0.70"), "{}", different.reason());
-    assert_eq!(table(0.8).verdict(), Verdict::Trusted);
+    let of = |report: &Report| report.groups().iter().map(|g| (g.name.clone(), cor(&g.report))).collect::<Vec<_>>();
+    assert!(different.cor().is_none() && different.differences()[0].low > 0.0, "{different}");
+    let cors = of(&different);
+    assert!(cors[0].0 == "red" && (cors[0].1 - 0.8).abs() < 0.003, "{different}");
+    assert!(cors[1].0 == "blue" && (cors[1].1 - 0.7).abs() < 0.003, "{different}");
+    let alike = table(0.8);
+    assert!(alike.differences()[0].low < 0.0 && alike.differences()[0].high > 0.0, "{alike}");
 }
 
 #[test]

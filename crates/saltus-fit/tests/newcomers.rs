@@ -42,7 +42,9 @@ fn sheets_are_read_as_they_are() {
         assert_eq!(report.verdict(), Verdict::Trusted, "{text}{report}");
     }
     let left = fit("bounce,height (cm)\n0,100\n1,64.1\n2,41.0\n\nMean ratio: 0.64\n");
-    assert!(left.notes().iter().any(|note| note.contains("the text from line 6 on")), "{left}");
+    let aside = &left.left_aside()[0];
+    assert_eq!((aside.name.as_str(), aside.line, left.left_aside().len()), ("Mean ratio: 0.64", Some(6), 1), "{left}");
+    assert!(left.to_string().contains("Left aside\n  - text 'Mean ratio: 0.64' in line 6"), "{left}");
 }
 
 /// A place in a text whose columns are made by spaces is that of the file.
@@ -51,7 +53,7 @@ fn what_is_no_number_is_shown_where_it_stands() {
     for (text, place) in [
         ("bounce  height_cm\n  0     100\n  1     sixty\n  2     41\n", "sheet.csv:3:9"),
         ("bounce,height_cm\n0,100\nten,64\nMean of all\n3,26\n", "sheet.csv:3:1"),
-        ("bounce,height_cm\n0,100\nMean of all\n3,26\n", "sheet.csv:3:1"),
+        ("bounce,height_cm\n0,100\nten,64\n3,26\n", "sheet.csv:3:1"),
     ] {
         let error = Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string();
         assert!(error.contains(place), "{error}");
@@ -61,22 +63,23 @@ fn what_is_no_number_is_shown_where_it_stands() {
 /// What cannot be guessed is said, with what to do.
 #[test]
 fn what_is_ambiguous_is_named() {
-    let refused =
-        |text: &str| Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string();
-    let twice = refused("bounce,height_cm\n0,100\n1,64\n2,41\nbounce,height_cm\n0,100\n1,64\n");
-    assert!(twice.contains("sheet.csv:5:1: the names of the columns stand here again"), "{twice}");
-    let intervals = refused("bounce,time (s)\n1,0.722\n2,0.578\n3,0.463\n");
-    assert!(intervals.contains("'interval_s'"), "{intervals}");
-    let lying = refused("Bounce,0,1,2\nHeight (cm),100,64,41\n");
-    assert!(lying.contains("sheet.csv:1:8: '0' is no name of a column"), "{lying}");
+    let twice = read("bounce,height_cm\n0,100\n1,64\n2,41\nbounce,height_cm\n0,100\n1,64\n");
+    assert_eq!(twice.trials().len(), 2, "tables below one another are two");
+    // Times of contacts rise: what falls is the times between them.
+    let intervals = fit("bounce,time (s)\n1,0.722\n2,0.578\n3,0.463\n");
+    assert!((intervals.cor().unwrap().value - 0.8).abs() < 0.003, "{intervals}");
+    assert!(intervals.notes().iter().any(|note| note.contains("taken as times between contacts")), "{intervals}");
+    let across = fit("Bounce,0,1,2\nHeight (cm),100,64,41\n");
+    assert!((across.cor().unwrap().value - 0.8).abs() < 0.003, "{across}");
+    // As high as one another, and well below the drop: no ball bounces so.
     let repeats = fit(
         "drop (cm),bounce 1 (cm),bounce 2 (cm),bounce 3 (cm)\n120,76.5,77.2,76.9\n100,64.2,63.7,64.1\n80,51,51.5,51.1\n",
     );
-    assert_ne!(repeats.verdict(), Verdict::Trusted, "{repeats}");
-    assert!(repeats.warnings().iter().any(|line| line.contains("if they are repeats")), "{repeats}");
+    assert!((repeats.cor().unwrap().value - 0.8).abs() < 0.003, "{repeats}");
+    assert!(repeats.notes().iter().any(|line| line.contains("taken for repeats")), "{repeats}");
     let bounces = fit("drop (cm),bounce 1 (cm),bounce 2 (cm),bounce 3 (cm)\n120,76.5,49.2,31.5\n100,64.2,41,26.2\n");
-    assert!(bounces.warnings().iter().all(|line| !line.contains("if they are repeats")), "{bounces}");
-    // Two balls in one film: one is taken, and which is said.
+    assert!(bounces.notes().iter().all(|line| !line.contains("taken for repeats")), "{bounces}");
+    // Two balls in one film have a COR each.
     let rows: String = (0..90)
         .map(|n| {
             let (t, fall) = (f64::from(n) / 60.0, (2.0f64 / 9.81).sqrt());
@@ -85,16 +88,17 @@ fn what_is_ambiguous_is_named() {
             format!("{t:.5},{:.4},{:.4}\n", h(0.8), h(0.7))
         })
         .collect();
-    let table = read(&format!("t (s),Ball A y (m),Ball B y (m)\n{rows}"));
+    let film = fit(&format!("t (s),Ball A y (m),Ball B y (m)\n{rows}"));
+    let cors: Vec<(&str, f64)> =
+        film.groups().iter().map(|g| (g.name.as_str(), g.report.cor().unwrap().value)).collect();
     assert!(
-        table.notes().iter().any(|note| note.contains("took 'Ball A y (m)' and not 'Ball B y (m)'")),
-        "{:?}",
-        table.notes()
+        matches!(cors[..], [("Ball A", a), ("Ball B", b)] if (a - 0.8).abs() < 0.01 && (b - 0.7).abs() < 0.01),
+        "{film}"
     );
 }
 
 #[test]
-fn two_balls_in_one_sheet_are_the_first_thing_said() {
+fn two_balls_in_one_sheet_have_a_cor_each() {
     let mut text = "ball,trial,bounce,height_cm\n".to_owned();
     for (ball, e) in [("superball", 0.85f64), ("tennis", 0.7)] {
         for trial in 0..3 {
@@ -105,6 +109,8 @@ fn two_balls_in_one_sheet_are_the_first_thing_said() {
         }
     }
     let report = fit(&text);
-    assert_eq!(report.verdict(), Verdict::Doubtful, "{report}");
-    assert!(report.reason().contains("is not the same throughout"), "{report}");
+    let cors: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+    assert!((cors[0] - 0.85).abs() < 0.002 && (cors[1] - 0.7).abs() < 0.002 && report.cor().is_none(), "{report}");
+    let difference = &report.differences()[0];
+    assert!((difference.value - 0.15).abs() < 0.002 && difference.low > 0.14 && difference.high < 0.16, "{report}");
 }

@@ -180,8 +180,8 @@ fn heights_that_do_not_shrink_are_doubted() {
 #[test]
 fn settings_that_differ_are_told_with_the_cor_of_each_by_itself() {
     let mut noise = Noise(6);
-    let mut text = "ball,trial,bounce,time_s\n".to_owned();
-    for (ball, e) in [("golf", 0.85), ("tennis", 0.8)] {
+    let mut text = "temperature (°C),trial,bounce,time_s\n".to_owned();
+    for (ball, e) in [("40", 0.85), ("5", 0.8)] {
         for trial in 0..4 {
             let (mut t, mut lasts) = (0.0, 0.8);
             for bounce in 0..7 {
@@ -192,10 +192,11 @@ fn settings_that_differ_are_told_with_the_cor_of_each_by_itself() {
     }
     let reason = fit(&text).reason().to_owned();
     let of = |ball: &str| -> f64 {
-        let (before, _) = reason.split_once(&format!(" for ball {ball}")).unwrap_or_else(|| panic!("{reason}"));
+        let (before, _) =
+            reason.split_once(&format!(" for temperature (°C) {ball}")).unwrap_or_else(|| panic!("{reason}"));
         before.rsplit(' ').next().unwrap().parse().unwrap()
     };
-    assert!((of("golf") - 0.85).abs() < 0.003 && (of("tennis") - 0.8).abs() < 0.003, "{reason}");
+    assert!((of("40") - 0.85).abs() < 0.003 && (of("5") - 0.8).abs() < 0.003, "{reason}");
 }
 
 /// A table of few rows that names a bounce of a very great number is answered at once.

@@ -125,11 +125,11 @@ fn a_height_in_another_unit_is_named_with_its_place() {
 fn cells_lines_and_units_are_called_what_they_are() {
     let book = written::xlsx(&[(
         "drops",
-        [["bounce", "height_cm"], ["0", "100"], ["1", "n/a"]].map(|r| r.map(str::to_owned).to_vec()).to_vec(),
+        [["drop_cm", "rebound_cm"], ["100", "64"], ["n/a", "65"]].map(|r| r.map(str::to_owned).to_vec()).to_vec(),
     )]);
     let error = Table::parse("book.xlsx", &book, &ReadOptions::default()).unwrap_err().to_string();
-    assert!(error.starts_with("book.xlsx, sheet 'drops', cell B3: 'n/a' is no reading"), "{error}");
-    assert!(refuse("bounce,height_cm\n0,100\n1,\n").contains("the cell is empty"));
+    assert!(error.starts_with("book.xlsx, sheet 'drops', cell A3: 'n/a' is no reading"), "{error}");
+    assert!(refuse("drop_cm,rebound_cm\n,64\n").contains("the cell is empty"));
     let furlong = refuse("bounce,height_furlong\n0,100\n1,64\n");
     assert!(
         furlong.contains("'furlong' in 'height_furlong' is not a unit of length") && furlong.contains("m, cm, mm"),

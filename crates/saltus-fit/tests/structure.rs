@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// From what everything rests on to what rests on everything. A file uses its own stage and those before it.
 const STAGES: [&[&str]; 9] = [
     &["word", "statistics", "error", "quantity", "orientation", "finding"],
-    &["read", "table"],
+    &["read"],
     &["evidence"],
     &["model"],
     &["solve"],
@@ -145,7 +145,7 @@ fn arrows_point_downwards_and_close_no_ring() {
     assert!(arrows.values().map(BTreeSet::len).sum::<usize>() > 150, "the imports were not found");
     assert!(upwards.is_empty(), "{upwards:#?}");
     // The reader's files are arranged by themselves.
-    arrows.retain(|from, _| !["read", "table"].contains(&from[0].as_str()));
+    arrows.retain(|from, _| !["read"].contains(&from[0].as_str()));
     // What nothing left uses, or uses nothing left, is in no ring.
     loop {
         let before = arrows.len();

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::read::Trial;
 use crate::statistics::{Line, chi_square_p, variance_ratio_p};
-use crate::table::Trial;
 
 /// From this many spare trials on, the spread within settings is the measure of that between them.
 const SPARE: usize = 3;

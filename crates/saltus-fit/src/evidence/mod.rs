@@ -6,8 +6,8 @@ use mend::{Contact, Repair, mend, usual};
 
 use crate::finding::{At, Finding, FindingKind};
 use crate::quantity::Readings;
+use crate::read::{Event, Reading, Table};
 use crate::statistics::median;
-use crate::table::{Event, Reading, Table};
 
 /// A height: after how many contacts, how high (m), its standard error (m).
 pub(crate) type Height = (usize, f64, f64);
@@ -220,7 +220,7 @@ pub(crate) fn has(table: &Table, kind: Readings) -> bool {
 
 /// A trial as a place for findings: named where the table holds several.
 pub(crate) fn at(table: &Table, trial: usize) -> At {
-    let label = table.trials().get(trial).map_or("", crate::table::Trial::label);
+    let label = table.trials().get(trial).map_or("", crate::read::Trial::label);
     let several = table.trials().len() > 1;
     let name = if label.is_empty() && several { format!("trial {}", trial + 1) } else { label.to_owned() };
     At { trial: several.then_some(trial), name, ..At::default() }

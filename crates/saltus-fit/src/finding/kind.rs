@@ -21,6 +21,15 @@ pub enum FindingKind {
     ReadWarning {
         text: String,
     },
+    ReadDoubt {
+        text: String,
+    },
+    /// The table holds several balls or surfaces, each with a fit of its own.
+    Groups {
+        groups: usize,
+        trusted: usize,
+        refused: usize,
+    },
     /// What was stated of the way that heights count, where the ball then falls upwards.
     FallsUpwards {
         text: String,

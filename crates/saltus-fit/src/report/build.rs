@@ -8,7 +8,7 @@ use super::words::{self, Section};
 use crate::compare::Comparison;
 use crate::evidence::has;
 use crate::finding::{Finding, FindingKind, Severity};
-use crate::quantity::Readings;
+use crate::quantity::{Readings, Sourced};
 use crate::solve::bootstrap::Bootstrap;
 use crate::solve::choice::ModelChoice;
 use crate::solve::estimate::Estimate;
@@ -103,16 +103,40 @@ impl Report {
         let (warnings, repairs, notes) = (listed(Section::Warnings), listed(Section::Repairs), listed(Section::Notes));
         motions.truncate(DRAWN);
         Self {
-            schema: SCHEMA,
-            table: table.name().to_owned(),
             verdict,
             reason: reason.as_ref().map_or_else(String::new, Finding::to_string),
             cor: judgement.cor.filter(|_| verdict != Verdict::Refused),
             trials: table.trials().len(),
-            gravity: fits.gravity,
+            frame_rate: table.metadata.frame_rate,
+            findings: reason.into_iter().chain(findings).collect(),
+            widened: judgement.widened,
+            warnings,
+            repairs: shortened(repairs),
+            notes,
+            left_aside: table.left_aside().to_vec(),
+            files: table.files.clone(),
+            pixels: table.metadata.pixels,
+            start: as_read(&motions, &points),
+            motions,
+            residuals,
+            points,
+            ..Self::empty(table.name(), fits.gravity)
+        }
+    }
+
+    /// A report that says nothing yet.
+    pub(super) fn empty(table: &str, gravity: Sourced) -> Self {
+        Self {
+            schema: SCHEMA,
+            table: table.to_owned(),
+            verdict: Verdict::Refused,
+            reason: String::new(),
+            cor: None,
+            trials: 0,
+            gravity,
             sigma_height: None,
             sigma_time: None,
-            frame_rate: table.metadata.frame_rate,
+            frame_rate: None,
             estimates: Vec::new(),
             bounces: Vec::new(),
             agreement: None,
@@ -122,18 +146,21 @@ impl Report {
             profiles: Vec::new(),
             bootstrap: None,
             series: Vec::new(),
-            findings: reason.into_iter().chain(findings).collect(),
-            widened: judgement.widened,
-            warnings,
-            repairs: shortened(repairs),
-            notes,
-            files: table.files.clone(),
-            pixels: table.metadata.pixels,
+            findings: Vec::new(),
+            widened: Vec::new(),
+            warnings: Vec::new(),
+            repairs: Vec::new(),
+            notes: Vec::new(),
+            left_aside: Vec::new(),
+            groups: Vec::new(),
+            differences: Vec::new(),
+            files: Vec::new(),
+            pixels: false,
             ball_m: None,
-            start: as_read(&motions, &points),
-            motions,
-            residuals,
-            points,
+            start: None,
+            motions: Vec::new(),
+            residuals: Vec::new(),
+            points: Vec::new(),
         }
     }
 }

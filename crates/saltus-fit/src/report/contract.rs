@@ -9,6 +9,7 @@ use super::residual::{Point, Residual};
 use crate::compare::explain::{Agreement, Hypothesis};
 use crate::finding::{Finding, Widening};
 use crate::quantity::Sourced;
+use crate::read::LeftAside;
 use crate::solve::bootstrap::Bootstrap;
 use crate::solve::bounces::BounceCor;
 use crate::solve::choice::ModelChoice;
@@ -59,6 +60,14 @@ pub struct Report {
     pub(super) warnings: Vec<String>,
     pub(super) repairs: Vec<String>,
     pub(super) notes: Vec<String>,
+    /// What the files hold and was not used.
+    #[serde(default)]
+    pub(super) left_aside: Vec<LeftAside>,
+    /// The fits of several groups, which have no COR together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) groups: Vec<Group>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) differences: Vec<Difference>,
     /// The files of the table, where there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) files: Vec<String>,
@@ -80,7 +89,41 @@ pub struct Report {
     pub(super) points: Vec<Point>,
 }
 
+/// One of several groups of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Group {
+    /// What tells it from the others: `golf`, `wood`, the name of a sheet.
+    pub name: String,
+    /// Its fit.
+    pub report: Report,
+}
+
+/// By how much the COR of one group is above that of another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Difference {
+    /// The group with the greater COR.
+    pub greater: String,
+    /// The other.
+    pub less: String,
+    /// The difference of their CORs.
+    pub value: f64,
+    /// Its standard error, where both have one: the root of the sum of squares.
+    pub standard_error: Option<f64>,
+    /// The lower end of its 95 % interval.
+    pub low: f64,
+    /// The upper end of its 95 % interval.
+    pub high: f64,
+}
+
 impl Report {
+    /// What the files hold and was not used, each with its place and the reason.
+    #[must_use]
+    pub fn left_aside(&self) -> &[LeftAside] {
+        &self.left_aside
+    }
+
     /// The name of the table.
     #[must_use]
     pub fn table(&self) -> &str {

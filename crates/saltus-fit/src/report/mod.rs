@@ -3,6 +3,7 @@
 mod build;
 mod contract;
 mod film;
+mod groups;
 mod lines;
 mod motion;
 mod numbers;
@@ -13,6 +14,6 @@ mod text;
 mod words;
 
 pub(crate) use build::Extras;
-pub use contract::Report;
+pub use contract::{Difference, Group, Report};
 pub use motion::{Arc, Motion};
 pub use residual::{Mark, Measure, Point, Residual};

@@ -3,6 +3,7 @@
 use std::fmt::{self, Formatter};
 
 use super::contract::Report;
+use super::groups;
 use super::lines::{capital, paragraph, section};
 use super::numbers::{digits, duration, figures, length, measured, number, pair, signed};
 use super::recordings;
@@ -41,6 +42,9 @@ impl fmt::Display for Report {
 fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     writeln!(f, "{}: {}", report.table, report.verdict.to_string().to_uppercase())?;
     paragraph(f, 2, 2, &format!("{}.", capital(&report.reason)))?;
+    if !report.groups.is_empty() {
+        return groups::write(report, f);
+    }
     if let Some(cor) = &report.cor {
         writeln!(f, "\n  COR  {}", headline(report, cor))?;
         if let Some(text) = lopsided(report, cor) {
@@ -71,6 +75,8 @@ fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     let mut mind = report.agreement.as_ref().filter(|a| a.rejected()).map_or_else(Vec::new, |a| caveats(report, a));
     mind.extend(report.warnings.iter().map(|w| capital(w)));
     section(f, "Keep in mind", &mind)?;
+    let aside: Vec<String> = report.left_aside.iter().map(ToString::to_string).collect();
+    section(f, "Left aside", &aside)?;
     footer(report, f)
 }
 

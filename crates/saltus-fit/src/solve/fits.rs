@@ -12,7 +12,7 @@ use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::{Contacts, Heights};
 use crate::quantity::{Loss, Measured, Method, Source, Sourced};
-use crate::table::Table;
+use crate::read::Table;
 
 /// What is known before anything is fitted.
 #[derive(Clone, Copy, Debug)]

@@ -103,7 +103,7 @@ fn error(pairs: &[Pair], kappa: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Table;
+    use crate::read::Table;
 
     fn of(heights: &[f64], sigma: f64) -> Estimate {
         let table = Table::from_heights(heights).unwrap();

@@ -6,10 +6,10 @@ use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{FindingKind, Widening};
 use crate::model::LOSSLESS;
 use crate::quantity::{Readings, Source, Sourced};
+use crate::read::Trial;
 use crate::solve::kind::{Kind, one_kind};
 use crate::solve::one::OneKind;
 use crate::statistics::REJECT;
-use crate::table::Trial;
 
 /// Readings whose scatter is more than this part of the largest of them hardly show a bounce.
 const LOUD: f64 = 0.1;

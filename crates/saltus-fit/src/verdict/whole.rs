@@ -7,8 +7,8 @@ use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind};
 use crate::model::VAGUE;
 use crate::quantity::{Method, Readings, Source, Sourced};
+use crate::read::Event;
 use crate::solve::fits::Fits;
-use crate::table::Event;
 
 /// A rebound so many standard errors high is not read as zero.
 const TOO_HIGH: f64 = 5.0;

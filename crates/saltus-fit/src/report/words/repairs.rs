@@ -7,7 +7,13 @@ pub(super) fn words(finding: &Finding) -> Option<String> {
         FindingKind::ReadNote { text }
         | FindingKind::ReadRepair { text }
         | FindingKind::ReadWarning { text }
+        | FindingKind::ReadDoubt { text }
         | FindingKind::FallsUpwards { text } => text.clone(),
+        FindingKind::Groups { groups, trusted, .. } if trusted == groups => format!("{groups} groups, a COR each"),
+        FindingKind::Groups { groups, refused, .. } if refused == groups => {
+            format!("none of {groups} groups determines a COR")
+        }
+        FindingKind::Groups { groups, trusted, .. } => format!("of {groups} groups {trusted} can be trusted: see each"),
         FindingKind::Pairs { heard, apart_s } => format!(
             "the {heard} contacts come in pairs up to {:.1} ms apart, as if each was heard twice: the second of every pair left out",
             1e3 * apart_s

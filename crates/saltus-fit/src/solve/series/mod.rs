@@ -16,7 +16,7 @@ mod wild;
 use crate::error::FitError;
 use crate::evidence::at;
 use crate::finding::{Finding, FindingKind};
-use crate::table::Table;
+use crate::read::Table;
 use flights::NoFlights;
 pub(crate) use pool::Pooled;
 pub(crate) use recording::{Course, in_metres};

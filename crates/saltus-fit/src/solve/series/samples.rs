@@ -3,7 +3,7 @@
 use super::frames;
 use crate::finding::FindingKind;
 use crate::orientation::falls_upwards;
-use crate::table::{Event, Trial};
+use crate::read::{Event, Trial};
 
 /// More samples of one recording than this are thinned.
 const SAMPLES: usize = 50_000;

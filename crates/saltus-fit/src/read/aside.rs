@@ -1,0 +1,135 @@
+//! What a file holds and the readings do not: each thing with its place and the reason.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A part of a file that was not used.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct LeftAside {
+    /// What kind of part it is.
+    pub what: Part,
+    /// What it is called: a heading, the name of a sheet, the text itself.
+    pub name: String,
+    /// Why it was not used.
+    pub why: Why,
+    /// The sheet or the file it belongs to, where there are several.
+    #[serde(rename = "in")]
+    pub within: Option<String>,
+    /// The line, or row, counted from 1.
+    pub line: Option<u64>,
+}
+
+/// The kind of a part of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Part {
+    /// A column.
+    Column,
+    /// A row.
+    Row,
+    /// A cell.
+    Cell,
+    /// A line of text above, below or beside the table.
+    Text,
+    /// A sheet of a workbook, or a file of an archive.
+    Sheet,
+    /// A track of a film.
+    Track,
+}
+
+/// Why a part was not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Why {
+    /// A word of it is not understood.
+    NotUnderstood,
+    /// It sums up other rows or columns: a mean, a scatter, an extreme.
+    Statistic,
+    /// It was predicted, calculated or looked up, and not measured.
+    Predicted,
+    /// It is a goal.
+    Goal,
+    /// It was worked out from other columns.
+    Derived,
+    /// It holds another quantity than heights and times.
+    Other,
+    /// It is a remark.
+    Note,
+    /// Nothing stands above it.
+    Unnamed,
+    /// The file hides it.
+    Hidden,
+    /// It holds no table of bounces.
+    NoTable,
+    /// Nothing stands in it.
+    Empty,
+    /// Another was asked for.
+    NotChosen,
+    /// The same events stand elsewhere, and all of them.
+    Elsewhere,
+    /// The program that wrote it works it out from the times.
+    Computed,
+    /// It hardly moves.
+    Still,
+    /// The event was not heard: the time is zero.
+    NotHeard,
+}
+
+impl LeftAside {
+    pub(crate) fn new(what: Part, name: impl Into<String>, why: Why) -> Self {
+        Self { what, name: name.into(), why, within: None, line: None }
+    }
+
+    pub(crate) fn at(self, line: u64) -> Self {
+        Self { line: Some(line), ..self }
+    }
+}
+
+/// Why, in words: "left aside: 'ratio', which ...".
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotUnderstood => "not understood",
+            Self::Statistic => "sums up the others",
+            Self::Predicted => "not measured",
+            Self::Goal => "a goal",
+            Self::Derived => "worked out from others",
+            Self::Other => "neither a height nor a time of a bounce",
+            Self::Note => "a remark",
+            Self::Unnamed => "no name above it",
+            Self::Hidden => "hidden",
+            Self::NoTable => "no table of bounces",
+            Self::Empty => "empty",
+            Self::NotChosen => "another was asked for",
+            Self::Elsewhere => "all of its events stand in another",
+            Self::Computed => "computed from the times by the program that wrote it",
+            Self::Still => "it hardly moves (choose with --column)",
+            Self::NotHeard => "a time of 0 is one that was not heard",
+        })
+    }
+}
+
+impl fmt::Display for LeftAside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.what {
+            Part::Column => "column",
+            Part::Row => "row",
+            Part::Cell => "cell",
+            Part::Text => "text",
+            Part::Sheet => "sheet",
+            Part::Track => "track",
+        };
+        if let Some(within) = &self.within {
+            write!(f, "{within}: ")?;
+        }
+        write!(f, "{what} '{}'", self.name)?;
+        if let Some(line) = self.line {
+            write!(f, " in line {line}")?;
+        }
+        write!(f, ": {}", self.why)
+    }
+}

@@ -1,0 +1,340 @@
+//! What a cell holds: a number, with a unit, an error and a remark if they stand there; nothing; or words.
+
+use super::units::{Scale, Unit};
+use super::vocabulary::{Atom, folded, meanings};
+
+/// A number in a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub(super) value: f64,
+    /// The unit, if the cell names one.
+    pub(super) unit: Option<Unit>,
+    /// The error, in the same unit.
+    pub(super) error: Option<f64>,
+}
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cell {
+    Empty,
+    Number(Measured),
+    /// A word for "not a number", as programs write it.
+    Lost,
+    /// No number.
+    Words,
+    /// Meant as a number, and not one, and why.
+    Wrong(Fault),
+}
+
+/// Why a cell that is meant as a number is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// A comma in a table separated by commas.
+    Comma,
+    /// A separator of thousands, or two decimal marks.
+    Thousands,
+    NotFinite,
+    /// A word beside the number turns its meaning: `64 (predicted)`.
+    Turned,
+    /// A bound, and no reading: `> 60`.
+    Bound,
+}
+
+/// Reads a cell; `comma` says whether commas separate the cells.
+pub(super) fn read(cell: &str, comma: bool) -> Cell {
+    // A remark behind a number.
+    let text = cell.split('#').next().unwrap_or_default().trim();
+    if matches!(text, "" | "-" | "--" | "–" | "—" | "?" | "NA" | "n/a" | "N/A" | "na" | "#N/A" | ".") {
+        return Cell::Empty;
+    }
+    if let Ok(value) = text.parse::<f64>() {
+        let spelt = text.trim_start_matches(['+', '-']).starts_with(char::is_alphabetic);
+        return match (value.is_finite(), spelt) {
+            (true, _) => Cell::Number(Measured { value, unit: None, error: None }),
+            (false, true) => Cell::Lost,
+            (false, false) => Cell::Wrong(Fault::NotFinite),
+        };
+    }
+    if !text.contains(|c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|f| f.0 == c)) {
+        return Cell::Words;
+    }
+    if text.starts_with(['<', '>', '≤', '≥']) {
+        return Cell::Wrong(Fault::Bound);
+    }
+    let (text, turned) = without_remark(text);
+    let text = without_about(text);
+    let (number, error) = match split_error(text) {
+        Some((number, error)) => (number, Some(error)),
+        None => (text, None),
+    };
+    let measured = match lengths(number, comma) {
+        Ok(Some(measured)) => measured,
+        Ok(None) => return Cell::Words,
+        Err(fault) => return Cell::Wrong(fault),
+    };
+    if turned {
+        return Cell::Wrong(Fault::Turned);
+    }
+    let Some(error) = error else { return Cell::Number(measured) };
+    match lengths(error.trim(), comma) {
+        Ok(Some(error)) => match error_of(measured, error) {
+            Some(measured) => Cell::Number(measured),
+            None => Cell::Words,
+        },
+        Ok(None) => Cell::Words,
+        Err(fault) => Cell::Wrong(fault),
+    }
+}
+
+/// A number with its error, both in the unit of the number.
+fn error_of(number: Measured, error: Measured) -> Option<Measured> {
+    let size = match (number.unit, error.unit) {
+        // The unit behind the error is for both: `150 ± 0.5 cm`.
+        (None, Some(unit)) if unit.scale != Scale::Percent => {
+            return Some(Measured { unit: Some(unit), error: Some(error.value).filter(|e| *e > 0.0), ..number });
+        }
+        (_, Some(unit)) if unit.scale == Scale::Percent => number.value.abs() * error.value / 100.0,
+        (Some(own), Some(unit)) if own.dimension == unit.dimension => error.value * unit.si(1.0) / own.si(1.0),
+        (_, None) => error.value,
+        _ => return None,
+    };
+    Some(Measured { error: Some(size).filter(|e| *e > 0.0 && e.is_finite()), ..number })
+}
+
+/// The text without a remark in brackets or a mark behind it, and whether the remark turns the meaning.
+fn without_remark(text: &str) -> (&str, bool) {
+    let text = text.trim_end_matches(['*', '?', '!', '†', '‡', ' ']);
+    let Some((number, remark)) = text.strip_suffix([')', ']']).and_then(|t| t.split_once(['(', '['])) else {
+        return (text, false);
+    };
+    if number.trim().is_empty() || number.contains('±') && remark.contains(|c: char| c.is_ascii_digit()) {
+        return (text, false);
+    }
+    let turns = |word: &str| {
+        let turning =
+            [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived, Atom::Mean, Atom::Max, Atom::Min, Atom::Error];
+        meanings(&folded(word)).is_some_and(|atoms| atoms.iter().any(|atom| turning.contains(atom)))
+    };
+    (number.trim_end(), remark.split(|c: char| !c.is_alphabetic()).any(turns))
+}
+
+/// The text without what says that it is not exact: `~62`, `ca. 62`.
+fn without_about(text: &str) -> &str {
+    const WORDS: [&str; 12] = [
+        "approximately",
+        "approx.",
+        "approx",
+        "around",
+        "about",
+        "circa",
+        "ca.",
+        "ca",
+        "etwa",
+        "env.",
+        "environ",
+        "roughly",
+    ];
+    let text = text.trim_start_matches(['~', '≈', '∼', '≃', ' ']);
+    let before = WORDS.iter().find_map(|word| text.get(..word.len()).filter(|t| t.eq_ignore_ascii_case(word)));
+    let text = before.map_or(text, |word| text[word.len()..].trim_start());
+    let lower = text.to_lowercase();
+    let after = WORDS.iter().find(|word| lower.ends_with(*word)).filter(|_| lower.len() == text.len());
+    after.map_or(text, |word| text[..text.len() - word.len()].trim_end())
+}
+
+fn split_error(text: &str) -> Option<(&str, &str)> {
+    ["±", "+/-", "+-", "+/−"].iter().find_map(|mark| text.split_once(mark)).map(|(a, b)| (a.trim(), b))
+}
+
+/// One number, or several with falling units that add up: `5' 3"`, `1 m 20 cm`; `None` if it is something else.
+fn lengths(text: &str, comma: bool) -> Result<Option<Measured>, Fault> {
+    let mut sum: Option<Measured> = None;
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let Some((value, after)) = leading(rest, comma)? else { return Ok(None) };
+        // The unit goes to the next digit, which may not be part of it.
+        let end = after
+            .find(|c: char| c.is_ascii_digit())
+            .filter(|_| sum.is_none() || !after.is_empty())
+            .unwrap_or(after.len());
+        let (spelt, next) = after.split_at(end);
+        // Its parts may be joined by a word: `5 feet and 3 inches`.
+        let spelt = spelt.trim().trim_end_matches("and").trim_end_matches(',').trim();
+        let unit = match spelt {
+            "" => None,
+            spelt => match Unit::parse(spelt) {
+                Some(unit) => Some(unit),
+                None => return Ok(None),
+            },
+        };
+        rest = next.trim();
+        sum = match sum {
+            None if rest.is_empty() => Some(Measured { value, unit, error: None }),
+            None if unit.is_some() => Some(Measured { value, unit, error: None }),
+            Some(whole) => {
+                let Some(own) = whole.unit else { return Ok(None) };
+                // Feet and then inches; a metre and then centimetres.
+                let unit = unit.or(Unit::parse(if Unit::parse("ft") == Some(own) { "in" } else { "cm" }));
+                let Some(unit) = unit.filter(|u| u.dimension == own.dimension && u.si(1.0) < own.si(1.0)) else {
+                    return Ok(None);
+                };
+                Some(Measured { value: whole.value + unit.si(value) / own.si(1.0), ..whole })
+            }
+            None => return Ok(None),
+        };
+    }
+    Ok(sum)
+}
+
+const FRACTIONS: [(char, f64); 5] = [('½', 0.5), ('¼', 0.25), ('¾', 0.75), ('⅛', 0.125), ('⅜', 0.375)];
+
+/// The number at the start of a text, and what follows it.
+fn leading(text: &str, comma: bool) -> Result<Option<(f64, &str)>, Fault> {
+    let mut end = 0;
+    let mut digits = false;
+    for (at, c) in text.char_indices() {
+        let exponent = matches!(c, 'e' | 'E') && digits && {
+            let after = text[at + 1..].trim_start_matches(['+', '-', '−']);
+            after.starts_with(|c: char| c.is_ascii_digit()) && !text[..at].contains(['e', 'E'])
+        };
+        let sign = matches!(c, '+' | '-' | '−') && (at == 0 || text[..at].ends_with(['e', 'E']));
+        if !(c.is_ascii_digit() || matches!(c, '.' | ',') || exponent || sign) {
+            break;
+        }
+        digits |= c.is_ascii_digit();
+        end = at + c.len_utf8();
+    }
+    let (number, mut rest) = text.split_at(end);
+    let mut value = if digits {
+        match decimal(number, comma)? {
+            Some(value) => value,
+            None => return Ok(None),
+        }
+    } else {
+        0.0
+    };
+    // A mixed number: `40 1/2`, `40½`.
+    let tail = rest.trim_start();
+    if let Some(&(sign, part)) = FRACTIONS.iter().find(|(sign, _)| tail.starts_with(*sign)) {
+        value += part;
+        rest = &tail[sign.len_utf8()..];
+    } else if let Some((over, under, after)) = fraction(tail).filter(|_| digits) {
+        value += over / under;
+        rest = after;
+    } else if !digits {
+        return Ok(None);
+    }
+    Ok(Some((value, rest)))
+}
+
+/// `1/2` and what follows it.
+fn fraction(text: &str) -> Option<(f64, f64, &str)> {
+    let (over, rest) = text.split_once('/')?;
+    let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+    let (over, under): (f64, f64) = (over.trim().parse().ok()?, rest[..end].parse().ok()?);
+    (over < under && over > 0.0).then_some((over, under, &rest[end..]))
+}
+
+/// A number with a decimal point or, where commas do not separate the cells, a decimal comma.
+fn decimal(number: &str, comma: bool) -> Result<Option<f64>, Fault> {
+    let plain = number.replace('−', "-");
+    let value = if let Some((whole, parts)) = plain.split_once(',') {
+        if parts.contains(',') || plain.contains('.') {
+            return Err(Fault::Thousands);
+        }
+        // Thousands have three digits behind the comma, and no zero alone before it.
+        if comma && parts.len() == 3 && whole.trim_start_matches('-') != "0" {
+            return Err(Fault::Comma);
+        }
+        plain.replace(',', ".").parse::<f64>()
+    } else {
+        plain.parse::<f64>()
+    };
+    match value {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        Ok(_) => Err(Fault::NotFinite),
+        Err(_) => Ok(None),
+    }
+}
+
+/// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does not.
+pub(super) fn clock(cell: &str) -> Option<f64> {
+    let mut seconds = 0.0;
+    if !cell.contains(':') {
+        return None;
+    }
+    for part in cell.trim().split(':') {
+        let digits = part.starts_with(|c: char| c.is_ascii_digit());
+        seconds = 60.0 * seconds + part.replace(',', ".").parse::<f64>().ok().filter(|_| digits)?;
+    }
+    Some(seconds).filter(|s: &f64| s.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(cell: &str) -> (f64, Option<f64>, bool) {
+        match read(cell, false) {
+            Cell::Number(m) => (m.unit.map_or(m.value, |u| u.si(m.value)), m.error, m.unit.is_some()),
+            other => panic!("{cell}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn numbers_as_people_write_them() {
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        for (cell, value, error, unit) in [
+            ("64", 64.0, None, false),
+            ("1.50 m", 1.5, None, true),
+            ("25.5cm", 0.255, None, true),
+            ("30,5", 30.5, None, false),
+            ("−3", -3.0, None, false),
+            ("~62", 62.0, None, false),
+            ("ca. 62 cm", 0.62, None, true),
+            ("62 (approx.)", 62.0, None, false),
+            ("62*", 62.0, None, false),
+            ("96 ± 1", 96.0, Some(1.0), false),
+            ("96 +/- 1 cm", 0.96, Some(1.0), true),
+            ("96 cm ± 10 mm", 0.96, Some(1.0), true),
+            ("100 ± 2 %", 100.0, Some(2.0), false),
+            ("64 %", 0.64, None, true),
+            ("5' 3\"", 1.6002, None, true),
+            ("5'3", 1.6002, None, true),
+            ("5 ft 3 in", 1.6002, None, true),
+            ("5 feet and 3 inches", 1.6002, None, true),
+            ("1 m 20 cm", 1.2, None, true),
+            ("1m20", 1.2, None, true),
+            ("40 1/2 in", 1.0287, None, true),
+            ("40½ in", 1.0287, None, true),
+            ("1.5e-1 m", 0.15, None, true),
+            ("64 # a remark", 64.0, None, false),
+        ] {
+            let found = number(cell);
+            assert!(near(found.0, value) && found.1 == error && found.2 == unit, "{cell}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number() {
+        for (cell, expected) in [
+            ("", Cell::Empty),
+            ("-", Cell::Empty),
+            ("n/a", Cell::Empty),
+            ("NaN", Cell::Lost),
+            ("drop", Cell::Words),
+            ("62 wobbles", Cell::Words),
+            ("12.3.2026", Cell::Words),
+            ("62-64", Cell::Words),
+            ("64 (predicted)", Cell::Wrong(Fault::Turned)),
+            ("1.000,5", Cell::Wrong(Fault::Thousands)),
+            ("1e999", Cell::Wrong(Fault::NotFinite)),
+            ("> 60", Cell::Wrong(Fault::Bound)),
+        ] {
+            assert_eq!(read(cell, false), expected, "{cell}");
+        }
+        assert_eq!(read("1,234", true), Cell::Wrong(Fault::Comma));
+        assert!(matches!(read("30,5", true), Cell::Number(m) if m.value == 30.5));
+        assert_eq!([clock("0:01.25"), clock("1:02:03,5"), clock("12.5")], [Some(1.25), Some(3723.5), None]);
+    }
+}

@@ -1,0 +1,108 @@
+//! What a table may hold that must not be counted: rebounds of zero height, copied trials.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::{Event, Reading, Table, Trial, grid};
+
+/// Where balls are dropped from, in metres.
+const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
+
+/// How much drops of the same ball from the same height differ at the least, as a part of the reading.
+const DIFFER: f64 = 0.02;
+/// Trials that agree in every reading are copies if that would happen by chance less often than once in so many powers of ten; else they repeat each other.
+const CHANCE: f64 = 6.0;
+
+/// Takes out what must not be counted, notes what has no logarithm, and says so.
+pub(super) fn table(table: &mut Table) {
+    zeros(table);
+    copies(table);
+    if !table.metadata.pixels {
+        size(table);
+    }
+}
+
+/// Heights nobody drops a ball from are a unit gone wrong.
+fn size(table: &mut Table) {
+    let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height.map(|h| (h, r.line)));
+    let Some((highest, line)) = heights().max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    if highest > 0.0 && !USUAL.contains(&highest) {
+        table.warnings.push(format!("the highest reading is {highest} m, in line {line}: is that the right unit?"));
+    }
+}
+
+fn zeros(table: &mut Table) {
+    let zero = |r: &&Reading| r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
+    let lines: Vec<u64> = table.trials.iter().flat_map(|t| &t.readings).filter(zero).map(|r| r.line).collect();
+    if !lines.is_empty() {
+        let named = grid::lines(&lines);
+        table.warnings.push(format!(
+            "{named}: a rebound of zero height is below what can be read; only 'heights-ratio' counts it"
+        ));
+        table.zero_rebounds = lines.len();
+    }
+}
+
+fn copies(table: &mut Table) {
+    let mut seen: HashMap<u64, Vec<usize>> = HashMap::new();
+    let mut copies = vec![false; table.trials.len()];
+    let step = steps(&table.trials);
+    for (n, trial) in table.trials.iter().enumerate() {
+        if trial.readings.iter().any(|r| r.event == Event::Sample) || told(trial, step) < CHANCE {
+            continue;
+        }
+        let candidates = seen.entry(fingerprint(trial)).or_default();
+        if let Some(&original) = candidates.iter().find(|&&m| alike(&table.trials[m], trial)) {
+            copies[n] = true;
+            let (a, b) = (shown(trial, n), shown(&table.trials[original], original));
+            table.repairs.push(format!("{a} repeats {b} reading by reading: counted once"));
+        } else {
+            candidates.push(n);
+        }
+    }
+    let mut copied = copies.iter();
+    table.trials.retain(|_| !copied.next().copied().unwrap_or(false));
+}
+
+/// The readings of a trial beside its release, which is set: heights, and times.
+fn numbers(trial: &Trial) -> impl Iterator<Item = (bool, f64)> + '_ {
+    let read = trial.readings.iter().filter(|r| r.event != Event::Release);
+    read.flat_map(|r| r.height.map(|h| (false, h)).into_iter().chain(r.time.map(|t| (true, t))))
+        .filter(|(_, x)| *x > 0.0)
+}
+
+/// To how much heights and times were read: the largest power of ten of which all are multiples.
+fn steps(trials: &[Trial]) -> [f64; 2] {
+    let finest = |timed: bool| {
+        let all = || trials.iter().flat_map(numbers).filter(move |(t, _)| *t == timed).map(|(_, x)| x);
+        // What is left of a multiple by rounding in binary is less than a millionth of it.
+        let multiple = |step: f64| all().all(|x| ((x / step).round() * step - x).abs() < 1e-6 * step);
+        (0..9).map(|n| 10f64.powi(-n)).find(|&step| multiple(step)).unwrap_or(1e-9)
+    };
+    [finest(false), finest(true)]
+}
+
+/// How many powers of ten it is against one that another trial has the same readings.
+fn told(trial: &Trial, step: [f64; 2]) -> f64 {
+    numbers(trial).map(|(timed, x)| (DIFFER * x / step[usize::from(timed)]).log10().max(0.0)).sum()
+}
+
+fn shown(trial: &Trial, n: usize) -> String {
+    if trial.label.is_empty() { format!("trial {}", n + 1) } else { format!("'{}'", trial.label) }
+}
+
+fn fingerprint(trial: &Trial) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for r in &trial.readings {
+        (r.event, r.bounce, r.time.map(f64::to_bits), r.height.map(f64::to_bits)).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+fn alike(a: &Trial, b: &Trial) -> bool {
+    a.readings.len() == b.readings.len()
+        && a.readings
+            .iter()
+            .zip(&b.readings)
+            .all(|(x, y)| (x.event, x.bounce, x.time, x.height) == (y.event, y.bounce, y.time, y.height))
+}

@@ -1,0 +1,518 @@
+//! What the columns of a table are: a heading alone says much, its neighbours and its cells the rest.
+
+use super::ReadOptions;
+use super::aside::{LeftAside, Part, Why};
+use super::cell::Cell;
+use super::grid::shown;
+use super::heading::{At, Heading, Meaning, Role, Value, What};
+use super::region::Region;
+use super::units::{Dimension, Unit};
+use super::vocabulary::{Atom, nearest};
+use crate::error::TableError;
+
+/// What a column is for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// The number of the bounce; `sure` if the heading says so.
+    Number {
+        sure: bool,
+    },
+    /// What happened.
+    Event,
+    /// Tells trials apart.
+    Trial,
+    /// Tells balls, surfaces, conditions apart.
+    Setting,
+    /// A count of frames.
+    Frame,
+    /// Names its row as a heading names a column.
+    Label,
+    Value(Value),
+    /// The errors of the readings in another column.
+    Error(usize),
+    /// The upper ends of ranges whose lower ends stand in another column.
+    High(usize),
+    /// How much lower the rebound is than the release.
+    Lost,
+    /// Not used.
+    Aside,
+}
+
+/// A column.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub(super) kind: Kind,
+    pub(super) heading: Heading,
+    /// The unit of its numbers; none where each names its own.
+    pub(super) unit: Option<Unit>,
+    /// What its scale reads at the floor, and which way it counts.
+    pub(super) zero: f64,
+    pub(super) sign: f64,
+}
+
+impl Column {
+    pub(super) fn value(&self) -> Option<&Value> {
+        match &self.kind {
+            Kind::Value(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Whether the column holds readings of this quantity.
+    pub(super) fn holds(&self, what: What) -> bool {
+        self.value().is_some_and(|value| value.what == what)
+    }
+}
+
+/// The columns of a table and what was noted about them.
+#[derive(Debug)]
+pub(super) struct Columns {
+    pub(super) columns: Vec<Column>,
+    pub(super) aside: Vec<LeftAside>,
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    /// Heights have no scale: only their ratios mean anything.
+    pub(super) unscaled: bool,
+}
+
+impl Columns {
+    /// What the names of the columns say of them, and what they are beside one another.
+    pub(super) fn named(region: &Region<'_>, options: &ReadOptions) -> Result<Self, TableError> {
+        let mut found =
+            Self { columns: Vec::new(), aside: Vec::new(), notes: Vec::new(), warnings: Vec::new(), unscaled: false };
+        for text in &region.header {
+            found.push(Heading::parse(text));
+        }
+        found.counted(region);
+        found.unnamed(region)?;
+        found.groups(region, options)?;
+        found.chosen(region, options)?;
+        found.not_understood(region)?;
+        found.drops(region);
+        found.statistics(region)?;
+        found.repeats(region);
+        Ok(found)
+    }
+
+    /// Gives the columns their quantities and units, by the rows that hold readings; `fps` is the frame rate, where one is known.
+    pub(super) fn measure(
+        &mut self,
+        region: &Region<'_>,
+        options: &ReadOptions,
+        fps: Option<f64>,
+    ) -> Result<(), TableError> {
+        self.infer(region, options)?;
+        self.frames(region, fps)?;
+        self.clocks();
+        self.scales(region, options)?;
+        self.unique(region)?;
+        self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
+        for column in self.columns.iter_mut().filter(|c| c.holds(What::Height)) {
+            column.zero = options.zero.unwrap_or(0.0);
+            column.sign = if options.down == Some(true) { -1.0 } else { 1.0 };
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, heading: Heading) {
+        let kind = match &heading.meaning {
+            Meaning::Number { sure } => Kind::Number { sure: *sure },
+            Meaning::Event => Kind::Event,
+            Meaning::Trial => Kind::Trial,
+            Meaning::Setting => Kind::Setting,
+            Meaning::Frame => Kind::Frame,
+            Meaning::Value(value) => Kind::Value(value.clone()),
+            Meaning::Aside(why) => {
+                if heading.unknown.is_empty() {
+                    self.aside.push(LeftAside::new(Part::Column, shown(&heading.text), *why));
+                }
+                Kind::Aside
+            }
+            Meaning::Empty => Kind::Aside,
+        };
+        self.columns.push(Column { kind, unit: heading.unit, heading, zero: 0.0, sign: 1.0 });
+    }
+
+    /// The indices of all columns of a kind.
+    pub(super) fn all<'a>(&'a self, kind: &'a Kind) -> impl Iterator<Item = usize> + 'a {
+        self.columns.iter().enumerate().filter(move |(_, c)| c.kind == *kind).map(|(n, _)| n)
+    }
+
+    /// The index of the column of a kind.
+    pub(super) fn one(&self, kind: &Kind) -> Option<usize> {
+        self.all(kind).next()
+    }
+
+    /// The column that numbers the bounces, and whether it says so.
+    pub(super) fn number(&self) -> Option<(usize, bool)> {
+        self.columns.iter().enumerate().find_map(|(n, c)| match c.kind {
+            Kind::Number { sure } => Some((n, sure)),
+            _ => None,
+        })
+    }
+
+    /// The columns of readings.
+    pub(super) fn values(&self) -> impl Iterator<Item = (usize, &Column, &Value)> {
+        self.columns.iter().enumerate().filter_map(|(n, c)| c.value().map(|value| (n, c, value)))
+    }
+
+    /// Whether a column of readings is of this quantity, and at this event if one is asked for.
+    pub(super) fn any(&self, what: What, at: Option<At>) -> bool {
+        self.values().any(|(_, _, v)| v.what == what && v.role != Role::Error && at.is_none_or(|at| v.at == at))
+    }
+
+    /// Leaves a column aside.
+    pub(super) fn leave(&mut self, index: usize, why: Why) {
+        self.columns[index].kind = Kind::Aside;
+        self.aside.push(LeftAside::new(Part::Column, shown(&self.columns[index].heading.text), why));
+    }
+
+    /// Events that are only counted.
+    fn counted(&mut self, region: &Region<'_>) {
+        let Some(event) = self.one(&Kind::Event) else { return };
+        let numbers = || region.rows.iter().filter(|&&row| region.view.is_number(row, event)).count();
+        let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
+        if numbers() > words() {
+            self.columns[event].kind = Kind::Number { sure: true };
+        }
+    }
+
+    /// Columns without a name: of row names, of a plain count, or of something that is left aside.
+    fn unnamed(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        let named = region.header.len();
+        let widest = region.rows.iter().map(|&row| region.view.width(row)).max().unwrap_or(0);
+        for row in region.rows.iter().filter(|&&row| region.view.width(row) > named) {
+            let extra = (named..region.view.width(*row)).find(|&c| region.view.is_number(*row, c));
+            if let Some(extra) = extra.filter(|_| region.view.grid.comma() || region.given) {
+                let names = if named == 1 { "1 column".to_owned() } else { format!("{named} columns") };
+                let help = if region.view.grid.comma() {
+                    "give every column a name in the header; if the comma is a decimal comma, separate cells by semicolons"
+                } else {
+                    "give every column a name in the header"
+                };
+                let message = format!("this row has {} cells, but the header names {names}", region.view.width(*row));
+                return Err(region.view.error(*row, extra, message).help(help));
+            }
+        }
+        if region.chosen || region.given || !region.label.is_empty() {
+            return Ok(());
+        }
+        let first = self.columns.iter().position(|c| c.value().is_some()).unwrap_or(0);
+        let keyed = self
+            .columns
+            .iter()
+            .any(|c| matches!(c.kind, Kind::Number { .. } | Kind::Event | Kind::Trial | Kind::Frame));
+        while self.columns.len() < widest {
+            self.push(Heading::parse(""));
+        }
+        for index in 0..self.columns.len() {
+            if !self.columns[index].heading.text.is_empty() {
+                continue;
+            }
+            let cells = || region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+            if cells().next().is_none() {
+                continue;
+            }
+            let counted = cells().all(|cell| cell.parse::<usize>().is_ok());
+            self.columns[index].kind = match () {
+                () if index < first && !keyed && counted => Kind::Number { sure: false },
+                () if index < first && !counted => Kind::Label,
+                () => {
+                    let name = cells().next().map(shown).unwrap_or_default();
+                    self.aside.push(LeftAside::new(Part::Column, name, Why::Unnamed));
+                    Kind::Aside
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Columns whose words are not understood: left aside, unless their cells may tell balls or surfaces apart.
+    fn not_understood(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        for index in 0..self.columns.len() {
+            let heading = &self.columns[index].heading;
+            let Some(word) = heading.unknown.first().cloned() else { continue };
+            if region.given {
+                return Err(self.unknown(region, index, &word));
+            }
+            let cells: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, index)).collect();
+            let words =
+                cells.iter().filter(|cell| !cell.is_empty()).all(|cell| super::cell::read(cell, false) == Cell::Words);
+            let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
+            let differ = cells.iter().any(|cell| *cell != cells[0]);
+            let values = self.columns.iter().filter(|c| c.value().is_some() && c.heading.unknown.is_empty()).count();
+            if words
+                && filled > 1
+                && filled == cells.len()
+                && differ
+                && values > 0
+                && self.columns[index].value().is_none()
+            {
+                let name = shown(&self.columns[index].heading.text);
+                return Err(region
+                    .header_error(
+                        index,
+                        format!(
+                            "does '{name}' tell balls or surfaces apart? The word '{}' is not understood",
+                            shown(&word)
+                        ),
+                    )
+                    .question()
+                    .help(format!(
+                        "give --group '{name}' if it does, and each has a COR of its own; --group - if not"
+                    )));
+            }
+            self.leave(index, Why::NotUnderstood);
+        }
+        if self.values().next().is_none() && !region.chosen {
+            return Err(self.nothing(region));
+        }
+        Ok(())
+    }
+
+    /// No column is of use: why not, at the one that comes nearest.
+    fn nothing(&self, region: &Region<'_>) -> TableError {
+        let near = |c: &Column| !c.heading.unknown.is_empty() && !matches!(c.heading.meaning, Meaning::Empty);
+        let index = self.columns.iter().position(|c| near(c) && c.heading.value().is_some());
+        let index = index.or(self.columns.iter().position(|c| !c.heading.unknown.is_empty()));
+        if let Some((index, word)) = index.and_then(|n| Some((n, self.columns[n].heading.unknown.first()?.clone()))) {
+            return self.unknown(region, index, &word);
+        }
+        let measured = |c: &Column| match () {
+            () if c.heading.unit.is_none_or(|unit| unit.dimension != Dimension::Other) => None,
+            () if c.heading.has(Atom::Height) => Some(Dimension::Length),
+            () if c.heading.has(Atom::Time) => Some(Dimension::Time),
+            () => None,
+        };
+        if let Some((index, dimension)) = (0..self.columns.len()).find_map(|n| Some((n, measured(&self.columns[n])?))) {
+            return self.mismatch(region, index, dimension);
+        }
+        region.error("no column holds heights or times").nothing().help("name one, such as 'height_cm' or 'time_s'")
+    }
+
+    /// The unit of a column is of something else than what it holds.
+    pub(super) fn mismatch(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> TableError {
+        let name = shown(&self.columns[index].heading.text);
+        let spelt =
+            name.rsplit(['(', '[', '_', ' ', '/']).next().unwrap_or(&name).trim_end_matches([')', ']']).to_owned();
+        region
+            .header_error(index, format!("'{spelt}' in '{name}' is not a unit of {}", dimension.noun()))
+            .help(format!("use one of {}", dimension.known()))
+    }
+
+    fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
+        let heading = &self.columns[index].heading;
+        let name = shown(&heading.text);
+        if heading.text.trim().parse::<f64>().is_ok() {
+            return region
+                .header_error(index, format!("'{name}' is no name of a column: the first line has to name them"))
+                .help("write such as 'bounce,height_cm' above the numbers, or give it by --header; readings stand below one another");
+        }
+        let last = heading.unit.is_none() && heading.text.trim_end_matches([')', ']']).ends_with(word);
+        if let Some(dimension) = heading.value().and_then(|v| v.what.dimension()).filter(|_| last) {
+            return region
+                .header_error(
+                    index,
+                    format!("'{}' in '{name}' is not a unit of {} that is known", shown(word), dimension.noun()),
+                )
+                .question()
+                .help(format!("known are {}; or choose it with --column '{name}' and a unit", dimension.known()));
+        }
+        let folded = super::vocabulary::folded(word);
+        let hint = match nearest(&folded).map(|known| heading.text.to_lowercase().replace(&word.to_lowercase(), known))
+        {
+            Some(meant) => format!("did you mean '{meant}'? "),
+            None => String::new(),
+        };
+        let column = if heading.value().is_some() {
+            format!("the column '{name}' is not known: the word '{}' in it is not understood", shown(word))
+        } else {
+            format!("the column '{name}' is not known")
+        };
+        let error = region.header_error(index, column);
+        let error = if heading.value().is_some() { error.question() } else { error.nothing() };
+        error.help(format!(
+            "{hint}use it with --column '{name}', or give names by --header, '-' for a column to leave aside; known are event, bounce, time_s, \
+             height_cm, interval_s, time_error_s, height_error_cm, h0_cm, trial, ball, note and the like"
+        ))
+    }
+
+    /// Columns that were asked to tell balls or surfaces apart.
+    fn groups(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
+        for name in options.groups.iter().map(|name| name.trim()) {
+            if matches!(name, "-" | "none") {
+                for column in &mut self.columns {
+                    let key = column.heading.value().is_none()
+                        && (column.kind == Kind::Setting || !column.heading.unknown.is_empty());
+                    if key {
+                        column.heading.unknown.clear();
+                        column.kind = Kind::Aside;
+                        self.aside.push(LeftAside::new(Part::Column, shown(&column.heading.text), Why::NotChosen));
+                    }
+                }
+                continue;
+            }
+            let Some(index) = self.columns.iter().position(|c| c.heading.text.eq_ignore_ascii_case(name)) else {
+                // It may name a column of another sheet.
+                if options.groups.len() == 1 && !region.chosen {
+                    return Err(region
+                        .error(format!("there is no column '{}' to tell groups apart", shown(name)))
+                        .help(format!("the table has {}", region.header.join(", "))));
+                }
+                continue;
+            };
+            let column = &mut self.columns[index];
+            let words: Vec<String> = column.heading.unknown.drain(..).collect();
+            column.kind = match column.heading.unit.map(|unit| unit.dimension) {
+                Some(Dimension::Length | Dimension::Time) => {
+                    let what = if column.unit.is_some_and(|u| u.dimension == Dimension::Time) {
+                        What::Time
+                    } else {
+                        What::Height
+                    };
+                    let group = if words.is_empty() { column.heading.text.clone() } else { words.join(" ") };
+                    let value = column.heading.value().cloned();
+                    Kind::Value(Value { group, ..value.unwrap_or(plain(what)) })
+                }
+                _ => Kind::Setting,
+            };
+        }
+        Ok(())
+    }
+
+    /// The column that was asked for, whatever its words; others of its kind are left aside.
+    fn chosen(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
+        let Some(name) = options.column.as_deref().map(str::trim).filter(|_| !region.chosen) else { return Ok(()) };
+        let is = |c: &Column| {
+            let labelled =
+                c.value().is_some_and(|v| v.trial.eq_ignore_ascii_case(name) || v.group.eq_ignore_ascii_case(name));
+            c.heading.text.eq_ignore_ascii_case(name) || labelled && !name.is_empty()
+        };
+        let chosen: Vec<usize> = (0..self.columns.len()).filter(|&n| is(&self.columns[n])).collect();
+        let Some(&first) = chosen.first() else {
+            return Err(region
+                .error(format!("there is no column '{}' to choose", shown(name)))
+                .help(format!("the table has {}", region.header.join(", "))));
+        };
+        if let [_, second, ..] = chosen.as_slice()
+            && self.columns[first].heading.text == self.columns[*second].heading.text
+        {
+            return Err(region
+                .header_error(*second, format!("two columns are named '{}'", shown(name)))
+                .help("give names by --header, '-' for a column to leave aside"));
+        }
+        for &index in &chosen {
+            let column = &mut self.columns[index];
+            column.heading.unknown.clear();
+            let what = match column.unit.map(|unit| unit.dimension) {
+                Some(Dimension::Time) => What::Time,
+                Some(Dimension::Speed) => What::Speed,
+                Some(Dimension::Length) => What::Height,
+                _ => What::Unsaid,
+            };
+            let value = column.value().cloned().unwrap_or(plain(what));
+            column.kind = Kind::Value(Value { role: Role::Reading, ..value });
+            let name = shown(&column.heading.text);
+            self.aside.retain(|aside| aside.name != name);
+        }
+        let Some(value) = self.columns[first].value().cloned() else { return Ok(()) };
+        let same =
+            |v: &Value| (v.what == value.what || v.what == What::Unsaid) && v.at == value.at && v.role != Role::Error;
+        let others: Vec<usize> =
+            self.values().filter(|(n, _, v)| !chosen.contains(n) && same(v)).map(|(n, _, _)| n).collect();
+        for index in others {
+            self.columns[index].heading.unknown.clear();
+            self.leave(index, Why::NotChosen);
+        }
+        Ok(())
+    }
+
+    /// A count of frames is a time, if nothing else is and the frame rate is known.
+    fn frames(&mut self, region: &Region<'_>, fps: Option<f64>) -> Result<(), TableError> {
+        let Some(index) = self.one(&Kind::Frame) else { return Ok(()) };
+        if self.values().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval | What::Total)) {
+            self.leave(index, Why::Other);
+            return Ok(());
+        }
+        let fps = fps.ok_or_else(|| {
+            let name = shown(&self.columns[index].heading.text);
+            region
+                .header_error(index, format!("the column '{name}' counts frames: how many were filmed in a second?"))
+                .question()
+                .help("give the frame rate of the camera, such as --fps 100")
+        })?;
+        self.columns[index].kind = Kind::Value(plain(What::Time));
+        self.columns[index].unit = Some(Unit::frame(fps));
+        Ok(())
+    }
+
+    /// Two columns of the same readings are a question, unless they say the same.
+    fn unique(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        for kind in [Kind::Event, Kind::Number { sure: true }] {
+            if let Some(second) = self.all(&kind).nth(1) {
+                let name = shown(&self.columns[second].heading.text);
+                let message = format!("'{name}' means the same as a column before it");
+                return Err(region
+                    .header_error(second, message)
+                    .question()
+                    .help("keep one of the two, or give names by --header"));
+            }
+        }
+        let mut seen: Vec<(usize, Value)> = Vec::new();
+        let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
+        for (index, value) in values {
+            let same =
+                |v: &Value| (v.what, v.at, &v.trial, &v.group) == (value.what, value.at, &value.trial, &value.group);
+            let Some((before, _)) = seen.iter().find(|(_, v)| same(v)) else {
+                seen.push((index, value));
+                continue;
+            };
+            if self.alike(region, *before, index) {
+                self.leave(index, Why::Elsewhere);
+                continue;
+            }
+            let name = |n: usize| shown(&self.columns[n].heading.text);
+            let message = if name(*before) == name(index) {
+                format!("two columns are named '{}'", name(index))
+            } else {
+                format!("'{}' and '{}' hold the same quantity: which one is meant?", name(*before), name(index))
+            };
+            return Err(region.header_error(index, message).question().help(format!(
+                "choose one by --column '{}'; balls side by side are told apart by --group '{},{}', trials by names such as 'trial 1 (cm)' (--header)",
+                name(*before),
+                name(*before),
+                name(index)
+            )));
+        }
+        Ok(())
+    }
+
+    /// Whether two columns say the same in every row, as in centimetres and in inches.
+    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> bool {
+        /// What rounding to two digits leaves between two units.
+        const ROUNDED: f64 = 0.01;
+        let si = |row: usize, column: usize| match region.view.read(row, column) {
+            Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
+            _ => None,
+        };
+        let pairs: Vec<(f64, f64)> =
+            region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
+        let (one, other) = (&self.columns[one], &self.columns[other]);
+        pairs.len() > 1
+            && one.unit != other.unit
+            && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * a.abs().max(b.abs()))
+    }
+}
+
+/// Readings of which the row tells the event.
+pub(super) fn plain(what: What) -> Value {
+    Value {
+        what,
+        at: At::Row,
+        role: Role::Reading,
+        trial: String::new(),
+        group: String::new(),
+        position: false,
+        or_trial: false,
+    }
+}

@@ -1,0 +1,295 @@
+//! From the bytes of a file to a table: what kind of file, which tables in it, their trials together.
+
+use saltus_bounce::units::Quantity;
+
+use super::aside::{LeftAside, Part as Kind, Why};
+use super::columns::Columns;
+use super::foreign;
+use super::grid::{Grid, View};
+use super::heading::Heading;
+use super::programs::{self, Recognised};
+use super::region::{self, Region};
+use super::rows::sifted;
+use super::text::text;
+use super::vocabulary::Atom;
+use super::workbook::{self, Content, Part};
+use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool};
+use crate::error::TableError;
+
+/// A track that moves less than this part of what the liveliest does is not the ball.
+const MOVES: f64 = 0.5;
+
+/// Reads `bytes` into a table that is not yet checked.
+pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
+    if let Some(error) = foreign::refused(name, bytes) {
+        return Err(error);
+    }
+    let mut table = match workbook::parts(name, bytes) {
+        Some(parts) => sheets(name, parts?, options)?,
+        None => {
+            let found = text(name, bytes)?;
+            if let Some(parts) = foreign::html(&found.text) {
+                return sheets(name, parts, options).map(|table| Table { name: name.to_owned(), ..table });
+            }
+            if options.sheet.is_some() {
+                return Err(TableError::new(name, "this file has no sheets: it is a text").help("leave out --sheet"));
+            }
+            let mut table = read(&Grid::open(name, None, &found.text)?, options)?;
+            table.notes.extend(found.encoding.map(|encoding| format!("the text is encoded as {encoding}")));
+            table
+        }
+    };
+    table.name = name.to_owned();
+    Ok(table)
+}
+
+/// Reads all tables of a grid together.
+fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
+    let mut metadata = grid.metadata()?;
+    metadata.frame_rate = options.fps.or(metadata.frame_rate);
+    metadata.oriented = options.down.is_some();
+    let Recognised { what, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
+    let found = if regions.is_empty() {
+        Err(no_table(grid, options))
+    } else {
+        joined_up(grid, regions, tracks, options, metadata)
+    };
+    let found = match found {
+        // Names that stand in the first column, one below the other.
+        Err(error) if what.is_none() && options.header.is_none() => {
+            let turned = programs::turned(grid);
+            let read = turned.map(|region| joined_up(grid, vec![region], false, options, metadata));
+            read.and_then(Result::ok).ok_or(error)
+        }
+        found => found,
+    };
+    let mut table = found?;
+    if let Some(what) = what {
+        table.notes.insert(0, format!("recognised as {what}"));
+    }
+    Ok(table)
+}
+
+/// The tables of a grid, one by one and then together.
+fn joined_up<'a>(
+    grid: &'a Grid<'a>,
+    mut regions: Vec<Region<'a>>,
+    tracks: bool,
+    options: &ReadOptions,
+    metadata: Metadata,
+) -> Result<Table, TableError> {
+    filmed(&mut regions, metadata.frame_rate);
+    let several = regions.len() > 1;
+    let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
+    for (n, region) in regions.iter_mut().enumerate() {
+        match one(region, options, metadata) {
+            Ok(mut table) => {
+                titled(region, &mut table);
+                let label =
+                    if several && region.label.is_empty() { format!("run {}", n + 1) } else { region.label.clone() };
+                parts.push((label, table));
+            }
+            // A table below another, of something else.
+            Err(error) if n > 0 && error.is_of_nothing() => {
+                let text = region.header.join(" ");
+                let left = LeftAside::new(Kind::Text, super::grid::shown(&text), Why::NoTable);
+                aside.push(left.at(grid.line(region.header_row)));
+            }
+            Err(error) => failed = failed.or(Some(error)),
+        }
+    }
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
+    let mut table = pool::join(grid.name, parts)?;
+    table.left_aside.extend(aside);
+    if !still.is_empty() {
+        table.notes.push(format!("left aside, as it hardly moves: {} (choose with --column)", still.join(", ")));
+        table.left_aside.extend(still.into_iter().map(|name| LeftAside::new(Kind::Track, name, Why::Still)));
+    }
+    Ok(table)
+}
+
+/// The table of a region: its columns by their names, the rows that hold readings, the quantities, and then the trials.
+fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
+    let mut columns = Columns::named(region, options)?;
+    let rows = sifted(region, &columns)?;
+    region.rows = rows.rows.iter().map(|row| row.at).collect();
+    columns.measure(region, options, metadata.frame_rate)?;
+    assemble::table(region, &mut columns, rows, options, metadata)
+}
+
+/// Places without a clock are a film, a row a frame, if the frame rate is known.
+fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
+    let Some(fps) = fps else { return };
+    for region in regions {
+        let headings: Vec<Heading> = region.header.iter().map(|text| Heading::parse(text)).collect();
+        let place = headings.iter().any(|h| h.value().is_some_and(|v| v.position));
+        let keyed = headings.iter().any(|h| {
+            h.has(Atom::Time)
+                || h.has(Atom::Frame)
+                || h.has(Atom::Number)
+                || h.has(Atom::Impact)
+                || h.has(Atom::Event)
+                || h.has(Atom::Release)
+        });
+        region.frames |= place && !keyed;
+        region.frame = Some(1.0 / fps);
+    }
+}
+
+/// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks of.
+fn titled(region: &Region<'_>, table: &mut Table) {
+    let turned = |text: &str| Heading::parse(text).turns();
+    if region.header.iter().any(|name| turned(name)) {
+        return;
+    }
+    let title = region.aside.iter().find(|aside| turned(&aside.name));
+    table.doubts.extend(title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) }));
+}
+
+/// No table was found: the header that comes nearest tells why.
+fn no_table(grid: &Grid<'_>, options: &ReadOptions) -> TableError {
+    let view = View { grid, across: false };
+    let region = region::nearest(view);
+    match Columns::named(&region, options) {
+        Err(error) => error,
+        Ok(_) => region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"),
+    }
+}
+
+/// Takes out the tracks of things that stand still while the ball moves.
+fn leave_still(parts: &mut Vec<(String, Table)>) -> Vec<String> {
+    let travel = |table: &Table| {
+        let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height);
+        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+    };
+    let most = parts.iter().map(|(_, table)| travel(table)).fold(0.0, f64::max);
+    let mut still = Vec::new();
+    parts.retain(|(label, table)| {
+        let moves = travel(table) >= MOVES * most;
+        if !moves {
+            still.push(label.clone());
+        }
+        moves
+    });
+    still
+}
+
+/// The sheets of a workbook or the files of an archive that hold tables.
+fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, TableError> {
+    let known: Vec<String> = parts.iter().map(|part| part.name.trim().to_owned()).collect();
+    // phyphox' stopwatches write the same events three times; only in one sheet are they all.
+    let all = known.iter().any(|n| stem(n) == "All");
+    let (mut found, mut aside, mut first) = (Vec::new(), Vec::new(), None);
+    for part in parts {
+        let label = part.name.trim().to_owned();
+        let why = match &options.sheet {
+            Some(sheet) if label.eq_ignore_ascii_case(sheet.trim()) || stem(&label) == sheet.trim() => None,
+            Some(_) => Some(Why::NotChosen),
+            None if part.hidden => Some(Why::Hidden),
+            None if Heading::parse(&label).turns() => Some(Why::Predicted),
+            None if all && stem(&label) != "All" => Some(Why::Elsewhere),
+            None => None,
+        };
+        if let Some(why) = why {
+            aside.push((label, why));
+            continue;
+        }
+        match sheet(name, &part, options)? {
+            Ok(table) => found.push((label, table)),
+            Err(problem) => {
+                aside.push((label, Why::NoTable));
+                first = first.or(Some(problem));
+            }
+        }
+    }
+    if found.is_empty() {
+        let none = || TableError::new(name, "there is no such sheet, or none at all");
+        return Err(first.unwrap_or_else(|| none().help(format!("the file has {}", known.join(", ")))));
+    }
+    let drops = told_apart(&mut found);
+    let read = found.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>().join(", ");
+    let mut table = pool::join(name, found)?;
+    let what = if drops { " (each name the height of release)" } else { "" };
+    table.notes.insert(0, format!("sheets read: {read}{what}"));
+    let empty: Vec<&str> =
+        aside.iter().filter(|(_, why)| *why == Why::NoTable).map(|(label, _)| label.as_str()).collect();
+    if !empty.is_empty() {
+        table.notes.insert(1, format!("sheets left aside, for they hold no table of bounces: {}", empty.join(", ")));
+    }
+    table.left_aside.extend(aside.into_iter().map(|(label, why)| LeftAside::new(Kind::Sheet, label, why)));
+    Ok(table)
+}
+
+/// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether they are heights.
+fn told_apart(found: &mut [(String, Table)]) -> bool {
+    let several = found.len() > 1;
+    let mut drops = false;
+    for (label, table) in found {
+        let drop = drop_height(label, table);
+        drops |= drop;
+        let heading = Heading::parse(label);
+        let trial = heading.unknown.is_empty()
+            && (heading.has(Atom::Trial) || heading.has(Atom::Repeat) || heading.has(Atom::Time));
+        let group = several && !drop && (!trial || !heading.labels().is_empty());
+        let name = if heading.labels().is_empty() { label.clone() } else { heading.labels() };
+        for trial in table.trials.iter_mut().filter(|_| several) {
+            trial.setting = joined(label, &trial.setting);
+            if group {
+                trial.group = joined(&name, &trial.group);
+            }
+        }
+    }
+    drops
+}
+
+/// Two parts of a name, of which either may be missing.
+fn joined(one: &str, other: &str) -> String {
+    [one, other].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
+}
+
+/// One sheet: a table; the reason why it is none; or an error in a table that is one.
+fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table, TableError>, TableError> {
+    let inner = format!("{name}/{}", part.name);
+    let decoded;
+    let (name, tab, content) = match &part.content {
+        Content::Cells(cells) => (name, Some(part.name.as_str()), cells.as_str()),
+        Content::Bytes(bytes) => match text(&inner, bytes) {
+            Ok(found) => {
+                decoded = found;
+                (inner.as_str(), None, &*decoded.text)
+            }
+            Err(problem) => return Ok(Err(problem)),
+        },
+    };
+    let grid = match Grid::open(name, tab, content) {
+        Ok(grid) => grid,
+        Err(problem) => return Ok(Err(problem)),
+    };
+    match read(&grid, options) {
+        Ok(table) => Ok(Ok(table)),
+        // What is no table of bounces is left aside; a table that cannot be read is an error.
+        Err(problem) if problem.is_of_nothing() => Ok(Err(problem)),
+        Err(problem) => Err(problem),
+    }
+}
+
+/// `All.csv` without folder and ending.
+fn stem(name: &str) -> &str {
+    let file = name.trim().rsplit('/').next().unwrap_or_default();
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
+
+/// A sheet named `80 cm` holds drops from there.
+fn drop_height(label: &str, table: &mut Table) -> bool {
+    let Some(height) = Quantity::Length.parse(label).ok().filter(|h| *h > 0.0) else { return false };
+    for trial in &mut table.trials {
+        let line = trial.readings.first().map_or(1, |r| r.line);
+        if trial.readings.iter().all(|r| r.event == Event::Contact || r.event == Event::Apex) {
+            trial.readings.insert(0, Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
+        }
+    }
+    true
+}

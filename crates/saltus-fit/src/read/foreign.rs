@@ -1,0 +1,206 @@
+//! Files that hold no table as they are: pages of the web, whose tables are taken out, and other programs' own files.
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use super::workbook::{Content, Part};
+use crate::error::TableError;
+
+/// Endings of files that other programs write for themselves, what they are, and which export to make there.
+const KINDS: [(&[&str], &str, &str); 11] = [
+    (
+        &["trk", "trz"],
+        "a project of Tracker",
+        "in Tracker: File, Export, Data File (all cells, tab delimited); give that file",
+    ),
+    (&["cap"], "a project of Capstone", "in Capstone: File, Export Data, as CSV; give that file"),
+    (
+        &["cmbl", "gambl"],
+        "a project of Vernier's",
+        "in Logger Pro or Graphical Analysis: File, Export, CSV; give that file",
+    ),
+    (&["xmcd", "mcdx"], "a sheet of Mathcad", "there: save or export the table as CSV or text; give that file"),
+    (
+        &["avi", "mp4", "mov", "mkv", "m4v", "webm"],
+        "a film",
+        "track the ball, in Tracker or ImageJ for instance, and give the table of its places",
+    ),
+    (
+        &["wav", "mp3", "m4a", "ogg", "flac", "aup3"],
+        "a sound",
+        "mark the contacts, in Audacity for instance, and export the labels as text",
+    ),
+    (&["pdf"], "a PDF", "copy the table into a spreadsheet and save it as CSV"),
+    (&["docx", "odt", "doc", "rtf"], "a text document", "copy the table into a spreadsheet and save it as CSV"),
+    (
+        &["png", "jpg", "jpeg", "heic", "gif", "tif", "tiff"],
+        "a picture",
+        "type the numbers into a spreadsheet and save it as CSV",
+    ),
+    (&["numbers"], "a sheet of Numbers", "in Numbers: File, Export To, CSV or Excel; give that file"),
+    (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
+];
+
+/// The beginnings of such files, where the ending does not tell.
+const BEGINNINGS: [(&[u8], &str); 6] = [
+    (b"%PDF", "pdf"),
+    (b"\x89PNG", "png"),
+    (b"\xFF\xD8\xFF", "jpg"),
+    (b"OggS", "ogg"),
+    (b"{\\rtf", "rtf"),
+    (b"fLaC", "flac"),
+];
+
+/// The error for a file of another program's own kind.
+pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
+    let ending = name.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_lowercase());
+    let begins = |mark: &[u8]| bytes.starts_with(mark);
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(2000)]);
+    let found = BEGINNINGS.iter().find(|(mark, _)| begins(mark)).map(|(_, kind)| *kind);
+    let kind = match found {
+        Some(kind) => kind,
+        None if begins(b"RIFF") && bytes.get(8..12) == Some(b"AVI ") => "avi",
+        None if begins(b"RIFF") => "wav",
+        None if bytes.get(4..8) == Some(b"ftyp") => "mp4",
+        None if text.contains("org.opensourcephysics") => "trk",
+        None if text.contains("<MBL>") || text.contains("LoggerPro") => "cmbl",
+        None => ending.as_str(),
+    };
+    let (_, what, help) = KINDS.iter().find(|(endings, _, _)| endings.contains(&kind))?;
+    // A table that only has the name of something else is a table.
+    let table = bytes.starts_with(b"PK") && !matches!(kind, "docx" | "odt" | "ods" | "xlsb" | "numbers");
+    (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
+}
+
+/// More tables than these are not looked for in a page, nor cells in a row.
+const TABLES: usize = 100;
+const COLUMNS: usize = 1000;
+
+/// The tables of a page of the web, cells separated by tabs; `None` if the text is none.
+pub(super) fn html(text: &str) -> Option<Vec<Part>> {
+    let head: String = text.trim_start().chars().take(4000).collect::<String>().to_lowercase();
+    if !head.starts_with('<') || !(head.contains("<table") || head.contains("<html")) {
+        return None;
+    }
+    let mut reader = Reader::from_str(text);
+    let config = reader.config_mut();
+    config.check_end_names = false;
+    config.allow_unmatched_ends = true;
+    let mut page = Page::default();
+    loop {
+        match reader.read_event() {
+            Ok(Event::Start(tag)) => page.begin(&tag.local_name().as_ref().to_ascii_lowercase(), span(&tag)),
+            Ok(Event::Empty(tag)) if tag.local_name().as_ref().eq_ignore_ascii_case("br") => page.text(" "),
+            Ok(Event::End(tag)) => page.end(&tag.local_name().as_ref().to_ascii_lowercase()),
+            Ok(Event::Text(words)) => page.text(words.as_ref()),
+            Ok(Event::GeneralRef(name)) => page.text(&named(name.as_ref())),
+            Ok(Event::Eof) => break,
+            Ok(_) => {}
+            // What is no markup may stand in a script; the tables before it are whole.
+            Err(_) => break,
+        }
+    }
+    page.end("table");
+    Some(page.parts)
+}
+
+/// How many columns a cell spans.
+fn span(tag: &quick_xml::events::BytesStart<'_>) -> usize {
+    let value = tag.try_get_attribute("colspan").ok().flatten();
+    let number = value.and_then(|attribute| attribute.value.trim().parse::<usize>().ok());
+    number.unwrap_or(1).clamp(1, COLUMNS)
+}
+
+/// The character that a name stands for.
+fn named(name: &str) -> String {
+    let code = name.strip_prefix('#').and_then(|n| match n.strip_prefix(['x', 'X']) {
+        Some(hex) => u32::from_str_radix(hex, 16).ok(),
+        None => n.parse().ok(),
+    });
+    if let Some(c) = code.and_then(char::from_u32) {
+        return c.to_string();
+    }
+    let known = quick_xml::escape::resolve_predefined_entity(name);
+    known.map_or_else(
+        || match name {
+            "plusmn" => "±".to_owned(),
+            "deg" => "°".to_owned(),
+            "frac12" => "½".to_owned(),
+            "auml" | "ouml" | "uuml" | "Auml" | "Ouml" | "Uuml" => name[..1].to_owned(),
+            "eacute" | "egrave" | "agrave" => name[..1].to_owned(),
+            "Delta" => "Δ".to_owned(),
+            "sigma" => "σ".to_owned(),
+            "minus" => "−".to_owned(),
+            _ => " ".to_owned(),
+        },
+        str::to_owned,
+    )
+}
+
+/// The tables found so far.
+#[derive(Default)]
+struct Page {
+    parts: Vec<Part>,
+    table: Option<String>,
+    /// The cells of the row, and whether the last one is open.
+    row: Vec<String>,
+    open: bool,
+    span: usize,
+}
+
+impl Page {
+    fn begin(&mut self, tag: &str, span: usize) {
+        match tag {
+            "table" => self.table = Some(String::new()),
+            "tr" => self.close_row(),
+            "td" | "th" => {
+                self.close_cell();
+                if self.row.len() < COLUMNS {
+                    self.row.push(String::new());
+                    (self.open, self.span) = (true, span);
+                }
+            }
+            "br" => self.text(" "),
+            _ => {}
+        }
+    }
+
+    fn end(&mut self, tag: &str) {
+        match tag {
+            "td" | "th" => self.close_cell(),
+            "tr" => self.close_row(),
+            "table" => {
+                self.close_row();
+                if let Some(text) = self.table.take().filter(|_| self.parts.len() < TABLES) {
+                    let name = format!("table {}", self.parts.len() + 1);
+                    self.parts.push(Part { name, hidden: false, content: Content::Cells(text) });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn text(&mut self, words: &str) {
+        if let Some(cell) = self.row.last_mut().filter(|_| self.open) {
+            cell.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
+        }
+    }
+
+    fn close_cell(&mut self) {
+        if self.open {
+            let more = self.span.min(COLUMNS - self.row.len().min(COLUMNS) + 1) - 1;
+            self.row.extend(std::iter::repeat_n(String::new(), more));
+            self.open = false;
+        }
+    }
+
+    fn close_row(&mut self) {
+        self.close_cell();
+        if let Some(table) = self.table.as_mut().filter(|_| !self.row.is_empty()) {
+            let cells: Vec<&str> = self.row.iter().map(|cell| cell.trim()).collect();
+            table.push_str(&cells.join("\t"));
+            table.push('\n');
+        }
+        self.row.clear();
+    }
+}

@@ -1,0 +1,356 @@
+//! From text to cells: delimiter, comments, and the place of every cell for messages.
+
+use csv::{ReaderBuilder, StringRecord};
+use saltus_bounce::units::Quantity;
+
+use super::Metadata;
+use super::cell::{self, Cell};
+use crate::error::{Place, TableError};
+
+/// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a hundred megabytes.
+const CELLS: usize = 1 << 22;
+
+/// A text of cells.
+pub(super) struct Grid<'a> {
+    pub(super) name: &'a str,
+    /// The sheet of a workbook it was; its cells are then named as a spreadsheet names them.
+    pub(super) tab: Option<&'a str>,
+    text: &'a str,
+    pub(super) delimiter: u8,
+    /// The text of all cells, trimmed, one behind the other, and where each ends.
+    cells: String,
+    ends: Vec<u32>,
+    rows: Vec<RowAt>,
+}
+
+/// A row: its first cell, where it starts in the text, its line.
+struct RowAt {
+    first: u32,
+    start: u32,
+    line: u32,
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn open(name: &'a str, tab: Option<&'a str>, text: &'a str) -> Result<Self, TableError> {
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).peekable();
+        if lines.peek().is_none() {
+            let what = if text.trim().is_empty() { "the file is empty" } else { "the file holds comments only" };
+            return Err(TableError::new(name, what)
+                .nothing()
+                .help("the first line names the columns, such as 'bounce,height_cm'"));
+        }
+        let delimiter = if tab.is_some() { b'\t' } else { delimiter(lines.take(40)) };
+        let mut grid = Self { name, tab, text, delimiter, cells: String::new(), ends: Vec::new(), rows: Vec::new() };
+        grid.fill()?;
+        Ok(grid)
+    }
+
+    fn fill(&mut self) -> Result<(), TableError> {
+        let mut reader = ReaderBuilder::new()
+            .delimiter(self.delimiter)
+            .comment(Some(b'#'))
+            .flexible(true)
+            .has_headers(false)
+            .quoting(self.delimiter != b'|')
+            .trim(csv::Trim::All)
+            .from_reader(self.text.as_bytes());
+        let mut record = StringRecord::new();
+        let not_table = |error: csv::Error| TableError::new(self.name, format!("this is not a table: {error}"));
+        while reader.read_record(&mut record).map_err(not_table)? {
+            if record.iter().all(str::is_empty) || self.delimiter == b'|' && ruled(&record) {
+                continue;
+            }
+            let (byte, line) = record.position().map_or((0, 1), |p| (p.byte(), p.line()));
+            let (start, line) = record_start(self.text, byte, line);
+            let small = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+            self.rows.push(RowAt {
+                first: small(self.ends.len() as u64),
+                start: small(start as u64),
+                line: small(line),
+            });
+            for cell in &record {
+                let cell = if self.delimiter == b'|' { cell.trim_matches(['*', '`', '_', ' ']) } else { cell };
+                self.cells.push_str(cell);
+                self.ends.push(small(self.cells.len() as u64));
+            }
+            if self.ends.len() > CELLS {
+                return Err(TableError::new(
+                    self.name,
+                    format!("the table has more than {CELLS} cells; it is read no further than line {line}"),
+                )
+                .help("thin it out, such as to every tenth row, or cut it to the drops that count"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a comma separates the cells, so that it is no decimal mark.
+    pub(super) fn comma(&self) -> bool {
+        self.delimiter == b','
+    }
+
+    pub(super) fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// How many cells a row has.
+    pub(super) fn width(&self, row: usize) -> usize {
+        self.span(row).len()
+    }
+
+    fn span(&self, row: usize) -> std::ops::Range<usize> {
+        let first = |n: usize| self.rows.get(n).map_or(self.ends.len(), |r| r.first as usize);
+        first(row)..first(row + 1)
+    }
+
+    /// The trimmed text of a cell; a cell beyond the end of the row is empty.
+    pub(super) fn cell(&self, row: usize, column: usize) -> &str {
+        let span = self.span(row);
+        let at = span.start + column;
+        if column >= span.len() {
+            return "";
+        }
+        let from = at.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
+        self.cells.get(from..self.ends[at] as usize).unwrap_or("")
+    }
+
+    /// The line of the file that a row starts in, counted from 1.
+    pub(super) fn line(&self, row: usize) -> u64 {
+        self.rows.get(row).map_or(1, |r| u64::from(r.line))
+    }
+
+    /// The row that starts in a line.
+    pub(super) fn row_of(&self, line: u64) -> usize {
+        self.rows.partition_point(|r| u64::from(r.line) < line)
+    }
+
+    /// An error at a cell.
+    pub(super) fn error(&self, row: usize, column: usize, message: impl Into<String>) -> TableError {
+        let (start, line) = self.rows.get(row).map_or((self.text.len(), 1), |r| (r.start as usize, u64::from(r.line)));
+        TableError::new(self.name, message).at(self.place(start, line, column))
+    }
+
+    /// Where cell `index` of the record that starts at `start` in line `line` stands.
+    fn place(&self, start: usize, line: u64, index: usize) -> Place {
+        let (mut cell, mut quoted, mut line) = (0, false, line);
+        let (mut line_start, mut from, mut to) = (start, start, self.text.len());
+        for (at, byte) in self.text.bytes().enumerate().skip(start) {
+            match byte {
+                b'"' if self.delimiter != b'|' => quoted = !quoted,
+                b'\n' | b'\r' if !quoted => {
+                    to = at;
+                    break;
+                }
+                b'\n' if cell < index => (line, line_start) = (line + 1, at + 1),
+                byte if byte == self.delimiter && !quoted => {
+                    if cell == index {
+                        to = at;
+                        break;
+                    }
+                    cell += 1;
+                    from = at + 1;
+                }
+                _ => {}
+            }
+        }
+        if cell < index {
+            from = to;
+        }
+        let raw = self.text.get(from..to).unwrap_or("");
+        let inner = raw.trim();
+        let from = from + (raw.len() - raw.trim_start().len());
+        let line_end = self.text[line_start..].find(['\n', '\r']).map_or(self.text.len(), |n| line_start + n);
+        let before = self.text.get(line_start..from.max(line_start)).unwrap_or("");
+        Place {
+            line,
+            column: before.chars().count() + 1,
+            width: inner.lines().next().map_or(0, |l| l.chars().count()).max(1),
+            text: self.text.get(line_start..line_end).unwrap_or("").to_owned(),
+            cell: self.tab.map(|tab| (tab.to_owned(), index)),
+        }
+    }
+
+    /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`, `# sigma time: 5 ms`.
+    pub(super) fn metadata(&self) -> Result<Metadata, TableError> {
+        let mut found = Metadata::default();
+        if !self.text.contains('#') {
+            return Ok(found);
+        }
+        for (n, line) in self.text.lines().enumerate() {
+            let Some((key, value)) = line.strip_prefix('#').and_then(|comment| comment.split_once(':')) else {
+                continue;
+            };
+            let value = value.trim();
+            let error = |message: String| {
+                let column = line.len() - line.trim_end().len();
+                let start = line.len() - column - value.len();
+                TableError::new(self.name, message).at(Place {
+                    line: n as u64 + 1,
+                    column: line[..start].chars().count() + 1,
+                    width: value.chars().count().max(1),
+                    text: line.to_owned(),
+                    cell: self.tab.map(|tab| (tab.to_owned(), 0)),
+                })
+            };
+            let key = key.to_lowercase().replace(['_', '-'], " ");
+            let (slot, quantity) = match key.split_whitespace().collect::<Vec<_>>().join(" ").as_str() {
+                "frame rate" | "framerate" | "fps" => {
+                    found.frame_rate = Some(frame_rate(value).ok_or_else(|| {
+                        error(format!("'{value}' is not a frame rate")).help("write it as '# frame rate: 30'")
+                    })?);
+                    continue;
+                }
+                "gravity" | "g" => (&mut found.gravity, Quantity::Acceleration),
+                "sigma height" | "height error" => (&mut found.sigma_height, Quantity::Length),
+                "sigma time" | "time error" => (&mut found.sigma_time, Quantity::Time),
+                _ => continue,
+            };
+            let si = quantity.parse(value).map_err(|problem| error(problem.to_string()))?;
+            if si <= 0.0 {
+                return Err(error(format!("'{value}' is not above zero")).help("correct the comment or take it out"));
+            }
+            *slot = Some(si);
+        }
+        Ok(found)
+    }
+}
+
+/// The reader's position precedes the blank lines and comments it skips: go past them.
+fn record_start(text: &str, byte: u64, mut line: u64) -> (usize, u64) {
+    let bytes = text.as_bytes();
+    let mut at = usize::try_from(byte).unwrap_or(usize::MAX).min(bytes.len());
+    while let Some(&byte) = bytes.get(at) {
+        match byte {
+            b'\n' => line += 1,
+            b'\r' => {}
+            b'#' => at = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| at + n - 1),
+            _ => break,
+        }
+        at += 1;
+    }
+    (at, line)
+}
+
+/// A grid as it stands, or with rows and columns changed over.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) grid: &'a Grid<'a>,
+    pub(super) across: bool,
+}
+
+impl View<'_> {
+    pub(super) fn rows(&self) -> usize {
+        if self.across { self.widest() } else { self.grid.rows() }
+    }
+
+    fn widest(&self) -> usize {
+        (0..self.grid.rows()).map(|row| self.grid.width(row)).max().unwrap_or(0)
+    }
+
+    pub(super) fn width(&self, row: usize) -> usize {
+        if self.across { self.grid.rows() } else { self.grid.width(row) }
+    }
+
+    pub(super) fn cell(&self, row: usize, column: usize) -> &str {
+        if self.across { self.grid.cell(column, row) } else { self.grid.cell(row, column) }
+    }
+
+    pub(super) fn cells(&self, row: usize) -> impl Iterator<Item = &str> {
+        (0..self.width(row)).map(move |column| self.cell(row, column))
+    }
+
+    pub(super) fn line(&self, row: usize, column: usize) -> u64 {
+        self.grid.line(if self.across { column } else { row })
+    }
+
+    pub(super) fn error(&self, row: usize, column: usize, message: impl Into<String>) -> TableError {
+        let (row, column) = if self.across { (column, row) } else { (row, column) };
+        self.grid.error(row, column, message)
+    }
+
+    /// What a cell holds.
+    pub(super) fn read(&self, row: usize, column: usize) -> Cell {
+        cell::read(self.cell(row, column), self.grid.comma())
+    }
+
+    /// Whether a cell holds a number, a stopwatch's time, or what is meant as one.
+    pub(super) fn is_number(&self, row: usize, column: usize) -> bool {
+        matches!(self.read(row, column), Cell::Number(_) | Cell::Wrong(_))
+            || cell::clock(self.cell(row, column)).is_some()
+    }
+}
+
+fn frame_rate(text: &str) -> Option<f64> {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
+    let unit = text[end..].trim().to_lowercase();
+    let known = ["", "fps", "hz", "1/s", "/s", "frames/s", "frames per second"].contains(&unit.as_str());
+    text[..end].parse().ok().filter(|rate: &f64| known && rate.is_finite() && *rate > 0.0)
+}
+
+/// Whether a row of a table drawn in characters is a line: `|---|:--:|`.
+fn ruled(record: &StringRecord) -> bool {
+    record.iter().all(|cell| cell.chars().all(|c| matches!(c, '-' | ':' | '=' | '+' | ' ')))
+}
+
+/// The delimiter of the first lines of a text.
+fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
+    let lines: Vec<&str> = lines.collect();
+    let number = |cell: &str| cell.parse::<f64>().is_ok();
+    // The line below the names of a table in Markdown.
+    let rule = |line: &&str| {
+        let bare = line.trim();
+        bare.contains('|') && bare.contains('-') && bare.chars().all(|c| matches!(c, '|' | '-' | ':' | '+' | ' '))
+    };
+    if lines.iter().any(rule) {
+        return b'|';
+    }
+    match lines.iter().find_map(|line| mark(line).map(|mark| (mark, *line))) {
+        // Below a name without a comma, a comma that makes a number is no delimiter.
+        Some((b',', line)) if line != lines[0] && number(&line.trim().replacen(',', ".", 1)) => b';',
+        // A comma in a title is none where tabs or semicolons follow.
+        Some((b',', _)) if lines.iter().filter(|line| matches!(mark(line), Some(b'\t' | b';'))).count() > 1 => {
+            lines.iter().filter_map(|line| mark(line)).find(|mark| *mark != b',').unwrap_or(b',')
+        }
+        Some((mark, _)) => mark,
+        None if lines.iter().skip(1).any(|line| line.contains(' ') && line.split(' ').all(number)) => b' ',
+        None => b',',
+    }
+}
+
+/// What separates the cells of a line, if anything does: a tab before a semicolon before a comma.
+fn mark(line: &str) -> Option<u8> {
+    let mut quoted = false;
+    let mut found = None;
+    for byte in line.bytes() {
+        match byte {
+            b'"' => quoted = !quoted,
+            b'\t' if !quoted => return Some(b'\t'),
+            b';' if !quoted => found = Some(b';'),
+            b',' if !quoted && found.is_none() => found = Some(b','),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Lines as a message names them: `lines 3 and 4`; of many the first, and how many there are.
+pub(super) fn lines(list: &[u64]) -> String {
+    match list {
+        [] => "no line".to_owned(),
+        [one] => format!("line {one}"),
+        [most @ .., last] if most.len() < 5 => {
+            let most: Vec<String> = most.iter().map(u64::to_string).collect();
+            format!("lines {} and {last}", most.join(", "))
+        }
+        [first, ..] => format!("{} lines, the first of them {first}", list.len()),
+    }
+}
+
+/// A cell as a message quotes it: cut short, on one line.
+pub(super) fn shown(cell: &str) -> String {
+    let mut short: String = cell.chars().take(40).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if cell.chars().nth(40).is_some() {
+        short.push('…');
+    }
+    short
+}

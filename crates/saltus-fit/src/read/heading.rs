@@ -1,0 +1,684 @@
+//! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a ball, and the words that are not understood.
+
+use super::aside::Why;
+use super::units::{Dimension, Unit};
+use super::vocabulary::{Atom, folded, meanings};
+
+/// What the numbers of a column measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum What {
+    Height,
+    /// When a contact was.
+    Time,
+    /// The time between contacts.
+    Interval,
+    /// A running clock, or the time from release to rest.
+    Total,
+    Speed,
+    /// The heading does not say; its unit, or its neighbours, may.
+    Unsaid,
+}
+
+impl What {
+    /// The dimension that its unit has; `None` if any.
+    pub(super) fn dimension(self) -> Option<Dimension> {
+        match self {
+            Self::Height => Some(Dimension::Length),
+            Self::Time | Self::Interval | Self::Total => Some(Dimension::Time),
+            Self::Speed => Some(Dimension::Speed),
+            Self::Unsaid => None,
+        }
+    }
+}
+
+/// At which event a number was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum At {
+    Release,
+    /// After, or at, this contact.
+    Nth(usize),
+    /// Before, or after, the only contact there is.
+    Before,
+    After,
+    /// The row tells.
+    Row,
+}
+
+/// What part the numbers of a column play.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Role {
+    Reading,
+    Mean,
+    Error,
+    Max,
+    Min,
+    Lost,
+}
+
+/// A column of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Value {
+    pub(super) what: What,
+    pub(super) at: At,
+    pub(super) role: Role,
+    pub(super) trial: String,
+    pub(super) group: String,
+    /// A place on a scale, whose zero may be anywhere, rather than a height above the floor.
+    pub(super) position: bool,
+    /// Also the name of a number of trials: `drop`.
+    pub(super) or_trial: bool,
+}
+
+/// What a heading says of its column.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Meaning {
+    /// Nothing stands there.
+    Empty,
+    /// The number of the bounce; `sure` if it says so, and not only that it is a number.
+    Number {
+        sure: bool,
+    },
+    /// What happened.
+    Event,
+    /// A count of frames.
+    Frame,
+    /// Tells trials apart.
+    Trial,
+    /// Tells balls, surfaces, conditions apart.
+    Setting,
+    Value(Value),
+    /// No reading, and why.
+    Aside(Why),
+}
+
+/// A heading, taken apart.
+#[derive(Clone, Debug)]
+pub(super) struct Heading {
+    pub(super) text: String,
+    pub(super) unit: Option<Unit>,
+    /// The error of every reading below it, in its unit: `height (± 0.5 cm)`.
+    pub(super) spread: Option<f64>,
+    /// What it means as far as it is understood.
+    pub(super) meaning: Meaning,
+    /// The words that are not understood; with any, the column is not used unless it is asked for.
+    pub(super) unknown: Vec<String>,
+    /// The meanings of its words.
+    atoms: Vec<Atom>,
+    /// Those that name a ball or a surface.
+    labels: Vec<String>,
+}
+
+/// A word of a heading.
+struct Word {
+    /// As it stands.
+    text: String,
+    kind: Kind,
+}
+
+enum Kind {
+    Known(&'static [Atom]),
+    Number(usize),
+    Ordinal(usize),
+    Letter,
+    Unknown,
+}
+
+impl Word {
+    fn is(&self, atom: Atom) -> bool {
+        matches!(self.kind, Kind::Known(atoms) if atoms.contains(&atom))
+    }
+}
+
+/// Nobody counts further.
+const COUNTED: usize = 1_000_000;
+
+impl Heading {
+    /// Takes a heading apart.
+    pub(super) fn parse(text: &str) -> Self {
+        let text = text.trim();
+        let mut heading = Self {
+            text: text.to_owned(),
+            unit: None,
+            spread: None,
+            meaning: Meaning::Empty,
+            unknown: Vec::new(),
+            atoms: Vec::new(),
+            labels: Vec::new(),
+        };
+        // Programs put the run before the name: 'Latest: Time (s)'.
+        let (run, name) = match text.split_once(':') {
+            Some((run, name)) if !name.trim().is_empty() => (run.trim(), name),
+            _ => ("", text),
+        };
+        let bare = heading.take_brackets(name);
+        let bare = heading.take_unit(&bare);
+        let mut words = split(&bare);
+        heading.take_unit_word(&mut words);
+        heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
+        heading.labels = words.iter().filter(|w| w.is(Atom::Label)).map(|w| w.text.clone()).collect();
+        let turned = split(run);
+        for word in words.iter().chain(&turned) {
+            if let Kind::Known(atoms) = word.kind {
+                heading.atoms.extend(atoms);
+            }
+        }
+        if !heading.atoms.is_empty() || heading.unit.is_some() {
+            heading.meaning = heading.interpret(&words, run);
+        }
+        heading
+    }
+
+    /// Whether the heading says what its column holds, every word of it being understood.
+    pub(super) fn understood(&self) -> bool {
+        self.unknown.is_empty() && !matches!(self.meaning, Meaning::Empty | Meaning::Aside(_))
+    }
+
+    /// The numbers of the column, if it holds any that are understood.
+    pub(super) fn value(&self) -> Option<&Value> {
+        match &self.meaning {
+            Meaning::Value(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The words that name a ball or a surface, without what counts them.
+    pub(super) fn labels(&self) -> String {
+        self.labels.join(" ")
+    }
+
+    pub(super) fn has(&self, atom: Atom) -> bool {
+        self.atoms.contains(&atom)
+    }
+
+    /// A word that says that numbers are no readings.
+    pub(super) fn turns(&self) -> bool {
+        [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived].iter().any(|atom| self.has(*atom))
+    }
+
+    /// Whether the text names a statistic of the rows around it: `Mean`, `Std dev`, `COR`.
+    pub(super) fn sums_up(&self) -> bool {
+        use Atom::{Derived, Error, Goal, Lost, Max, Mean, Median, Min, Predicted, Total};
+        [Mean, Median, Error, Max, Min, Total, Derived, Predicted, Goal, Lost].iter().any(|atom| self.has(*atom))
+    }
+
+    /// Takes the text in brackets out: a unit, an error, or words like any others.
+    fn take_brackets(&mut self, text: &str) -> String {
+        let (mut rest, mut left) = (text, String::new());
+        while let Some(open) = rest.find(['(', '[']) {
+            let Some(close) = rest[open..].find([')', ']']) else { break };
+            left.push_str(&rest[..open]);
+            left.push(' ');
+            let inside = rest[open + 1..open + close].trim();
+            rest = &rest[open + close + 1..];
+            let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
+            if let Some(error) = error.map(str::trim) {
+                let digits = error.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(error.len());
+                self.spread = error[..digits].replace(',', ".").parse().ok().filter(|e: &f64| *e > 0.0);
+                self.unit = self.unit.or(Unit::parse(&error[digits..]));
+            } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)) {
+                self.unit = self.unit.or(Some(unit));
+            } else {
+                left.push_str(inside);
+                left.push(' ');
+            }
+        }
+        left + rest
+    }
+
+    /// A unit at the end, behind a slash or a comma, or one that a blank does not part: `height / cm`, `v, m/s`.
+    fn take_unit(&mut self, text: &str) -> String {
+        if self.unit.is_some() {
+            return text.to_owned();
+        }
+        for mark in [" / ", "/", ", ", " "] {
+            if let Some((name, unit)) = text.trim().rsplit_once(mark)
+                && !name.trim().is_empty()
+                && (mark != " " || unit.contains(['/', '%']))
+                && let Some(unit) = Unit::parse(unit)
+            {
+                self.unit = Some(unit);
+                return name.to_owned();
+            }
+        }
+        text.to_owned()
+    }
+
+    /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is a preposition.
+    fn take_unit_word(&mut self, words: &mut Vec<Word>) {
+        let is_unit = |w: &Word| match w.kind {
+            Kind::Known([Atom::Unit(_)]) => true,
+            Kind::Known(_) => w.text == "in",
+            _ => Unit::parse(&w.text).is_some(),
+        };
+        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(&words[n])).collect();
+        if found.len() > 1 && words[found[0]].text == "in" {
+            found.remove(0);
+        }
+        if let Some(&n) = found.first().filter(|_| self.unit.is_none()) {
+            self.unit = Unit::parse(&words[n].text);
+            words.remove(n);
+        } else if words.len() == 1 && matches!(words[0].kind, Kind::Known([Atom::Unit(_)])) {
+            self.unit = self.unit.or(Unit::parse(&words[0].text));
+            words.clear();
+        }
+    }
+
+    /// What the words say together.
+    fn interpret(&self, words: &[Word], run: &str) -> Meaning {
+        use Atom::{
+            Air, Between, Derived, Distance, Goal, Group, Height, Label, Note, Other, Position, Predicted, Total,
+        };
+        let has = |atom| self.has(atom);
+        let numbers = numbers(words);
+        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
+        if has(Note) && self.unit.is_none() {
+            return Meaning::Aside(Why::Note);
+        }
+        if has(Predicted) {
+            return Meaning::Aside(Why::Predicted);
+        }
+        if has(Goal) {
+            return Meaning::Aside(Why::Goal);
+        }
+        let intervals = has(Derived) && words.iter().any(|w| w.text == "delta") && has(Atom::Time);
+        if has(Derived) && !intervals {
+            return Meaning::Aside(Why::Derived);
+        }
+        let setting = has(Group)
+            && !named
+            && !has(Height)
+            && !has(Position)
+            && self.unit.is_none_or(|u| u.dimension == Dimension::Other);
+        if setting && !has(Label) {
+            return Meaning::Setting;
+        }
+        let flown = has(Distance) && has(Between) || has(Height) && has(Total);
+        if has(Other) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
+            return Meaning::Aside(Why::Other);
+        }
+        let what = if intervals { What::Interval } else { self.what() };
+        if what == What::Unsaid
+            && self.unit.is_none()
+            && let Some(key) = self.key(&numbers)
+        {
+            return key;
+        }
+        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) {
+            return Meaning::Aside(Why::Other);
+        }
+        self.reading(what, numbers, run)
+    }
+
+    /// The quantity that words and unit name.
+    fn what(&self) -> What {
+        use Atom::{
+            Air, Between, Distance, Height, Impact, Interval, Percent, Position, Rebound, Release, Rest, Speed, Time,
+            Total,
+        };
+        let has = |atom| self.has(atom);
+        let of = |dimension| self.unit.is_some_and(|unit: Unit| unit.dimension == dimension);
+        let timed = has(Time) || of(Dimension::Time);
+        if has(Speed) || of(Dimension::Speed) {
+            What::Speed
+        } else if has(Interval) || timed && (has(Between) || has(Air)) {
+            What::Interval
+        } else if timed && has(Rest) || has(Total) && !has(Height) && !of(Dimension::Length) {
+            What::Total
+        } else if timed && !has(Height) {
+            What::Time
+        } else if has(Height)
+            || has(Position)
+            || has(Distance)
+            || of(Dimension::Length)
+            || has(Percent)
+            || has(Rebound) && !has(Impact)
+            || has(Release) && !has(Atom::Trial)
+        {
+            What::Height
+        } else {
+            What::Unsaid
+        }
+    }
+
+    /// What a heading without a quantity tells apart.
+    fn key(&self, numbers: &Numbers) -> Option<Meaning> {
+        use Atom::{Error, Event, Frame, Group, Impact, Mean, Number, Release, Repeat, Trial};
+        let has = |atom| self.has(atom);
+        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
+        if has(Frame) {
+            return Some(Meaning::Frame);
+        }
+        if named || has(Mean) || has(Error) {
+            return None;
+        }
+        if has(Event) {
+            return Some(Meaning::Event);
+        }
+        if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {
+            return Some(Meaning::Trial);
+        }
+        if has(Group) {
+            return Some(Meaning::Setting);
+        }
+        if has(Number) || has(Impact) {
+            return Some(Meaning::Number { sure: has(Impact) });
+        }
+        None
+    }
+
+    fn reading(&self, what: What, numbers: Numbers, run: &str) -> Meaning {
+        use Atom::{
+            After, Before, Distance, Error, Height, Impact, Lost, Max, Mean, Median, Min, Percent, Position, Rebound,
+            Release, Speed, Trial,
+        };
+        let has = |atom| self.has(atom);
+        if has(Percent) && what != What::Height {
+            return Meaning::Aside(Why::Derived);
+        }
+        // Components of a vector, the rise of something, a change of a change.
+        if has(Speed) && (has(Position) || has(Release)) || numbers.bounce.len() > 1 && what != What::Interval {
+            return Meaning::Aside(Why::Other);
+        }
+        let role = match () {
+            () if has(Error) => Role::Error,
+            () if has(Lost) => Role::Lost,
+            () if has(Mean) || has(Median) => Role::Mean,
+            () if has(Max) => Role::Max,
+            () if has(Min) => Role::Min,
+            () => Role::Reading,
+        };
+        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty();
+        let at = match (numbers.bounce.first(), what) {
+            (Some(0), What::Height) => At::Release,
+            (Some(&n), _) => At::Nth(n),
+            (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {
+                At::Release
+            }
+            (None, What::Speed) if has(After) || has(Rebound) => At::After,
+            (None, What::Speed) if has(Before) || has(Impact) => At::Before,
+            _ => At::Row,
+        };
+        let label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        Meaning::Value(Value {
+            what,
+            at,
+            role,
+            trial: label,
+            group: numbers.group,
+            position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
+            or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
+        })
+    }
+}
+
+/// The words of a heading, letters and digits apart.
+fn split(text: &str) -> Vec<Word> {
+    let mut words: Vec<Word> = Vec::new();
+    for piece in pieces(text) {
+        let folded = folded(&piece);
+        let kind = if let Some(atoms) = meanings(&folded) {
+            Kind::Known(atoms)
+        } else if let Some(n) = ordinal(&folded) {
+            Kind::Ordinal(n)
+        } else if let Ok(n) = folded.parse::<usize>() {
+            if n <= COUNTED { Kind::Number(n) } else { Kind::Unknown }
+        } else if folded.chars().count() == 1 {
+            Kind::Letter
+        } else if let Some((letters, digits)) = joined(&folded) {
+            let n = digits.parse().ok().filter(|n| *n <= COUNTED);
+            match (meanings(letters), n) {
+                (Some(atoms), Some(n)) => {
+                    words.push(Word { text: letters.to_owned(), kind: Kind::Known(atoms) });
+                    words.push(Word { text: digits.to_owned(), kind: Kind::Number(n) });
+                    continue;
+                }
+                _ => Kind::Unknown,
+            }
+        } else {
+            Kind::Unknown
+        };
+        let text = if matches!(kind, Kind::Known(_)) && folded == "in" { folded } else { piece };
+        words.push(Word { text, kind });
+    }
+    lettered(&mut words);
+    // A number before a word is its place in an order, if none follows: '1. Rebound'.
+    for n in 1..words.len() {
+        let alone = words.get(n + 1).is_none_or(|w| !matches!(w.kind, Kind::Number(_) | Kind::Letter));
+        if let Kind::Number(place) = words[n - 1].kind
+            && n == 1
+            && matches!(words[n].kind, Kind::Known(_))
+            && alone
+        {
+            words[0].kind = Kind::Ordinal(place);
+        }
+    }
+    words
+}
+
+/// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`; another one is not understood.
+fn lettered(words: &mut [Word]) {
+    for n in 0..words.len() {
+        let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
+        let named =
+            n > 0 && [Atom::Trial, Atom::Repeat, Atom::Group, Atom::Label].iter().any(|atom| words[n - 1].is(*atom));
+        if one && named {
+            words[n].kind = Kind::Letter;
+        } else if matches!(words[n].kind, Kind::Letter) {
+            words[n].kind = Kind::Unknown;
+        }
+    }
+}
+
+/// The runs of letters and digits of a text, its signs as words.
+fn pieces(text: &str) -> Vec<String> {
+    let mut spelt = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '√' => spelt.push_str(" root "),
+            '²' | '³' => spelt.push_str(" squared "),
+            'Δ' | '∆' => spelt.push_str(" delta "),
+            'σ' | '±' => spelt.push_str(" error "),
+            'Ø' | 'ø' => spelt.push_str(" mean "),
+            '#' | '№' => spelt.push_str(" number "),
+            '%' => spelt.push_str(" percent "),
+            '{' | '}' | '\u{a0}' => spelt.push(' '),
+            c => spelt.push(c),
+        }
+    }
+    // Whose it is: "the ball's height".
+    let spelt = spelt.replace("'s ", " ").replace("’s ", " ");
+    let parts = spelt.split('/').filter(|part| !part.trim().is_empty()).count();
+    let mut found: Vec<String> = spelt
+        .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
+        .filter(|piece| !piece.is_empty())
+        .map(str::to_owned)
+        .collect();
+    if parts > 1 {
+        found.push("ratio".to_owned());
+    }
+    found
+}
+
+/// `h1` as `h` and `1`.
+fn joined(word: &str) -> Option<(&str, &str)> {
+    let at = word.find(|c: char| c.is_ascii_digit())?;
+    let (letters, digits) = word.split_at(at);
+    (!letters.is_empty() && digits.chars().all(|c| c.is_ascii_digit())).then_some((letters, digits))
+}
+
+/// The number that a word such as `2nd` or `1er` puts a bounce or a trial in.
+fn ordinal(word: &str) -> Option<usize> {
+    let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
+    let (digits, end) = word.split_at(at);
+    let ends = ["st", "nd", "rd", "th", "er", "re", "ere", "e", "eme", "a", "o", "º", "ª", "°", "ter", "te"];
+    ends.contains(&end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
+}
+
+/// The numbers and names in a heading, each with what it counts.
+#[derive(Default)]
+struct Numbers {
+    bounce: Vec<usize>,
+    trial: String,
+    group: String,
+}
+
+fn numbers(words: &[Word]) -> Numbers {
+    let mut found = Numbers::default();
+    let of_trial = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && !w.is(Atom::Filler);
+    let of_group = |w: &Word| w.is(Atom::Group) || w.is(Atom::Label);
+    let counts = |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler] | [Atom::Number]));
+    let mut group: Vec<&str> = Vec::new();
+    let mut labelled = false;
+    for (n, word) in words.iter().enumerate() {
+        let before = words[..n].iter().rev().find(|w| counts(w));
+        match word.kind {
+            Kind::Number(_) | Kind::Letter if before.is_some_and(of_trial) => {
+                let name = before.map_or("", |w| w.text.as_str());
+                found.trial = format!("{name} {}", word.text);
+            }
+            Kind::Number(_) | Kind::Letter if before.is_some_and(of_group) => {
+                group.push(&word.text);
+                labelled = true;
+            }
+            Kind::Number(count) => found.bounce.push(count),
+            Kind::Ordinal(count) => {
+                let next = words[n + 1..].iter().find(|w| counts(w));
+                if next.is_some_and(of_trial) {
+                    found.trial = format!("{} {count}", next.map_or("", |w| w.text.as_str()));
+                } else if next.is_some_and(of_group) {
+                    group.push(&word.text);
+                    labelled = true;
+                } else {
+                    found.bounce.push(count);
+                }
+            }
+            Kind::Known([Atom::Ordinal(count)]) => found.bounce.push(*count),
+            _ if of_group(word) => {
+                labelled |= word.is(Atom::Label);
+                group.push(&word.text);
+            }
+            _ => {}
+        }
+    }
+    if labelled {
+        found.group = group.join(" ");
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> Value {
+        let heading = Heading::parse(text);
+        assert!(heading.unknown.is_empty(), "{text}: {heading:?}");
+        heading.value().unwrap_or_else(|| panic!("{text}: {heading:?}")).clone()
+    }
+
+    #[test]
+    fn heights_and_times_and_at_which_event() {
+        use At::{After, Before, Nth, Release, Row};
+        use What::{Height, Interval, Speed, Time, Total};
+        for (text, what, at) in [
+            ("Drop height (cm)", Height, Release),
+            ("Rebound height (cm)", Height, Row),
+            ("h0 (cm)", Height, Release),
+            ("h_1 [m]", Height, Nth(1)),
+            ("h₂ / cm", Height, Nth(2)),
+            ("height after 2nd bounce (cm)", Height, Nth(2)),
+            ("Height of the first bounce in cm", Height, Nth(1)),
+            ("1. Rückprall", Height, Nth(1)),
+            ("Fallhöhe (cm)", Height, Release),
+            ("hauteur du rebond (cm)", Height, Row),
+            ("Bounce 1 (cm)", Height, Nth(1)),
+            ("Bounce 1 (s)", Time, Nth(1)),
+            ("t1 (s)", Time, Nth(1)),
+            ("time between bounces (s)", Interval, Row),
+            ("Air time (s)", Interval, Row),
+            ("Lap Time", Interval, Row),
+            ("time until it stops (s)", Total, Row),
+            ("Total", Total, Row),
+            ("v before (m/s)", Speed, Before),
+            ("speed after impact (m/s)", Speed, After),
+            ("Impact velocity (m/s)", Speed, Before),
+            ("Rebound speed (m/s)", Speed, After),
+            ("the ball's height above the floor (cm)", Height, Row),
+            ("time since release (s)", Time, Row),
+        ] {
+            let found = value(text);
+            if text == "1. Rückprall" {
+                assert_eq!(found.at, at, "{text}");
+                continue;
+            }
+            assert_eq!((found.what, found.at, found.role), (what, at, Role::Reading), "{text}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn words_that_turn_the_meaning() {
+        for (text, why) in [
+            ("theoretical height (cm)", Why::Predicted),
+            ("Expected rebound (cm)", Why::Predicted),
+            ("target height (cm)", Why::Goal),
+            ("h1/h0", Why::Derived),
+            ("height ratio", Why::Derived),
+            ("Δh (cm)", Why::Derived),
+            ("e", Why::Derived),
+            ("v_{y}", Why::Other),
+            ("vᵧ (m/s)", Why::Other),
+            ("x (m)", Why::Other),
+            ("Mass (g)", Why::Other),
+            ("Comment", Why::Note),
+        ] {
+            assert_eq!(Heading::parse(text).meaning, Meaning::Aside(why), "{text}");
+        }
+        for (text, role) in [
+            ("height lost (cm)", Role::Lost),
+            ("mean (cm)", Role::Mean),
+            ("sd (cm)", Role::Error),
+            ("Incertitude (cm)", Role::Error),
+            ("max rebound (cm)", Role::Max),
+            ("height_error_cm", Role::Error),
+            ("SD", Role::Error),
+        ] {
+            assert_eq!(value(text).role, role, "{text}");
+        }
+    }
+
+    #[test]
+    fn keys_trials_and_balls() {
+        for (text, meaning) in [
+            ("bounce", Meaning::Number { sure: true }),
+            ("Bounce no.", Meaning::Number { sure: true }),
+            ("n", Meaning::Number { sure: false }),
+            ("#", Meaning::Number { sure: false }),
+            ("Trial", Meaning::Trial),
+            ("Run no.", Meaning::Trial),
+            ("Ball", Meaning::Setting),
+            ("Type of ball", Meaning::Setting),
+            ("Surface", Meaning::Setting),
+            ("event", Meaning::Event),
+            ("Frame", Meaning::Frame),
+            ("", Meaning::Empty),
+        ] {
+            assert_eq!(Heading::parse(text).meaning, meaning, "{text}");
+        }
+        for (text, trial, group) in [
+            ("Trial 2 (cm)", "Trial 2", ""),
+            ("run A (cm)", "run A", ""),
+            ("Ball A y (m)", "", "Ball A"),
+            ("Golf ball (cm)", "", "Golf ball"),
+            ("Wood (cm)", "", "Wood"),
+            ("Trial 1 bounce 2 (cm)", "Trial 1", ""),
+            ("Run 2: Position (m)", "Run 2", ""),
+        ] {
+            let found = value(text);
+            assert_eq!((found.trial.as_str(), found.group.as_str()), (trial, group), "{text}: {found:?}");
+        }
+        let unknown = |text: &str| Heading::parse(text).unknown;
+        assert_eq!(unknown("Anna (cm)"), ["Anna"]);
+        assert_eq!(unknown("hieght_cm"), ["hieght"]);
+        assert_eq!(Heading::parse("height (± 0.5 cm)").spread, Some(0.5));
+    }
+}

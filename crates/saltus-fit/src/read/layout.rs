@@ -1,0 +1,220 @@
+//! How rows and columns become trials: the layout that explains all columns that are understood.
+
+use super::aside::Why;
+use super::cell::Cell;
+use super::columns::{Column, Columns, Kind};
+use super::grid::shown;
+use super::heading::{At, Meaning, Role, What};
+use super::region::Region;
+use super::rows::Rows;
+use super::vocabulary::Atom;
+use crate::error::TableError;
+use crate::statistics::median;
+
+/// How the readings of a table lie in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Layout {
+    /// `event,time_s,height_cm`: what happened, row by row.
+    Events { event: usize },
+    /// `bounce,height_cm` or `bounce,time_s`: numbered rows.
+    Numbered,
+    /// Rows in the order of the bounces.
+    Listed,
+    /// `h0_cm,height_cm`: every row is a drop and its rebound.
+    Pairs,
+    /// `trial,h0_cm,h1_cm,h2_cm`: bounces side by side, a row being a trial.
+    Wide,
+    /// `time_s,height_cm`: where the ball was.
+    Samples { frames: bool },
+}
+
+/// The columns of one ball, or trial, side by side with others.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Track {
+    pub(super) trial: String,
+    pub(super) group: String,
+    pub(super) release: Option<usize>,
+    pub(super) height: Option<usize>,
+    pub(super) time: Option<usize>,
+    pub(super) interval: Option<usize>,
+    pub(super) total: Option<usize>,
+    pub(super) speed: Option<usize>,
+    pub(super) before: Option<usize>,
+    pub(super) after: Option<usize>,
+    pub(super) lost: Option<usize>,
+    /// Columns of numbered bounces.
+    pub(super) nth: Vec<usize>,
+}
+
+impl Track {
+    fn take(&mut self, index: usize, column: &Column) {
+        let Some(value) = column.value() else {
+            if column.kind == Kind::Lost {
+                self.lost = Some(index);
+            }
+            return;
+        };
+        let slot = match (value.what, value.at) {
+            (_, At::Nth(_)) => return self.nth.push(index),
+            (What::Height, At::Release | At::Before) => &mut self.release,
+            (What::Speed, At::Before | At::Release) => &mut self.before,
+            (What::Speed, At::After) => &mut self.after,
+            (What::Height | What::Unsaid, _) => &mut self.height,
+            (What::Time, _) => &mut self.time,
+            (What::Interval, _) => &mut self.interval,
+            (What::Total, _) => &mut self.total,
+            (What::Speed, At::Row) => &mut self.speed,
+        };
+        *slot = slot.or(Some(index));
+    }
+
+    /// What it has of its own, and from `shared` what it has not.
+    fn beside(&self, shared: &Self) -> Self {
+        Self {
+            release: self.release.or(shared.release),
+            time: self.time.or(shared.time),
+            interval: self.interval.or(shared.interval),
+            before: self.before.or(shared.before),
+            ..self.clone()
+        }
+    }
+
+    pub(super) fn label(&self) -> String {
+        [self.group.as_str(), &self.trial].iter().filter(|p| !p.is_empty()).copied().collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The tracks of a table, in the order of their columns.
+pub(super) fn tracks(columns: &Columns) -> Vec<Track> {
+    let mut shared = Track::default();
+    let mut tracks: Vec<Track> = Vec::new();
+    for (index, column) in columns.columns.iter().enumerate() {
+        let (trial, group) = match column.value() {
+            Some(value) if value.role == Role::Error => continue,
+            Some(value) => (value.trial.clone(), value.group.clone()),
+            None => (String::new(), String::new()),
+        };
+        if trial.is_empty() && group.is_empty() {
+            shared.take(index, column);
+            continue;
+        }
+        let at = tracks.iter().position(|t| t.trial == trial && t.group == group).unwrap_or_else(|| {
+            tracks.push(Track { trial, group, ..Track::default() });
+            tracks.len() - 1
+        });
+        tracks[at].take(index, column);
+    }
+    if tracks.is_empty() {
+        return vec![shared];
+    }
+    let mut found: Vec<Track> = tracks.iter().map(|track| track.beside(&shared)).collect();
+    let own = shared.height.is_some() || shared.speed.is_some() || !shared.nth.is_empty();
+    if own {
+        found.insert(0, shared);
+    }
+    found
+}
+
+/// The layout of a table.
+pub(super) fn layout(
+    region: &Region<'_>,
+    columns: &Columns,
+    rows: &Rows,
+    tracks: &[Track],
+) -> Result<Layout, TableError> {
+    let any = |of: fn(&Track) -> bool| tracks.iter().any(of);
+    if let Some(event) = columns.one(&Kind::Event) {
+        return Ok(Layout::Events { event });
+    }
+    if region.frames && any(|t| t.height.is_some()) {
+        return Ok(Layout::Samples { frames: true });
+    }
+    let key = columns.number().is_some() || columns.one(&Kind::Label).is_some();
+    let numbered = key && !rows.rows.is_empty() && rows.rows.iter().all(|row| row.bounce.is_some());
+    let sure = columns.number().is_none_or(|(_, sure)| sure);
+    let rowed = any(|t| t.height.is_some() || t.time.is_some() || t.interval.is_some() || t.speed.is_some());
+    if any(|t| t.time.is_some() && t.height.is_some()) && !numbered {
+        return Ok(Layout::Samples { frames: false });
+    }
+    if any(|t| !t.nth.is_empty()) {
+        return Ok(Layout::Wide);
+    }
+    if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.total.is_some()) {
+        return Ok(Layout::Pairs);
+    }
+    let released = any(|t| t.release.is_some());
+    // One height of release for several rows is that of a drop of several bounces; else each row is a drop.
+    let constant = numbered && (!sure || released) && one_release(region, rows, tracks);
+    if numbered && rowed && (!released || constant) {
+        return Ok(Layout::Numbered);
+    }
+    if released && any(|t| t.height.is_some() || t.interval.is_some()) {
+        return Ok(Layout::Pairs);
+    }
+    if !rowed && !any(|t| t.after.is_some()) {
+        return Err(region
+            .error("no column holds heights or times of bounces")
+            .nothing()
+            .help("a height of release alone tells nothing: give the rebounds, in a column such as 'rebound_cm'"));
+    }
+    if numbered {
+        return Ok(Layout::Numbered);
+    }
+    match beside(region, columns, rows) {
+        Some(error) => Err(error),
+        None => Ok(Layout::Listed),
+    }
+}
+
+/// A list may be of something else than bounces where numbers stand beside it that are not used: a film, or balls that differ.
+fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+    let (index, column, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
+    let keyed = columns.one(&Kind::Trial).is_some() || columns.columns.iter().any(|c| c.kind == Kind::Setting);
+    if column.heading.has(Atom::Impact) || column.heading.has(Atom::Between) || keyed {
+        return None;
+    }
+    let other = columns.columns.iter().enumerate().find(|(n, c)| {
+        let measures = matches!(c.heading.meaning, Meaning::Aside(Why::Other)) || !c.heading.unknown.is_empty();
+        c.kind == Kind::Aside && measures && rows.rows.iter().any(|row| region.view.is_number(row.at, *n))
+    });
+    let (name, other) = (shown(&column.heading.text), shown(&other?.1.heading.text));
+    Some(
+        region
+            .header_error(index, format!("does '{name}' list the bounces of one drop, in order? Beside it stands '{other}'"))
+            .question()
+            .help(
+                "number the bounces in a column 'bounce', or leave the other column out by --header; places of a film are wanted with their \
+                 times, or with --fps and 'y' for a name",
+            ),
+    )
+}
+
+/// Whether bounces are counted up beside one height of release, and the count is of bounces rather than of drops: their heights fall.
+fn one_release(region: &Region<'_>, rows: &Rows, tracks: &[Track]) -> bool {
+    tracks.iter().all(|track| {
+        let Some(release) = track.release else { return true };
+        let mut several = false;
+        let alike = rows.rows.windows(2).all(|pair| {
+            let goes_on = pair[1].bounce > pair[0].bounce;
+            let same = region.cell(pair[0].at, release) == region.cell(pair[1].at, release)
+                || region.cell(pair[1].at, release).is_empty();
+            several |= goes_on && same;
+            !goes_on || same
+        });
+        several && alike && falling(region, rows, track)
+    })
+}
+
+/// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and those of several drops do not.
+fn falling(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
+    /// A ball that keeps more of its height at every bounce is not told from one that is dropped again and again.
+    const LEVEL: f64 = 0.95;
+    let Some(column) = track.height.or(track.interval) else { return true };
+    let number = |row: usize| match region.view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let steps = rows.rows.windows(2).filter(|pair| pair[1].bounce > pair[0].bounce);
+    let mut ratios: Vec<f64> = steps.filter_map(|pair| Some(number(pair[1].at)? / number(pair[0].at)?)).collect();
+    median(&mut ratios).is_none_or(|ratio| ratio < LEVEL)
+}

@@ -1,0 +1,97 @@
+//! Several tables as one: the runs of a file, the sheets of a workbook, the files of an experiment.
+
+use super::aside::LeftAside;
+use super::heading::Heading;
+use super::{Event, Metadata, Table, Trial};
+use crate::error::TableError;
+
+/// Tells files apart whose names are of different balls or surfaces, and recordings from readings of bounces: they are no one experiment.
+pub(super) fn apart(parts: &mut [(String, Table)]) {
+    let named =
+        |name: &str| Heading::parse(name.rsplit_once('.').map_or(name, |(stem, _)| stem)).labels().to_lowercase();
+    let filmed = |table: &Table| table.trials.iter().any(|t| t.readings.iter().any(|r| r.event == Event::Sample));
+    let labels: Vec<String> = parts.iter().map(|(name, _)| named(name)).collect();
+    let balls = labels.iter().all(|label| !label.is_empty()) && labels.iter().any(|label| *label != labels[0]);
+    let films = parts.iter().filter(|(_, table)| filmed(table)).count();
+    let kinds = films > 0 && films < parts.len();
+    for ((_, table), label) in parts.iter_mut().zip(labels) {
+        let kind = match filmed(table) {
+            _ if !kinds => "",
+            true => "recordings",
+            false => "readings of bounces",
+        };
+        let label = if balls { label } else { String::new() };
+        for trial in &mut table.trials {
+            let parts = [label.as_str(), kind, &trial.group];
+            trial.group = parts.iter().filter(|p| !p.is_empty()).copied().collect::<Vec<_>>().join(", ");
+        }
+    }
+}
+
+/// Joins tables, each with what tells it from the others, into one of all their trials.
+pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, TableError> {
+    if parts.len() == 1 {
+        return Ok(parts.into_iter().next().map(|(_, table)| table).unwrap_or_default());
+    }
+    let mut pooled = Table { name: name.to_owned(), ..Table::default() };
+    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
+    for (n, (label, part)) in parts.into_iter().enumerate() {
+        pooled.metadata = if n == 0 { part.metadata } else { agreed(name, &pooled.metadata, &part.metadata)? };
+        for note in part.notes {
+            match notes.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, of)) => of.push(label.clone()),
+                None => notes.push((note, vec![label.clone()])),
+            }
+        }
+        let of = |line: String| format!("{label}: {line}");
+        pooled.repairs.extend(part.repairs.into_iter().map(of));
+        // What names its place names the file.
+        let named = [format!("{label}:"), format!("sheet '{label}'")];
+        let placed = |line: String| if named.iter().any(|name| line.contains(name)) { line } else { of(line) };
+        pooled.warnings.extend(part.warnings.into_iter().map(placed));
+        pooled.rows += part.rows;
+        pooled.zero_rebounds += part.zero_rebounds;
+        pooled.doubts.extend(part.doubts);
+        pooled.left_aside.extend(part.left_aside.into_iter().map(|aside| LeftAside {
+            within: Some(aside.within.map_or(label.clone(), |inner| format!("{label}, {inner}"))),
+            ..aside
+        }));
+        pooled.trials.extend(part.trials.into_iter().map(|trial| Trial {
+            label: if trial.label.is_empty() { label.clone() } else { format!("{label}, {}", trial.label) },
+            ..trial
+        }));
+    }
+    // What is said of every part alike is said once.
+    pooled.notes.extend(notes.into_iter().map(|(note, of)| match of.as_slice() {
+        [one] => format!("{one}: {note}"),
+        [first, .., last] => format!("{first} to {last} ({} of them): {note}", of.len()),
+        [] => note,
+    }));
+    Ok(pooled)
+}
+
+/// What two tables state together. Gravity is one; of reading errors the larger one holds for both.
+fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError> {
+    if let (Some(one), Some(other)) = (a.gravity, b.gravity)
+        && (one - other).abs() > 1e-9 * one.abs()
+    {
+        return Err(TableError::new(name, format!("the tables state different gravity: {one} and {other} m/s²"))
+            .help("fit them one by one, or correct the comments '# gravity:'"));
+    }
+    if a.pixels != b.pixels {
+        return Err(TableError::new(name, "some of the tables are in pixels, others are not")
+            .help("give --scale, such as --scale 1.5mm for one pixel, or fit them one by one"));
+    }
+    let larger = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::max);
+    let smaller = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::min);
+    Ok(Metadata {
+        frame_rate: smaller(a.frame_rate, b.frame_rate),
+        gravity: a.gravity.or(b.gravity),
+        sigma_height: larger(a.sigma_height, b.sigma_height),
+        sigma_time: larger(a.sigma_time, b.sigma_time),
+        pixels: a.pixels,
+        intervals: a.intervals || b.intervals,
+        oriented: a.oriented,
+        falls_upwards: a.falls_upwards.or(b.falls_upwards),
+    })
+}

@@ -1,0 +1,338 @@
+//! What programs write: Tracker, `ImageJ`, Vernier, Audacity's labels, runs side by side, bare numbers.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use super::ReadOptions;
+use super::aside::{LeftAside, Part, Why};
+use super::cell::Cell;
+use super::grid::{Grid, View};
+use super::heading::Heading;
+use super::region::{self, Region};
+use super::units::Unit;
+use crate::error::TableError;
+
+/// The tables of a text, and what they are.
+pub(super) struct Recognised<'a> {
+    /// The program, or what else there is to say about where it comes from.
+    pub(super) what: Option<&'static str>,
+    pub(super) regions: Vec<Region<'a>>,
+    /// The tables are tracks of one film: the ball is what moves.
+    pub(super) tracks: bool,
+}
+
+impl<'a> From<Vec<Region<'a>>> for Recognised<'a> {
+    fn from(regions: Vec<Region<'a>>) -> Self {
+        Self { what: None, regions, tracks: false }
+    }
+}
+
+/// A label of a contact spans no more than this, s.
+const LABEL: f64 = 0.2;
+
+/// Recognises the tables of a text; `fps` is the frame rate, by an option or a comment.
+pub(super) fn tables<'a>(
+    grid: &'a Grid<'a>,
+    options: &ReadOptions,
+    fps: Option<f64>,
+) -> Result<Recognised<'a>, TableError> {
+    let view = View { grid, across: false };
+    let first = |column: usize| grid.cell(0, column);
+    if let Some(names) = &options.header {
+        return Ok(vec![given(view, names)].into());
+    }
+    if first(0).to_lowercase().starts_with("vernier format") {
+        return vernier(view);
+    }
+    if first(0).eq_ignore_ascii_case("frame") && position(view, 0, "y1").is_some() {
+        return imagej(view, options);
+    }
+    if let Some(found) = tracker(view, options) {
+        return Ok(found);
+    }
+    if let Some(region) = labels(view) {
+        return Ok(Recognised { what: Some("a track of labels (s)"), regions: vec![region], tracks: false });
+    }
+    if numbers(view, 0) {
+        return Ok(vec![bare(view, options, fps)?].into());
+    }
+    let found = region::tables(view);
+    let found = if found.is_empty() { turned(grid).into_iter().collect() } else { found };
+    if let [one] = found.as_slice()
+        && let Some(recognised) = side_by_side(one)
+    {
+        return Ok(recognised);
+    }
+    Ok(found.into())
+}
+
+/// The table whose names stand in the first column, one below the other.
+pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
+    let found = region::tables(View { grid, across: true });
+    found.into_iter().find(|region| !region.rows.is_empty())
+}
+
+/// The column of a row with this text.
+fn position(view: View<'_>, row: usize, name: &str) -> Option<usize> {
+    view.cells(row).position(|cell| cell.eq_ignore_ascii_case(name))
+}
+
+/// Whether every cell of a row that holds anything is a number.
+fn numbers(view: View<'_>, row: usize) -> bool {
+    let bare = |column: usize| {
+        view.cell(row, column).is_empty() || matches!(view.read(row, column), Cell::Number(_) | Cell::Lost)
+    };
+    (0..view.width(row)).all(bare)
+}
+
+/// Names given beside the file, above all rows that hold numbers.
+fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
+    let header: Vec<String> = names.iter().map(|name| if name == "-" { String::new() } else { name.clone() }).collect();
+    let any = |row: usize| (0..view.width(row)).any(|c| view.is_number(row, c));
+    let start = usize::from(!any(0));
+    Region { given: true, ..Region::new(view, header, 0, (start..view.rows()).collect()) }
+}
+
+/// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels stand at the contacts.
+fn labels(view: View<'_>) -> Option<Region<'_>> {
+    let number = |row: usize, column: usize| match view.read(row, column) {
+        Cell::Number(measured) => Some(measured.value),
+        _ => None,
+    };
+    let label = |row: usize| {
+        let text = view.cell(row, 2);
+        view.width(row) == 3
+            && (text.is_empty() || text.starts_with(char::is_alphabetic))
+            && number(row, 0).zip(number(row, 1)).is_some_and(|(start, end)| start <= end && end - start < LABEL)
+    };
+    let rows = view.rows();
+    (view.grid.delimiter == b'\t' && rows > 2 && (0..rows).all(label)).then(|| {
+        let header = vec!["time_s".to_owned(), String::new(), String::new()];
+        Region { given: true, ..Region::new(view, header, 0, (0..rows).collect()) }
+    })
+}
+
+/// `Frame X1 Y1 Flag1 X2 Y2 Flag2`, a line `Tracks 1 to 2`, frames, and a summary below them.
+fn imagej<'a>(view: View<'a>, options: &ReadOptions) -> Result<Recognised<'a>, TableError> {
+    let start = 1 + usize::from(view.cell(1, 0).to_lowercase().starts_with("tracks"));
+    let frames = |row: &usize| matches!(view.read(*row, 0), Cell::Number(_));
+    let rows: Vec<usize> = (start..view.rows()).take_while(frames).collect();
+    let asked = |n: usize| options.column.as_ref().is_none_or(|name| name.eq_ignore_ascii_case(&format!("y{n}")));
+    let (mut regions, mut aside) = (Vec::new(), Vec::new());
+    for (n, column) in
+        (1..).map_while(|n| position(view, 0, &format!("y{n}")).map(|column| (n, column))).filter(|(n, _)| asked(*n))
+    {
+        let label = format!("track {n}");
+        if rows.iter().all(|&row| view.cell(row, column).is_empty()) {
+            aside.push(LeftAside::new(Part::Track, label, Why::Empty));
+            continue;
+        }
+        let header = picked(view.width(0), &[(0, "frame"), (column, "y")]);
+        let units = (None, Some(Unit::PIXEL));
+        regions.push(Region { label, units, chosen: true, ..Region::new(view, header, 0, rows.clone()) });
+    }
+    let Some(first) = regions.first_mut() else {
+        let name = options.column.as_deref().unwrap_or_default();
+        return Err(TableError::new(view.grid.name, format!("there is no track '{name}' with a place in it"))
+            .help(format!("the file has {}", view.cells(0).collect::<Vec<_>>().join(", "))));
+    };
+    first.aside.append(&mut aside);
+    Ok(Recognised { what: Some("ImageJ tracks"), regions, tracks: true })
+}
+
+/// Names for the columns `chosen`, and none for the others.
+fn picked(width: usize, chosen: &[(usize, &str)]) -> Vec<String> {
+    let name = |n| chosen.iter().find(|(index, _)| *index == n).map_or(String::new(), |(_, name)| (*name).to_owned());
+    (0..width).map(name).collect()
+}
+
+/// A line of track names (not always), then `t x y ...` in any order, `x y ...` again for every further track.
+fn tracker<'a>(view: View<'a>, options: &ReadOptions) -> Option<Recognised<'a>> {
+    let at =
+        (0..view.rows().min(3)).find(|&row| view.cell(row, 0) == "t" && view.cells(row).any(|cell| cell == "y"))?;
+    // By itself `t,x,y` may be anybody's; a tab or a line of names above it is Tracker's hand.
+    if (0..at).any(|row| numbers(view, row)) || (at == 0 && view.grid.delimiter != b'\t') {
+        return None;
+    }
+    let titles: Vec<&str> = if at > 0 { view.cells(at - 1).collect() } else { Vec::new() };
+    let mut starts: Vec<(usize, String)> =
+        titles.iter().enumerate().filter(|(_, t)| !t.is_empty()).map(|(n, t)| (n.max(1), (*t).to_owned())).collect();
+    if starts.is_empty() {
+        starts.push((1, String::new()));
+    }
+    let width = view.width(at);
+    let wanted = options.column.as_deref().map(str::trim);
+    let track = |(n, (start, label)): (usize, &(usize, String))| {
+        let end = starts.get(n + 1).map_or(width, |(next, _)| *next).min(width);
+        let find = |name: &str| (*start..end).find(|&n| view.cell(at, n).eq_ignore_ascii_case(name));
+        let named = wanted.is_some_and(|name| name.eq_ignore_ascii_case(label));
+        let index = if named { find("y") } else { wanted.map_or(find("y"), find) }?;
+        let header = picked(width, &[(0, "t"), (index, "y")]);
+        let units = (Some(Unit::SECOND), Unit::parse("m"));
+        let rows = (at + 1..view.rows()).collect();
+        let region = Region { label: label.clone(), units, chosen: true, ..Region::new(view, header, at, rows) };
+        Some((named, region))
+    };
+    let found: Vec<(bool, Region<'a>)> = starts.iter().enumerate().filter_map(track).collect();
+    let named = found.iter().any(|(named, _)| *named);
+    let regions: Vec<Region<'a>> =
+        found.into_iter().filter(|(own, _)| *own || !named).map(|(_, region)| region).collect();
+    (!regions.is_empty()).then_some(Recognised { what: Some("a Tracker export (s, m)"), regions, tracks: true })
+}
+
+/// Data sets below one another: a line of the format, one of the source, one of the name; then long names, short names (not
+/// always), units; then rows up to one of zeros or the next data set.
+fn vernier(view: View<'_>) -> Result<Recognised<'_>, TableError> {
+    let begins = |row: usize| view.cell(row, 0).to_lowercase().starts_with("vernier format");
+    let starts: Vec<usize> = (0..view.rows()).filter(|&row| begins(row)).collect();
+    let mut regions: Vec<Region<'_>> = Vec::new();
+    for (n, &start) in starts.iter().enumerate() {
+        let end = starts.get(n + 1).copied().unwrap_or(view.rows());
+        let Some(first) = (start..end).find(|&row| numbers(view, row)) else { continue };
+        let head = first - start;
+        if head < 4 {
+            return Err(view.error(first, 0, "numbers before the names of their columns").help(VERNIER));
+        }
+        let names = start + 3;
+        let unit = |column: usize| Some(view.cell(first - 1, column)).filter(|u| head > 4 && !u.is_empty());
+        let header = (0..view.width(names)).map(|column| {
+            let name = view.cell(names, column);
+            unit(column).map_or(name.to_owned(), |unit| format!("{name} ({unit})"))
+        });
+        let zeros = |row: usize| view.width(row) > 1 && view.cells(row).all(|cell| cell.parse() == Ok(0.0));
+        let rows = (first..end).take_while(|&row| row == first || !zeros(row)).collect();
+        let label = view.cells(start + 2).collect::<Vec<_>>().join(" ").trim().to_owned();
+        regions.push(Region { label, ..Region::new(view, header.collect(), names, rows) });
+    }
+    if regions.is_empty() {
+        return Err(TableError::new(view.grid.name, "this Vernier file holds no readings").help(VERNIER));
+    }
+    if regions.len() > 1 {
+        distinct(&mut regions);
+    }
+    Ok(Recognised { what: Some("a Vernier text"), regions, tracks: false })
+}
+
+const VERNIER: &str =
+    "its lines are: Vernier Format 2, source, name, column names, short names, units, a blank line, rows";
+
+/// Data sets of the same name are told apart by number.
+fn distinct(regions: &mut [Region<'_>]) {
+    let names: HashSet<&str> = regions.iter().map(|region| region.label.as_str()).collect();
+    if names.len() < regions.len() {
+        for (n, region) in regions.iter_mut().enumerate() {
+            region.label = format!("run {}", n + 1);
+        }
+    }
+}
+
+/// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank column or not.
+fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
+    let header = &region.header;
+    let run = |cell: &str| cell.split_once(':').map_or(String::new(), |(run, _)| run.trim().to_owned());
+    let mut runs: Vec<String> = Vec::new();
+    for name in header.iter().map(|cell| run(cell)) {
+        if !name.is_empty() && !runs.contains(&name) {
+            runs.push(name);
+        }
+    }
+    let part = |label: String, mine: &dyn Fn(usize) -> bool| {
+        let header = header.iter().enumerate().map(|(n, c)| if mine(n) { c.clone() } else { String::new() });
+        Region { label, header: header.collect(), ..region.clone() }
+    };
+    if runs.len() > 1 {
+        let turned = |name: &String| Heading::parse(name).turns();
+        let regions = runs.iter().filter(|name| !turned(name)).map(|name| {
+            let mut region = part(name.clone(), &|n| {
+                let own = run(&header[n]);
+                own.is_empty() || own == *name
+            });
+            for cell in &mut region.header {
+                if let Some((_, own)) = cell.split_once(':') {
+                    *cell = own.trim().to_owned();
+                }
+            }
+            region
+        });
+        return Some(Recognised { what: Some("runs side by side"), regions: regions.collect(), tracks: false });
+    }
+    let groups = repeated(header)?;
+    let regions = groups.iter().enumerate().map(|(n, group)| part(format!("run {}", n + 1), &|c| group.contains(&c)));
+    Some(Recognised { what: Some("runs side by side"), regions: regions.collect(), tracks: false })
+}
+
+/// The columns of each run, where the same names come again and again.
+fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> {
+    let mut groups: Vec<Range<usize>> = Vec::new();
+    for (n, _) in header.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
+        match groups.last_mut().filter(|group| group.end == n) {
+            Some(group) => group.end += 1,
+            None => groups.push(n..n + 1),
+        }
+    }
+    if let [one] = groups.as_slice() {
+        // Without blank columns between: the first name begins each.
+        let (start, end) = (one.start, one.end);
+        let period = (start + 1..end).find(|&n| header[n] == header[start])? - start;
+        if period < 2 || (end - start) % period != 0 {
+            return None;
+        }
+        groups = (start..end).step_by(period).map(|n| n..n + period).collect();
+    }
+    let first = groups.first()?.clone();
+    let same = groups.iter().all(|group| header[group.clone()] == header[first.clone()]);
+    (groups.len() > 1 && same).then_some(groups)
+}
+
+/// Numbers without names: a list, if the options say of what; a track of pixels, if they say how many frames a second.
+fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<Region<'a>, TableError> {
+    let rows = || (0..view.rows()).collect::<Vec<usize>>();
+    let width = view.cells(0).collect::<Vec<_>>().iter().rposition(|cell| !cell.is_empty()).map_or(1, |last| last + 1);
+    let listed = options.height_unit.as_deref().is_some_and(|unit| unit != "px") || options.time_unit.is_some();
+    let name = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<String>>();
+    if width == 1 && (options.fps.is_none() || listed) {
+        let of = |row: usize| match view.read(row, 0) {
+            Cell::Number(measured) => measured.unit.map(|unit| unit.dimension),
+            _ => None,
+        };
+        let own = (0..view.rows()).find_map(of);
+        let kind = match (&options.height_unit, &options.time_unit, own) {
+            (Some(_), None, _) | (_, _, Some(super::units::Dimension::Length)) => "height",
+            (None, Some(_), _) | (_, _, Some(super::units::Dimension::Time)) => "time",
+            _ => {
+                return Err(view
+                    .error(0, 0, "the list has no header: are these heights or times, and in which unit?")
+                    .help("put a name above it, such as 'height_cm' or 'time_s', or give either --height-unit cm or --time-unit s"));
+            }
+        };
+        return Ok(Region { given: true, ..Region::new(view, name(&[kind]), 0, rows()) });
+    }
+    // A first column that ascends counts frames, or seconds.
+    let (mut ascends, mut whole, mut last) = (width > 1, true, f64::NEG_INFINITY);
+    for row in 0..view.rows() {
+        let value = match view.read(row, 0) {
+            Cell::Number(measured) => measured.value,
+            _ => f64::NAN,
+        };
+        ascends &= value > last;
+        whole &= value.fract() == 0.0;
+        last = value;
+    }
+    if fps.is_none() && !(ascends && !whole && width == 3) {
+        return Err(view.error(0, 0, "the table has no header: its first line is numbers").nothing().help(
+            "name the columns, such as --header bounce,height_cm or --header time_s,height_m; \
+                 for a track of pixels give the frames a second, such as --fps 100",
+        ));
+    }
+    let clock = if whole { "frame" } else { "time" };
+    let (names, frames): (&[&str], bool) = match (width, ascends) {
+        (1, _) => (&["y"], true),
+        (2, true) => (&[clock, "y"], false),
+        (_, true) => (&[clock, "x", "y"], false),
+        (_, false) => (&["x", "y"], true),
+    };
+    let mut header: Vec<String> = name(names);
+    header.resize(view.width(0).max(header.len()), String::new());
+    let units = (Some(Unit::SECOND), Some(Unit::PIXEL));
+    Ok(Region { frames, units, given: true, ..Region::new(view, header, 0, rows()) })
+}

@@ -1,0 +1,191 @@
+//! Which rows of a table hold readings, what their first cells call them, and which are left aside.
+
+use super::aside::{LeftAside, Part, Why};
+use super::cell::Cell;
+use super::columns::{Columns, Kind};
+use super::grid::shown;
+use super::heading::{At, Heading, Meaning};
+use super::region::Region;
+use super::vocabulary::{Atom, folded};
+use crate::error::TableError;
+
+/// A row of readings.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub(super) at: usize,
+    /// The number of the bounce, where the row names it; 0 is the release.
+    pub(super) bounce: Option<usize>,
+    /// What else its name tells it apart by.
+    pub(super) name: String,
+    /// The ball or surface that its name is of.
+    pub(super) group: String,
+}
+
+/// The rows of a table, sorted out.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    pub(super) rows: Vec<Row>,
+    pub(super) aside: Vec<LeftAside>,
+    /// What the scale reads at the floor: the row, and the column of heights.
+    pub(super) floor: Option<(usize, usize)>,
+}
+
+/// Sorts the rows of a table out.
+pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, TableError> {
+    let mut found = Rows::default();
+    let used: Vec<usize> = (0..columns.columns.len())
+        .filter(|&n| !matches!(columns.columns[n].kind, Kind::Aside | Kind::Setting))
+        .collect();
+    let key = columns.number().map(|(n, _)| n).or(columns.one(&Kind::Label));
+    let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
+    for &row in &region.rows {
+        let line = region.view.line(row, key.unwrap_or(0));
+        let apart = line > last + 1 && !region.view.across;
+        last = line;
+        let numbers = used.iter().any(|&n| region.view.is_number(row, n) || region.view.read(row, n) == Cell::Lost);
+        let values =
+            columns.values().any(|(n, _, _)| region.view.is_number(row, n) || region.view.read(row, n) == Cell::Lost);
+        let leave = |why: Why, what: Part| {
+            let words: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
+            LeftAside::new(what, shown(&words.join(" ")), why).at(line)
+        };
+        if region.view.cells(row).eq(region.header.iter().map(String::as_str)) {
+            found.aside.push(leave(Why::Note, Part::Text));
+            continue;
+        }
+        match name(region, columns, row, &used) {
+            Some((column, heading)) if numbers || values => {
+                if values && is_floor(&heading) {
+                    found.floor =
+                        columns.values().find(|(n, _, _)| region.view.is_number(row, *n)).map(|(n, _, _)| (row, n));
+                    continue;
+                }
+                // What is a number elsewhere and words here sums the others up, or is no number.
+                let placed = bounce(region.cell(row, column)).is_some();
+                if heading.sums_up() && !placed {
+                    found.aside.push(leave(Why::Statistic, Part::Row));
+                    continue;
+                }
+                if Some(column) == key
+                    && apart
+                    && !placed
+                    && matches!(columns.columns[column].kind, Kind::Number { .. })
+                {
+                    found.aside.push(leave(Why::NotUnderstood, Part::Row));
+                    continue;
+                }
+            }
+            Some((column, _)) if columns.columns[column].kind != Kind::Event => {
+                found.aside.push(leave(Why::Note, Part::Text));
+                continue;
+            }
+            _ => {}
+        }
+        let event = columns.one(&Kind::Event).is_some_and(|n| !region.cell(row, n).is_empty());
+        let empty = columns.values().all(|(n, _, _)| region.cell(row, n).is_empty());
+        if empty && !event {
+            if used.iter().any(|&n| !region.cell(row, n).is_empty()) {
+                found.aside.push(leave(Why::Empty, Part::Row));
+            }
+            continue;
+        }
+        if sums(region, columns, row, &found.rows) {
+            found.aside.push(leave(Why::Statistic, Part::Row));
+            continue;
+        }
+        found.rows.push(named(region, columns, row, key)?);
+    }
+    Ok(found)
+}
+
+/// The words that a row begins with, and what they mean; those of trials may be anything.
+fn name(region: &Region<'_>, columns: &Columns, row: usize, used: &[usize]) -> Option<(usize, Heading)> {
+    let words = |n: &&usize| {
+        let cell = region.cell(row, **n);
+        !cell.is_empty() && region.view.read(row, **n) == Cell::Words && super::cell::clock(cell).is_none()
+    };
+    // Text in a column of numbers names the row only if it is the first in it.
+    let column = *used.iter().find(words)?;
+    let before = used.iter().take_while(|&&n| n != column).any(|&n| region.view.is_number(row, n));
+    let event = columns.columns[column].kind == Kind::Event;
+    let heading = Heading::parse(region.cell(row, column));
+    (!before && (!event || heading.sums_up() && event_named(&heading))).then_some((column, heading))
+}
+
+/// `Mean` in a column of events, but not `max`, which is the apex.
+fn event_named(heading: &Heading) -> bool {
+    [Atom::Mean, Atom::Error, Atom::Derived].iter().any(|atom| heading.has(*atom))
+}
+
+/// Whether a row tells where the floor is on the scale.
+fn is_floor(heading: &Heading) -> bool {
+    let floors = ["floor", "ground", "table", "desk", "boden", "tisch", "sol", "pavimento", "suelo", "zero level"];
+    matches!(heading.meaning, Meaning::Setting)
+        && folded(&heading.text).split_whitespace().any(|word| floors.contains(&word))
+}
+
+/// The number of the bounce that a cell names: `3`, `Bounce 3`, `2nd`, `drop`.
+pub(super) fn bounce(cell: &str) -> Option<usize> {
+    if let Cell::Number(measured) = super::cell::read(cell, false) {
+        let n = measured.value;
+        // In range and whole: the cast is exact.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        return (n.fract() == 0.0 && (0.0..=1e6).contains(&n) && measured.unit.is_none()).then_some(n as usize);
+    }
+    let heading = Heading::parse(cell);
+    if !heading.unknown.is_empty() {
+        return None;
+    }
+    match heading.value()?.at {
+        At::Release => Some(0),
+        At::Nth(n) => Some(n),
+        _ => None,
+    }
+}
+
+/// A row without a name below rows with one, whose numbers are the means of those above.
+fn sums(region: &Region<'_>, columns: &Columns, row: usize, above: &[Row]) -> bool {
+    /// Means are rounded to three digits or more.
+    const ROUNDED: f64 = 0.005;
+    let key = columns.columns.iter().position(|c| matches!(c.kind, Kind::Trial | Kind::Number { .. } | Kind::Label));
+    let Some(key) = key.filter(|&key| region.cell(row, key).is_empty()) else { return false };
+    if above.len() < 2 || above.iter().any(|r| region.cell(r.at, key).is_empty()) {
+        return false;
+    }
+    let number = |row: usize, column: usize| match region.view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let mean = |column: usize| {
+        let all: Vec<f64> = above.iter().filter_map(|r| number(r.at, column)).collect();
+        #[allow(clippy::cast_precision_loss)] // rows of a table
+        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+    };
+    let pairs: Vec<(f64, f64)> = columns.values().filter_map(|(n, _, _)| Some((number(row, n)?, mean(n)?))).collect();
+    !pairs.is_empty() && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * b.abs())
+}
+
+fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>) -> Result<Row, TableError> {
+    let mut found = Row { at: row, bounce: None, name: String::new(), group: String::new() };
+    let Some(key) = key else { return Ok(found) };
+    let cell = region.cell(row, key);
+    found.bounce = bounce(cell);
+    let number = matches!(columns.columns[key].kind, Kind::Number { .. });
+    if found.bounce.is_some() {
+        return Ok(found);
+    }
+    if number {
+        let message = match region.view.read(row, key) {
+            Cell::Empty => "the cell is empty".to_owned(),
+            Cell::Number(_) => "the number of a bounce is 0, 1, 2 and so on".to_owned(),
+            _ => format!("'{}' is not a number", shown(cell)),
+        };
+        return Err(region
+            .view
+            .error(row, key, message)
+            .help("count the bounces in whole numbers, 0 being the release"));
+    }
+    found.group = Heading::parse(cell).value().map_or(String::new(), |v| v.group.clone());
+    cell.clone_into(&mut found.name);
+    Ok(found)
+}

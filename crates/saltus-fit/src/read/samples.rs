@@ -1,0 +1,186 @@
+//! A series of heights in time: its order, its gaps and repeats, and which way is up.
+
+use super::region::Region;
+use super::{ReadOptions, Reading, Table, Trial};
+use crate::error::TableError;
+use crate::orientation::falls_upwards;
+
+/// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
+const RECORDING: usize = 5;
+/// Rows this far apart are compared to tell how fast the ball falls.
+const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
+/// They agree how fast if the middle half of the bends lies within this part of their median.
+const ALIKE: f64 = 0.35;
+
+/// Puts the samples of a table in order and the right way up.
+pub(super) fn series(
+    region: &Region<'_>,
+    column: usize,
+    unscaled: bool,
+    options: &ReadOptions,
+    table: &mut Table,
+) -> Result<(), TableError> {
+    let trials = std::mem::take(&mut table.trials);
+    for trial in trials {
+        for part in recordings(trial, &mut table.notes) {
+            table.trials.push(ordered(region, column, part, &mut table.repairs)?);
+        }
+    }
+    table.trials.retain(|trial| !trial.readings.is_empty());
+    if table.trials.is_empty() {
+        return Err(region
+            .error("no row holds both a time and a height")
+            .help("check the columns, or name them by --header"));
+    }
+    orient(unscaled, options, table);
+    if !unscaled {
+        falls(table);
+    }
+    Ok(())
+}
+
+/// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says so too.
+fn falls(table: &mut Table) {
+    let gravity = table.metadata.gravity.unwrap_or(9.81);
+    let agreed = |stride: &usize| {
+        let found = table.trials.iter().flat_map(|trial| accelerations(&trial.readings, *stride));
+        let mut found: Vec<f64> = found.collect();
+        found.sort_unstable_by(f64::total_cmp);
+        let part = |n: usize| found.get(found.len() * n / 4).copied().unwrap_or(f64::NAN);
+        (found.len() >= 8 && part(3) - part(1) < ALIKE * part(2)).then_some(part(2))
+    };
+    // Close samples show their noise: the nearest are taken on which the bends agree.
+    let Some(median) = STRIDES.iter().find_map(agreed) else { return };
+    if (0.7 * gravity..1.4 * gravity).contains(&median) {
+        return;
+    }
+    let rate = (gravity / median).sqrt();
+    let rate = match table.metadata.frame_rate {
+        Some(fps) => format!("{:.0} frames a second would be right", fps * rate),
+        None => pace(table, rate),
+    };
+    table.warnings.push(format!(
+        "the ball falls with {median:.2} m/s² where {gravity:.2} are due: is the unit of heights, the scale or the frame rate \
+         wrong? ({rate})"
+    ));
+}
+
+/// By how much a recording runs too slowly or too fast, and at which rates it would have been filmed and played.
+fn pace(table: &Table, rate: f64) -> String {
+    let steps = table.trials.iter().flat_map(|t| t.readings.windows(2)).filter_map(|w| Some(w[1].time? - w[0].time?));
+    let played = crate::statistics::median(&mut steps.collect::<Vec<f64>>()).map_or(0.0, |step| 1.0 / step);
+    let (by, how) = if rate > 1.0 { (rate, "slower") } else { (1.0 / rate, "faster") };
+    format!(
+        "if it is the clock, the recording runs {by:.1} times {how} than life, as a film shot at {:.0} frames a second and played at {played:.0}; \
+         the COR does not depend on it",
+        played * rate
+    )
+}
+
+/// The downward accelerations where a series moves and bends downwards, from second differences.
+fn accelerations(readings: &[Reading], stride: usize) -> Vec<f64> {
+    let points: Vec<(f64, f64)> = readings.iter().filter_map(|r| Some((r.time?, r.height?))).collect();
+    let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.1), h.max(p.1)));
+    let moves = 0.02 * (high - low);
+    let bend = |w: &[(f64, f64)]| {
+        let (a, b, c) = (w[0], w[stride], w[2 * stride]);
+        let slopes = ((b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0));
+        let acceleration = 2.0 * (slopes.0 - slopes.1) / (c.0 - a.0);
+        ((b.1 - a.1).abs().max((c.1 - b.1).abs()) > moves && acceleration > 0.0).then_some(acceleration)
+    };
+    points.windows(2 * stride + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
+}
+
+/// Recordings one below the other, told apart by a clock that starts again.
+fn recordings(trial: Trial, notes: &mut Vec<String>) -> Vec<Trial> {
+    let restarts = |pair: &[Reading]| pair[1].time < pair[0].time;
+    let starts: Vec<usize> =
+        trial.readings.windows(2).enumerate().filter(|(_, pair)| restarts(pair)).map(|(n, _)| n + 1).collect();
+    let ends = starts.iter().copied().chain([trial.readings.len()]);
+    let shortest = std::iter::once(0).chain(starts.iter().copied()).zip(ends).map(|(a, b)| b - a).min().unwrap_or(0);
+    if starts.is_empty() || shortest < RECORDING {
+        return vec![trial];
+    }
+    notes.push(format!("the clock starts again {} times: read as {} recordings", starts.len(), starts.len() + 1));
+    let like = Trial { readings: Vec::new(), ..trial.clone() };
+    let mut parts: Vec<Trial> = Vec::new();
+    for (n, reading) in trial.readings.into_iter().enumerate() {
+        if n == 0 || starts.binary_search(&n).is_ok() {
+            let run = format!("recording {}", parts.len() + 1);
+            let label = if trial.label.is_empty() { run } else { format!("{}, {run}", trial.label) };
+            parts.push(Trial { label, readings: Vec::new(), ..like.clone() });
+        }
+        if let Some(part) = parts.last_mut() {
+            part.readings.push(reading);
+        }
+    }
+    parts
+}
+
+/// Sorts by time; a sample given twice alike counts once, one given twice otherwise is an error.
+fn ordered(
+    region: &Region<'_>,
+    column: usize,
+    mut trial: Trial,
+    repairs: &mut Vec<String>,
+) -> Result<Trial, TableError> {
+    let by_time = |a: &Reading, b: &Reading| a.time.partial_cmp(&b.time).unwrap_or(std::cmp::Ordering::Equal);
+    trial.readings.sort_by(|a, b| by_time(a, b).then(a.line.cmp(&b.line)));
+    if let Some(pair) = trial.readings.windows(2).find(|p| p[0].time == p[1].time && p[0].height != p[1].height) {
+        let message = format!("this time stands in line {} too, with another height", pair[0].line);
+        return Err(region
+            .line_error(pair[1].line, column, message)
+            .help(
+                "correct one of the two; tell recordings apart by a column 'trial'; where times are rounded to more than a frame, number the \
+                 frames instead, in a column 'frame' (--header frame,height_cm --fps 240)",
+            ));
+    }
+    let before = trial.readings.len();
+    trial.readings.dedup_by(|b, a| a.time == b.time && a.height == b.height);
+    let repeated = before - trial.readings.len();
+    if repeated > 0 {
+        let s = if repeated == 1 { "sample is" } else { "samples are" };
+        repairs.push(format!("{repeated} {s} given twice alike, counted once"));
+    }
+    for (n, reading) in trial.readings.iter_mut().enumerate() {
+        reading.bounce = n;
+    }
+    Ok(trial)
+}
+
+/// Turns a series that falls upwards; heights of a picture are then counted from its lowest.
+fn orient(unscaled: bool, options: &ReadOptions, table: &mut Table) {
+    let recordings: Vec<(Vec<f64>, Vec<f64>)> =
+        table.trials.iter().map(|t| t.readings.iter().filter_map(|r| Some((r.time?, r.height?))).unzip()).collect();
+    let falls_upwards = falls_upwards(&recordings);
+    let turned = match options.down {
+        Some(down) => {
+            // What is stated is heeded, but a ball that then falls upwards is worth a word.
+            if falls_upwards == Some(true) {
+                table.metadata.falls_upwards = Some(if down {
+                    "the heights are taken to count downwards, as stated, and then the ball falls upwards: it should be --y-up"
+                } else {
+                    "the heights are taken to count upwards, as stated, and then the ball falls upwards: it should be --y-down"
+                });
+            }
+            false
+        }
+        None => falls_upwards.unwrap_or(unscaled),
+    };
+    if turned {
+        let why = if falls_upwards.is_some() { "the ball falls that way" } else { "as in pictures" };
+        table.notes.push(format!("heights count downwards: {why} (--y-up if not)"));
+        each_height(table, |h| -h);
+    }
+    // Where nobody says what the scale reads at the floor, pictures and scales upside down are counted from the lowest reading.
+    let floor = table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height).fold(f64::INFINITY, f64::min);
+    if options.zero.is_none() && (turned || options.down == Some(true) || unscaled) && floor.is_finite() {
+        each_height(table, |h| h - floor);
+    }
+}
+
+fn each_height(table: &mut Table, change: impl Fn(f64) -> f64) {
+    for reading in table.trials.iter_mut().flat_map(|t| &mut t.readings) {
+        reading.height = reading.height.map(&change);
+    }
+}

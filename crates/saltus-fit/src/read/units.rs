@@ -1,0 +1,141 @@
+//! Units as people write them in headings and cells.
+
+use saltus_bounce::units::Quantity;
+
+use super::vocabulary::{Atom, folded, meanings};
+
+/// What a unit measures, as far as a table of bounces asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Dimension {
+    Length,
+    Time,
+    Speed,
+    /// Anything else: a mass, an angle.
+    Other,
+}
+
+impl Dimension {
+    /// The noun of a message.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Time => "time",
+            Self::Speed => "speed",
+            Self::Other => "anything here",
+        }
+    }
+
+    /// The units that are offered.
+    pub(super) fn known(self) -> String {
+        let list = |quantity: Quantity| quantity.units().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        match self {
+            Self::Time => list(Quantity::Time),
+            Self::Speed => list(Quantity::Speed),
+            _ => format!("{}, px", list(Quantity::Length)),
+        }
+    }
+}
+
+/// What one of a unit is: a number of SI units, or something that only ratios have a meaning for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    /// A factor, or, where that is exact, a divisor: 30 cm is 30 / 100 m.
+    Si { times: f64, over: f64 },
+    /// A pixel of unknown size.
+    Pixels,
+    /// A hundredth of the height of release.
+    Percent,
+}
+
+/// A unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unit {
+    pub(super) dimension: Dimension,
+    pub(super) scale: Scale,
+}
+
+impl Unit {
+    pub(super) const SECOND: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: 1.0 } };
+    pub(super) const PIXEL: Self = Self { dimension: Dimension::Length, scale: Scale::Pixels };
+
+    /// One frame, in seconds.
+    pub(super) fn frame(fps: f64) -> Self {
+        Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: fps } }
+    }
+
+    /// A pixel whose size is known, in metres.
+    pub(super) fn pixel_of(metres: f64) -> Self {
+        Self { dimension: Dimension::Length, scale: Scale::Si { times: metres, over: 1.0 } }
+    }
+
+    fn of(dimension: Dimension, scale: f64) -> Self {
+        let inverse = (1.0 / scale).round();
+        let exact = scale < 1.0 && (inverse * scale - 1.0).abs() < f64::EPSILON;
+        let scale = if exact { Scale::Si { times: 1.0, over: inverse } } else { Scale::Si { times: scale, over: 1.0 } };
+        Self { dimension, scale }
+    }
+
+    /// A number of this unit in SI units; pixels and hundredths stay what they are.
+    pub(super) fn si(self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Si { times, over } => value * times / over,
+            Scale::Pixels => value,
+            Scale::Percent => value / 100.0,
+        }
+    }
+
+    /// Whether only ratios of its numbers have a meaning.
+    pub(super) fn unscaled(self) -> bool {
+        !matches!(self.scale, Scale::Si { .. })
+    }
+
+    /// The unit that a text is and nothing else: `cm`, `m/s`, `inches`, `%`.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let text = text.trim().trim_end_matches('.');
+        let lower = folded(text);
+        let symbol = match meanings(&lower) {
+            Some([Atom::Unit(symbol)]) => symbol,
+            _ => lower.as_str(),
+        };
+        match symbol {
+            "%" | "percent" | "pct" => return Some(Self { dimension: Dimension::Length, scale: Scale::Percent }),
+            "px" => return Some(Self::PIXEL),
+            "\"" | "″" | "''" | "”" => return Self::parse("in"),
+            "'" | "′" | "’" => return Self::parse("ft"),
+            "second" | "secs" => return Some(Self::SECOND),
+            _ => {}
+        }
+        for (quantity, dimension) in [
+            (Quantity::Length, Dimension::Length),
+            (Quantity::Time, Dimension::Time),
+            (Quantity::Speed, Dimension::Speed),
+        ] {
+            if let Some(scale) = quantity.scale(symbol) {
+                return Some(Self::of(dimension, scale));
+            }
+        }
+        let other = Quantity::ALL.iter().any(|quantity| quantity.scale(text).or(quantity.scale(symbol)).is_some())
+            || ["j", "mj", "n", "w", "°c", "°f", "k", "db", "psi", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"]
+                .contains(&symbol);
+        other.then_some(Self { dimension: Dimension::Other, scale: Scale::Si { times: 1.0, over: 1.0 } })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_as_people_write_them() {
+        let length = |text: &str| Unit::parse(text).filter(|u| u.dimension == Dimension::Length).map(|u| u.si(1.0));
+        assert_eq!(
+            ["m", "cm", "CM", "cm.", "inches", "\"", "Meter", "mètres", "%"].map(length),
+            [1.0, 0.01, 0.01, 0.01, 0.0254, 0.0254, 1.0, 1.0, 0.01].map(Some)
+        );
+        let dimension = |text: &str| Unit::parse(text).map(|u| u.dimension);
+        assert_eq!(dimension("ms"), Some(Dimension::Time));
+        assert_eq!(dimension("m/s"), Some(Dimension::Speed));
+        assert_eq!(dimension("kg"), Some(Dimension::Other));
+        assert_eq!(["", "furlong", "trial"].map(dimension), [None; 3]);
+    }
+}

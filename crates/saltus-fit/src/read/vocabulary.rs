@@ -1,0 +1,192 @@
+//! The words that headings are made of, with their meanings: `words.tsv`, one word a line.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+/// A word a line, a tab, its meanings.
+const WORDS: &str = include_str!("words.tsv");
+
+/// A meaning of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Atom {
+    // What is measured.
+    Height,
+    Position,
+    Distance,
+    Time,
+    Interval,
+    Total,
+    Speed,
+    Percent,
+    // At which event.
+    Release,
+    Rebound,
+    Impact,
+    Before,
+    After,
+    Between,
+    Rest,
+    Air,
+    // What tells rows and columns apart.
+    Number,
+    Trial,
+    Repeat,
+    Group,
+    Label,
+    Event,
+    Frame,
+    // A statistic of readings.
+    Mean,
+    Median,
+    Error,
+    Max,
+    Min,
+    // What turns the meaning: the numbers are no readings.
+    Lost,
+    Predicted,
+    Goal,
+    Derived,
+    Other,
+    Note,
+    /// The word says nothing.
+    Filler,
+    /// The word puts what follows in this place of an order.
+    Ordinal(usize),
+    /// The word is this unit.
+    Unit(&'static str),
+}
+
+impl Atom {
+    fn of(name: &'static str) -> Option<Self> {
+        Some(match name {
+            "height" => Self::Height,
+            "position" => Self::Position,
+            "distance" => Self::Distance,
+            "time" => Self::Time,
+            "interval" => Self::Interval,
+            "total" => Self::Total,
+            "speed" => Self::Speed,
+            "percent" => Self::Percent,
+            "release" => Self::Release,
+            "rebound" => Self::Rebound,
+            "impact" => Self::Impact,
+            "before" => Self::Before,
+            "after" => Self::After,
+            "between" => Self::Between,
+            "rest" => Self::Rest,
+            "air" => Self::Air,
+            "number" => Self::Number,
+            "trial" => Self::Trial,
+            "repeat" => Self::Repeat,
+            "group" => Self::Group,
+            "label" => Self::Label,
+            "event" => Self::Event,
+            "frame" => Self::Frame,
+            "mean" => Self::Mean,
+            "median" => Self::Median,
+            "error" => Self::Error,
+            "max" => Self::Max,
+            "min" => Self::Min,
+            "lost" => Self::Lost,
+            "predicted" => Self::Predicted,
+            "goal" => Self::Goal,
+            "derived" => Self::Derived,
+            "other" => Self::Other,
+            "note" => Self::Note,
+            "filler" => Self::Filler,
+            _ => match name.split_once(':')? {
+                ("ordinal", place) => Self::Ordinal(place.parse().ok()?),
+                ("unit", symbol) => Self::Unit(symbol),
+                _ => return None,
+            },
+        })
+    }
+}
+
+/// The meanings of a word in lower case without accents; `None` if it is not known.
+pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
+    static ALL: OnceLock<HashMap<&'static str, Vec<Atom>>> = OnceLock::new();
+    let all = ALL.get_or_init(|| entries().map(|(word, names)| (word, names.filter_map(Atom::of).collect())).collect());
+    all.get(word).map(Vec::as_slice)
+}
+
+/// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three letters.
+pub(super) fn nearest(word: &str) -> Option<&'static str> {
+    let most = word.chars().count().min(LONGEST) / 3;
+    let known = entries().map(|(known, _)| (distance(word, known), known));
+    known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
+}
+
+/// No word is longer, in letters; longer ones are compared by their beginning.
+const LONGEST: usize = 32;
+
+/// The number of single-character edits between two words (Levenshtein's distance).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().take(LONGEST).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let next = (diagonal + usize::from(x != y)).min(row[j] + 1).min(row[j + 1] + 1);
+            diagonal = std::mem::replace(&mut row[j + 1], next);
+        }
+    }
+    row[b.len()]
+}
+
+fn entries() -> impl Iterator<Item = (&'static str, std::str::Split<'static, char>)> {
+    let lines = WORDS.lines().filter(|line| !line.starts_with('#'));
+    lines.filter_map(|line| line.split_once('\t')).map(|(word, names)| (word, names.split(' ')))
+}
+
+/// A text in lower case, its accents and the marks of subscripts taken off: `Höhe h₁` is `hohe h1`.
+pub(super) fn folded(text: &str) -> String {
+    let mut found = String::with_capacity(text.len());
+    for c in text.chars().flat_map(char::to_lowercase) {
+        match c {
+            'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' => found.push('a'),
+            'ç' => found.push('c'),
+            'è' | 'é' | 'ê' | 'ë' => found.push('e'),
+            'ì' | 'í' | 'î' | 'ï' => found.push('i'),
+            'ñ' => found.push('n'),
+            'ò' | 'ó' | 'ô' | 'õ' | 'ö' => found.push('o'),
+            'ù' | 'ú' | 'û' | 'ü' => found.push('u'),
+            'œ' => found.push_str("oe"),
+            'ß' => found.push_str("ss"),
+            // Accents by themselves, as some programs write them.
+            '\u{300}'..='\u{36f}' => {}
+            '₀'..='₉' => found.extend(char::from_digit(u32::from(c) - u32::from('₀'), 10)),
+            // A subscript letter names a component of a vector.
+            'ₓ' => found.push('x'),
+            'ᵧ' => found.push('y'),
+            c => found.push(c),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_stands_once_in_plain_letters_and_has_a_meaning() {
+        let mut seen = std::collections::HashSet::new();
+        for (word, names) in entries() {
+            assert!(seen.insert(word), "{word} stands twice");
+            assert_eq!(folded(word), word);
+            let names: Vec<&str> = names.collect();
+            assert!(!names.is_empty() && names.iter().all(|name| Atom::of(name).is_some()), "{word}: {names:?}");
+        }
+        assert!(seen.len() > 400);
+    }
+
+    #[test]
+    fn the_distance_counts_edits() {
+        for (a, b, edits) in [("", "", 0), ("hight", "height", 1), ("time", "tiem", 2), ("abc", "", 3)] {
+            assert_eq!(distance(a, b), edits, "{a} {b}");
+        }
+        assert_eq!((nearest("hieght"), nearest("wobble")), (Some("height"), None));
+    }
+}

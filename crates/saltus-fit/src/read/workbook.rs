@@ -1,0 +1,211 @@
+//! Files of several tables: workbooks (`.xlsx`, `.xls`) and zip archives of CSV, each as text, one line a row.
+//!
+//! A few kilobytes of a hostile archive can stand for gigabytes. Every entry of an archive is therefore measured before it is
+//! trusted, cells are read one by one, and what they add up to is bounded.
+
+use std::io::{Cursor, Read, copy, sink};
+use std::panic::{UnwindSafe, catch_unwind};
+
+use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError};
+use zip::ZipArchive;
+
+use super::old_workbook;
+use crate::error::TableError;
+
+/// What a workbook or an archive may hold when unpacked, in bytes.
+const UNPACKED: u64 = 128 << 20;
+/// What the cells of a workbook may hold as text, in bytes.
+const TEXT: usize = 64 << 20;
+/// Entries of an archive that are looked at.
+const ENTRIES: usize = 1000;
+/// How much of another reader's message is shown, in characters.
+const SHOWN: usize = 200;
+/// A cell longer than this holds no reading.
+const CELL: usize = 1000;
+
+/// One table of a file of several.
+pub(super) struct Part {
+    /// The name of the sheet, or of the file in the archive.
+    pub(super) name: String,
+    /// The workbook does not show it.
+    pub(super) hidden: bool,
+    /// The sheet's cells, separated by tabs, or the bytes of the file.
+    pub(super) content: Content,
+}
+
+pub(super) enum Content {
+    Cells(String),
+    Bytes(Vec<u8>),
+}
+
+/// The tables of a workbook or an archive; `None` if `bytes` are neither.
+pub(super) fn parts(name: &str, bytes: &[u8]) -> Option<Result<Vec<Part>, TableError>> {
+    if bytes.starts_with(&[0xD0, 0xCF, 0x11, 0xE0]) {
+        Some(caught(|| xls(bytes)).map_err(|problem| broken(name, "workbook", &problem)))
+    } else if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
+        Some(archive(name, bytes))
+    } else {
+        None
+    }
+}
+
+/// The readers of workbooks trust what they read and may panic over a damaged file.
+fn caught(read: impl FnOnce() -> Result<Vec<Part>, String> + UnwindSafe) -> Result<Vec<Part>, String> {
+    catch_unwind(read).unwrap_or_else(|_| Err("it is damaged".to_owned()))
+}
+
+fn broken(name: &str, what: &str, problem: &str) -> TableError {
+    // Readers quote what they stumble over, whatever its length.
+    let problem: String = problem.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    TableError::new(name, format!("this {what} cannot be read: {problem}"))
+        .help("save the table as CSV (UTF-8) and try again")
+}
+
+fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
+    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(name, "archive", &e.to_string()))?;
+    let names: Vec<String> = zip.file_names().take(ENTRIES).filter_map(|n| Some(n.ok()?.into_owned())).collect();
+    let has = |entry: &str| names.iter().any(|n| n == entry);
+    if has("xl/workbook.xml") {
+        measure(&mut zip).map_err(|problem| broken(name, "workbook", &problem))?;
+        return caught(|| xlsx(bytes)).map_err(|problem| broken(name, "workbook", &problem));
+    }
+    if has("content.xml") || has("xl/workbook.bin") {
+        return Err(TableError::new(name, "workbooks of this kind are not read").help("save it as .xlsx or as CSV"));
+    }
+    let mut parts = Vec::new();
+    let mut left = UNPACKED;
+    for entry in names.iter().filter(|n| is_table(n)) {
+        let mut content = Vec::new();
+        let file = zip.by_name(entry).map_err(|e| broken(name, "archive", &e.to_string()))?;
+        let read = file.take(left + 1).read_to_end(&mut content);
+        let size = read.map_err(|e| broken(name, "archive", &e.to_string()))? as u64;
+        left = left.checked_sub(size).ok_or_else(|| broken(name, "archive", &too_large()))?;
+        parts.push(Part { name: entry.clone(), hidden: false, content: Content::Bytes(content) });
+    }
+    if parts.is_empty() {
+        return Err(TableError::new(name, "the archive holds no table: no file in it ends in .csv, .tsv or .txt")
+            .help("unpack it and give the table itself"));
+    }
+    Ok(parts)
+}
+
+/// Neither what macOS adds to every archive, nor phyphox' files on the telephone itself.
+fn is_table(entry: &str) -> bool {
+    let lower = entry.to_lowercase();
+    let file = lower.rsplit('/').next().unwrap_or_default();
+    [".csv", ".tsv", ".txt"].iter().any(|end| file.ends_with(end))
+        && !file.starts_with('.')
+        && !lower.starts_with("__macosx/")
+        && !lower.split('/').any(|folder| folder == "meta")
+}
+
+fn too_large() -> String {
+    format!("it unpacks to more than {} MB", UNPACKED >> 20)
+}
+
+/// Unpacks everything into nothing, so that no claim about sizes has to be believed.
+fn measure(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Result<(), String> {
+    let mut left = UNPACKED;
+    for index in 0..zip.len() {
+        let entry = zip.by_index(index).map_err(|e| e.to_string())?;
+        let size = copy(&mut entry.take(left + 1), &mut sink()).map_err(|e| e.to_string())?;
+        left = left.checked_sub(size).ok_or_else(too_large)?;
+    }
+    Ok(())
+}
+
+fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
+    let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
+    let mut parts = Vec::new();
+    let mut left = TEXT;
+    for (name, hidden) in shown_or_not(workbook.sheets_metadata()) {
+        let mut cells = match workbook.worksheet_cells_reader(&name) {
+            Ok(cells) => cells,
+            // A sheet that is a chart has no cells.
+            Err(XlsxError::NotAWorksheet(_)) => continue,
+            Err(e) => return Err(e.to_string()),
+        };
+        let mut rows = Rows::new(left);
+        while let Some(cell) = cells.next_cell().map_err(|e| e.to_string())? {
+            match cell.get_value() {
+                DataRef::Empty => {}
+                DataRef::SharedString(text) => rows.put(cell.get_position(), text)?,
+                value => rows.put(cell.get_position(), &shown(&Data::from(value.clone())))?,
+            }
+        }
+        left = rows.left;
+        parts.push(Part { name, hidden, content: Content::Cells(rows.text) });
+    }
+    Ok(parts)
+}
+
+fn xls(bytes: &[u8]) -> Result<Vec<Part>, String> {
+    old_workbook::check(bytes)?;
+    let mut workbook = Xls::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
+    let mut parts = Vec::new();
+    let mut left = TEXT;
+    for (name, hidden) in shown_or_not(workbook.sheets_metadata()) {
+        let Ok(range) = workbook.worksheet_range(&name) else { continue };
+        let (top, first) = range.start().unwrap_or((0, 0));
+        let mut rows = Rows::new(left);
+        for (row, column, value) in range.used_cells() {
+            let position = (u32::try_from(row).unwrap_or(u32::MAX), u32::try_from(column).unwrap_or(u32::MAX));
+            rows.put((top.saturating_add(position.0), first.saturating_add(position.1)), &shown(value))?;
+        }
+        left = rows.left;
+        parts.push(Part { name, hidden, content: Content::Cells(rows.text) });
+    }
+    Ok(parts)
+}
+
+/// The names of the sheets, and whether the workbook hides them.
+fn shown_or_not(sheets: &[Sheet]) -> Vec<(String, bool)> {
+    sheets.iter().map(|sheet| (sheet.name.clone(), sheet.visible != SheetVisible::Visible)).collect()
+}
+
+/// A value as CSV would have it.
+fn shown(value: &Data) -> String {
+    match value {
+        Data::Float(number) => number.to_string(),
+        Data::Int(number) => number.to_string(),
+        Data::String(text) => text.clone(),
+        // A moment is a number of days to a spreadsheet, and a stopwatch's reading is one to its user.
+        Data::DateTime(moment) => (moment.as_f64() * 86_400.0).to_string(),
+        Data::Empty => String::new(),
+        // '#N/A' at the start of a line would be a comment.
+        other => other.to_string().trim_start_matches('#').to_owned(),
+    }
+}
+
+/// Cells, in ascending order, as lines of cells separated by tabs.
+struct Rows {
+    text: String,
+    /// Where the next cell would be put.
+    at: (u32, u32),
+    left: usize,
+}
+
+impl Rows {
+    fn new(left: usize) -> Self {
+        Self { text: String::new(), at: (0, 0), left }
+    }
+
+    fn put(&mut self, (row, column): (u32, u32), value: &str) -> Result<(), String> {
+        if (row, column) < self.at {
+            return Err("its cells are not in order".to_owned());
+        }
+        let down = (row - self.at.0) as usize;
+        let right = if down > 0 { column } else { column - self.at.1 } as usize;
+        let value: String =
+            value.chars().take(CELL).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect();
+        self.left = self
+            .left
+            .checked_sub(down + right + value.len())
+            .ok_or_else(|| format!("its cells hold more than {} MB", TEXT >> 20))?;
+        self.text.extend(std::iter::repeat_n('\n', down));
+        self.text.extend(std::iter::repeat_n('\t', right));
+        self.text.push_str(&value);
+        self.at = (row, column);
+        Ok(())
+    }
+}

@@ -1,0 +1,136 @@
+//! Tables as people hand them in, each with its right answer, with what has to be left aside, or with the question that it raises.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use saltus_fit::{Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/handed").join(name)
+}
+
+fn read(name: &str) -> Result<Table, TableError> {
+    Table::read(&path(name), &ReadOptions::default())
+}
+
+fn fit(name: &str) -> Report {
+    Fit::new().run(&read(name).unwrap_or_else(|error| panic!("{error}"))).unwrap()
+}
+
+/// The name of a file, its COR, how near, and the standard error where one is known.
+const CORS: &[(&str, f64, f64, Option<f64>)] = &[
+    ("01-eu-trials.csv", 0.746, 0.001, None),
+    ("02-comments.csv", 0.802, 0.001, None),
+    ("03-units-in-cells.csv", 0.802, 0.001, None),
+    ("04-plusminus.csv", 0.802, 0.002, None),
+    ("07-missing-first.csv", 0.803, 0.001, None),
+    ("08-ten-reps.csv", 0.8009, 0.0001, Some(0.0020)),
+    ("12-markdown.md", 0.802, 0.001, None),
+    ("13-transposed.csv", 0.802, 0.001, None),
+    ("17-tracker.txt", 0.780, 0.001, None),
+    ("17c-tracker6.txt", 0.780, 0.001, None),
+    ("19-pixels-apexes.csv", 0.791, 0.001, None),
+    ("22-laps.csv", 0.80, 0.005, None),
+    ("24-speeds.csv", 0.7995, 0.001, None),
+    ("32-phyphox-screen.csv", 0.82, 0.001, None),
+    ("40-total-time.csv", 0.7994, 0.0001, None),
+    ("41-mean-std-rows.csv", 0.7987, 0.0001, Some(0.0029)),
+    ("48b-xlsx-hidden.xlsx", 0.802, 0.001, None),
+    ("53-height-lost.csv", 0.800, 0.001, None),
+    ("55k-max-min.csv", 0.80, 0.002, None),
+    ("61i-theory.csv", 0.741, 0.001, None),
+    ("61p-mean-sd-cols.csv", 0.800, 0.001, None),
+    ("phyphox-three.csv", 0.8215, 0.001, None),
+];
+
+#[test]
+fn every_table_gives_its_cor() {
+    for &(name, truth, near, error) in CORS {
+        let report = fit(name);
+        let cor = report.cor().unwrap_or_else(|| panic!("{report}"));
+        assert!((cor.value - truth).abs() <= near, "{name}: {truth}\n{report}");
+        if let Some(error) = error {
+            let found = cor.standard_error.expect("an error");
+            assert!((found / error - 1.0).abs() < 0.05, "{name}: {error}\n{report}");
+        }
+    }
+}
+
+#[test]
+fn balls_and_surfaces_have_a_cor_each() {
+    for (name, cors) in [
+        ("15-two-sheets.xlsx", &[("Tennis", 0.746), ("Golf", 0.838)][..]),
+        ("53d-surface-columns.csv", &[("Wood", 0.80), ("Carpet", 0.548), ("Concrete", 0.849)]),
+    ] {
+        let report = fit(name);
+        assert!(report.cor().is_none() && report.groups().len() == cors.len(), "{report}");
+        for (group, (label, cor)) in report.groups().iter().zip(cors) {
+            let found = group.report.cor().unwrap_or_else(|| panic!("{report}")).value;
+            assert!(group.name == *label && (found - cor).abs() < 0.001, "{report}");
+        }
+        assert_eq!(report.differences().len(), cors.len() * (cors.len() - 1) / 2);
+    }
+}
+
+#[test]
+fn what_is_not_used_is_named() {
+    for (name, what, part, why) in [
+        ("61i-theory.csv", "theoretical height (cm)", Part::Column, Why::Predicted),
+        ("48b-xlsx-hidden.xlsx", "ratio", Part::Column, Why::Derived),
+        ("48b-xlsx-hidden.xlsx", "old", Part::Sheet, Why::Hidden),
+        ("48b-xlsx-hidden.xlsx", "Chart", Part::Sheet, Why::NoTable),
+        ("08-ten-reps.csv", "Average 100 64.15", Part::Row, Why::Statistic),
+        ("41-mean-std-rows.csv", "Std dev 0 1.04", Part::Row, Why::Statistic),
+        ("17c-tracker6.txt", "vᵧ (m/s)", Part::Column, Why::Other),
+        ("02-comments.csv", "Comment", Part::Column, Why::Note),
+        ("phyphox-three.csv", "Bounce 4 (s)", Part::Cell, Why::NotHeard),
+    ] {
+        let report = fit(name);
+        let found = report.left_aside().iter().find(|aside| aside.name == what);
+        let found = found.unwrap_or_else(|| panic!("{name}: {what}\n{:#?}", report.left_aside()));
+        assert_eq!((found.what, found.why), (part, why), "{name}: {what}");
+        assert!(report.to_string().replace("\n    ", " ").contains(&format!("'{what}'")), "{report}");
+        let json = serde_json::to_value(&report).unwrap();
+        let listed = json["left_aside"].as_array().unwrap();
+        assert!(listed.iter().any(|aside| aside["name"] == what), "{json}");
+    }
+}
+
+#[test]
+fn what_cannot_be_trusted_is_doubted() {
+    let rest = fit("40-total-time.csv");
+    assert!(rest.verdict() == Verdict::Doubtful && rest.reason().contains("until the ball rests"), "{rest}");
+    let typo = fit("06-typo.csv");
+    assert_eq!(typo.verdict(), Verdict::Doubtful);
+    assert!(typo.warnings().iter().any(|w| w.contains("'6.2'") && w.contains("62 for it")), "{typo}");
+}
+
+#[test]
+fn what_is_not_known_is_asked() {
+    let lost = read("55-lost-bounce.csv").unwrap_err();
+    assert!(lost.is_question() && lost.to_string().contains("'height lost (cm)' holds what was lost"), "{lost}");
+    let unit = read("54d-nounit-sheet.xlsx").unwrap_err();
+    assert!(unit.is_question() && unit.to_string().contains("sheet 'Monday', cell B1"), "{unit}");
+    assert!(unit.to_string().contains("no unit"), "{unit}");
+}
+
+/// Trials that agree to a whole centimetre are repeats, and no copies of one another.
+#[test]
+fn equal_trials_are_repeats() {
+    let report = fit("55o-repeat-trials.csv");
+    assert!(read("55o-repeat-trials.csv").unwrap().trials().len() == 10, "{report}");
+    assert!(report.repairs().iter().all(|repair| !repair.contains("counted once")), "{report}");
+    let cor = report.cor().unwrap().value;
+    assert!(report.verdict() != Verdict::Trusted || (cor - 0.808).abs() < 0.003, "{report}");
+}
+
+/// A film and a table of heights are two experiments: neither vanishes in the other.
+#[test]
+fn a_film_beside_heights_is_another_experiment() {
+    let files = [path("02-comments.csv"), path("17-tracker.txt")];
+    let report = Fit::new().run(&Table::read_all(&files, &ReadOptions::default()).unwrap()).unwrap();
+    let cors: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+    assert!((cors[0] - 0.802).abs() < 0.001 && (cors[1] - 0.780).abs() < 0.001, "{report}");
+    assert!(report.cor().is_none());
+}
