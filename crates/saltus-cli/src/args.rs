@@ -119,6 +119,9 @@ pub(crate) struct Fit {
     /// The column or the track to fit, where several hold readings of the same thing.
     #[arg(long, value_name = "NAME")]
     pub(crate) column: Option<String>,
+    /// The columns that tell balls or surfaces apart, or hold the readings of one each: each then has a COR of its own; `-` for none.
+    #[arg(long = "group", value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
+    pub(crate) groups: Vec<String>,
     /// The sheet of a workbook, or the file of a zip archive, to read; without it, every one that holds a table.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,

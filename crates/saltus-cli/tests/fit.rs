@@ -99,3 +99,14 @@ fn a_broken_workbook_is_one_error() {
         "{said}"
     );
 }
+
+#[test]
+fn groups_are_chosen_by_their_columns() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("balls.csv"), "drop (cm),wilson (cm),penn (cm)\n100,55,53\n100,56,54\n").unwrap();
+    let refused = saltus(folder.path(), &["fit", "balls.csv"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", text(&refused.stdout));
+    let output = saltus(folder.path(), &["fit", "balls.csv", "--group", "wilson (cm),penn (cm)"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("wilson") && text(&output.stdout).contains("penn"));
+}

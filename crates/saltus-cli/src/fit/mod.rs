@@ -145,6 +145,9 @@ fn options(args: &args::Fit) -> ReadOptions {
     if args.y_down || args.y_up {
         options = options.y_down(args.y_down);
     }
+    for column in &args.groups {
+        options = options.group(column);
+    }
     for (column, value) in &args.filters {
         options = options.filter(column, value);
     }
