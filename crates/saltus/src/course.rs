@@ -13,7 +13,7 @@ use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::time::Time;
 use crate::trajectory::{Cause, Jump, Piece};
-use crate::zeno::{Contraction, displacement};
+use crate::zeno::Contraction;
 
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.
 ///
@@ -290,7 +290,9 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
         // x is x⁺.
-        at.contraction.push(if at_once { 0.0 } else { duration }, displacement(&before, &after));
+        if !at_once {
+            at.contraction.push(duration);
+        }
         let elapsed = time.since(at.clock.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.clock.end.seconds()) {

@@ -140,14 +140,6 @@ impl<E: Copy + PartialEq> Memory<E> {
         walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1)
     }
 
-    /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
-    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen it
-    /// at every arc, until its crossings were lost at its start.
-    #[inline]
-    fn cut(&mut self, size: f64) {
-        self.step = self.step.map(|step| step.min(size));
-    }
-
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
     #[inline]
     pub(crate) fn at_once(&self, since: f64) -> bool {

@@ -81,7 +81,7 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
         Widening::Air { most_per_m, share } => format!(
             "the drag of an ordinary ball (up to k = {most_per_m} /m), which the readings do not show, would make the COR higher by {share:.3}: \
-             state what drag the ball has (--drag)"
+             state what drag the ball has"
         ),
         Widening::Misfit { rms, noise, share } => format!(
             "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \

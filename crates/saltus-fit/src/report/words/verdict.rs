@@ -239,7 +239,7 @@ fn recordings(kind: &FindingKind) -> Option<String> {
         }
         FindingKind::DragUnheld { drag_per_m, cor_with } => format!(
             "the flights ask for more drag than an ordinary ball has (k = {drag_per_m:.2} /m, and then a COR of {cor_with:.3}), but one bounce does not \
-             tell air drag from a bent picture: state the drag of the ball (--drag), or film a second bounce"
+             tell air drag from a bent picture: state the drag of the ball, or film a second bounce"
         ),
         FindingKind::DragUnphysical { drag_per_m } => format!(
             "the drag that fits, k = {drag_per_m:.2} /m, is that of no ball: the picture is bent, or the ball did not fall freely"
