@@ -97,12 +97,12 @@ pub struct Checkpoint<A: Automaton> {
     instant: Time,
     cascade: usize,
     contraction: Contraction,
-    memory: Memory<A::Edge>,
+    memory: Memory<A>,
     stop: Option<Stop<A::Edge>>,
 }
 
 impl<A: Automaton> Checkpoint<A> {
-    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Edge>) -> Self {
+    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A>) -> Self {
         let start = Time::new(span.start);
         let clock = Clock { start, now: start, end: Time::new(span.end) };
         Self {
@@ -133,7 +133,7 @@ impl<A: Automaton> Checkpoint<A> {
 
 impl<A: Automaton> Clone for Checkpoint<A> {
     fn clone(&self) -> Self {
-        Self { contraction: self.contraction.clone(), ..*self }
+        Self { contraction: self.contraction.clone(), memory: self.memory.clone(), ..*self }
     }
 }
 
@@ -288,7 +288,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
-        arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
+        arc.jumped(mode, &x, edge, (duration, at_once), now);
         // x is x⁺.
         at.contraction.push(if at_once { 0.0 } else { duration }, displacement(&before, &after));
         let elapsed = time.since(at.clock.start);

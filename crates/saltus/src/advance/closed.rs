@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::cross::{Undefined, chebyshev};
+use crate::cross::chebyshev;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::state::State;
@@ -35,9 +35,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let remaining = clock.end.since(now);
         let search = |this: &mut Self, edge, limit, start| {
             let natural = natural(&[*x, this.flow(mode, t, x)]);
-            this.fall_in_windows(edge, now, natural, at, limit, start)
-                .map(|searched| (searched, false))
-                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+            Ok((this.fall_in_windows(mode, edge, now, natural, at, limit, start)?, false))
         };
         let first = self.first_on_solution(mode, x, now, remaining, at, search, observer)?;
         let close = match &first {

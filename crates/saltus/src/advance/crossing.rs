@@ -3,8 +3,8 @@
 use crate::automaton::Automaton;
 use crate::copies::copied;
 use crate::cross::{
-    Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step,
-    settle,
+    Crossing, FirstFall, Leaves, Move, Outcome, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial,
+    first_fall_on_step, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
@@ -14,7 +14,7 @@ use crate::step::Stepper;
 use crate::time::{Time, resolution};
 use crate::trajectory::{LONG, horner};
 
-use super::Advance;
+use super::{Advance, Trigger};
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
@@ -35,9 +35,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
         for edge in self.automaton.edges(mode).iter() {
-            let (start, level) = (self.start(edge, first), self.level(edge, first));
+            let (start, mut leaves) = self.start(edge, first);
             let affine = self.automaton.affine(edge);
-            let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
+            let along = if affine { self.along(edge, now, c, limit / scale, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;
             let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
@@ -52,16 +52,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &at(&near, c, scale, s))
             };
-            let mut above = |s: f64| guard(s) - level;
-            let searched = match (by_powers, &p) {
-                (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
-                (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
-                (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
-                _ => first_fall_on_step(&mut above, limit, start, bend),
+            let search = |leaves: Leaves, guard: &mut dyn FnMut(f64) -> f64| match (by_powers, &p) {
+                (FirstFall::Nowhere, _) => Ok(Outcome::Found(Searched::solved(None))),
+                (FirstFall::At(u), _) => Ok(Outcome::Found(Searched::solved(settle(guard, u * limit)))),
+                (_, Some((p, margin, bend))) => {
+                    first_fall_of_polynomial(p, *margin, *bend, guard, limit, start, leaves)
+                }
+                _ => first_fall_on_step(guard, limit, start, leaves, bend),
             };
-            let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
-            let Searched { fall, evidence } =
-                searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
+            let mut searched = search(leaves, &mut guard);
+            if let Ok(Outcome::Unsure) = searched {
+                leaves = self.leaves(mode, edge, now.seconds(), &c[0])?;
+                let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+                searched = search(leaves, &mut |s: f64| {
+                    *count += 1;
+                    automaton.guard(edge, now.after(s).seconds(), &at(&near, c, scale, s))
+                });
+            }
+            if std::env::var("DBG").is_ok() { eprintln!("search {edge:?} at {:.18} first {first} limit {limit:e} start {start:?} {leaves:?} {by_powers:?} -> {searched:?}", now.seconds()); }
+            let Searched { fall, evidence } = searched
+                .map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?
+                .searched();
             if let Some(observer) = &mut observer {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             }
@@ -83,8 +94,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if bend.is_finite() { bend } else { 0.0 }
     }
 
-    /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
-    #[allow(clippy::too_many_arguments)]
+    /// What the guard of `edge` does first from `x`, at the start of an arc whose search has to know.
+    #[cold]
+    pub(super) fn leaves(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> Result<Leaves, Error> {
+        let (noise, first) = (self.zero(edge, t, x), self.first_move(mode, edge, t, x)?);
+        if std::env::var("DBG").is_ok() { eprintln!("leaves t {t:.18} x {x:?} {first:?} noise {noise:e}"); }
+        match first {
+            Move::Rises { slope } => self.memory.set(edge, Trigger::Rises { slope, noise }),
+            Move::Stays => self.memory.set(edge, Trigger::Touches { noise }),
+            Move::Falls { order } if order % 2 == 1 => {
+                self.outside(mode, edge, t, x, Some(noise))?;
+            }
+            Move::Falls { .. } => {}
+        }
+        Ok(Leaves::Known { first, noise })
+    }
+
+    /// An affine guard along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     #[inline]
     fn along<'p>(
         &mut self,
@@ -92,8 +118,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         now: Time,
         c: &[A::State],
         stretch: f64,
-        start: Start,
-        level: f64,
         powers: &'p mut Powers,
     ) -> Option<Along<'p>> {
         if c.len() > MAX_DEGREE + 1 {
@@ -103,13 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let guard = |x: &A::State| self.automaton.guard(edge, t, x);
         let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
-        powers.fill(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
-        let count = &mut self.memory.stats.guards;
-        if let (Start::Spent, Some(slope)) = (start, c.get(1))
-            && only_touched(powers.coefficients(), &guard, constant, slope, count)
-        {
-            powers.drop_slope();
-        }
+        powers.fill(g, &c[1..], |c| less_constant(guard, constant, c), stretch);
         Some(Along { powers, start: g, constant })
     }
 
@@ -138,7 +156,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
         let short = root < 1e-4 * self.memory.longest_duration;
         let resolved = root > 64.0 * f64::EPSILON * t.abs();
-        let again = self.memory.spent_as(edge).is_some();
+        let again = matches!(self.memory.trigger(edge), Some(Trigger::Taken { .. }));
         let hidden =
             short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
@@ -158,7 +176,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.automaton.guard(edge, t, end);
         let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0) + 64.0 * by_time
+        rise < 65536.0 * self.noise_of_state(edge, t, end, &end.with(|i| end.get(i).abs())) + 64.0 * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that rounding does not matter: such a fall, on an arc so short
@@ -198,19 +216,6 @@ pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, 
     if far.is_finite() { far / LARGER } else { guard(x) - constant }
 }
 
-/// Whether an affine guard of these `powers` that seems to fall from its root only touched zero there: it bends down, and its slope, that of the state `x`, is no
-/// more than rounding.
-#[inline]
-pub(super) fn only_touched<S: State>(
-    powers: &[f64],
-    guard: &dyn Fn(&S) -> f64,
-    constant: f64,
-    x: &S,
-    count: &mut u64,
-) -> bool {
-    matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, x, count)
-}
-
 /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
 #[cold]
 pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S, count: &mut u64) -> bool {
@@ -218,19 +223,6 @@ pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x:
     let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
     let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
     less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
-}
-
-/// What was found of a guard less its `level` at the start, of the `guard` itself.
-#[inline]
-pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
-    if level == 0.0 { searched } else { off_level(searched, guard) }
-}
-
-/// Seldom, and so out of the way of what is always done.
-#[cold]
-fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
-    let later = searched.fall.filter(|fall| fall.inside > 0.0);
-    Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
 }
 
 /// The first crossing on a step.

@@ -1,48 +1,43 @@
 //! What a mode's guards say as it is entered.
 
-use std::cell::Cell;
-
-use crate::automaton::{Automaton, Entry, Fall};
+use crate::automaton::{Automaton, Entry};
+use crate::cross::Move;
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{Time, resolution};
+use crate::time::Time;
 
-use super::Advance;
+use super::{Advance, Trigger};
 
-/// A guard no larger than this part of the state may be zero but for rounding.
+/// A guard larger than this part of the state is not zero but for rounding: others are looked at.
 const SMALL: f64 = 1e-12;
-/// A guard that changes by this many roundings at a glance is sure to rise or fall.
-const SURELY: f64 = 64.0;
-/// A fall this small a part of another is rounding beside it.
-const DRIVEN: f64 = 4096.0 * f64::EPSILON;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
     #[inline]
     pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
-        let mut zero = None;
-        self.memory.wall_count = 0;
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
-            let spent = self.memory.spent_as(edge);
-            if spent.is_some_and(|spent| g.abs() <= spent.slack) {
-                if self.memory.idle_count == 0 || !self.is_driven(mode, edge, t, x, g) {
-                    continue;
-                }
-            } else if spent.is_none() && g > SMALL * size(x) {
-                continue;
+            let trigger = self.memory.trigger(edge);
+            match trigger {
+                None if g > SMALL * size(x) => continue,
+                Some(Trigger::Taken { slack }) if g.abs() <= slack => continue,
+                _ => {}
             }
-            if self.is_entered(mode, edge, t, x, g, &mut zero)? {
-                return Ok(Some(self.first_of(mode, t, x, zero, edge)));
+            if self.is_entered(mode, edge, t, x, g, trigger)? {
+                self.decide_taken(mode, edge, t, x)?;
+                return Ok(Some(edge));
             }
+        }
+        if self.memory.triggers.len() > 1 {
+            self.forget_others(mode);
         }
         Ok(None)
     }
 
-    /// Whether an edge whose guard is neither clear of zero nor spent is to be taken at once.
+    /// Whether an edge whose guard is neither clear of zero nor just taken is to be taken at once.
     #[inline(never)]
     fn is_entered(
         &mut self,
@@ -51,116 +46,94 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         t: f64,
         x: &A::State,
         g: f64,
-        zero: &mut Option<A::Edge>,
+        trigger: Option<Trigger>,
     ) -> Result<bool, Error> {
         if g.is_nan() {
             return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
         }
-        // Within its slack a spent root is here only where it was driven on, and is then no longer spent.
-        let spent = self.memory.spent_as(edge).is_some_and(|spent| g.abs() > spent.slack);
-        if !spent || g >= 0.0 {
-            self.memory.unspend(edge); // the reset led away from the wall
-        }
-        if g >= 0.0 {
-            if !spent && g == 0.0 {
-                *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
-            } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
-                self.memory.at_wall(edge, g);
-            }
+        let noise = self.zero(edge, t, x);
+        if g > noise {
+            self.memory.arm(edge);
             return Ok(false);
         }
-        let slope = self.guard_slope(mode, edge, t, x, g);
-        let rounding =
-            slope.abs() * resolution(t) + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
-        if -g <= 4.0 * rounding {
-            let unsure = slope.abs() * self.glance() <= SURELY * rounding;
-            if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
-                self.memory.at_wall(edge, g);
-                return Ok(false);
-            }
-            return Ok(!spent && slope < 0.0);
+        if g < -noise && g < -self.within(edge, t, x) {
+            return match trigger {
+                Some(Trigger::Outside { .. }) => Ok(self.waits(edge)),
+                // What has drifted while it touched fires once something drives it.
+                Some(Trigger::Touches { .. }) => {
+                    Ok(matches!(self.first_move(mode, edge, t, x)?, Move::Falls { order: 1 }))
+                }
+                _ => self.outside(mode, edge, t, x, None),
+            };
         }
+        let first = self.first_move(mode, edge, t, x)?;
+        match first {
+            Move::Rises { slope } => {
+                self.memory.set(edge, Trigger::Rises { slope, noise });
+                Ok(false)
+            }
+            Move::Stays => {
+                self.memory.set(edge, Trigger::Touches { noise });
+                Ok(false)
+            }
+            Move::Falls { order } => match trigger {
+                Some(Trigger::Taken { .. } | Trigger::Outside { .. }) if order % 2 == 1 => {
+                    self.outside(mode, edge, t, x, Some(noise))
+                }
+                _ => Ok(true),
+            },
+        }
+    }
+
+    /// An edge that waits for its guard to rise goes on waiting.
+    fn waits(&mut self, edge: A::Edge) -> bool {
+        self.memory.set(edge, Trigger::Outside { noise: None });
+        false
+    }
+
+    /// Whether an edge is taken at once whose guard is below zero, or falls on from a zero that was
+    /// taken: that is the model's decision.
+    pub(super) fn outside(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        t: f64,
+        x: &A::State,
+        noise: Option<f64>,
+    ) -> Result<bool, Error> {
         match self.automaton.entry(edge) {
-            Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
-            Entry::Fire => Ok(true),
-            Entry::Wait => {
-                self.memory.unspend(edge);
+            Entry::Refuse if noise.is_none() => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
+            Entry::Fire if noise.is_none() => Ok(true),
+            _ => {
+                self.memory.set(edge, Trigger::Outside { noise });
                 Ok(false)
             }
         }
     }
 
-    /// Whether a guard that went on falling from its spent root, by no more than the rounding of what it falls by now, was driven on by a jump since: a ball that is
-    /// squeezed between others and the floor until its rebounds are rounding, and struck again.
+    /// Decides what edges that were taken do next, before another one is taken at the same instant:
+    /// what that one changes is to be told from what they did.
     #[cold]
-    fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
-        let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
-        let then = idle.find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
-        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g) * DRIVEN < then)
-    }
-
-    /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.
-    fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
-        zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0) < 0.0).unwrap_or(edge)
-    }
-
-    /// The longest time over which a guard's slope is looked at.
-    fn glance(&self) -> f64 {
-        if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 }
-    }
-
-    /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
-    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
-        const NUDGE: f64 = 1.0 / (1 << 20) as f64;
-        let mut sum = 0.0;
-        for k in 0..x.len() {
-            self.memory.stats.guards += 1;
-            let nudged = x.with(|i| if i == k { x.get(i) + NUDGE * x.get(i).abs().max(least) } else { x.get(i) });
-            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
-            sum += if change.is_finite() { change } else { 0.0 };
-        }
-        sum * (f64::EPSILON / NUDGE)
-    }
-
-    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
-    fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        const SOME: f64 = 1024.0;
-        self.memory.stats.guards += 1;
-        let ahead = t + SOME * resolution(t);
-        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
-        if change.is_finite() { change } else { 0.0 }
-    }
-
-    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
-    ///
-    /// The shortest time is taken over which the change of the guard doubles (or, where it never does, quadruples) with time twice in a row: longer than
-    /// rounding, shorter than the way to the guard's next root.
-    pub(super) fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let longest = self.glance();
-        let slope = self.flow(mode, t, x);
-        let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
-        let (automaton, guards) = (self.automaton, Cell::from_mut(&mut self.memory.stats.guards));
-        let change = |h: f64, bends: f64| {
-            guards.set(guards.get() + 1);
-            let bend = bends * h / longest;
-            let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
-            automaton.guard(edge, t + h, &ahead) - g
-        };
-        // A guard that moves is seen to move by no less than some roundings of time.
-        guards.set(guards.get() + 1);
-        let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { resolution(t) };
-        let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
-        for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
-            let mut h = shortest;
-            while h < longest && h > 0.0 {
-                let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
-                if (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs() {
-                    return far / h;
-                }
-                h *= 8.0;
+    fn decide_taken(&mut self, mode: A::Mode, fires: A::Edge, t: f64, x: &A::State) -> Result<(), Error> {
+        for edge in self.automaton.edges(mode).iter().filter(|edge| *edge != fires) {
+            if let Some(Trigger::Taken { .. }) = self.memory.trigger(edge) {
+                let noise = self.zero(edge, t, x);
+                let trigger = match self.first_move(mode, edge, t, x)? {
+                    Move::Rises { slope } => Trigger::Rises { slope, noise },
+                    Move::Stays | Move::Falls { order: 2 } => Trigger::Touches { noise },
+                    Move::Falls { .. } => Trigger::Outside { noise: Some(noise) },
+                };
+                self.memory.set(edge, trigger);
             }
         }
-        change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
+        Ok(())
+    }
+
+    /// Forgets the edges that the mode does not have.
+    #[cold]
+    fn forget_others(&mut self, mode: A::Mode) {
+        let edges = self.automaton.edges(mode);
+        self.memory.triggers.retain(|(edge, _)| edges.iter().any(|other| other == *edge));
     }
 }
 

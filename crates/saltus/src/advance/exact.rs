@@ -3,7 +3,9 @@
 use std::cell::LazyCell;
 
 use crate::automaton::{Automaton, Polynomial};
-use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
+use crate::cross::{
+    Crossing, Evidence, Leaves, Move, Outcome, Searched, Start, Undefined, first_fall_from, narrowed, settle,
+};
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::poly::{quadratic_fall, quadratic_touch};
@@ -12,7 +14,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
-use super::crossing::{Close, less_constant, only_touched, unlevelled};
+use super::crossing::{Close, less_constant};
 use super::{Advance, ArcEnd, Clock};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -31,11 +33,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let at = |s: f64| horner(c, s);
         let search = |this: &mut Self, edge, limit, start| {
             if c.len() <= 3 && this.automaton.affine(edge) {
-                return Ok((this.fall_of_parabola(edge, now, c, limit, start), true));
+                return Ok((this.fall_of_parabola(mode, edge, now, c, limit, start)?, true));
             }
-            this.fall_in_windows(edge, now, *natural, at, limit, start)
-                .map(|searched| (searched, false))
-                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+            Ok((this.fall_in_windows(mode, edge, now, *natural, at, limit, start)?, false))
         };
         let first = self.first_on_solution(mode, &c[0], now, remaining, at, search, observer)?;
         let close = match &first {
@@ -54,59 +54,84 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// An affine guard along a parabola is a parabola.
     #[inline]
-    fn fall_of_parabola(&mut self, edge: A::Edge, now: Time, c: &[A::State], limit: f64, start: Start) -> Searched {
+    fn fall_of_parabola(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        now: Time,
+        c: &[A::State],
+        limit: f64,
+        (start, mut leaves): (Start, Leaves),
+    ) -> Result<Searched, Error> {
         let g = |x: &A::State| self.automaton.guard(edge, now.seconds(), x);
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
-        let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
-        if start == Start::Spent && only_touched(&powers, &g, constant, &c[1], &mut self.memory.stats.guards) {
-            powers[1] = 0.0;
+        let mut powers = [g(&c[0]), power(1), power(2)];
+        if start == Start::Spent {
+            if powers[1] < 0.0 && matches!(leaves, Leaves::Ask) {
+                leaves = self.leaves(mode, edge, now.seconds(), &c[0])?;
+            }
+            match leaves {
+                Leaves::Known { first: Move::Falls { order: 2 }, .. } => {
+                    return Ok(Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE))));
+                }
+                // Where the slope is noise, the guard goes as its bend has it.
+                Leaves::Known { first: Move::Stays, .. } => powers[1] = 0.0,
+                _ => {}
+            }
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
-            return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
+            return Ok(match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
                 Some(at) => Searched { fall: None, evidence: Evidence::Rounding { from: at, to: at } },
                 None => Searched::solved(None),
-            };
+            });
         };
         if near == 0.0 {
-            return Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE)));
+            return Ok(Searched::solved(Some(Crossing::at_start(f64::MIN_POSITIVE))));
         }
         let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-        Searched::solved(settle(
+        Ok(Searched::solved(settle(
             |s| {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &horner(c, s))
             },
             near,
-        ))
+        )))
     }
 
     /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.
+    #[allow(clippy::too_many_arguments)]
     pub(super) fn fall_in_windows(
         &mut self,
+        mode: A::Mode,
         edge: A::Edge,
         now: Time,
         natural: f64,
         at: impl Fn(f64) -> A::State,
         limit: f64,
-        start: Start,
-    ) -> Result<Searched, Undefined> {
+        (mut start, mut leaves): (Start, Leaves),
+    ) -> Result<Searched, Error> {
         let longest = self.options.longest_step;
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
-        let (mut start, mut level) = (start, self.level(edge, true));
-        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-        let mut guard = |s: f64| {
-            *count += 1;
-            automaton.guard(edge, now.after(s).seconds(), &at(s))
-        };
         let mut evidence = Evidence::Excluded;
         loop {
             let to = if from + window < limit { from + window } else { limit };
-            let searched = first_fall(|s| guard(from + s) - level, to - from, start)
-                .map_err(|Undefined(s)| Undefined(from + s))?;
-            let searched = unlevelled(searched, level, &mut guard);
+            let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+            let mut guard = |s: f64| {
+                *count += 1;
+                automaton.guard(edge, now.after(s).seconds(), &at(s))
+            };
+            let outcome = first_fall_from(&mut |s| guard(from + s), to - from, start, leaves);
+            let searched = match outcome {
+                Ok(Outcome::Found(searched)) => searched,
+                Ok(Outcome::Unsure) => {
+                    leaves = self.leaves(mode, edge, now.seconds(), &at(0.0))?;
+                    continue;
+                }
+                Err(Undefined(s)) => return Err(self.undefined(mode, edge, now, from + s, &at(from + s))),
+            };
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
@@ -117,7 +142,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             from = to;
             window = (2.0 * window).min(longest);
-            (start, level) = (Start::Resumed, 0.0);
+            (start, leaves) = (Start::Resumed, Leaves::Ask);
         }
     }
 }

@@ -6,6 +6,7 @@ mod enter;
 mod exact;
 mod series;
 mod solved;
+mod start;
 mod stepped;
 
 pub(crate) use series::Held;
@@ -13,8 +14,9 @@ pub(crate) use series::Held;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
+use crate::copies::copied;
 use crate::control::Controller;
-use crate::cross::Start;
+use crate::cross::{Leaves, Move, Start};
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::series::Tape;
@@ -51,33 +53,45 @@ impl<A: Automaton> ArcEnd<A> {
     }
 }
 
-/// An edge taken, whose root is spent, and how far from zero its guard is there for rounding alone.
-#[derive(Clone, Copy)]
+/// What an edge is ready for that is not armed, as one is whose guard is positive.
+///
+/// An edge is a Schmitt trigger on its guard: armed above zero, it fires where the guard falls below.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Spent<E> {
-    edge: E,
-    slack: f64,
+pub(crate) enum Trigger {
+    /// It has just been taken, and what its guard does next is not decided: its root is spent where
+    /// the guard is within `slack` of zero.
+    Taken { slack: f64 },
+    /// It is armed, and its guard rises from zero, known to within `noise`, by this `slope`.
+    Rises { slope: f64, noise: f64 },
+    /// Its guard is zero to within `noise`, and no derivative leads away: it touches.
+    Touches { noise: f64 },
+    /// Its guard is below zero, or falls from a zero known to within `noise`: it waits until the guard
+    /// has risen.
+    Outside { noise: Option<f64> },
 }
 
-/// How many edges that were taken at one time, and go on falling, are remembered.
-const MOST_IDLE: usize = 16;
+/// The arc before the present one.
+pub(crate) struct LastArc<A: Automaton> {
+    mode: A::Mode,
+    state: A::State,
+    t: f64,
+    duration: f64,
+}
+
+copied!(LastArc);
 
 /// What is kept from arc to arc.
-#[derive(Clone, Copy)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Memory<E> {
+pub(crate) struct Memory<A: Automaton> {
     pub(crate) stats: Stats,
     controller: Controller,
     step: Option<f64>,
-    spent: Option<Spent<E>>,
+    /// The edges that are not armed. They survive every jump, as long as the mode entered has them.
+    triggers: Vec<(A::Edge, Trigger)>,
     /// The edge of the last jump.
-    last: Option<E>,
-    /// Edges taken earlier at this time whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
-    idle: [Option<(Spent<E>, f64)>; MOST_IDLE],
-    idle_count: usize,
-    /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
-    walls: [Option<(E, f64)>; MOST_IDLE],
-    wall_count: usize,
+    last: Option<A::Edge>,
+    /// The last arc that took time.
+    last_arc: Option<LastArc<A>>,
     /// When a scheduled edge was last taken.
     clock_took: Option<f64>,
     slack: f64,
@@ -89,18 +103,21 @@ pub(crate) struct Memory<E> {
     pub(crate) spurious: bool,
 }
 
-impl<E: Copy + PartialEq> Memory<E> {
+impl<A: Automaton> Clone for Memory<A> {
+    fn clone(&self) -> Self {
+        Self { triggers: self.triggers.clone(), ..*self }
+    }
+}
+
+impl<A: Automaton> Memory<A> {
     pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
             controller: Controller::new(stepper),
             step: first_step,
-            spent: None,
+            triggers: Vec::new(),
             last: None,
-            idle: [None; MOST_IDLE],
-            idle_count: 0,
-            walls: [None; MOST_IDLE],
-            wall_count: 0,
+            last_arc: None,
             clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
@@ -110,34 +127,46 @@ impl<E: Copy + PartialEq> Memory<E> {
         }
     }
 
-    /// The edge among those whose root at this time is spent.
+    /// What `edge` is ready for, if it is not armed.
     #[inline]
-    fn spent_as(&self, edge: E) -> Option<Spent<E>> {
-        let idle = self.idle[..self.idle_count].iter().flatten().map(|(spent, _)| spent);
-        self.spent.iter().chain(idle).find(|spent| spent.edge == edge).copied()
+    fn trigger(&self, edge: A::Edge) -> Option<Trigger> {
+        self.triggers.iter().find(|(other, _)| *other == edge).map(|&(_, trigger)| trigger)
     }
 
-    /// The guard of `edge` is away from zero: no root is spent.
-    fn unspend(&mut self, edge: E) {
-        self.spent = self.spent.filter(|spent| spent.edge != edge);
-        for idle in &mut self.idle[..self.idle_count] {
-            *idle = idle.filter(|(idle, _)| idle.edge != edge);
+    /// Sets what `edge` is ready for.
+    fn set(&mut self, edge: A::Edge, trigger: Trigger) {
+        match self.triggers.iter_mut().find(|(other, _)| *other == edge) {
+            Some((_, old)) => *old = trigger,
+            None => self.triggers.push((edge, trigger)),
         }
     }
 
-    /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of it.
-    fn at_wall(&mut self, edge: E, g: f64) {
-        if self.wall_count < MOST_IDLE {
-            self.walls[self.wall_count] = Some((edge, g));
-            self.wall_count += 1;
+    /// Arms `edge`: its guard is above zero.
+    fn arm(&mut self, edge: A::Edge) {
+        self.triggers.retain(|(other, _)| *other != edge);
+    }
+
+    /// An arc has led on from where edges were taken: they are armed.
+    #[inline]
+    fn arm_taken(&mut self) {
+        if !self.triggers.is_empty() {
+            self.triggers.retain(|(_, trigger)| !matches!(trigger, Trigger::Taken { .. } | Trigger::Rises { .. }));
+            for (_, trigger) in &mut self.triggers {
+                if let Trigger::Outside { noise } = trigger {
+                    *noise = None;
+                }
+            }
         }
     }
 
-    #[cold]
-    #[inline(never)]
-    fn level(&self, edge: E) -> f64 {
-        let mut walls = self.walls[..self.wall_count].iter().flatten();
-        walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1)
+    /// An arc ends after `duration` at a crossing on its last step. The rest of that step was not
+    /// used, so the next one grows from this arc and the one before by no more than a step may grow:
+    /// a flow whose error estimate is zero would lengthen the step at every arc, until its crossings
+    /// were lost at its start. One short arc among long ones does not shorten it.
+    #[inline]
+    fn cut_at(&mut self, duration: f64) {
+        let most = Controller::LARGEST * duration.max(self.last_duration);
+        self.step = self.step.map(|step| if step > most && most > 0.0 { most } else { step });
     }
 
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
@@ -152,13 +181,14 @@ impl<E: Copy + PartialEq> Memory<E> {
     }
 
     /// Whether the last jump took this very edge.
-    pub(crate) fn just_took(&self, edge: E) -> bool {
-        self.spent.is_some_and(|spent| spent.edge == edge)
+    pub(crate) fn just_took(&self, edge: A::Edge) -> bool {
+        self.last == Some(edge)
     }
 
     /// After a jump that no edge made.
     pub(crate) fn beyond(&mut self) {
-        (self.spent, self.last) = (None, None);
+        self.triggers.clear();
+        self.last = None;
     }
 }
 
@@ -167,31 +197,34 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) automaton: &'a A,
     pub(crate) stepper: M,
     pub(crate) options: &'a Options,
-    pub(crate) memory: &'a mut Memory<A::Edge>,
+    pub(crate) memory: &'a mut Memory<A>,
     pub(crate) tape: &'a mut Tape,
     pub(crate) held: &'a mut Held<A>,
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent. Without a duration, it was at once after another.
+    /// After a jump by `edge` at the end of the arc of this `duration` that began at `x` in `mode`,
+    /// `at_once` after another jump or not: its root is spent.
     #[inline]
-    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: Option<f64>, t: f64) {
-        if let Some(duration) = duration {
-            self.memory.idle_count = 0;
+    pub(crate) fn jumped(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        edge: A::Edge,
+        (duration, at_once): (f64, bool),
+        t: f64,
+    ) {
+        if duration > 0.0 {
+            self.memory.arm_taken();
+        }
+        if !at_once {
+            self.memory.last_arc = Some(LastArc { mode, state: *x, t: t - duration, duration });
             self.memory.last_duration = duration;
             if duration > self.memory.longest_duration {
                 self.memory.longest_duration = duration;
             }
-        } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
-            let g = self.automaton.guard(last.edge, t, x);
-            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, t, x, g) } else { 0.0 };
-            if slope < 0.0 {
-                self.memory.idle.rotate_right(1);
-                self.memory.idle[0] = Some((last, slope));
-                self.memory.idle_count = MOST_IDLE.min(self.memory.idle_count + 1);
-            }
         }
-        self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
+        self.memory.set(edge, Trigger::Taken { slack: self.memory.slack });
         self.memory.last = Some(edge);
     }
 
@@ -256,16 +289,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (next.0 > after && next.0 <= clock.end.seconds()).then_some(next)
     }
 
-    /// How the search for `edge` starts on the first piece of an arc.
+    /// How the search for `edge` starts on a piece, the first of its arc or a later one, and how its
+    /// guard leaves a root there.
     #[inline]
-    fn start(&self, edge: A::Edge, first: bool) -> Start {
-        if first && self.memory.spent_as(edge).is_some() { Start::Spent } else { Start::Open }
+    fn start(&self, edge: A::Edge, first: bool) -> (Start, Leaves) {
+        if !first || self.memory.triggers.is_empty() { (Start::Open, Leaves::Ask) } else { self.start_of(edge) }
     }
 
-    /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero but for that at its start: it is to be seen without, so
-    /// that the rise or fall from there decides, and not the rounding.
-    #[inline]
-    fn level(&self, edge: A::Edge, first: bool) -> f64 {
-        if first && self.memory.wall_count > 0 { self.memory.level(edge) } else { 0.0 }
+    fn start_of(&self, edge: A::Edge) -> (Start, Leaves) {
+        match self.memory.trigger(edge) {
+            Some(Trigger::Taken { .. }) => (Start::Spent, Leaves::Ask),
+            Some(Trigger::Rises { slope, noise }) => (Start::Spent, Leaves::Known { first: Move::Rises { slope }, noise }),
+            Some(Trigger::Touches { noise }) => (Start::Spent, Leaves::Known { first: Move::Stays, noise }),
+            Some(Trigger::Outside { noise: Some(noise) }) => {
+                (Start::Spent, Leaves::Known { first: Move::Falls { order: 1 }, noise })
+            }
+            Some(Trigger::Outside { noise: None }) | None => (Start::Open, Leaves::Ask),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The first crossing on a solution that is known, and the end of the arc there.
 
 use crate::automaton::{Automaton, Fall};
-use crate::cross::{Crossing, Evidence, Searched, Start, settle};
+use crate::cross::{Crossing, Evidence, Leaves, Searched, Start, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
 use crate::state::State;
@@ -39,7 +39,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         now: Time,
         remaining: f64,
         at: impl Fn(f64) -> A::State + Copy,
-        mut search: impl FnMut(&mut Self, A::Edge, f64, Start) -> Result<(Searched, bool), Error>,
+        mut search: impl FnMut(&mut Self, A::Edge, f64, (Start, Leaves)) -> Result<(Searched, bool), Error>,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<First<A>>, Error> {
         let mut found: Option<First<A>> = None;

@@ -15,10 +15,16 @@ use crate::time::{Time, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
-use super::{Advance, ArcEnd, Clock};
+use super::{Advance, ArcEnd, Clock, Trigger};
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
+/// A step that ends by no more than this part of itself before a crossing or after it shows the
+/// crossing to the square of that. Twice as far ahead the guard has fallen beyond its rounding: a
+/// search that ends at the crossing itself would not see it fall.
+const CLOSE: f64 = 1e-5;
+/// The part of a step before a crossing over which the slope of its fall is taken.
+const GLIMPSE: f64 = 1e-3;
 /// The part of a step over which the slope of a guard that is not affine is seen.
 const PROBE: f64 = 1e-3;
 
@@ -79,6 +85,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
             };
+            self.memory.cut_at(clock.now.since(began) + rough.crossing.root);
             let closer = self.closer(mode, clock.now, &x, &slope, c, h, &rough, limit);
             let again = match &closer {
                 Some(Closer { dense, h, ahead }) => {
@@ -222,7 +229,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let t = now.seconds();
         for edge in self.automaton.edges(mode).iter() {
-            if self.memory.spent_as(edge).is_none() {
+            if !matches!(self.memory.trigger(edge), Some(Trigger::Taken { .. } | Trigger::Rises { .. })) {
                 continue;
             }
             // What the guard rises by on the way of the flow and on that of the dense output; and whether a fall on the latter is beyond rounding.
@@ -241,8 +248,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     self.automaton.guard(edge, t + s, &at(by)) - self.automaton.guard(edge, t - s, &at(-by))
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
-                let g = self.automaton.guard(edge, t, x);
-                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, 0.0))
+                let own = x.with(|i| x.get(i).abs());
+                (rate, told, told < 0.0 && -told > 8.0 * self.noise_of_state(edge, t, x, &own))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
@@ -307,16 +314,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<Closer<M::Dense<A::State>>> {
         let &OnStep { edge, crossing, .. } = rough;
         let mut h = crossing.outside;
-        if h <= scale * 1e-9 {
+        if crossing.inside == 0.0 {
             return None; // at the start, where the dense output is exact
         }
-        let near = (crossing.inside - scale * 1e-3).max(0.0);
+        let near = (crossing.inside - scale * GLIMPSE).max(0.5 * crossing.inside);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
             self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
         };
-        let rise = guard(near) - guard(crossing.inside);
+        let g = guard(crossing.inside);
+        let rise = guard(near) - g;
         let fall = rise / (crossing.inside - near); // -dg/dt
+        // Early in a step the fall may be hidden by the guard's rounding; a step to it shows no more.
+        if crossing.inside < scale * GLIMPSE {
+            let end = horner(c, crossing.inside / scale);
+            let t = now.after(crossing.inside).seconds();
+            let own = end.with(|i| end.get(i).abs());
+            let noise = self.noise_of_state(edge, t, &end, &own) + self.noise_of_time(edge, t, &end);
+            if rise <= 64.0 * noise {
+                return None;
+            }
+        }
         for _ in 0..3 {
             let trial = self.trial(mode, now.seconds(), x, slope, h);
             if !(trial.end.is_finite() && trial.slope.is_finite()) {
@@ -328,8 +346,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if shift.is_nan() || shift.abs() > 0.1 * h {
                 return None;
             }
-            if shift.abs() <= 1e-5 * h {
-                let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
+            if shift.abs() <= CLOSE * h {
+                let ahead = (h + 2.0 * CLOSE * h).min(limit);
                 return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);

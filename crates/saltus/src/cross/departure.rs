@@ -3,8 +3,8 @@
 use crate::poly::Bernstein;
 
 use super::Undefined;
-use super::looks::order;
 use super::search::{Part, Search, Side};
+use super::{Leaves, Move};
 
 /// What the stretches that begin at a spent root have shown of the guard there.
 ///
@@ -18,14 +18,8 @@ pub(super) struct Departure {
     /// The guard with that root divided out, on the stretch that shows the slope best, and its length.
     rest: Bernstein,
     length: f64,
-    /// The m of the power tᵐ as which the guard falls from the root, on the shortest stretch on which it is seen to.
-    order: Option<f64>,
 }
 
-/// So much longer a stretch tells the slope better than the steps of rounding on a shorter one.
-const FAR: f64 = 1024.0;
-/// A guard is seen where it is by this larger than its rounding, which a few samples may show too small.
-const SEEN: f64 = 64.0;
 /// A guard that is zero at the start is seen to rise from there where it is by this larger than it may be off.
 const RISEN: f64 = 4.0;
 /// A guard no larger than this many times its rounding may be hidden by it, where it was seen to rise on a longer stretch.
@@ -33,22 +27,15 @@ const HIDDEN: f64 = 64.0 * RISEN;
 /// A slope up counts from this part of what it may be off by, which is taken with room: of ten million guards with clustered roots, two that fall at once seem to
 /// rise with 0.27 and 0.30 of it, by chance.
 const SURE: f64 = 0.4;
-/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may change its sign, and it is not to be lost then.
-const NONE: f64 = 64.0;
 
 impl Departure {
-    /// The guard with its root at the start of `0..=length` divided out, whose values are known to within `margin`, and away from the start to `roughness` more.
-    pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
+    /// The guard with its root at the start of `0..=length` divided out, whose values are known to within `margin`.
+    pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64) -> Self {
         let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
-        let mut best = match last {
+        match last {
             Some(last) if last.doubt <= doubt => last,
-            _ => Self { slope, doubt, rest: *rest, length, order: last.and_then(|last| last.order) },
-        };
-        let (half, end) = (0.5 * rest.halves().0.end(), rest.end());
-        if half < -SEEN * (margin + roughness) {
-            best.order = Some(order(half, end, 0.5, 1.0));
+            _ => Self { slope, doubt, rest: *rest, length },
         }
-        best
     }
 
     /// Whether the guard rises from the root.
@@ -56,24 +43,6 @@ impl Departure {
         self.slope > SURE * self.doubt
     }
 
-    /// Whether nothing is seen of a slope, and the guard falls as the square of time.
-    pub(super) fn touches(&self) -> bool {
-        self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
-    }
-
-    /// The steepest fall that the slope allows.
-    pub(super) fn steepest(&self) -> f64 {
-        self.slope.abs() + self.doubt
-    }
-
-    /// Whether it was told by a stretch so long that it knows better than steps of rounding within `0..=b`.
-    pub(super) fn is_far(&self, b: f64) -> bool {
-        self.length > FAR * b
-    }
-}
-
-fn is_even(order: f64) -> bool {
-    order.round().rem_euclid(2.0) == 0.0
 }
 
 impl Search<'_> {
@@ -92,30 +61,35 @@ impl Search<'_> {
             return Ok(false);
         }
         // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen number by number its steps have an order.
-        let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
+        let stays = |then: f64| 0.125 * then < margin && margin < 64.0 * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
             && p.end() < HIDDEN * margin
             && self.is_rough(0.0, 0.25 * b)?)
     }
 
-    /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.
-    ///
-    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again. Where rounding hides
-    /// which it was, what longer stretches have shown decides; and if they show that the guard rises first, it falls where their polynomial does.
-    pub(super) fn left(&self, order: Option<f64>, b: f64) -> Part {
+    /// The guard is below the root at the start somewhere in `a..=b`, and was not above it before as
+    /// far as its values show; by `change` at `b`. What it does first decides what that is.
+    pub(super) fn left(&self, a: f64, b: f64, change: f64) -> Part {
         if !self.spent {
             return Part::AtStart;
         }
-        let told = self.departure.filter(|it| order.is_none() || it.is_far(b));
-        if let Some(it) = told.filter(Departure::rises)
-            && let Some(root) = it.rest.root()
-        {
-            return Part::Hidden(root * it.length);
+        match self.leaves {
+            Leaves::Ask => Part::Unsure,
+            Leaves::Known { first: Move::Falls { order }, .. } if order % 2 == 0 => Part::AtStart,
+            Leaves::Known { first: Move::Falls { .. }, .. } => Part::None(Side::Outside),
+            Leaves::Known { first: Move::Rises { slope }, noise } => {
+                let hop = self.departure.filter(Departure::rises).and_then(|it| Some(it.rest.root()? * it.length));
+                match hop.filter(|&root| root < b) {
+                    Some(root) => Part::Hidden(root),
+                    // What is left when the root is divided out falls from the slope to the chord.
+                    None if change < -noise && slope > 0.0 => Part::Hidden(b * slope / (slope - change / b)),
+                    None if change < -noise => Part::Hidden(a),
+                    None => Part::None(Side::Wall),
+                }
+            }
+            Leaves::Known { first: Move::Stays, .. } => Part::None(Side::Wall),
         }
-        let linear = order.is_some_and(|order| order < 1.25);
-        let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
-        if touched { Part::AtStart } else { Part::None(Side::Outside) }
     }
 
     /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the guard inside; or the fall, if there is none.

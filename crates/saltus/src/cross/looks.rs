@@ -17,18 +17,17 @@ impl Search<'_> {
         let mut s = a;
         while s < b {
             s = s.next_up();
-            match walk.to(s, self.value(s)?, self.roughness(s)) {
+            self.last = self.value(s)?;
+            match walk.to(s, self.last, self.roughness(s)) {
                 Tread::Falls => return Ok(Part::Fall { a: walk.last, b: s, near: None }),
                 Tread::FallsAtStart if !self.spent => return Ok(Part::AtStart),
                 _ => {}
             }
         }
-        Ok(self.passed(side, walk.side, b))
-    }
-
-    /// A walk from one side to another, on which no fall but one from the start was seen; the signs of its steps count.
-    fn passed(&self, from: Side, to: Side, b: f64) -> Part {
-        if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
+        Ok(match (side, walk.side) {
+            (Side::Wall, Side::Outside) => self.left(a, b, self.last - self.base),
+            (_, side) => Part::None(side),
+        })
     }
 
     /// Whether the guard seems to go in steps: it stands still between neighbouring samples.
@@ -86,27 +85,7 @@ impl Search<'_> {
             }
         }
         if side == Side::Wall && walk.side == Side::Outside {
-            // Steps of rounding are of one length where the guard falls with speed; without speed it stands longest on the first.
-            let lengths = || samples.chunk_by(|x, y| x.1 == y.1).map(<[_]>::len);
-            let (first, second) = (lengths().next().unwrap_or(0), lengths().nth(1).unwrap_or(0));
-            let (half, at_half) = samples[LOOKS / 2];
-            let slow = samples[0].1 == self.base && first > second;
-            // Among ups and downs that is not seen, nor where values are rounded this way and that (of time, the steps are of one length always); but a longer
-            // stretch may know.
-            let whole = || lengths().take(steps - 1);
-            let of_value = whole().max() > whole().min().map(|least| 3 * least);
-            let far = self.departure.filter(|it| it.touches() && it.is_far(b));
-            // The slope that it allows is too small for this fall: two steps, one twice as far as the other, are not its sign.
-            let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
-            let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
-            let order = if slow && without_speed {
-                2.0
-            } else if slow {
-                order(at_half - self.base, last - self.base, half, b)
-            } else {
-                1.0
-            };
-            return Ok(Look::Steps(self.left(Some(order), b)));
+            return Ok(Look::Steps(self.left(a, b, last - self.base)));
         }
         Ok(Look::Steps(Part::None(walk.side)))
     }
@@ -136,15 +115,10 @@ impl Search<'_> {
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };
         if came_from == Side::Wall && side == Side::Outside && self.spent {
-            return self.left(None, b);
+            return self.left(a, b, samples[LOOKS - 1].1 - self.base);
         }
         Part::None(side)
     }
-}
-
-/// The m with which c tᵐ takes these values at times `a` and `b`.
-pub(super) fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
-    (at_b / at_a).ln() / (b / a).ln()
 }
 
 /// What samples of a guard show that no polynomial fits.

@@ -6,12 +6,14 @@ mod looks;
 mod powers;
 mod refine;
 mod search;
+mod start;
 
 use crate::poly::{Bernstein, Shape};
 
 pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
 pub(crate) use search::ROUGH;
+pub(crate) use start::{BEYOND_NOISE, Move, first_move};
 use search::Search;
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.
@@ -124,6 +126,40 @@ impl Searched {
     }
 }
 
+/// What is known of how a guard leaves a spent root at the start of a search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Leaves {
+    /// Nothing: a search that needs it is [`Outcome::Unsure`].
+    Ask,
+    /// What it does first; it is above or below the root beyond doubt where it is by more than its
+    /// `noise`.
+    Known {
+        /// The first move.
+        first: Move,
+        /// What the guard may be off by, with the factor that decides.
+        noise: f64,
+    },
+}
+
+/// How a search from a spent root came out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Outcome {
+    /// With a fall or none.
+    Found(Searched),
+    /// What the guard does first has to be known: its values do not show it.
+    Unsure,
+}
+
+impl Outcome {
+    /// The search, which is unsure only where its start was not known.
+    pub(crate) fn searched(self) -> Searched {
+        match self {
+            Self::Found(searched) => searched,
+            Self::Unsure => Searched::solved(None),
+        }
+    }
+}
+
 /// The outcome of a search that could not finish: the guard is not a number at this time, before any fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undefined(pub f64);
@@ -153,7 +189,45 @@ pub struct Undefined(pub f64);
 /// # Errors
 /// [`Undefined`] if the guard is not a number somewhere before its first fall.
 pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Result<Searched, Undefined> {
-    Search::new(&mut guard, span, 0.0).first_fall(start, None)
+    match Search::new(&mut guard, span, 0.0, Leaves::Ask).first_fall(start, None)? {
+        Outcome::Found(searched) => Ok(searched),
+        Outcome::Unsure => {
+            let first = first_move_of(&mut guard, span)?;
+            let leaves = Leaves::Known { first, noise: 0.0 };
+            let known = Search::new(&mut guard, span, 0.0, leaves).first_fall(start, None)?;
+            Ok(known.searched())
+        }
+    }
+}
+
+/// What a guard of which nothing but its values is known does first: they are off by a few of their
+/// own roundings.
+fn first_move_of(guard: &mut impl FnMut(f64) -> f64, span: f64) -> Result<Move, Undefined> {
+    const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+    let mut value = |s: f64| {
+        let value = guard(s);
+        if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
+    };
+    let start = value(0.0)?;
+    let changes = |stretch: f64| {
+        let mut changes = [0.0; 4];
+        for (change, part) in changes.iter_mut().zip([0.25, 0.5, 0.75, 1.0]) {
+            *change = value(part * stretch)? - start;
+        }
+        Ok(changes)
+    };
+    let size = |changes: &[f64; 4]| changes.iter().fold(start.abs(), |most, change| most.max(change.abs()));
+    first_move(span, changes, |changes| ROUNDINGS * size(changes), |_, _| 0.0)
+}
+
+/// The same for a guard beside which more is known of its start.
+pub(crate) fn first_fall_from(
+    guard: &mut dyn FnMut(f64) -> f64,
+    span: f64,
+    start: Start,
+    leaves: Leaves,
+) -> Result<Outcome, Undefined> {
+    Search::new(guard, span, 0.0, leaves).first_fall(start, None)
 }
 
 /// The same for a guard on the dense output of a step, which bends by `bend` over it.
@@ -161,9 +235,10 @@ pub(crate) fn first_fall_on_step(
     guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
     start: Start,
+    leaves: Leaves,
     bend: f64,
-) -> Result<Searched, Undefined> {
-    Search::new(guard, span, bend).first_fall(start, None)
+) -> Result<Outcome, Undefined> {
+    Search::new(guard, span, bend, leaves).first_fall(start, None)
 }
 
 /// The same for a guard on a step that is known to be the polynomial `p(s / span)` to within `margin`; where that decides, `guard` is not asked.
@@ -174,16 +249,17 @@ pub(crate) fn first_fall_of_polynomial(
     guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
     start: Start,
-) -> Result<Searched, Undefined> {
+    leaves: Leaves,
+) -> Result<Outcome, Undefined> {
     if start == Start::Spent {
         // Away from the wall only the change counts, and it carries no rounding of the value at the wall.
         let change = p.less_start();
         let margin = 8.0 * f64::EPSILON * change.scale();
-        Search::new(guard, span, bend).first_fall(start, Some((change, margin)))
+        Search::new(guard, span, bend, leaves).first_fall(start, Some((change, margin)))
     } else if p.shape(margin) == Shape::Above {
-        Ok(Searched::solved(None))
+        Ok(Outcome::Found(Searched::solved(None)))
     } else {
-        Search::new(guard, span, bend).first_fall(start, Some((*p, margin)))
+        Search::new(guard, span, bend, leaves).first_fall(start, Some((*p, margin)))
     }
 }
 

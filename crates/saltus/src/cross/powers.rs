@@ -121,13 +121,6 @@ impl Powers {
         (self.rest.size - self.a[1].abs()).max(0.0)
     }
 
-    /// Takes away the slope at its start.
-    #[cold]
-    pub(crate) fn drop_slope(&mut self) {
-        self.a[1] = 0.0;
-        self.rest = Sums::of(&self.a[2..self.len]);
-    }
-
     /// Where what is left from the power `k` on, of which the first is divided out, first falls through zero: it may be off by `margin`, and is positive
     /// at its start.
     ///

@@ -3,8 +3,8 @@
 use crate::poly::{Bernstein, Shape};
 
 use super::departure::Departure;
-use super::looks::{Look, order};
-use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
+use super::looks::Look;
+use super::{Crossing, Evidence, Leaves, Outcome, Searched, Start, Undefined, chebyshev, settle};
 
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
@@ -31,6 +31,10 @@ pub(super) struct Search<'a> {
     pub(super) spent: bool,
     /// The guard's value at a spent start.
     pub(super) base: f64,
+    /// How it leaves a spent root at the start.
+    pub(super) leaves: Leaves,
+    /// The value at the last place of a walk.
+    pub(super) last: f64,
     /// How the guard leaves a spent root at the start, as far as its samples have shown.
     pub(super) departure: Option<Departure>,
     /// What a guard on a step is rough by: close to its start, where the solution is zero but for rounding, it is known no better than
@@ -88,18 +92,22 @@ pub(super) enum Part {
     AtStart,
     /// Rounding hides a rise and the fall after it, which lies here.
     Hidden(f64),
+    /// The guard is below its root at the start, and its values do not show what it did first.
+    Unsure,
     /// No fall; this is where the guard is at the end.
     None(Side),
 }
 
 impl<'a> Search<'a> {
     /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it.
-    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64) -> Self {
+    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64, leaves: Leaves) -> Self {
         Self {
             guard,
             span,
             spent: false,
             base: 0.0,
+            leaves,
+            last: 0.0,
             departure: None,
             rough: ROUGH * bend,
             falls_smoothly: false,
@@ -119,11 +127,12 @@ impl<'a> Search<'a> {
     }
 
     /// The search, for a polynomial that is known to within a margin or for interpolants.
-    pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Searched, Undefined> {
+    pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Outcome, Undefined> {
         let side = self.side_at(start)?;
         let margin = known.map_or(f64::INFINITY, |(_, margin)| margin);
         let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
         let fall = match self.part(&all, side)? {
+            Part::Unsure => return Ok(Outcome::Unsure),
             Part::None(_) => None,
             Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
             Part::Hidden(near) => Some(Crossing::after(self.inside_near(near)?)),
@@ -133,7 +142,7 @@ impl<'a> Search<'a> {
         if fall.is_some() {
             self.weaken(Evidence::Isolated);
         }
-        Ok(Searched { fall, evidence: self.evidence })
+        Ok(Outcome::Found(Searched { fall, evidence: self.evidence }))
     }
 
     /// On which side the search starts.
@@ -195,8 +204,9 @@ impl<'a> Search<'a> {
             margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
         }
         let sampled = margin;
+        let base = if known.is_some() { 0.0 } else { self.base };
         if side == Side::Wall {
-            let (roughness, base) = (self.roughness(b), if known.is_some() { 0.0 } else { self.base });
+            let roughness = self.roughness(b);
             if p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
                 return Ok(Part::None(Side::Wall));
             }
@@ -208,7 +218,7 @@ impl<'a> Search<'a> {
         }
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
-            self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
+            self.departure = Some(Departure::seen(self.departure, &q, b, sampled));
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
         let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
@@ -235,12 +245,11 @@ impl<'a> Search<'a> {
                 {
                     return self.halved(stretch, margin, side);
                 }
-                Side::Wall if leaving => self.left(None, b),
-                Side::Wall => self.left(Some(order(p.start(), p.end(), a, b)), b),
+                Side::Wall => self.left(a, b, end - base),
             }),
             Shape::Falling if resolved => match side {
                 Side::Outside => Some(Part::None(Side::Outside)),
-                Side::Wall if !leaving => Some(self.left(Some(order(p.start(), p.end(), a, b)), b)),
+                Side::Wall if !leaving => Some(self.left(a, b, end - base)),
                 Side::Wall if q.start() <= q_margin => {
                     self.falls_smoothly = true;
                     None
