@@ -4,9 +4,11 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::advance::{Advance, ArcEnd, Clock, Held, Memory};
-use crate::automaton::Automaton;
-use crate::error::{Error, ErrorKind, Place, listed};
+use crate::automaton::{Automaton, Limit};
+use crate::clocks::Ticks;
+use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::observe::Observer;
+use crate::recent::Recent;
 use crate::series::Tape;
 use crate::simulation::{Ending, Options, Stats, Stop};
 use crate::state::State;
@@ -97,6 +99,8 @@ pub struct Checkpoint<A: Automaton> {
     instant: Time,
     cascade: usize,
     contraction: Contraction,
+    recent: Recent<A::Edge>,
+    ticks: Ticks<A::Mode>,
     memory: Memory<A::Edge>,
     stop: Option<Stop<A::Edge>>,
 }
@@ -113,6 +117,8 @@ impl<A: Automaton> Checkpoint<A> {
             instant: start,
             cascade: 0,
             contraction: Contraction::new(),
+            recent: Recent::new(),
+            ticks: Ticks::new(),
             memory,
             stop: None,
         }
@@ -133,7 +139,7 @@ impl<A: Automaton> Checkpoint<A> {
 
 impl<A: Automaton> Clone for Checkpoint<A> {
     fn clone(&self) -> Self {
-        Self { contraction: self.contraction.clone(), ..*self }
+        Self { contraction: self.contraction.clone(), ticks: self.ticks.clone(), ..*self }
     }
 }
 
@@ -248,34 +254,44 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Self { automaton, stepper, options, at, tape, held } = self;
         // x is x⁺ of the last jump, or the initial state.
         let Stand { mode, state: x, now: began, instant } = *stand;
+        let mut clock = Clock { now: began, ..at.clock };
+        let due = at.ticks.next(*automaton, mode, &x, &clock)?;
+        if let Some(due) = &due {
+            clock.end = due.time;
+        }
         let memory = &mut at.memory;
         let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory, tape, held };
-        let clock = Clock { now: began, ..at.clock };
-        let (edge, time, before) = match arc.arc(mode, &x, &clock, observer)? {
-            ArcEnd::Crossing { edge, time, before } => (edge, time, before),
-            ArcEnd::Stop { stop, time, state } => {
-                (at.clock.now, at.state) = (time, state);
-                return Ok(Next::Stop(stop));
-            }
+        let (edge, time, before, ticked) = match arc.arc(mode, &x, &clock, observer)? {
+            ArcEnd::Crossing { edge, time, before } => (edge, time, before, false),
+            ArcEnd::Stop { stop, time, state } => match due {
+                Some(due) if matches!(stop, Stop::Time) => {
+                    at.ticks.take(&due, time.seconds());
+                    (due.edge, time, state, true)
+                }
+                _ => {
+                    (at.clock.now, at.state) = (time, state);
+                    return Ok(Next::Stop(stop));
+                }
+            },
         };
         if std::mem::take(&mut arc.memory.spurious) {
             (at.clock.now, at.state) = (time, before);
+            at.recent.push(edge);
             return Ok(Next::Limit { remaining: 0.0 });
         }
         // Here x⁻ = before, still inside the domain of the mode.
         let now = time.seconds();
-        let (to, after) = automaton
-            .take(mode, edge, now, &before)
-            .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
+        let (to, after) =
+            automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, &before))?;
         let duration = time.since(began);
         let at_once = arc.memory.at_once(time.since(instant));
         let instant = if at_once { instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
-        let stands = duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
+        let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
             (at.cascade, at.instant) = (if at_once { at.cascade + 1 } else { 0 }, instant);
-            if !after.is_finite() || !automaton.has_mode(to) {
-                let (kind, note) = wrong(to, after);
+            if !after.is_finite() || to != mode && automaton.validate(to).is_err() {
+                let (kind, note) = wrong(*automaton, to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy alone took a fifth of a ball's impact.
@@ -284,12 +300,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             if observer.jump(&jump).is_break() {
                 return Ok(Next::Stop(Stop::Observer));
             }
-            if automaton.terminal(edge) {
+            if automaton.about(edge).terminal {
                 return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
         arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
         // x is x⁺.
+        at.recent.push(edge);
         if !at_once {
             at.contraction.push(duration);
         }
@@ -302,7 +319,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             Next::Stop(Stop::Jumps { most: at.jumps })
         } else if at.cascade >= options.longest_cascade {
             // Collisions that go on at one time: what lies beyond them is the model's to say.
-            if automaton.beyond(at.mode, now, &at.state).is_some() {
+            let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
+            if at.recent.cycle().with(beyond).is_some() {
                 return Ok(Next::Limit { remaining: 0.0 });
             }
             Next::Stop(Stop::Cascade { edge })
@@ -324,22 +342,38 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         at.clock.now = at.clock.now.after(remaining);
         let limit = at.clock.now.seconds();
-        let Some((to, after)) = automaton.beyond(mode, limit, &x) else {
+        let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
+        let Some((to, after)) = at.recent.cycle().with(beyond) else {
             return Ok(Some(Stop::Zeno { limit }));
         };
+        if !after.is_finite() || automaton.validate(to).is_err() {
+            let (kind, note) = wrong(*automaton, to, after);
+            let note = if kind == ErrorKind::Model { format!("Automaton::beyond {note}") } else { note };
+            return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
+        }
         at.instant = at.clock.now;
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        (at.contraction, at.cascade) = (Contraction::new(), 0);
+        (at.contraction, at.recent, at.cascade) = (Contraction::new(), Recent::new(), 0);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }
 }
 
-/// What is wrong with a mode and a state that cannot be gone on from, and which they are.
+/// The failure of a run whose reset refuses.
 #[cold]
-fn wrong<X: State>(mode: impl fmt::Debug, x: X) -> (ErrorKind, String) {
-    if x.is_finite() { (ErrorKind::UnknownMode, format!("{mode:?}")) } else { (ErrorKind::Reset, listed(&x)) }
+#[inline(never)]
+fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl fmt::Debug, x: &X) -> Error {
+    refusal.at(Place::new(t, mode, Some(edge), x))
+}
+
+/// What is wrong with a mode and a state that a jump led to and that cannot be gone on from.
+#[cold]
+fn wrong<A: Automaton>(automaton: &A, to: A::Mode, x: A::State) -> (ErrorKind, String) {
+    match automaton.validate(to) {
+        Err(flaw) if x.is_finite() => (ErrorKind::Model, format!("leads to mode {to:?}: {flaw}")),
+        _ => (ErrorKind::Reset, listed(&x)),
+    }
 }
 
 /// Whether two states are equal coordinate by coordinate.

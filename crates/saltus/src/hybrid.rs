@@ -1,15 +1,20 @@
 //! An automaton put together from closures.
 
 use std::fmt;
+use std::sync::OnceLock;
 
-use crate::automaton::{Automaton, Edges, Entry, Polynomial};
+use crate::automaton::{About, Automaton, Entry, Limit};
+use crate::clocks::{Clock, Clocks};
+use crate::edges::Edges;
+use crate::error::Refusal;
 use crate::reverse::Invertible;
 use crate::series::{Jet, Series};
+use crate::solution::{Polynomial, Solution};
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;
 type Guard<'a, S> = Box<dyn Fn(f64, &S) -> f64 + Send + Sync + 'a>;
-type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) -> bool + Send + Sync + 'a>;
+type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) + Send + Sync + 'a>;
 type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 
 /// A hybrid automaton built from closures, its modes named by strings.
@@ -53,6 +58,8 @@ pub struct Hybrid<'a, S> {
     misses: Vec<(&'static str, &'static str, &'static str)>,
     /// By which method something was said twice of a mode, and of which.
     twice: Option<(&'static str, &'static str)>,
+    /// What is wrong with it as a whole, once it was asked.
+    flaw: OnceLock<Option<String>>,
 }
 
 struct Mode<'a, S> {
@@ -62,22 +69,18 @@ struct Mode<'a, S> {
     exact: Option<Exact<'a, S>>,
     beyond: Option<(&'static str, Flow<'a, S>)>,
     edges: Vec<EdgeOf<'a, S>>,
+    /// Those of the edges that have guards, and those that clocks take.
+    guarded: Vec<Link>,
+    clocks: Vec<(Clock, Link)>,
 }
 
 struct EdgeOf<'a, S> {
     to: &'static str,
-    when: When<'a, S>,
+    /// None of an edge that a clock takes.
+    guard: Option<Guard<'a, S>>,
     reset: Flow<'a, S>,
-    entry: Entry,
-    affine: bool,
-    terminal: bool,
+    about: About,
     inverse: Option<(Guard<'a, S>, Flow<'a, S>)>,
-}
-
-/// What takes an edge: the state, or the clock.
-enum When<'a, S> {
-    Guard(Guard<'a, S>),
-    Clock(Box<dyn Fn(f64) -> Option<f64> + Send + Sync + 'a>),
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
@@ -103,30 +106,23 @@ impl fmt::Debug for Link {
     }
 }
 
-impl<'a, S> EdgeOf<'a, S> {
-    fn new(to: &'static str, when: When<'a, S>, reset: Flow<'a, S>) -> Self {
-        Self { to, when, reset, entry: Entry::Refuse, affine: false, terminal: false, inverse: None }
+impl<'a, S> Mode<'a, S> {
+    /// Adds an edge with a guard.
+    fn guarded_by(&mut self, edge: EdgeOf<'a, S>) {
+        self.guarded.push(Link { from: self.name, to: edge.to, place: self.edges.len() });
+        self.edges.push(edge);
     }
 }
 
-/// The multiples of a `period` in seconds: the first one strictly after a time, for [`Hybrid::scheduled`].
-///
-/// Multiple k is k · period rounded once, so the hundred-thousandth is as exact as the first. A period that is not positive has no multiples.
-///
-/// ```
-/// let next = saltus::every(0.1);
-/// assert_eq!((next(0.0), next(0.3), next(0.1 * 3.0)), (Some(0.1), Some(0.1 * 3.0), Some(0.4)));
-/// ```
-pub fn every(period: f64) -> impl Fn(f64) -> Option<f64> + Copy + Send + Sync {
-    move |t| {
-        let near = (t / period).round();
-        [near - 1.0, near, near + 1.0, near + 2.0].into_iter().map(|k| k * period).find(|&multiple| multiple > t)
+impl<'a, S> EdgeOf<'a, S> {
+    fn new(to: &'static str, guard: Option<Guard<'a, S>>, reset: Flow<'a, S>) -> Self {
+        Self { to, guard, reset, about: About::new(), inverse: None }
     }
 }
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), misses: Vec::new(), twice: None }
+        Self { modes: Vec::new(), misses: Vec::new(), twice: None, flaw: OnceLock::new() }
     }
 }
 
@@ -152,7 +148,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see [`Automaton::series`].
+    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see [`Solution::Series`].
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -202,8 +198,7 @@ impl<'a, S: State> Hybrid<'a, S> {
 
     /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t, x⁻) into `to`.
     ///
-    /// Edges that cross at one time are taken in the order in which they are declared. A mode has at most [`Edges::INLINE`] edges;
-    /// a run with more does not start.
+    /// Edges that cross at one time are taken in the order in which they are declared.
     #[must_use]
     pub fn edge(
         mut self,
@@ -212,30 +207,34 @@ impl<'a, S: State> Hybrid<'a, S> {
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        self.entry_of(from).edges.push(EdgeOf::new(to, When::Guard(Box::new(guard)), Box::new(reset)));
+        let edge = EdgeOf::new(to, Some(Box::new(guard)), Box::new(reset));
+        self.entry_of(from).guarded_by(edge);
         self
     }
 
-    /// Declares an edge that the clock takes: `next` gives the first time strictly after its argument; see [`every`].
+    /// Declares an edge that a clock takes; see [`Clock`].
     ///
     /// ```
-    /// use saltus::{Hybrid, Simulation, every};
+    /// use saltus::{Clock, Hybrid, Simulation};
     /// let kicked = Hybrid::new()
     ///     .mode("drift", |_t, _x: &f64| 0.0)
-    ///     .scheduled("drift", "drift", every(0.1), |_t, x| x + 1.0);
+    ///     .clock("drift", "drift", Clock::every(0.1), |_t, x| x + 1.0);
     /// let run = Simulation::of(&kicked).run("drift", 0.0, 0.0..1.05)?;
     /// assert_eq!(run.state, 10.0);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
-    pub fn scheduled(
+    pub fn clock(
         mut self,
         from: &'static str,
         to: &'static str,
-        next: impl Fn(f64) -> Option<f64> + Send + Sync + 'a,
+        clock: Clock,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        self.entry_of(from).edges.push(EdgeOf::new(to, When::Clock(Box::new(next)), Box::new(reset)));
+        let mode = self.entry_of(from);
+        let place = mode.edges.len();
+        mode.edges.push(EdgeOf::new(to, None, Box::new(reset)));
+        mode.clocks.push((clock, Link { from, to, place }));
         self
     }
 
@@ -251,8 +250,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// ```
     #[must_use]
     pub fn terminal(mut self, from: &'static str, guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a) -> Self {
-        let edge = EdgeOf::new(from, When::Guard(Box::new(guard)), Box::new(|_, x| *x));
-        self.entry_of(from).edges.push(EdgeOf { terminal: true, ..edge });
+        let edge = EdgeOf::new(from, Some(Box::new(guard)), Box::new(|_, x| *x));
+        self.entry_of(from).guarded_by(EdgeOf { about: About::new().terminal(), ..edge });
         self
     }
 
@@ -260,14 +259,14 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// A [`terminal`](Self::terminal) edge leads from its mode to itself.
     #[must_use]
     pub fn entry(mut self, from: &'static str, to: &'static str, entry: Entry) -> Self {
-        self.between("entry", from, to, |edge| edge.entry = entry);
+        self.between("entry", from, to, |edge| edge.about.entry = entry);
         self
     }
 
-    /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`Automaton::affine`].
+    /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`About::affine`].
     #[must_use]
     pub fn affine(mut self, from: &'static str, to: &'static str) -> Self {
-        self.between("affine", from, to, |edge| edge.affine = true);
+        self.between("affine", from, to, |edge| edge.about.affine = true);
         self
     }
 
@@ -321,8 +320,10 @@ impl<'a, S: State> Hybrid<'a, S> {
     }
 
     fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
+        self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
-            self.modes.push(Mode { name, flow: None, series: None, exact: None, beyond: None, edges: Vec::new() });
+            let (edges, guarded, clocks) = (Vec::new(), Vec::new(), Vec::new());
+            self.modes.push(Mode { name, flow: None, series: None, exact: None, beyond: None, edges, guarded, clocks });
             self.modes.len() - 1
         });
         &mut self.modes[index]
@@ -345,7 +346,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         }
     }
 
-    /// Every edge of `mode`, also those of the clock.
+    /// Every edge of `mode`, also those of clocks.
     fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m EdgeOf<'a, S>)> {
         let from = mode.name;
         mode.edges.iter().enumerate().map(move |(place, edge)| (Link { from, to: edge.to, place }, edge))
@@ -395,68 +396,64 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         }
     }
 
-    fn edges(&self, mode: &'static str) -> Edges<Link> {
-        let edges = self.find(mode).map_or(&[][..], |mode| &mode.edges[..]);
-        let guarded = edges.iter().enumerate().filter(|(_, edge)| matches!(edge.when, When::Guard(_)));
-        guarded.map(|(place, edge)| Link { from: mode, to: edge.to, place }).collect()
+    fn edges(&self, mode: &'static str) -> Edges<'_, Link> {
+        self.find(mode).map_or(Edges::none(), |mode| Edges::kept(&mode.guarded))
     }
 
     fn guard(&self, edge: Link, t: f64, x: &S) -> f64 {
-        match self.edge_of(edge).map(|edge| &edge.when) {
-            Some(When::Guard(guard)) => guard(t, x),
-            _ => f64::NAN,
+        self.edge_of(edge).and_then(|edge| edge.guard.as_ref()).map_or(f64::NAN, |guard| guard(t, x))
+    }
+
+    fn clocks(&self, mode: &'static str) -> Clocks<'_, Link> {
+        self.find(mode).map_or(Clocks::none(), |mode| Clocks::kept(&mode.clocks))
+    }
+
+    fn reset(&self, _: &'static str, link: Link, t: f64, x: &S) -> Result<(&'static str, S), Refusal> {
+        let edge = self.edge_of(link).ok_or_else(|| Refusal::new("there is no such edge"))?;
+        Ok((link.to, (edge.reset)(t, x)))
+    }
+
+    fn about(&self, edge: Link) -> About {
+        self.edge_of(edge).map_or(About::new(), |edge| edge.about)
+    }
+
+    fn solution(&self, mode: &'static str, t: f64, x: &S) -> Solution<Self> {
+        match self.find(mode) {
+            Some(Mode { exact: Some(solution), .. }) => Solution::Polynomial(solution(t, x)),
+            Some(Mode { series: Some(_), .. }) => Solution::Series(Self::expand),
+            _ => Solution::Steps,
         }
     }
 
-    fn scheduled(&self, mode: &'static str, t: f64) -> Option<(f64, Link)> {
-        let edges = self.find(mode)?.edges.iter().enumerate();
-        let due = edges.filter_map(|(place, edge)| match &edge.when {
-            When::Clock(next) => Some((next(t)?, Link { from: mode, to: edge.to, place })),
-            When::Guard(_) => None,
-        });
-        due.min_by(|a, b| a.0.total_cmp(&b.0))
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(&'static str, S)> {
+        let (to, reset) = self.find(limit.mode)?.beyond.as_ref()?;
+        Some((to, reset(limit.t, limit.x)))
     }
 
-    fn reset(&self, edge: Link, t: f64, x: &S) -> (&'static str, S) {
-        (edge.to, self.edge_of(edge).map_or(*x, |edge| (edge.reset)(t, x)))
-    }
-
-    fn entry(&self, edge: Link) -> Entry {
-        self.edge_of(edge).map_or(Entry::Refuse, |edge| edge.entry)
-    }
-
-    fn affine(&self, edge: Link) -> bool {
-        self.edge_of(edge).is_some_and(|edge| edge.affine)
-    }
-
-    fn terminal(&self, edge: Link) -> bool {
-        self.edge_of(edge).is_some_and(|edge| edge.terminal)
-    }
-
-    fn series(&self, mode: &'static str, series: &mut Series<'_, S>) -> bool {
-        self.find(mode).and_then(|mode| mode.series.as_ref()).is_some_and(|flow| flow(series))
-    }
-
-    fn exact(&self, mode: &'static str, t: f64, x: &S) -> Option<Polynomial<S>> {
-        self.find(mode)?.exact.as_ref().map(|solution| solution(t, x))
-    }
-
-    fn beyond(&self, mode: &'static str, t: f64, x: &S) -> Option<(&'static str, S)> {
-        let (to, reset) = self.find(mode)?.beyond.as_ref()?;
-        Some((to, reset(t, x)))
-    }
-
-    fn flaw(&self, mode: &'static str) -> Option<String> {
+    fn validate(&self, mode: &'static str) -> Result<(), String> {
         if !self.declares(mode) {
-            return Some(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
+            return Err(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
         }
+        self.flaw.get_or_init(|| self.find_flaw()).as_ref().map_or(Ok(()), |flaw| Err(flaw.clone()))
+    }
+}
+
+impl<S: State> Hybrid<'_, S> {
+    fn expand(&self, mode: &'static str, series: &mut Series<'_, S>) {
+        if let Some(flow) = self.find(mode).and_then(|mode| mode.series.as_ref()) {
+            flow(series);
+        }
+    }
+
+    /// What keeps every run from starting.
+    fn find_flaw(&self) -> Option<String> {
         if let Some((method, name)) = self.twice {
             return Some(format!(
                 "Hybrid::{method} says twice what holds in mode {name:?}: say it once, or give one of them its own name"
             ));
         }
         for mode in &self.modes {
-            let (name, most) = (mode.name, Edges::<Link>::INLINE);
+            let name = mode.name;
             if !self.declares(name) {
                 let what = if mode.edges.is_empty() { "is named" } else { "has an edge" };
                 return Some(format!("mode {name:?} {what} but is not declared: {}", self.declare(name)));
@@ -469,9 +466,10 @@ impl<S: State> Automaton for Hybrid<'_, S> {
                 let declare = self.declare(to);
                 return Some(format!("beyond a limit in {name:?} lies mode {to:?}, which is not declared: {declare}"));
             }
-            if mode.edges.len() > most {
-                let count = mode.edges.len();
-                return Some(format!("mode {name:?} has {count} edges, more than {most}: implement Automaton instead"));
+            for (clock, link) in &mode.clocks {
+                if let Err(flaw) = clock.validate() {
+                    return Some(format!("the clock of edge {link:?} {flaw}"));
+                }
             }
         }
         let (method, from, to) = self.misses.first()?;
@@ -479,16 +477,12 @@ impl<S: State> Automaton for Hybrid<'_, S> {
             "Hybrid::{method} is about an edge {from} -> {to} that was not declared before it: declare it first, or mend the names"
         ))
     }
-
-    fn has_mode(&self, mode: &'static str) -> bool {
-        self.declares(mode)
-    }
 }
 
 impl<S: State> Invertible for Hybrid<'_, S> {
-    fn edges_into(&self, mode: &'static str) -> Edges<Link> {
+    fn edges_into(&self, mode: &'static str) -> Edges<'_, Link> {
         let links = self.modes.iter().flat_map(Self::links);
-        links.filter(|(link, edge)| link.to == mode && !edge.terminal).map(|(link, _)| link).collect()
+        links.filter(|(link, edge)| link.to == mode && !edge.about.terminal).map(|(link, _)| link).collect()
     }
 
     fn image(&self, edge: Link, t: f64, x: &S) -> f64 {
@@ -502,22 +496,15 @@ impl<S: State> Invertible for Hybrid<'_, S> {
     }
 
     /// Looks at every edge that a run backwards from `mode` could meet.
-    fn undo_flaw(&self, mode: &'static str) -> Option<String> {
+    fn validate_backwards(&self, mode: &'static str) -> Result<(), String> {
         let mut met = vec![mode];
         let mut next = 0;
         while let Some(&mode) = met.get(next) {
             next += 1;
             let into = || self.modes.iter().flat_map(Self::links).filter(move |(link, _)| link.to == mode);
-            let count = into().filter(|(_, edge)| !edge.terminal).count();
-            if count > Edges::<Link>::INLINE {
-                let most = Edges::<Link>::INLINE;
-                return Some(format!(
-                    "{count} edges lead into mode {mode:?}, more than {most}: implement Invertible instead"
-                ));
-            }
-            for (link, edge) in into().filter(|(_, edge)| !edge.terminal) {
+            for (link, edge) in into().filter(|(_, edge)| !edge.about.terminal) {
                 if edge.inverse.is_none() {
-                    return Some(format!(
+                    return Err(format!(
                         "edge {link:?} has no inverse, so that a run cannot go backwards into mode {:?}: give one with Hybrid::inverse",
                         link.from
                     ));
@@ -527,7 +514,7 @@ impl<S: State> Invertible for Hybrid<'_, S> {
                 }
             }
         }
-        None
+        Ok(())
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::cell::LazyCell;
 
-use crate::automaton::{Automaton, Polynomial};
+use crate::automaton::Automaton;
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::poly::{quadratic_fall, quadratic_touch};
+use crate::solution::Polynomial;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -30,7 +31,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let natural = LazyCell::new(|| natural(c));
         let at = |s: f64| horner(c, s);
         let search = |this: &mut Self, edge, limit, start| {
-            if c.len() <= 3 && this.automaton.affine(edge) {
+            if c.len() <= 3 && this.automaton.about(edge).affine {
                 return Ok((this.fall_of_parabola(edge, now, c, limit, start), true));
             }
             this.fall_in_windows(edge, now, *natural, at, limit, start)
