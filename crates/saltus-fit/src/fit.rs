@@ -83,7 +83,7 @@ impl Fit {
 
     /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion of a
     /// recording is fitted with it. Without it, it is fitted where the samples show it; else that of an ordinary ball, 0 to 0.022, is allowed for in
-    /// the interval.
+    /// the interval. Heights and times without a recording are fitted as in a vacuum, whatever is stated here.
     #[must_use]
     pub fn drag(mut self, per_metre: f64) -> Self {
         self.drag = Some(per_metre);
