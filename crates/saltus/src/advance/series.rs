@@ -2,11 +2,11 @@
 
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::poly::MAX_DEGREE;
 use crate::series::{MOST_COEFFICIENTS, NextKink, RECIPROCALS, Series};
-use crate::simulation::Stop;
 use crate::solution::Flow;
 use crate::state::State;
 use crate::step::Stepper;
@@ -15,7 +15,7 @@ use crate::trajectory::Piece;
 
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
-use super::stepped::{evened, searched, wrong_dimension};
+use super::stepped::{evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd, Span};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
@@ -53,7 +53,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
         loop {
-            let remaining = clock.end.since(clock.now);
+            let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }

@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use crate::automaton::Automaton;
 use crate::control::first_step;
 use crate::cross::Evidence;
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
-use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{Time, grace, resolution};
+use crate::time::{LAST, Time, grace, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
@@ -39,7 +39,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
         loop {
-            let remaining = clock.end.since(clock.now);
+            let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
@@ -343,6 +343,13 @@ struct Closer<D> {
     dense: D,
     h: f64,
     ahead: f64,
+}
+
+/// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
+/// stands and any other is infinite, which is an error.
+#[inline]
+pub(super) fn remaining(clock: &Span) -> f64 {
+    clock.end.since(clock.now).min(LAST - clock.now.seconds())
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
