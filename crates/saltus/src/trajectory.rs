@@ -343,7 +343,7 @@ impl<A: Automaton> Trajectory<A> {
         self.arcs.len() * (size_of::<Arc<A>>() + size_of::<Jump<A>>())
             + self.pieces.len() * size_of::<Stored>()
             + self.coefficients.len() * size_of::<A::State>()
-            + self.doubts.list().len() * size_of::<Inspection<A>>()
+            + size_of_val(self.doubts.list())
     }
 
     /// The run got no further than this.
