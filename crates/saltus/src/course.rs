@@ -96,7 +96,7 @@ pub struct Checkpoint<A: Automaton> {
     /// The time of the last jump that was not at once after another.
     instant: Time,
     cascade: usize,
-    contraction: Contraction,
+    contraction: Contraction<A::State>,
     memory: Memory<A::Edge>,
     stop: Option<Stop<A::Edge>>,
 }
@@ -288,11 +288,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
-        arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
-        // x is x⁺.
-        if !at_once {
-            at.contraction.push(duration);
-        }
+        arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
+        at.contraction.push(if at_once { 0.0 } else { duration }, &after);
         let elapsed = time.since(at.clock.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.clock.end.seconds()) {
@@ -330,7 +327,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.instant = at.clock.now;
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        (at.contraction, at.cascade) = (Contraction::new(), 0);
+        at.contraction.forget();
+        at.cascade = 0;
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }

@@ -14,7 +14,7 @@ use crate::trajectory::Piece;
 
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
-use super::stepped::{evened, searched, wrong_dimension};
+use super::stepped::{evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd, Clock};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
@@ -51,7 +51,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
         loop {
-            let remaining = clock.end.since(clock.now);
+            let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }

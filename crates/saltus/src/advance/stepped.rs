@@ -39,7 +39,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
         loop {
-            let remaining = clock.end.since(clock.now);
+            let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
@@ -79,6 +79,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (x, slope, first) = (state, trial.slope, false);
                 continue;
             };
+            self.memory.cut(h);
             let closer = self.closer(mode, clock.now, &x, &slope, c, h, &rough, limit);
             let again = match &closer {
                 Some(Closer { dense, h, ahead }) => {
@@ -343,6 +344,18 @@ struct Closer<D> {
     dense: D,
     h: f64,
     ahead: f64,
+}
+
+/// The end of an endless span, in seconds: later ones leave the range of numbers where a stepper
+/// multiplies them (`tests/far.rs` has a ball at rest for ever).
+const LAST: f64 = 1e300;
+
+/// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
+/// stands and any other is infinite, which is an error.
+#[inline]
+pub(super) fn remaining(clock: &Clock) -> f64 {
+    let remaining = clock.end.since(clock.now);
+    if remaining < f64::INFINITY { remaining } else { LAST - clock.now.seconds() }
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
