@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Entry, Jump, Observer, Polynomial, Simulation};
+use saltus::{About, Automaton, Edges, Entry, Jump, Limit, Observer, Refusal, Simulation, Solution};
 use saltus_examples::{Figure, gallery};
 
 const G: f64 = 9.81; // m/s²
@@ -44,28 +44,32 @@ impl Automaton for Table {
     fn flow(&self, ball: Ball, t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         vector![x[1], if ball == Ball::Flies { -G } else { -OMEGA * OMEGA * self.place(t) }]
     }
-    fn exact(&self, ball: Ball, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        (ball == Ball::Flies).then(|| [*x, vector![x[1], -G], vector![-0.5 * G, 0.0]].into())
+    fn solution(&self, ball: Ball, _t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        match ball {
+            Ball::Flies => Solution::Polynomial([*x, vector![x[1], -G], vector![-0.5 * G, 0.0]].into()),
+            Ball::Rides => Solution::Steps,
+        }
     }
-    fn edges(&self, ball: Ball) -> Edges<Ball> {
+    fn edges(&self, ball: Ball) -> Edges<'_, Ball> {
         Edges::from([ball])
     }
     fn guard(&self, ball: Ball, t: f64, x: &Vector2<f64>) -> f64 {
         if ball == Ball::Flies { x[0] - self.place(t) } else { G - OMEGA * OMEGA * self.place(t) }
     }
-    fn reset(&self, ball: Ball, t: f64, x: &Vector2<f64>) -> (Ball, Vector2<f64>) {
+    fn reset(&self, _: Ball, ball: Ball, t: f64, x: &Vector2<f64>) -> Result<(Ball, Vector2<f64>), Refusal> {
         let rebound = COR * (self.speed(t) - x[1]);
-        match ball {
+        Ok(match ball {
             Ball::Flies if rebound > SLOW => (Ball::Flies, vector![x[0], self.speed(t) + rebound]),
             Ball::Flies => (Ball::Rides, vector![self.place(t), self.speed(t)]),
             Ball::Rides => (Ball::Flies, *x),
-        }
+        })
     }
-    fn entry(&self, _: Ball) -> Entry {
-        Entry::Fire
+    #[inline]
+    fn about(&self, _: Ball) -> About {
+        About::new().entry(Entry::Fire)
     }
-    fn beyond(&self, _: Ball, t: f64, _: &Vector2<f64>) -> Option<(Ball, Vector2<f64>)> {
-        Some((Ball::Rides, vector![self.place(t), self.speed(t)]))
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Ball, Vector2<f64>)> {
+        Some((Ball::Rides, vector![self.place(limit.t), self.speed(limit.t)]))
     }
 }
 

@@ -7,7 +7,7 @@ use std::error::Error;
 use rayon::prelude::*;
 use saltus::nalgebra::Vector3;
 use saltus::return_map::{Continuation, Kind, MapError, ReturnMap, Selection};
-use saltus::{Automaton, Edges, Entry, Linearize, Number, Simulation};
+use saltus::{About, Automaton, Edges, Entry, Linearize, Number, Refusal, Simulation};
 use saltus_examples::{Figure, gallery};
 
 const INDUCTANCE: f64 = 20e-3; // H
@@ -66,21 +66,20 @@ impl Automaton for Buck {
     fn flow(&self, switch: Switch, t: f64, x: &Vector3<f64>) -> Vector3<f64> {
         self.flow_at(switch, t, x)
     }
-    fn edges(&self, switch: Switch) -> Edges<Event> {
+    fn edges(&self, switch: Switch) -> Edges<'_, Event> {
         Edges::from([if switch == Switch::Open { Event::Close } else { Event::Open }, Event::Period])
     }
     fn guard(&self, event: Event, t: f64, x: &Vector3<f64>) -> f64 {
         self.guard_at(event, t, x)
     }
-    fn affine(&self, _: Event) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: Event) -> About {
+        // If the ramp starts above the error, the switch closes again at once.
+        About::new().entry(Entry::Fire).affine()
     }
-    fn entry(&self, _: Event) -> Entry {
-        Entry::Fire // if the ramp starts above the error, the switch closes again at once
-    }
-    fn reset(&self, event: Event, t: f64, x: &Vector3<f64>) -> (Switch, Vector3<f64>) {
+    fn reset(&self, _: Switch, event: Event, t: f64, x: &Vector3<f64>) -> Result<(Switch, Vector3<f64>), Refusal> {
         let to = if event == Event::Close { Switch::Closed } else { Switch::Open };
-        (to, self.reset_at(event, t, x))
+        Ok((to, self.reset_at(event, t, x)))
     }
 }
 

@@ -3,7 +3,7 @@
 //! `cargo run --example slip` finds the stride that repeats itself. Flight has Cartesian coordinates, stance polar ones about the foot.
 
 use saltus::return_map::{ReturnMap, Section};
-use saltus::{Automaton, Coords, Edges, Lift, Linearize, Number, Simulation};
+use saltus::{Automaton, Coords, Edges, Lift, Linearize, Number, Refusal, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// kg, N/m, m, rad, m/s².
@@ -64,16 +64,16 @@ impl Automaton for Runner {
     fn flow(&self, phase: Phase, t: f64, x: &Coords<5>) -> Coords<5> {
         self.flow_at(phase, t, x)
     }
-    fn edges(&self, phase: Phase) -> Edges<Phase> {
+    fn edges(&self, phase: Phase) -> Edges<'_, Phase> {
         Edges::from([phase])
     }
     fn guard(&self, ends: Phase, t: f64, x: &Coords<5>) -> f64 {
         self.guard_at(ends, t, x)
     }
-    fn reset(&self, ends: Phase, t: f64, x: &Coords<5>) -> (Phase, Coords<5>) {
+    fn reset(&self, _: Phase, ends: Phase, t: f64, x: &Coords<5>) -> Result<(Phase, Coords<5>), Refusal> {
         let to = [Phase::Fall, Phase::Stance, Phase::Rise][ends as usize];
         let [a, b, c, d, foot] = self.reset_over(ends, t, x.over(), self.parameters());
-        (to, if to == Phase::Stance { [a, b, c, d, foot].into() } else { [a, b, c, d].into() })
+        Ok((to, if to == Phase::Stance { [a, b, c, d, foot].into() } else { [a, b, c, d].into() }))
     }
 }
 

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use saltus::nalgebra::Vector2;
 use saltus::return_map::{Continuation, Kind, ReturnMap, Section};
-use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Simulation};
+use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Refusal, Simulation, Solution};
 use saltus_examples::{Figure, gallery};
 
 /// The table moves as A sin(ω t).
@@ -47,17 +47,17 @@ impl Automaton for Table {
     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         self.flow_at(mode, t, x)
     }
-    fn exact(&self, mode: (), t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        self.exact_at(mode, t, x)
+    fn solution(&self, mode: (), t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        self.solution_at(mode, t, x)
     }
-    fn edges(&self, _: ()) -> Edges<()> {
+    fn edges(&self, _: ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_at(edge, t, x))
+    fn reset(&self, (): (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
     }
 }
 

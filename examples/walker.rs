@@ -6,7 +6,7 @@ use std::error::Error;
 
 use saltus::nalgebra::Vector4;
 use saltus::return_map::{Continuation, Kind, Point, ReturnMap, Section};
-use saltus::{Automaton, Edges, Entry, Linearize, Number, Simulation};
+use saltus::{About, Automaton, Edges, Entry, Linearize, Number, Refusal, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// The slope γ; lengths in legs, times in √(leg/g).
@@ -56,22 +56,20 @@ impl Automaton for Walker {
     fn flow(&self, mode: Swing, t: f64, x: &Vector4<f64>) -> Vector4<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, mode: Swing) -> Edges<Event> {
+    fn edges(&self, mode: Swing) -> Edges<'_, Event> {
         Edges::from([if mode == Swing::Behind { Event::MidStance } else { Event::HeelStrike }])
     }
     fn guard(&self, event: Event, t: f64, x: &Vector4<f64>) -> f64 {
         self.guard_at(event, t, x)
     }
     /// At mid-stance the swing foot has not passed the other yet.
-    fn entry(&self, _: Event) -> Entry {
-        Entry::Wait
+    #[inline]
+    fn about(&self, _: Event) -> About {
+        About::new().entry(Entry::Wait).affine()
     }
-    fn affine(&self, _: Event) -> bool {
-        true
-    }
-    fn reset(&self, event: Event, t: f64, x: &Vector4<f64>) -> (Swing, Vector4<f64>) {
+    fn reset(&self, _: Swing, event: Event, t: f64, x: &Vector4<f64>) -> Result<(Swing, Vector4<f64>), Refusal> {
         let to = if event == Event::MidStance { Swing::Before } else { Swing::Behind };
-        (to, self.reset_at(event, t, x))
+        Ok((to, self.reset_at(event, t, x)))
     }
 }
 

@@ -6,7 +6,7 @@ use std::error::Error;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{ReturnMap, Section};
-use saltus::{Automaton, Edges, Linearize, Number, Simulation};
+use saltus::{About, Automaton, Edges, Linearize, Number, Refusal, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// g in m/s², the spokes' length in m, half the angle between them and the slope in rad.
@@ -44,17 +44,18 @@ impl Automaton for Wheel {
     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, _: ()) -> Edges<()> {
+    fn edges(&self, _: ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn affine(&self, _: ()) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: ()) -> About {
+        About::new().affine()
     }
-    fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_at(edge, t, x))
+    fn reset(&self, (): (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A ball under quadratic drag as a model of one's own: its flow for steppers and, over jets, for series.
 
-use saltus::{Automaton, Edges, Series};
+use saltus::{About, Automaton, Edges, Refusal, Series, Solution};
 
 /// Height and velocity, in the smooth modes rising and falling or, `whole`, in one with the kink of v|v| at rest.
 pub(crate) struct Dragged {
@@ -14,6 +14,18 @@ pub(crate) struct Dragged {
 pub(crate) enum Turn {
     Floor,
     Apex,
+}
+
+impl Dragged {
+    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) {
+        let &Self { gravity, drag, whole, .. } = self;
+        if whole {
+            series.flow(|_t, [_, v]| [v, -drag * (v * v.abs()) - gravity]);
+        } else {
+            let drag = if rising { -drag } else { drag };
+            series.flow(|_t, [_, v]| [v, drag * (v * v) - gravity]);
+        }
+    }
 }
 
 impl Automaton for Dragged {
@@ -31,17 +43,11 @@ impl Automaton for Dragged {
         [v, -self.gravity - self.drag * v * speed]
     }
     #[inline]
-    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
-        let &Self { gravity, drag, whole, .. } = self;
-        if whole {
-            series.flow(|_t, [_, v]| [v, -drag * (v * v.abs()) - gravity])
-        } else {
-            let drag = if rising { -drag } else { drag };
-            series.flow(|_t, [_, v]| [v, drag * (v * v) - gravity])
-        }
+    fn solution(&self, _: bool, _t: f64, _x: &[f64; 2]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
     #[inline]
-    fn edges(&self, rising: bool) -> Edges<Turn> {
+    fn edges(&self, rising: bool) -> Edges<'_, Turn> {
         Edges::from([if rising && !self.whole { Turn::Apex } else { Turn::Floor }])
     }
     #[inline]
@@ -52,14 +58,14 @@ impl Automaton for Dragged {
         }
     }
     #[inline]
-    fn affine(&self, _: Turn) -> bool {
-        true
+    fn about(&self, _: Turn) -> About {
+        About::new().affine()
     }
     #[inline]
-    fn reset(&self, turn: Turn, _t: f64, &[y, v]: &[f64; 2]) -> (bool, [f64; 2]) {
-        match turn {
+    fn reset(&self, _: bool, turn: Turn, _t: f64, &[y, v]: &[f64; 2]) -> Result<(bool, [f64; 2]), Refusal> {
+        Ok(match turn {
             Turn::Floor => (true, [0.0, -self.cor * v]),
             Turn::Apex => (false, [y, 0.0]),
-        }
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! Edges that the clock takes, alone and together with those that the state takes.
 
 use saltus::nalgebra::{Vector2, Vector3, vector};
-use saltus::{Hybrid, Polynomial, Simulation, every};
+use saltus::{Clock, Hybrid, Polynomial, Simulation};
 
 use crate::report::Report;
 use crate::root::tight;
@@ -18,8 +18,8 @@ fn square_wave(case: &mut Report) {
     let oscillator = Hybrid::new()
         .mode("up", |_t, x: &Vector2<f64>| vector![x[1], 1.0 - x[0]])
         .mode("down", |_t, x| vector![x[1], -1.0 - x[0]])
-        .scheduled("up", "down", every(period), |_t, x| *x)
-        .scheduled("down", "up", every(period), |_t, x| *x);
+        .clock("up", "down", Clock::every(period), |_t, x| *x)
+        .clock("down", "up", Clock::every(period), |_t, x| *x);
     let simulation = Simulation::of(&oscillator).tolerance(1e-13).absolute_tolerance(1e-14);
     let run = simulation.run("up", vector![0.0, 0.0], 0.0..71.0).unwrap();
     case.ran(&run.stats);
@@ -40,7 +40,7 @@ fn coincident(case: &mut Report) {
         .exact("soft", fall)
         .edge("hard", "hard", |_t, x| x[0], move |_t, x| vector![0.0, -e1 * x[1]])
         .edge("soft", "soft", |_t, x| x[0], move |_t, x| vector![0.0, -e2 * x[1]])
-        .scheduled("hard", "soft", |t| (t < 1.0).then_some(1.0), |_t, x| *x);
+        .clock("hard", "soft", Clock::at([1.0]), |_t, x| *x);
     let run = Simulation::of(&ball).run("hard", vector![h, 0.0], 0.0..1.2).unwrap();
     case.ran(&run.stats);
     let jumps = run.trajectory.jumps();
@@ -56,13 +56,12 @@ fn coincident(case: &mut Report) {
 /// The clock switches, so no step can miss it.
 fn pulse(case: &mut Report) {
     let [t1, t2] = case.params(["t1", "t2"]);
-    let at = |moment: f64| move |t: f64| (t < moment).then_some(moment);
     let automaton = Hybrid::new()
         .mode("before", |_t, _x: &f64| 0.0)
         .mode("pulse", |_t, _x| 1e6)
         .mode("after", |_t, _x| 0.0)
-        .scheduled("before", "pulse", at(t1), |_t, x| *x)
-        .scheduled("pulse", "after", at(t2), |_t, x| *x);
+        .clock("before", "pulse", Clock::at([t1]), |_t, x| *x)
+        .clock("pulse", "after", Clock::at([t2]), |_t, x| *x);
     let run = Simulation::of(&automaton).run("before", 0.0, 0.0..1.0).unwrap();
     case.ran(&run.stats);
     assert_eq!(run.trajectory.jumps().iter().map(saltus::Jump::t).collect::<Vec<_>>(), [t1, t2]);
@@ -72,10 +71,10 @@ fn pulse(case: &mut Report) {
 /// By the clock, and as crossings of a clock that is part of the state.
 fn kicked(case: &mut Report) {
     let w = case.param("w");
-    let automaton = Hybrid::new().mode("run", move |_t, x: &Vector2<f64>| vector![x[1], -w * w * x[0]]).scheduled(
+    let automaton = Hybrid::new().mode("run", move |_t, x: &Vector2<f64>| vector![x[1], -w * w * x[0]]).clock(
         "run",
         "run",
-        every(1.0),
+        Clock::every(1.0),
         |_t, x| vector![x[0], x[1] + 1.0],
     );
     let run = tight(&automaton).run("run", vector![0.0, 0.0], 0.0..100.5).unwrap();

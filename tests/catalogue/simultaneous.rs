@@ -3,7 +3,9 @@
 use std::f64::consts::PI;
 
 use saltus::nalgebra::vector;
-use saltus::{Automaton, Cause, Edges, Entry, Hybrid, Jump, Polynomial, Run, Simulation, Stop};
+use saltus::{
+    About, Automaton, Cause, Edges, Entry, Hybrid, Jump, Polynomial, Refusal, Run, Simulation, Solution, Stop,
+};
 use saltus_bounce::line::{Lying, Row};
 use saltus_bounce::walls::Plane;
 use saltus_bounce::{Cor, Flyer, Line, Moving, Stance};
@@ -254,20 +256,21 @@ impl Automaton for Cascade {
     fn flow(&self, _: usize, _t: f64, _c: &f64) -> f64 {
         1.0
     }
-    fn edges(&self, j: usize) -> Edges<usize> {
+    fn edges(&self, j: usize) -> Edges<'_, usize> {
         if j < 1000 { Edges::from([j]) } else { Edges::none() }
     }
     fn guard(&self, edge: usize, _t: f64, c: &f64) -> f64 {
         if edge == 0 { 1.0 - c } else { -1.0 }
     }
-    fn reset(&self, edge: usize, _t: f64, c: &f64) -> (usize, f64) {
-        (edge + 1, *c)
+    fn reset(&self, _: usize, edge: usize, _t: f64, c: &f64) -> Result<(usize, f64), Refusal> {
+        Ok((edge + 1, *c))
     }
-    fn entry(&self, _: usize) -> Entry {
-        Entry::Fire
+    #[inline]
+    fn about(&self, _: usize) -> About {
+        About::new().entry(Entry::Fire)
     }
-    fn exact(&self, _: usize, _t: f64, c: &f64) -> Option<Polynomial<f64>> {
-        Some([*c, 1.0].into())
+    fn solution(&self, _: usize, _t: f64, c: &f64) -> Solution<Self> {
+        Solution::Polynomial([*c, 1.0].into())
     }
 }
 

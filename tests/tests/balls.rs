@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Fall, Jump, Polynomial, Run, Simulation, Stats};
+use saltus::{About, Automaton, Edges, Fall, Jump, Limit, Refusal, Run, Simulation, Solution, Stats};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
 use saltus_bounce::restitution::{Knots, Linear, Plastic, Viscoelastic};
 use saltus_bounce::{Ball, Cor, Floor, Mode, Phase, Restitution, Turn};
@@ -114,23 +114,24 @@ impl Automaton for Plain {
     fn flow(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         if mode == Mode::Rest { vector![0.0, 0.0] } else { vector![x[1], -self.g] }
     }
-    fn edges(&self, mode: Mode) -> Edges<Floor> {
+    fn edges(&self, mode: Mode) -> Edges<'_, Floor> {
         if mode == Mode::Rest { Edges::none() } else { Edges::from([Floor]) }
     }
     fn guard(&self, Floor: Floor, _t: f64, x: &Vector2<f64>) -> f64 {
         x[0]
     }
-    fn affine(&self, Floor: Floor) -> bool {
-        true
+    #[inline]
+    fn about(&self, Floor: Floor) -> About {
+        About::new().affine()
     }
-    fn reset(&self, Floor: Floor, _t: f64, x: &Vector2<f64>) -> (Mode, Vector2<f64>) {
+    fn reset(&self, _: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Result<(Mode, Vector2<f64>), Refusal> {
         let rebound = -self.e * x[1];
-        (if rebound > 0.0 { Mode::Flight } else { Mode::Rest }, vector![0.0, rebound.max(0.0)])
+        Ok((if rebound > 0.0 { Mode::Flight } else { Mode::Rest }, vector![0.0, rebound.max(0.0)]))
     }
-    fn exact(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        Some(match mode {
-            Mode::Flight => Polynomial::from([*x, vector![x[1], -self.g], vector![-0.5 * self.g, 0.0]]),
-            Mode::Rest => Polynomial::from([*x]),
+    fn solution(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        Solution::Polynomial(match mode {
+            Mode::Flight => [*x, vector![x[1], -self.g], vector![-0.5 * self.g, 0.0]].into(),
+            Mode::Rest => [*x].into(),
         })
     }
     fn falls(&self, _: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
@@ -138,7 +139,7 @@ impl Automaton for Plain {
         let time = if x[1] > 0.0 { (x[1] + speed) / self.g } else { 2.0 * x[0] / (speed - x[1]) };
         Fall::In(time, vector![0.0, -speed])
     }
-    fn beyond(&self, _: Mode, _t: f64, _: &Vector2<f64>) -> Option<(Mode, Vector2<f64>)> {
+    fn beyond(&self, _: &Limit<'_, Self>) -> Option<(Mode, Vector2<f64>)> {
         Some((Mode::Rest, vector![0.0, 0.0]))
     }
 }

@@ -5,7 +5,8 @@
 use saltus::cross::Evidence;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    Automaton, Certificate, Edges, Hybrid, Invertible, Jump, Polynomial, Reversed, Simulation, Stop, Trajectory,
+    Automaton, Certificate, Edges, Hybrid, Invertible, Jump, Polynomial, Refusal, Reversed, Simulation, Stop,
+    Trajectory,
 };
 
 fn ball() -> Hybrid<'static, Vector2<f64>> {
@@ -131,26 +132,26 @@ impl Automaton for Touch {
     fn flow(&self, (): (), _t: f64, _x: &f64) -> f64 {
         1.0
     }
-    fn edges(&self, (): ()) -> Edges<u8> {
+    fn edges(&self, (): ()) -> Edges<'_, u8> {
         Edges::from([0])
     }
     fn guard(&self, _: u8, _t: f64, x: &f64) -> f64 {
         (x - 0.5).powi(2) + 1e-13 * (1e9 * x).sin().abs()
     }
-    fn reset(&self, _: u8, _t: f64, x: &f64) -> ((), f64) {
-        ((), *x)
+    fn reset(&self, (): (), _: u8, _t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        Ok(((), *x))
     }
 }
 
 impl Invertible for Touch {
-    fn edges_into(&self, (): ()) -> Edges<u8> {
+    fn edges_into(&self, (): ()) -> Edges<'_, u8> {
         Edges::from([0])
     }
     fn image(&self, edge: u8, t: f64, x: &f64) -> f64 {
         self.guard(edge, t, x)
     }
     fn undo(&self, edge: u8, t: f64, x: &f64) -> ((), f64) {
-        self.reset(edge, t, x)
+        self.reset((), edge, t, x).unwrap()
     }
 }
 
@@ -186,14 +187,14 @@ fn rows_have_a_limit() {
         fn flow(&self, _: u32, _t: f64, _x: &f64) -> f64 {
             1.0
         }
-        fn edges(&self, mode: u32) -> Edges<u32> {
+        fn edges(&self, mode: u32) -> Edges<'_, u32> {
             Edges::from([mode])
         }
         fn guard(&self, edge: u32, _t: f64, x: &f64) -> f64 {
             f64::from(edge) + 1.0 - x
         }
-        fn reset(&self, edge: u32, _t: f64, x: &f64) -> (u32, f64) {
-            (edge + 1, *x)
+        fn reset(&self, _: u32, edge: u32, _t: f64, x: &f64) -> Result<(u32, f64), Refusal> {
+            Ok((edge + 1, *x))
         }
     }
     let mut certificate = Certificate::new();

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Edges, Fall, Jump, Simulation, Stop};
+use saltus::{Automaton, Dop853, Edges, Fall, Jump, Refusal, Simulation, Solution, Stop};
 use saltus_bounce::flight::{QuadraticDragFlight, VerticalFlight};
 
 #[derive(Clone, Copy, PartialEq)]
@@ -21,6 +21,12 @@ struct Ball {
 const G: f64 = 9.8;
 const K: f64 = 0.1;
 
+impl Ball {
+    fn flown(&self, _: bool, _t: f64, x: &Vector2<f64>, s: f64) -> Vector2<f64> {
+        self.flight.after(s, x)
+    }
+}
+
 impl Automaton for Ball {
     type Mode = bool; // rising
     type State = Vector2<f64>;
@@ -29,17 +35,17 @@ impl Automaton for Ball {
     fn flow(&self, rising: bool, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         vector![x[1], -G - if rising { K } else { -K } * x[1] * x[1]]
     }
-    fn edges(&self, rising: bool) -> Edges<bool> {
+    fn edges(&self, rising: bool) -> Edges<'_, bool> {
         Edges::from([rising])
     }
     fn guard(&self, apex: bool, _t: f64, x: &Vector2<f64>) -> f64 {
         if apex { x[1] } else { x[0] }
     }
-    fn reset(&self, apex: bool, _t: f64, x: &Vector2<f64>) -> (bool, Vector2<f64>) {
-        if apex { (false, vector![x[0], 0.0]) } else { (true, vector![0.0, -0.9 * x[1]]) }
+    fn reset(&self, _: bool, apex: bool, _t: f64, x: &Vector2<f64>) -> Result<(bool, Vector2<f64>), Refusal> {
+        Ok(if apex { (false, vector![x[0], 0.0]) } else { (true, vector![0.0, -0.9 * x[1]]) })
     }
-    fn flown(&self, _: bool, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        (self.path != Path::Steps).then(|| self.flight.after(s, x))
+    fn solution(&self, _: bool, _t: f64, _x: &Vector2<f64>) -> Solution<Self> {
+        if self.path == Path::Steps { Solution::Steps } else { Solution::Formula(Self::flown) }
     }
     fn falls(&self, _: bool, apex: bool, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
         let after = match (self.path, apex) {

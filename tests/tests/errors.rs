@@ -6,8 +6,8 @@ use std::ops::{ControlFlow, Range};
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    Automaton, Coords, Edges, Entry, Error, ErrorKind, Hybrid, Jump, Linearize, Number, Observer, Reversed, Simulation,
-    every, saltation,
+    Automaton, Clock, Coords, Edges, Entry, Error, ErrorKind, Hybrid, Jump, Linearize, Number, Observer, Refusal,
+    Reversed, Simulation, saltation,
 };
 
 type Planar = Hybrid<'static, Vector2<f64>>;
@@ -103,16 +103,16 @@ fn an_initial_state_that_is_not_finite() {
 fn an_entry_refused() {
     let (kind, text) = message(&ball(), "flight", vector![-0.1, 0.0], 1.0);
     assert_eq!(kind, ErrorKind::Entry);
-    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let Automaton::entry or Hybrid::entry say Wait or Fire (t = 0, mode "flight", state [-0.1, 0.0])"#);
+    insta::assert_snapshot!(text, @r#"the guard of edge flight -> flight (edge 0) is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let About::entry or Hybrid::entry say Wait or Fire (t = 0, mode "flight", state [-0.1, 0.0])"#);
 }
 
 #[test]
 fn a_mode_that_is_not_there() {
     let (kind, text) = message(&ball(), "fligth", DROPPED, 1.0);
-    assert_eq!(kind, ErrorKind::UnknownMode);
-    insta::assert_snapshot!(text, @r#"the automaton has no mode "fligth": did you mean "flight"? If not, declare it with Hybrid::mode (t = 0, mode "fligth", state [1.0, 0.0])"#);
+    assert_eq!(kind, ErrorKind::Model);
+    insta::assert_snapshot!(text, @r#"the automaton has no mode "fligth": did you mean "flight"? If not, declare it with Hybrid::mode"#);
     let (_, text) = message(&ball(), "stance", DROPPED, 1.0);
-    insta::assert_snapshot!(text, @r#"the automaton has no mode "stance": declare it with Hybrid::mode (t = 0, mode "stance", state [1.0, 0.0])"#);
+    insta::assert_snapshot!(text, @r#"the automaton has no mode "stance": declare it with Hybrid::mode"#);
 }
 
 /// An automaton with a mode that it says it does not have.
@@ -125,27 +125,27 @@ impl Automaton for Stairs {
     fn flow(&self, _: u8, _t: f64, _x: &f64) -> f64 {
         1.0
     }
-    fn edges(&self, mode: u8) -> Edges<u8> {
+    fn edges(&self, mode: u8) -> Edges<'_, u8> {
         Edges::from([mode])
     }
     fn guard(&self, edge: u8, _t: f64, x: &f64) -> f64 {
         f64::from(edge) + 1.0 - x
     }
-    fn reset(&self, edge: u8, _t: f64, x: &f64) -> (u8, f64) {
-        (edge + 1, *x)
+    fn reset(&self, _: u8, edge: u8, _t: f64, x: &f64) -> Result<(u8, f64), Refusal> {
+        Ok((edge + 1, *x))
     }
-    fn has_mode(&self, mode: u8) -> bool {
-        mode < 2
+    fn validate(&self, mode: u8) -> Result<(), String> {
+        if mode < 2 { Ok(()) } else { Err("there are two modes, 0 and 1".into()) }
     }
 }
 
 #[test]
 fn a_reset_to_a_mode_that_is_not_there() {
     let failed = Simulation::of(&Stairs).run(0, 0.0, 0.0..5.0).unwrap_err();
-    assert_eq!((failed.error.kind(), failed.trajectory.jumps().len()), (ErrorKind::UnknownMode, 1));
-    insta::assert_snapshot!(what(&failed.error), @"the reset of edge 1 leads to mode 2, which the automaton does not have: reset to one of its modes, or declare that one");
+    assert_eq!((failed.error.kind(), failed.trajectory.jumps().len()), (ErrorKind::Model, 1));
+    insta::assert_snapshot!(what(&failed.error), @"the reset of edge 1 leads to mode 2: there are two modes, 0 and 1");
     let error = Simulation::of(&Stairs).run(2, 0.0, 0.0..5.0).unwrap_err();
-    insta::assert_snapshot!(error, @"the automaton has no mode 2: start in one of its modes (t = 0, mode 2, state [0.0])");
+    insta::assert_snapshot!(error, @"there are two modes, 0 and 1");
 }
 
 /// What is misspelt in a `Hybrid` is found before the run starts, not when an edge is taken.
@@ -159,7 +159,7 @@ fn names_misspelt() {
     insta::assert_snapshot!(text, @r#"mode "haet" has an edge but is not declared: did you mean "heat"? If not, declare it with Hybrid::mode"#);
     let text = flaw(&heater().beyond("heat", "col", |_t, x| *x));
     insta::assert_snapshot!(text, @r#"beyond a limit in "heat" lies mode "col", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
-    let text = flaw(&heater().scheduled("heat", "Cool", every(1.0), |_t, x| *x));
+    let text = flaw(&heater().clock("heat", "Cool", Clock::every(1.0), |_t, x| *x));
     insta::assert_snapshot!(text, @r#"edge heat -> Cool (edge 0) leads to mode "Cool", which is not declared: did you mean "cool"? If not, declare it with Hybrid::mode"#);
     let text = flaw(&heater().terminal("heating", |_t, x| 22.0 - x));
     insta::assert_snapshot!(text, @r#"mode "heating" has an edge but is not declared: declare it with Hybrid::mode"#);
@@ -265,14 +265,14 @@ impl Automaton for Ceiling {
     fn flow(&self, (): (), t: f64, x: &[f64; 2]) -> [f64; 2] {
         self.flow_at((), t, x)
     }
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, (): (), t: f64, x: &[f64; 2]) -> f64 {
         self.guard_at((), t, x)
     }
-    fn reset(&self, (): (), t: f64, x: &[f64; 2]) -> ((), [f64; 2]) {
-        ((), self.reset_over((), t, *x, []))
+    fn reset(&self, (): (), (): (), t: f64, x: &[f64; 2]) -> Result<((), [f64; 2]), Refusal> {
+        Ok(((), self.reset_over((), t, *x, [])))
     }
 }
 

@@ -13,7 +13,7 @@ use saltus::{Dop853, Rodas5P, Simulation, State, Stop, Tsit5};
 use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
 use saltus_bounce::scene::Scene;
-use saltus_bounce::walls::{Cuboid, Face, Lift, Plane, Round, Stairs, Table, Walls};
+use saltus_bounce::walls::{Cuboid, Face, Lift, MOST_FACES, Plane, Round, Stairs, Table, Walls};
 use saltus_bounce::{Block, Cor, Event, Flyer, Moving, Rolls, Sphere, Stance};
 
 const FLOOR: Face = Face { cell: 0, index: 0 };
@@ -374,8 +374,8 @@ fn coordinates() {
     assert_eq!(Moving::new(vector![0.0, 0.0], vector![0.0, 0.0]).len(), 4);
     assert_eq!(size_of::<Moving<2>>(), 32);
     assert_eq!(size_of::<Moving<2, f64>>(), 40);
-    let many = vec![Plane::<2>::floor(0.0).unwrap(); 13];
-    assert!(Flyer::new(gravity(9.81), many, cor(0.5)).is_err());
+    let many = |count| Flyer::new(gravity(9.81), vec![Plane::<2>::floor(0.0).unwrap(); count], cor(0.5));
+    assert!(many(MOST_FACES).is_ok() && many(MOST_FACES + 1).is_err());
     assert_eq!(Walls::<2>::faces(&Cuboid::between(vector![0.0, 0.0], vector![1.0, 1.0]).unwrap(), 0), 4);
 }
 

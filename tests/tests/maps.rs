@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use saltus::nalgebra::Vector3;
 use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Selection};
-use saltus::{Automaton, Edges, Linearize, Number, Simulation};
+use saltus::{About, Automaton, Edges, Linearize, Number, Refusal, Simulation};
 
 #[test]
 fn questions_without_an_answer() {
@@ -64,17 +64,18 @@ impl Automaton for Oscillator {
     fn flow(&self, mode: (), t: f64, x: &Vector3<f64>) -> Vector3<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, (): ()) -> Edges<Meets> {
+    fn edges(&self, (): ()) -> Edges<'_, Meets> {
         Edges::from([Meets::Wall, Meets::Period])
     }
     fn guard(&self, meets: Meets, t: f64, x: &Vector3<f64>) -> f64 {
         self.guard_at(meets, t, x)
     }
-    fn affine(&self, _: Meets) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: Meets) -> About {
+        About::new().affine()
     }
-    fn reset(&self, meets: Meets, t: f64, x: &Vector3<f64>) -> ((), Vector3<f64>) {
-        ((), self.reset_at(meets, t, x))
+    fn reset(&self, (): (), meets: Meets, t: f64, x: &Vector3<f64>) -> Result<((), Vector3<f64>), Refusal> {
+        Ok(((), self.reset_at(meets, t, x)))
     }
 }
 
@@ -140,17 +141,17 @@ impl Automaton for Yearly {
     fn flow(&self, mode: (), t: f64, x: &Vector3<f64>) -> Vector3<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, edge: (), t: f64, x: &Vector3<f64>) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn affine(&self, (): ()) -> bool {
-        true
+    fn about(&self, (): ()) -> About {
+        About::new().affine()
     }
-    fn reset(&self, edge: (), t: f64, x: &Vector3<f64>) -> ((), Vector3<f64>) {
-        ((), self.reset_at(edge, t, x))
+    fn reset(&self, (): (), edge: (), t: f64, x: &Vector3<f64>) -> Result<((), Vector3<f64>), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
     }
 }
 

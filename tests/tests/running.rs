@@ -5,7 +5,9 @@
 use std::ops::ControlFlow;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Checkpoint, Coords, Edges, Jump, Observer, Piece, Simulation, State, Stop, Trajectory};
+use saltus::{
+    About, Automaton, Checkpoint, Coords, Edges, Jump, Observer, Piece, Refusal, Simulation, State, Stop, Trajectory,
+};
 use serde::{Deserialize, Serialize};
 
 /// A ball with quadratic drag, risen and fallen in two smooth modes, that keeps 0.9 of its speed.
@@ -35,7 +37,7 @@ impl Automaton for Drag {
             Mode::Falling => vector![x[1], -9.8 + drag],
         }
     }
-    fn edges(&self, mode: Mode) -> Edges<Edge> {
+    fn edges(&self, mode: Mode) -> Edges<'_, Edge> {
         match mode {
             Mode::Rising => Edges::from([Edge::Apex]),
             Mode::Falling => Edges::from([Edge::Floor]),
@@ -47,14 +49,15 @@ impl Automaton for Drag {
             Edge::Floor => x[0],
         }
     }
-    fn affine(&self, _: Edge) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: Edge) -> About {
+        About::new().affine()
     }
-    fn reset(&self, edge: Edge, _t: f64, x: &Vector2<f64>) -> (Mode, Vector2<f64>) {
-        match edge {
+    fn reset(&self, _: Mode, edge: Edge, _t: f64, x: &Vector2<f64>) -> Result<(Mode, Vector2<f64>), Refusal> {
+        Ok(match edge {
             Edge::Apex => (Mode::Falling, *x),
             Edge::Floor => (Mode::Rising, vector![0.0, -0.9 * x[1]]),
-        }
+        })
     }
 }
 

@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use saltus::{Hybrid, Polynomial, Simulation, every};
+use saltus::{Clock, Hybrid, Polynomial, Simulation};
 
 #[test]
 fn a_schedule_starts_after_the_start_and_ends_with_the_span() {
     let count =
-        Hybrid::new().mode("count", |_t, _x: &f64| 0.0).scheduled("count", "count", every(0.25), |_t, x| x + 1.0);
+        Hybrid::new().mode("count", |_t, _x: &f64| 0.0).clock("count", "count", Clock::every(0.25), |_t, x| x + 1.0);
     let run = |from: f64, to: f64| Simulation::of(&count).run("count", 0.0, from..to).unwrap().state;
     assert_eq!(run(0.0, 1.0), 4.0);
     assert_eq!(run(0.25, 1.0), 3.0, "a tick at the very start is over");
@@ -18,10 +18,10 @@ fn a_schedule_starts_after_the_start_and_ends_with_the_span() {
 /// Ten thousand kicks of a millisecond each: none lost to rounding, none taken twice.
 #[test]
 fn many_ticks() {
-    let count = Hybrid::new().exact("count", |_t, x: &f64| Polynomial::from([*x])).scheduled(
+    let count = Hybrid::new().exact("count", |_t, x: &f64| Polynomial::from([*x])).clock(
         "count",
         "count",
-        every(1e-3),
+        Clock::every(1e-3),
         |_t, x| x + 1.0,
     );
     let run = Simulation::of(&count).run("count", 0.0, 0.0..10.0).unwrap();

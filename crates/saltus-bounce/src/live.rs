@@ -231,8 +231,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
     /// Whether a formula gives the state in the present mode.
     #[inline]
     fn by_formula(&self, t: f64) -> bool {
-        self.automaton.exact(self.mode, t, &self.state).is_some()
-            || self.automaton.flown(self.mode, t, &self.state, 0.0).is_some()
+        self.automaton.solution(self.mode, t, &self.state).is_exact()
     }
 
     /// Finds what ends the present arc.
@@ -258,10 +257,9 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         if self.stands {
             return self.state;
         }
-        if let Some(solution) = self.automaton.exact(self.mode, from.seconds(), &self.state) {
-            return solution.at(s);
-        }
-        if let Some(state) = self.automaton.flown(self.mode, from.seconds(), &self.state, s) {
+        let t = from.seconds();
+        let solution = self.automaton.solution(self.mode, t, &self.state);
+        if let Some(state) = solution.at(self.automaton, self.mode, t, &self.state, s) {
             return state;
         }
         let after = self.pieces.partition_point(|piece| self.now.since(piece.start) >= 0.0);

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use saltus::step::{Auto, Dop853, Rodas5P, Stepper, Tsit5};
-use saltus::{Automaton, Edges, Series, Simulation};
+use saltus::{About, Automaton, Edges, Refusal, Series, Simulation, Solution};
 
 const STEPS: u64 = 1000;
 
@@ -31,6 +31,12 @@ struct Turning<const N: usize> {
     wall: f64,
 }
 
+impl<const N: usize> Turning<N> {
+    fn series(&self, _: bool, series: &mut Series<'_, [f64; N]>) {
+        series.flow(|_t, x: [_; N]| std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -x[i - 1] }));
+    }
+}
+
 impl<const N: usize> Automaton for Turning<N> {
     type Mode = bool;
     type State = [f64; N];
@@ -41,11 +47,11 @@ impl<const N: usize> Automaton for Turning<N> {
         std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -x[i - 1] })
     }
     #[inline]
-    fn series(&self, _: bool, series: &mut Series<'_, [f64; N]>) -> bool {
-        series.flow(|_t, x: [_; N]| std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -x[i - 1] }))
+    fn solution(&self, _: bool, _t: f64, _x: &[f64; N]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
     #[inline]
-    fn edges(&self, mode: bool) -> Edges<bool> {
+    fn edges(&self, mode: bool) -> Edges<'_, bool> {
         if self.watch == Watch::Nothing { Edges::none() } else { Edges::from([mode]) }
     }
     #[inline]
@@ -53,12 +59,12 @@ impl<const N: usize> Automaton for Turning<N> {
         self.wall + if up { x[0] } else { -x[0] }
     }
     #[inline]
-    fn affine(&self, _: bool) -> bool {
-        self.watch == Watch::Promised
+    fn about(&self, _: bool) -> About {
+        About::new().affine_if(self.watch == Watch::Promised)
     }
     #[inline]
-    fn reset(&self, up: bool, _t: f64, x: &[f64; N]) -> (bool, [f64; N]) {
-        (!up, *x)
+    fn reset(&self, _: bool, up: bool, _t: f64, x: &[f64; N]) -> Result<(bool, [f64; N]), Refusal> {
+        Ok((!up, *x))
     }
 }
 

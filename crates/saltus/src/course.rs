@@ -3,10 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Clock, Held, Memory};
-use crate::automaton::Automaton;
-use crate::error::{Error, ErrorKind, Place, listed};
+use crate::advance::{Advance, ArcEnd, Held, Memory, Span};
+use crate::automaton::{Automaton, Limit};
+use crate::clocks::Ticks;
+use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::observe::Observer;
+use crate::recent::Recent;
 use crate::series::Tape;
 use crate::simulation::{Ending, Options, Stats, Stop};
 use crate::state::State;
@@ -91,12 +93,14 @@ enum Next<A: Automaton> {
 pub struct Checkpoint<A: Automaton> {
     mode: A::Mode,
     state: A::State,
-    clock: Clock,
+    span: Span,
     jumps: usize,
     /// The time of the last jump that was not at once after another.
     instant: Time,
     cascade: usize,
     contraction: Contraction<A::State>,
+    recent: Recent<A::Edge>,
+    ticks: Ticks<A::Mode>,
     memory: Memory<A::Edge>,
     stop: Option<Stop<A::Edge>>,
 }
@@ -104,15 +108,17 @@ pub struct Checkpoint<A: Automaton> {
 impl<A: Automaton> Checkpoint<A> {
     pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Edge>) -> Self {
         let start = Time::new(span.start);
-        let clock = Clock { start, now: start, end: Time::new(span.end) };
+        let span = Span { start, now: start, end: Time::new(span.end) };
         Self {
             mode,
             state,
-            clock,
+            span,
             jumps: 0,
             instant: start,
             cascade: 0,
             contraction: Contraction::new(),
+            recent: Recent::new(),
+            ticks: Ticks::new(),
             memory,
             stop: None,
         }
@@ -121,7 +127,7 @@ impl<A: Automaton> Checkpoint<A> {
     /// When it was taken.
     #[must_use]
     pub fn time(&self) -> Time {
-        self.clock.now
+        self.span.now
     }
 
     /// No longer ended by a limit that these options have raised.
@@ -133,14 +139,14 @@ impl<A: Automaton> Checkpoint<A> {
 
 impl<A: Automaton> Clone for Checkpoint<A> {
     fn clone(&self) -> Self {
-        Self { contraction: self.contraction.clone(), ..*self }
+        Self { contraction: self.contraction.clone(), ticks: self.ticks.clone(), ..*self }
     }
 }
 
 impl<A: Automaton> fmt::Debug for Checkpoint<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mode, state, clock, jumps, .. } = self;
-        write!(f, "{mode:?} {state:?} at (t = {}, j = {jumps})", clock.now.seconds())
+        let Self { mode, state, span, jumps, .. } = self;
+        write!(f, "{mode:?} {state:?} at (t = {}, j = {jumps})", span.now.seconds())
     }
 }
 
@@ -158,7 +164,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// The time reached.
     #[must_use]
     pub fn time(&self) -> Time {
-        self.at.clock.now
+        self.at.span.now
     }
 
     /// The mode reached.
@@ -208,8 +214,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         };
         self.at.stop = Some(stop);
-        let Checkpoint { mode, state, clock, jumps, .. } = self.at;
-        Ok(Ending { stop, stats: self.stats(), time: clock.now, jumps, mode, state })
+        let Checkpoint { mode, state, span, jumps, .. } = self.at;
+        Ok(Ending { stop, stats: self.stats(), time: span.now, jumps, mode, state })
     }
 
     /// Advances through one arc and the jump at its end; says why the run is over, once it is.
@@ -226,7 +232,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     #[inline]
     fn stand(&self) -> Stand<A> {
-        let Checkpoint { mode, state, clock: Clock { now, .. }, instant, .. } = self.at;
+        let Checkpoint { mode, state, span: Span { now, .. }, instant, .. } = self.at;
         Stand { mode, state, now, instant }
     }
 
@@ -248,58 +254,70 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Self { automaton, stepper, options, at, tape, held } = self;
         // x is x⁺ of the last jump, or the initial state.
         let Stand { mode, state: x, now: began, instant } = *stand;
+        let mut span = Span { now: began, ..at.span };
+        let due = at.ticks.next(*automaton, mode, &x, &span)?;
+        if let Some(due) = &due {
+            span.end = due.time;
+        }
         let memory = &mut at.memory;
         let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory, tape, held };
-        let clock = Clock { now: began, ..at.clock };
-        let (edge, time, before) = match arc.arc(mode, &x, &clock, observer)? {
-            ArcEnd::Crossing { edge, time, before } => (edge, time, before),
-            ArcEnd::Stop { stop, time, state } => {
-                (at.clock.now, at.state) = (time, state);
-                return Ok(Next::Stop(stop));
-            }
+        let (edge, time, before, ticked) = match arc.arc(mode, &x, &span, observer)? {
+            ArcEnd::Crossing { edge, time, before } => (edge, time, before, false),
+            ArcEnd::Stop { stop, time, state } => match due {
+                Some(due) if matches!(stop, Stop::Time) => {
+                    at.ticks.take(&due, time.seconds());
+                    (due.edge, time, state, true)
+                }
+                _ => {
+                    (at.span.now, at.state) = (time, state);
+                    return Ok(Next::Stop(stop));
+                }
+            },
         };
         if std::mem::take(&mut arc.memory.spurious) {
-            (at.clock.now, at.state) = (time, before);
+            (at.span.now, at.state) = (time, before);
+            at.recent.push(edge);
             return Ok(Next::Limit { remaining: 0.0 });
         }
         // Here x⁻ = before, still inside the domain of the mode.
         let now = time.seconds();
-        let (to, after) = automaton
-            .take(mode, edge, now, &before)
-            .map_err(|kind| Error::new(kind, Place::new(now, mode, Some(edge), &before)))?;
+        let (to, after) =
+            automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, &before))?;
         let duration = time.since(began);
         let at_once = arc.memory.at_once(time.since(instant));
         let instant = if at_once { instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
-        let stands = duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
+        let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
             (at.cascade, at.instant) = (if at_once { at.cascade + 1 } else { 0 }, instant);
-            if !after.is_finite() || !automaton.has_mode(to) {
-                let (kind, note) = wrong(to, after);
+            if !after.is_finite() || to != mode && automaton.validate(to).is_err() {
+                let (kind, note) = wrong(*automaton, to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy alone took a fifth of a ball's impact.
-            (at.clock.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
+            (at.span.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
             let jump = Jump { time: instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {
                 return Ok(Next::Stop(Stop::Observer));
             }
-            if automaton.terminal(edge) {
+            if automaton.about(edge).terminal {
                 return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
         arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
+        at.recent.push(edge);
         at.contraction.push(if at_once { 0.0 } else { duration }, &after);
-        let elapsed = time.since(at.clock.start);
+        let elapsed = time.since(at.span.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
-        if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.clock.end.seconds()) {
+        if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
             return Ok(Next::Limit { remaining });
         }
         Ok(if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
         } else if at.cascade >= options.longest_cascade {
             // Collisions that go on at one time: what lies beyond them is the model's to say.
-            if automaton.beyond(at.mode, now, &at.state).is_some() {
+            let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
+            if at.recent.cycle().with(beyond).is_some() {
                 return Ok(Next::Limit { remaining: 0.0 });
             }
             Next::Stop(Stop::Cascade { edge })
@@ -316,28 +334,44 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     fn at_limit(&mut self, remaining: f64, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
         let Self { automaton, at, .. } = self;
         let (mode, x) = (at.mode, at.state);
-        if remaining > 0.0 && observer.piece(mode, &Piece::new(at.clock.now, remaining, 1.0, &[x])).is_break() {
+        if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
             return Ok(Some(Stop::Observer));
         }
-        at.clock.now = at.clock.now.after(remaining);
-        let limit = at.clock.now.seconds();
-        let Some((to, after)) = automaton.beyond(mode, limit, &x) else {
+        at.span.now = at.span.now.after(remaining);
+        let limit = at.span.now.seconds();
+        let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
+        let Some((to, after)) = at.recent.cycle().with(beyond) else {
             return Ok(Some(Stop::Zeno { limit }));
         };
-        at.instant = at.clock.now;
+        if !after.is_finite() || automaton.validate(to).is_err() {
+            let (kind, note) = wrong(*automaton, to, after);
+            let note = if kind == ErrorKind::Model { format!("Automaton::beyond {note}") } else { note };
+            return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
+        }
+        at.instant = at.span.now;
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         at.contraction.forget();
-        at.cascade = 0;
+        (at.recent, at.cascade) = (Recent::new(), 0);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }
 }
 
-/// What is wrong with a mode and a state that cannot be gone on from, and which they are.
+/// The failure of a run whose reset refuses.
 #[cold]
-fn wrong<X: State>(mode: impl fmt::Debug, x: X) -> (ErrorKind, String) {
-    if x.is_finite() { (ErrorKind::UnknownMode, format!("{mode:?}")) } else { (ErrorKind::Reset, listed(&x)) }
+#[inline(never)]
+fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl fmt::Debug, x: &X) -> Error {
+    refusal.at(Place::new(t, mode, Some(edge), x))
+}
+
+/// What is wrong with a mode and a state that a jump led to and that cannot be gone on from.
+#[cold]
+fn wrong<A: Automaton>(automaton: &A, to: A::Mode, x: A::State) -> (ErrorKind, String) {
+    match automaton.validate(to) {
+        Err(flaw) if x.is_finite() => (ErrorKind::Model, format!("leads to mode {to:?}: {flaw}")),
+        _ => (ErrorKind::Reset, listed(&x)),
+    }
 }
 
 /// Whether two states are equal coordinate by coordinate.

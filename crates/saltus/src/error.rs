@@ -65,10 +65,14 @@ pub enum ErrorKind {
     StepLimit,
     /// The initial state is not finite.
     InitialState,
-    /// The mode to start in, or the one that a reset led to, is not one of the automaton's.
-    UnknownMode,
-    /// The automaton contradicts itself: see [`Automaton::flaw`](crate::Automaton::flaw).
+    /// The automaton contradicts itself, or has no such mode: see
+    /// [`Automaton::validate`](crate::Automaton::validate).
     Model,
+    /// A clock cannot tick: see [`Clock`](crate::Clock).
+    Clock,
+    /// A tick whose time may depend on a parameter, where a derivative by it was asked for and that
+    /// of the time is not given: see [`Linearize::tick_over`](crate::Linearize::tick_over).
+    ClockDerivative,
     /// The flow has not as many coordinates as the state.
     Dimension,
     /// The series of the flow is that of another one: it does not start with the flow's slope.
@@ -79,6 +83,8 @@ pub enum ErrorKind {
     Guard,
     /// The reset gave a state that is not finite.
     Reset,
+    /// The reset refused, and said why: see [`Refusal`].
+    Refused,
     /// A guard is already negative as its mode is entered, and its edge refuses that.
     Entry,
     /// A crossing without speed, where derivatives were asked for: they do not exist there.
@@ -156,22 +162,22 @@ impl fmt::Display for Error {
                 );
             }
             ErrorKind::InitialState => f.write_str("the initial state is not finite: give finite coordinates")?,
-            ErrorKind::UnknownMode => match (edge, note) {
-                (Some(edge), _) => write!(
-                    f,
-                    "the reset of edge {edge} leads to mode {said}, which the automaton does not have: reset to one of its modes, or declare that one"
-                )?,
-                (None, Some(note)) => f.write_str(note)?,
-                (None, None) => write!(f, "the automaton has no mode {mode}: start in one of its modes")?,
+            ErrorKind::Model => match edge {
+                Some(edge) => write!(f, "the reset of edge {edge} {said}")?,
+                None => return f.write_str(said),
             },
-            ErrorKind::Model => return f.write_str(said),
+            ErrorKind::Clock => write!(f, "the clock of edge {by} {said}")?,
+            ErrorKind::ClockDerivative => write!(
+                f,
+                "edge {by} is taken by a clock, and how its time depends on the parameters is not given: say it in Linearize::tick_over, also that it does not"
+            )?,
             ErrorKind::Dimension => write!(
                 f,
                 "the flow gives {said} and the state has {} coordinates: give both as many in this mode, here and in the resets that lead to it",
                 state.len()
             )?,
             ErrorKind::Series => f.write_str(
-                "the series does not start with the slope that the flow gives: write the same flow in Automaton::series and Automaton::flow",
+                "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow",
             )?,
             ErrorKind::Flow => f.write_str(
                 "the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",
@@ -180,13 +186,20 @@ impl fmt::Display for Error {
                 f,
                 "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before"
             )?,
-            ErrorKind::Reset => write!(
-                f,
-                "the reset of edge {by} gave {said}, which is not finite: check it for division by zero or roots of negative numbers at this state"
-            )?,
+            ErrorKind::Reset => {
+                match edge {
+                    Some(edge) => write!(f, "the reset of edge {edge}")?,
+                    None => f.write_str("Automaton::beyond")?,
+                }
+                write!(
+                    f,
+                    " gave {said}, which is not finite: check it for division by zero or roots of negative numbers at this state"
+                )?;
+            }
+            ErrorKind::Refused => write!(f, "the reset of edge {by} refused: {said}")?,
             ErrorKind::Entry => write!(
                 f,
-                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let Automaton::entry or Hybrid::entry say Wait or Fire"
+                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let About::entry or Hybrid::entry say Wait or Fire"
             )?,
             ErrorKind::Grazing => write!(
                 f,
@@ -208,3 +221,80 @@ impl fmt::Debug for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Why a reset gives no state: what [`Automaton::reset`](crate::Automaton::reset) answers in place of
+/// one. The run fails with an [`Error`] that says it, with time, mode, edge and state.
+///
+/// Any error becomes one by `?`.
+///
+/// ```
+/// use saltus::{Automaton, Edges, ErrorKind, Refusal, Simulation};
+///
+/// /// A tank of 2 L whose valve is stuck.
+/// struct Tank;
+///
+/// impl Automaton for Tank {
+///     type Mode = ();
+///     type State = f64;
+///     type Edge = ();
+///     fn flow(&self, (): (), _t: f64, _x: &f64) -> f64 {
+///         0.5
+///     }
+///     fn edges(&self, (): ()) -> Edges<'_, ()> {
+///         Edges::from([()])
+///     }
+///     fn guard(&self, (): (), _t: f64, x: &f64) -> f64 {
+///         2.0 - x
+///     }
+///     fn reset(&self, (): (), (): (), _t: f64, _x: &f64) -> Result<((), f64), Refusal> {
+///         Err(Refusal::new("the valve is stuck"))
+///     }
+/// }
+///
+/// let error = Simulation::of(&Tank).run((), 0.0, 0.0..9.0).unwrap_err().error;
+/// assert_eq!(error.kind(), ErrorKind::Refused);
+/// assert!((error.t() - 4.0).abs() < 1e-12);
+/// assert!(error.to_string().starts_with("the reset of edge () refused: the valve is stuck"));
+/// ```
+pub struct Refusal(Box<(ErrorKind, String)>);
+
+impl Refusal {
+    /// With what keeps the reset from a state, as the end of a sentence.
+    #[cold]
+    #[must_use]
+    pub fn new(why: impl fmt::Display) -> Self {
+        Self(Box::new((ErrorKind::Refused, why.to_string())))
+    }
+
+    /// Of a kind of its own.
+    #[cold]
+    #[cfg(feature = "num-dual")]
+    pub(crate) fn of(kind: ErrorKind) -> Self {
+        Self(Box::new((kind, String::new())))
+    }
+
+    /// The failure of a run.
+    #[cold]
+    pub(crate) fn at(self, place: Place) -> Error {
+        let (kind, why) = *self.0;
+        Error::new(kind, place).noting(Some(why))
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.1)
+    }
+}
+
+impl fmt::Debug for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}: {}", self.0.0, self.0.1)
+    }
+}
+
+impl<E: std::error::Error> From<E> for Refusal {
+    fn from(error: E) -> Self {
+        Self::new(error)
+    }
+}

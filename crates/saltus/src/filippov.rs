@@ -2,7 +2,9 @@
 
 use std::marker::PhantomData;
 
-use crate::automaton::{Automaton, Edges};
+use crate::automaton::{About, Automaton};
+use crate::edges::Edges;
+use crate::error::Refusal;
 use crate::state::State;
 
 /// Two smooth flows on the two sides of a surface h(t, x) = 0.
@@ -305,7 +307,7 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         }
     }
 
-    fn edges(&self, mode: Side) -> Edges<Passage> {
+    fn edges(&self, mode: Side) -> Edges<'_, Passage> {
         match mode {
             Side::Above => Edges::from([Passage::FromAbove]),
             Side::Below => Edges::from([Passage::FromBelow]),
@@ -322,18 +324,20 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         }
     }
 
-    fn reset(&self, edge: Passage, t: f64, x: &T::State) -> (Side, T::State) {
-        match edge {
+    fn reset(&self, _: Side, edge: Passage, t: f64, x: &T::State) -> Result<(Side, T::State), Refusal> {
+        Ok(match edge {
             Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => self.entered(Side::Below, t, x),
             Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => self.entered(Side::Above, t, x),
             Passage::FromAbove | Passage::FromBelow => self.entered(Side::Sliding, t, x),
             Passage::LeaveAbove => self.left(Side::Above, t, x),
             Passage::LeaveBelow => self.left(Side::Below, t, x),
-        }
+        })
     }
 
-    fn affine(&self, edge: Passage) -> bool {
-        matches!(edge, Passage::FromAbove | Passage::FromBelow) && self.system.affine()
+    #[inline]
+    fn about(&self, edge: Passage) -> About {
+        let surface = matches!(edge, Passage::FromAbove | Passage::FromBelow);
+        About::new().affine_if(surface && self.system.affine())
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use crate::advance::Span;
 use crate::automaton::{Automaton, Entry};
+use crate::clocks::Ticks;
 use crate::error::{Error, ErrorKind, Place, listed};
 use crate::simulation::{Run, Stats, Stop};
 use crate::state::State;
@@ -58,6 +60,8 @@ pub fn frame_by_frame<A: Automaton>(
         state,
     };
     let mut now = start;
+    let mut ticks = Ticks::new();
+    let mut may = Vec::new();
     for frame in 1_u64.. {
         #[allow(clippy::cast_precision_loss)] // a count of frames
         let next = start.after((frame as f64 / rate).min(span.end - span.start));
@@ -66,8 +70,11 @@ pub fn frame_by_frame<A: Automaton>(
             break;
         }
         let (mode, x) = (run.mode, run.state);
+        if let Some(flaw) = automaton.edges(mode).flaw() {
+            return Err(Error::new(ErrorKind::Model, place(now.seconds(), None, mode, &x)).noting(Some(flaw)));
+        }
         // One that waits was negative before the frame; any other is taken as soon as it is.
-        let may = held(automaton, mode, now.seconds(), &x, &mut run.stats, |entry| entry != Entry::Wait);
+        held(automaton, mode, now.seconds(), &x, &mut run.stats, &mut may, |entry| entry != Entry::Wait);
         let (slope, end) = kutta(automaton, mode, now.seconds(), &x, h);
         run.stats.flows += 4;
         run.stats.steps += 1;
@@ -75,9 +82,17 @@ pub fn frame_by_frame<A: Automaton>(
             return Err(Error::new(ErrorKind::Flow, place(now.seconds(), None, mode, &x)));
         }
         run.trajectory.push_piece(&Piece::new(now, h, h, &between(&x, &slope, &end, h)));
+        let frame = Span { start, now, end: next };
         now = next;
         run.state = end;
-        run.stop = jumps(automaton, may, now, &mut run)?;
+        run.stop = jumps(automaton, &mut may, now, &mut run)?;
+        // Then the clocks that have ticked since the last frame.
+        while run.stop == Stop::Time
+            && let Some(due) = ticks.next(automaton, run.mode, &run.state, &frame)?
+        {
+            ticks.take(&due, now.seconds());
+            run.stop = jump(automaton, due.edge, now, &mut run)?;
+        }
         if run.stop == Stop::Time && run.stats.jumps >= most_jumps {
             run.stop = Stop::Jumps { most: most_jumps };
         }
@@ -96,52 +111,62 @@ fn held<A: Automaton>(
     t: f64,
     x: &A::State,
     stats: &mut Stats,
+    may: &mut Vec<bool>,
     entry: impl Fn(Entry) -> bool,
-) -> u64 {
-    let mut held = 0;
-    for (i, edge) in automaton.edges(mode).iter().enumerate().take(64) {
+) {
+    may.clear();
+    for edge in automaton.edges(mode).iter() {
         stats.guards += 1;
-        if automaton.guard(edge, t, x) >= 0.0 || entry(automaton.entry(edge)) {
-            held |= 1 << i;
-        }
+        may.push(automaton.guard(edge, t, x) >= 0.0 || entry(automaton.about(edge).entry));
     }
-    held
 }
 
 /// Takes the edges that a frame has crossed, one after the other, in the order in which the mode lists them.
-fn jumps<A: Automaton>(automaton: &A, mut may: u64, now: Time, run: &mut Run<A>) -> Result<Stop<A::Edge>, Error> {
+fn jumps<A: Automaton>(
+    automaton: &A,
+    may: &mut Vec<bool>,
+    now: Time,
+    run: &mut Run<A>,
+) -> Result<Stop<A::Edge>, Error> {
     let t = now.seconds();
     for _ in 0..MOST_AT_ONCE {
         let (mode, x) = (run.mode, run.state);
         let mut crossed = None;
-        for (i, edge) in automaton.edges(mode).iter().enumerate().take(64) {
+        for (edge, &may) in automaton.edges(mode).iter().zip(&*may) {
             run.stats.guards += 1;
             let g = automaton.guard(edge, t, &x);
             if g.is_nan() {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), &x)));
             }
-            if g < 0.0 && may >> i & 1 == 1 {
+            if g < 0.0 && may {
                 crossed = Some(edge);
                 break;
             }
         }
         let Some(edge) = crossed else { return Ok(Stop::Time) };
-        let place = || Place::new(t, mode, Some(edge), &x);
-        let (to, after) = automaton.take(mode, edge, t, &x).map_err(|kind| Error::new(kind, place()))?;
-        if !after.is_finite() {
-            return Err(Error::new(ErrorKind::Reset, place()).noting(Some(listed(&after))));
-        }
-        run.stats.jumps += 1;
-        let (j, cause) = (run.stats.jumps, Cause::Edge(edge));
-        run.trajectory.push_jump(Jump { time: now, j, cause, from: mode, before: x, to, after });
-        (run.mode, run.state) = (to, after);
-        if automaton.terminal(edge) {
-            return Ok(Stop::Terminal { edge });
+        let stop = jump(automaton, edge, now, run)?;
+        if stop != Stop::Time {
+            return Ok(stop);
         }
         // What a reset leaves negative is not crossed again before the next frame.
-        may = held(automaton, to, t, &after, &mut run.stats, |entry| entry == Entry::Fire);
+        held(automaton, run.mode, t, &run.state, &mut run.stats, may, |entry| entry == Entry::Fire);
     }
     Ok(Stop::Time)
+}
+
+/// Takes an edge.
+fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut Run<A>) -> Result<Stop<A::Edge>, Error> {
+    let (mode, x, t) = (run.mode, run.state, now.seconds());
+    let place = || Place::new(t, mode, Some(edge), &x);
+    let (to, after) = automaton.reset(mode, edge, t, &x).map_err(|refusal| refusal.at(place()))?;
+    if !after.is_finite() {
+        return Err(Error::new(ErrorKind::Reset, place()).noting(Some(listed(&after))));
+    }
+    run.stats.jumps += 1;
+    let (j, cause) = (run.stats.jumps, Cause::Edge(edge));
+    run.trajectory.push_jump(Jump { time: now, j, cause, from: mode, before: x, to, after });
+    (run.mode, run.state) = (to, after);
+    Ok(if automaton.about(edge).terminal { Stop::Terminal { edge } } else { Stop::Time })
 }
 
 /// One step of the classical method: the slope at its start, and its end.

@@ -25,11 +25,13 @@
 mod advance;
 mod automaton;
 mod certificate;
+mod clocks;
 mod control;
 mod copies;
 mod course;
 pub mod cross;
 mod distance;
+mod edges;
 mod ensemble;
 mod error;
 mod filippov;
@@ -39,11 +41,13 @@ mod hybrid;
 mod linearize;
 mod observe;
 mod poly;
+mod recent;
 #[cfg(feature = "num-dual")]
 pub mod return_map;
 mod reverse;
 mod series;
 mod simulation;
+mod solution;
 mod state;
 pub mod step;
 mod time;
@@ -55,21 +59,24 @@ pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
 
-pub use automaton::{Automaton, Edges, Entry, Fall, Polynomial};
+pub use automaton::{About, Automaton, Entry, Limit};
 pub use certificate::{Certificate, Tally};
+pub use clocks::{Clock, Clocks, Ticking};
 pub use course::{Checkpoint, Course};
 pub use distance::Closeness;
+pub use edges::Edges;
 pub use ensemble::ensemble;
-pub use error::{Error, ErrorKind};
+pub use error::{Error, ErrorKind, Refusal};
 pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
 pub use frames::frame_by_frame;
-pub use hybrid::{Hybrid, Link, every};
+pub use hybrid::{Hybrid, Link};
 #[cfg(feature = "num-dual")]
 pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
 pub use observe::{Inspection, Observer};
 pub use reverse::{Invertible, Reversed};
 pub use series::{Jet, Series};
 pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
+pub use solution::{Fall, Polynomial, Solution};
 pub use state::{Coords, State};
 pub use step::{Auto, Dop853, Rodas5P, Tsit5};
 pub use time::Time;

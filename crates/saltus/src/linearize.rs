@@ -9,7 +9,8 @@ pub use sensitive::{Sensitive, Tangent, Wrt};
 use nalgebra::SVector;
 use num_dual::{Dual64, DualNum};
 
-use crate::automaton::{Automaton, Polynomial};
+use crate::automaton::Automaton;
+use crate::solution::{Polynomial, Solution};
 use crate::state::{Coords, State};
 
 /// A number that a model may be written over: `f64`, or a dual number that carries derivatives along.
@@ -112,7 +113,7 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 ///
 /// ```
 /// use saltus::nalgebra::{Vector2, vector};
-/// use saltus::{Automaton, Edges, Linearize, Number, saltation};
+/// use saltus::{Automaton, Edges, Linearize, Number, Refusal, saltation};
 ///
 /// struct Ball {
 ///     gravity: f64,
@@ -144,14 +145,14 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 ///     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
 ///         self.flow_at(mode, t, x)
 ///     }
-///     fn edges(&self, _: ()) -> Edges<()> {
+///     fn edges(&self, _: ()) -> Edges<'_, ()> {
 ///         Edges::from([()])
 ///     }
 ///     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 {
 ///         self.guard_at(edge, t, x)
 ///     }
-///     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-///         ((), self.reset_at(edge, t, x))
+///     fn reset(&self, _: (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+///         Ok(((), self.reset_at(edge, t, x)))
 ///     }
 /// }
 ///
@@ -212,7 +213,24 @@ pub trait Linearize: Automaton<State: Lift> {
         None
     }
 
-    /// The exact solution, as [`Automaton::exact`]. Without it, a run with derivatives takes steps.
+    /// The time of the tick at `t` by which a clock takes `edge` out of `mode`, as the parameters move
+    /// it: τ(p) with τ = t where they are what they are. Only its derivative counts. The time itself,
+    /// `D::from(t)`, says that they do not move it.
+    ///
+    /// Without it a derivative by a parameter cannot be carried across the tick: the run fails with
+    /// [`ErrorKind::ClockDerivative`](crate::ErrorKind::ClockDerivative).
+    fn tick_over<D: Number>(
+        &self,
+        mode: Self::Mode,
+        edge: Self::Edge,
+        t: f64,
+        p: Over<Self::Parameters, D>,
+    ) -> Option<D> {
+        let _ = (mode, edge, t, p);
+        None
+    }
+
+    /// The exact solution, as [`Automaton::solution`]. Without it, a run with derivatives takes steps.
     fn exact_over<D: Number>(
         &self,
         mode: Self::Mode,
@@ -244,11 +262,16 @@ pub trait Linearize: Automaton<State: Lift> {
         x.with(|i| Self::State::pick(&after, i))
     }
 
-    /// What [`Automaton::exact`] may answer.
+    /// What [`Automaton::solution`] may answer: the exact solution where there is one, else steps.
     #[inline]
-    fn exact_at(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Option<Polynomial<Self::State>> {
-        let solution = self.exact_over(mode, t, x.over(), self.parameters().over())?;
-        Some(solution.map(|_, c| x.with(|i| Self::State::pick(c, i))))
+    fn solution_at(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Solution<Self>
+    where
+        Self: Sized,
+    {
+        match self.exact_over(mode, t, x.over(), self.parameters().over()) {
+            Some(solution) => Solution::Polynomial(solution.map(|_, c| x.with(|i| Self::State::pick(c, i)))),
+            None => Solution::Steps,
+        }
     }
 }
 

@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use crate::automaton::{Automaton, Edges, Entry, Polynomial};
+use crate::automaton::{About, Automaton, Entry};
+use crate::edges::Edges;
+use crate::error::Refusal;
 use crate::observe::Inspection;
+use crate::solution::Solution;
 use crate::state::State;
 use crate::time::Time;
 use crate::trajectory::{Arc, Jump, Piece, Trajectory};
@@ -22,7 +25,7 @@ use crate::trajectory::{Arc, Jump, Piece, Trajectory};
 ///
 /// ```
 /// use saltus::nalgebra::{Vector2, vector};
-/// use saltus::{Automaton, Edges, Invertible, Reversed, Simulation};
+/// use saltus::{Automaton, Edges, Invertible, Refusal, Reversed, Simulation};
 ///
 /// /// A ball that keeps 0.7 of its speed at each impact.
 /// struct Ball;
@@ -34,19 +37,19 @@ use crate::trajectory::{Arc, Jump, Piece, Trajectory};
 ///     fn flow(&self, _: (), _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
 ///         vector![x[1], -9.81]
 ///     }
-///     fn edges(&self, _: ()) -> Edges<()> {
+///     fn edges(&self, _: ()) -> Edges<'_, ()> {
 ///         Edges::from([()])
 ///     }
 ///     fn guard(&self, _: (), _t: f64, x: &Vector2<f64>) -> f64 {
 ///         x[0]
 ///     }
-///     fn reset(&self, _: (), _t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-///         ((), vector![0.0, -0.7 * x[1]])
+///     fn reset(&self, _: (), _: (), _t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+///         Ok(((), vector![0.0, -0.7 * x[1]]))
 ///     }
 /// }
 ///
 /// impl Invertible for Ball {
-///     fn edges_into(&self, _: ()) -> Edges<()> {
+///     fn edges_into(&self, _: ()) -> Edges<'_, ()> {
 ///         Edges::from([()])
 ///     }
 ///     fn image(&self, _: (), _t: f64, x: &Vector2<f64>) -> f64 {
@@ -66,7 +69,7 @@ use crate::trajectory::{Arc, Jump, Piece, Trajectory};
 /// ```
 pub trait Invertible: Automaton {
     /// The edges that lead into `mode`, in the order in which they are undone where time cannot tell them apart.
-    fn edges_into(&self, mode: Self::Mode) -> Edges<Self::Edge>;
+    fn edges_into(&self, mode: Self::Mode) -> Edges<'_, Self::Edge>;
 
     /// The margin towards the image of the reset of `edge`: positive where the mode it leads to can have been for a while, zero where the jump
     /// must just have happened. Backwards in time, the jump is undone where it falls through zero.
@@ -81,13 +84,17 @@ pub trait Invertible: Automaton {
         Entry::Refuse
     }
 
-    /// What keeps a run backwards from starting in `mode`, found before it does: an edge without an inverse, say. The default finds nothing.
-    fn undo_flaw(&self, mode: Self::Mode) -> Option<String> {
+    /// Whether a run backwards can be in `mode`, as [`Automaton::validate`]: not if an edge into it
+    /// has no inverse, say. By default it can.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong and what to do.
+    fn validate_backwards(&self, mode: Self::Mode) -> Result<(), String> {
         let _ = mode;
-        None
+        Ok(())
     }
 
-    /// Promises that the image margin of `edge` is a·x + b with constants a and b; see [`Automaton::affine`].
+    /// Promises that the image margin of `edge` is a·x + b with constants a and b; see [`About::affine`].
     fn image_affine(&self, edge: Self::Edge) -> bool {
         let _ = edge;
         false
@@ -103,7 +110,7 @@ pub trait Invertible: Automaton {
 /// | edges out of a mode, guards | edges into it, [images](Invertible::image) |
 /// | reset, x⁻ to x⁺ | [undo](Invertible::undo), x⁺ to x⁻ |
 /// | terminal edges, what lies beyond a Zeno limit | none: a limit has no last jump to undo |
-/// | the clock's edges ([`Automaton::scheduled`]) | none, unless [`edges_into`](Invertible::edges_into) lists them with a margin in time |
+/// | clocks ([`Automaton::clocks`]) | none, unless [`edges_into`](Invertible::edges_into) lists them with a margin in time |
 ///
 /// Run it as it is, over [`Reversed::span`]; [`forwards`](Self::forwards) turns the trajectory round again.
 /// Errors that the flow forwards damps grow backwards at the same rate: a ball of COR e multiplies them by 1/e per bounce.
@@ -203,7 +210,7 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
         flow.with(|i| -flow.get(i))
     }
 
-    fn edges(&self, mode: A::Mode) -> Edges<A::Edge> {
+    fn edges(&self, mode: A::Mode) -> Edges<'_, A::Edge> {
         self.automaton.edges_into(mode)
     }
 
@@ -211,35 +218,22 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
         self.automaton.image(edge, -s, x)
     }
 
-    fn reset(&self, edge: A::Edge, s: f64, x: &A::State) -> (A::Mode, A::State) {
-        self.automaton.undo(edge, -s, x)
+    fn reset(&self, _: A::Mode, edge: A::Edge, s: f64, x: &A::State) -> Result<(A::Mode, A::State), Refusal> {
+        Ok(self.automaton.undo(edge, -s, x))
     }
 
-    fn entry(&self, edge: A::Edge) -> Entry {
-        self.automaton.undo_entry(edge)
+    #[inline]
+    fn about(&self, edge: A::Edge) -> About {
+        About::new().entry(self.automaton.undo_entry(edge)).affine_if(self.automaton.image_affine(edge))
     }
 
-    fn affine(&self, edge: A::Edge) -> bool {
-        self.automaton.image_affine(edge)
+    fn solution(&self, mode: A::Mode, s: f64, x: &A::State) -> Solution<Self> {
+        let Solution::Polynomial(polynomial) = self.automaton.solution(mode, -s, x) else { return Solution::Steps };
+        Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { *c }))
     }
 
-    fn exact(&self, mode: A::Mode, s: f64, x: &A::State) -> Option<Polynomial<A::State>> {
-        let solution = self.automaton.exact(mode, -s, x)?;
-        let turn = |c: &A::State| c.with(|i| -c.get(i));
-        match *solution.coefficients() {
-            [c0] => Some(Polynomial::from([c0])),
-            [c0, c1] => Some(Polynomial::from([c0, turn(&c1)])),
-            [c0, c1, c2] => Some(Polynomial::from([c0, turn(&c1), c2])),
-            [c0, c1, c2, c3] => Some(Polynomial::from([c0, turn(&c1), c2, turn(&c3)])),
-            _ => None,
-        }
-    }
-
-    fn flaw(&self, mode: A::Mode) -> Option<String> {
-        self.automaton.flaw(mode).or_else(|| self.automaton.undo_flaw(mode))
-    }
-
-    fn has_mode(&self, mode: A::Mode) -> bool {
-        self.automaton.has_mode(mode)
+    fn validate(&self, mode: A::Mode) -> Result<(), String> {
+        self.automaton.validate(mode)?;
+        self.automaton.validate_backwards(mode)
     }
 }

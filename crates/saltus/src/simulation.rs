@@ -174,8 +174,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// Steps through every mode by the stepper, also where a formula solves it ([`Automaton::exact`], [`Automaton::flown`]) or a series ([`Automaton::series`]): to
-    /// see what that saves.
+    /// Steps through every mode by the stepper, whatever [`Automaton::solution`] says: to see what
+    /// that saves.
     ///
     /// ```
     /// use saltus::nalgebra::{Vector2, vector};
@@ -249,7 +249,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         Course::new(self.automaton, self.fitted(), self.options, checkpoint.under(&self.options))
     }
 
-    /// The automaton.
+    /// The relative tolerance.
     pub(crate) const fn relative_tolerance(&self) -> f64 {
         self.options.tolerance.relative
     }
@@ -284,9 +284,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
         } else if !(longest_step > 0.0 && first_step.is_none_or(|h| h > 0.0 && h.is_finite())) {
             (ErrorKind::StepLimit, None)
-        } else if !self.automaton.has_mode(mode) {
-            (ErrorKind::UnknownMode, self.automaton.flaw(mode))
-        } else if let Some(flaw) = self.automaton.flaw(mode) {
+        } else if let Err(flaw) = self.automaton.validate(mode) {
             (ErrorKind::Model, Some(flaw))
         } else if !state.is_finite() {
             (ErrorKind::InitialState, None)

@@ -29,6 +29,22 @@ pub(crate) fn resolution(t: f64) -> f64 {
     t.abs().next_up() - t.abs()
 }
 
+/// How many units in the last place two times may differ by and be at one instant. A tick k·T is off
+/// the time that is meant by the relative roundings of T and of the product, 2⁻⁵³ each, and so is
+/// what it is compared with, a tick of another clock, a crossing or the end of a span: by 2⁻⁵¹ of
+/// the time together, which is less than four units.
+///
+/// Without it a clock of a tenth of a second misses the instants of one of three tenths
+/// (tests/clocks.rs, `ticks_against_integers`), and a crossing is taken after a tick at the same
+/// instant (`crossings_that_coincide`).
+const GRACE: f64 = 4.0;
+
+/// How much later than `t` is still at the same instant.
+#[inline]
+pub(crate) fn grace(t: f64) -> f64 {
+    if t.is_finite() { GRACE * resolution(t) } else { 0.0 }
+}
+
 impl Time {
     /// The moment `t`, in seconds.
     #[must_use]

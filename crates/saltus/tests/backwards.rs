@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Edges, ErrorKind, Hybrid, Invertible, Polynomial, Reversed, Simulation, Stop};
+use saltus::{
+    About, Automaton, Dop853, Edges, ErrorKind, Hybrid, Invertible, Refusal, Reversed, Simulation, Solution, Stop,
+};
 
 const G: f64 = 9.81;
 const COR: f64 = 0.7;
@@ -20,25 +22,30 @@ impl Automaton for Ball {
     fn flow(&self, _: (), _: f64, x: &Vector2<f64>) -> Vector2<f64> {
         vector![x[1], -G]
     }
-    fn edges(&self, _: ()) -> Edges<()> {
+    fn edges(&self, _: ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, _: (), _: f64, x: &Vector2<f64>) -> f64 {
         x[0]
     }
-    fn reset(&self, _: (), _: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), vector![0.0, -COR * x[1]])
+    fn reset(&self, (): (), _: (), _: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+        Ok(((), vector![0.0, -COR * x[1]]))
     }
-    fn affine(&self, _: ()) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: ()) -> About {
+        About::new().affine()
     }
-    fn exact(&self, _: (), _: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        self.exact.then(|| Polynomial::from([*x, vector![x[1], -G], vector![-0.5 * G, 0.0]]))
+    fn solution(&self, _: (), _: f64, x: &Vector2<f64>) -> Solution<Self> {
+        if self.exact {
+            Solution::Polynomial([*x, vector![x[1], -G], vector![-0.5 * G, 0.0]].into())
+        } else {
+            Solution::Steps
+        }
     }
 }
 
 impl Invertible for Ball {
-    fn edges_into(&self, _: ()) -> Edges<()> {
+    fn edges_into(&self, _: ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn image(&self, _: (), _: f64, x: &Vector2<f64>) -> f64 {
@@ -95,19 +102,19 @@ impl Automaton for Thermostat {
     fn flow(&self, heating: bool, _: f64, x: &f64) -> f64 {
         if heating { 30.0 - x } else { 10.0 - x }
     }
-    fn edges(&self, heating: bool) -> Edges<bool> {
+    fn edges(&self, heating: bool) -> Edges<'_, bool> {
         Edges::from([!heating])
     }
     fn guard(&self, on: bool, _: f64, x: &f64) -> f64 {
         if on { x - 20.0 } else { 22.0 - x }
     }
-    fn reset(&self, on: bool, _: f64, x: &f64) -> (bool, f64) {
-        (on, *x)
+    fn reset(&self, _: bool, on: bool, _: f64, x: &f64) -> Result<(bool, f64), Refusal> {
+        Ok((on, *x))
     }
 }
 
 impl Invertible for Thermostat {
-    fn edges_into(&self, heating: bool) -> Edges<bool> {
+    fn edges_into(&self, heating: bool) -> Edges<'_, bool> {
         Edges::from([heating])
     }
     fn image(&self, on: bool, t: f64, x: &f64) -> f64 {
@@ -145,19 +152,19 @@ impl Automaton for Marks {
     fn flow(&self, _: usize, _: f64, _: &f64) -> f64 {
         1.0
     }
-    fn edges(&self, passed: usize) -> Edges<usize> {
+    fn edges(&self, passed: usize) -> Edges<'_, usize> {
         if passed < MARKS.len() { Edges::from([passed]) } else { Edges::none() }
     }
     fn guard(&self, mark: usize, _: f64, x: &f64) -> f64 {
         MARKS[mark] - x
     }
-    fn reset(&self, mark: usize, _: f64, x: &f64) -> (usize, f64) {
-        (mark + 1, *x)
+    fn reset(&self, _: usize, mark: usize, _: f64, x: &f64) -> Result<(usize, f64), Refusal> {
+        Ok((mark + 1, *x))
     }
 }
 
 impl Invertible for Marks {
-    fn edges_into(&self, passed: usize) -> Edges<usize> {
+    fn edges_into(&self, passed: usize) -> Edges<'_, usize> {
         if passed > 0 { Edges::from([passed - 1]) } else { Edges::none() }
     }
     fn image(&self, mark: usize, _: f64, x: &f64) -> f64 {

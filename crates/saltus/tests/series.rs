@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // in what the tests share
 
 use proptest::prelude::*;
-use saltus::{Automaton, Coords, Dop853, Edges, ErrorKind, Hybrid, Series, Simulation, Stop};
+use saltus::{About, Automaton, Coords, Dop853, Edges, ErrorKind, Hybrid, Refusal, Series, Simulation, Solution, Stop};
 
 /// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a kink at rest.
 struct Ball {
@@ -15,6 +15,18 @@ struct Ball {
 
 const BALL: Ball = Ball { gravity: 9.8, drag: 0.1, cor: 0.9, whole: false };
 
+impl Ball {
+    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) {
+        let &Self { gravity, drag, whole, .. } = self;
+        let drag = if rising { drag } else { -drag };
+        if whole {
+            series.flow(|_t, [_, v]| [v, -gravity - drag.abs() * v * v.abs()]);
+        } else {
+            series.flow(|_t, [_, v]| [v, -gravity - drag * (v * v)]);
+        }
+    }
+}
+
 impl Automaton for Ball {
     type Mode = bool; // rising?
     type State = [f64; 2];
@@ -24,26 +36,21 @@ impl Automaton for Ball {
         let along = if self.whole { v.abs() } else { [-v, v][usize::from(rising)] };
         [v, -self.gravity - self.drag * v * along]
     }
-    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
-        let &Self { gravity, drag, whole, .. } = self;
-        let drag = if rising { drag } else { -drag };
-        if whole {
-            series.flow(|_t, [_, v]| [v, -gravity - drag.abs() * v * v.abs()])
-        } else {
-            series.flow(|_t, [_, v]| [v, -gravity - drag * (v * v)])
-        }
+    fn solution(&self, _: bool, _t: f64, _x: &[f64; 2]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
-    fn edges(&self, rising: bool) -> Edges<bool> {
+    fn edges(&self, rising: bool) -> Edges<'_, bool> {
         Edges::from([rising && !self.whole])
     }
     fn guard(&self, apex: bool, _t: f64, x: &[f64; 2]) -> f64 {
         x[usize::from(apex)]
     }
-    fn affine(&self, _: bool) -> bool {
-        true
+    #[inline]
+    fn about(&self, _: bool) -> About {
+        About::new().affine()
     }
-    fn reset(&self, apex: bool, _t: f64, &[y, v]: &[f64; 2]) -> (bool, [f64; 2]) {
-        if apex { (false, [y, 0.0]) } else { (true, [0.0, -self.cor * v]) }
+    fn reset(&self, _: bool, apex: bool, _t: f64, &[y, v]: &[f64; 2]) -> Result<(bool, [f64; 2]), Refusal> {
+        Ok(if apex { (false, [y, 0.0]) } else { (true, [0.0, -self.cor * v]) })
     }
 }
 
@@ -145,7 +152,7 @@ fn a_series_of_another_flow_is_refused() {
     assert_eq!(error.kind(), ErrorKind::Series);
     assert_eq!(
         error.to_string(),
-        "the series does not start with the slope that the flow gives: write the same flow in Automaton::series and Automaton::flow (t = 0, mode \"decay\", state [1.0])"
+        "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow (t = 0, mode \"decay\", state [1.0])"
     );
     let flat = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x, _]| [-x, x]);
     let error = Simulation::of(&flat).run("decay", 1.0, 0.0..1.0).unwrap_err().error;

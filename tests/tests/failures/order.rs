@@ -2,7 +2,7 @@
 
 use saltus::cross::{Start, first_fall};
 use saltus::nalgebra::{Vector2, Vector4, vector};
-use saltus::{Automaton, Edges, Entry, ErrorKind, Hybrid, Reversed, Simulation, Stop};
+use saltus::{Automaton, Edges, Entry, ErrorKind, Hybrid, Refusal, Reversed, Simulation, Stop};
 
 use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, of_time, throw};
 
@@ -75,16 +75,16 @@ impl Automaton for Balls {
     fn flow(&self, (): (), _t: f64, x: &[f64; 16]) -> [f64; 16] {
         std::array::from_fn(|i| if i % 2 == 0 { x[i + 1] } else { -G })
     }
-    fn edges(&self, (): ()) -> Edges<usize> {
+    fn edges(&self, (): ()) -> Edges<'_, usize> {
         Edges::indexed(8, |i| i)
     }
     fn guard(&self, edge: usize, _t: f64, x: &[f64; 16]) -> f64 {
         x[2 * edge]
     }
-    fn reset(&self, edge: usize, _t: f64, x: &[f64; 16]) -> ((), [f64; 16]) {
+    fn reset(&self, (): (), edge: usize, _t: f64, x: &[f64; 16]) -> Result<((), [f64; 16]), Refusal> {
         let mut after = *x;
         (after[2 * edge], after[2 * edge + 1]) = (0.0, -0.5 * x[2 * edge + 1]);
-        ((), after)
+        Ok(((), after))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use saltus::nalgebra::vector;
 use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
-use saltus::{Hybrid, Simulation, Stats, every};
+use saltus::{Clock, Hybrid, Simulation, Stats};
 
 use super::{Flight, G, PATHS, ball};
 
@@ -51,7 +51,7 @@ fn a_stiff_run_restarts_cheaply() {
     let run = |kick: Option<f64>| -> Stats {
         let automaton = Hybrid::new().mode("run", |t: f64, x: &f64| -1e4 * (x - t.cos()));
         let automaton = match kick {
-            Some(kick) => automaton.scheduled("run", "run", every(0.1), move |_t, x| x + kick),
+            Some(kick) => automaton.clock("run", "run", Clock::every(0.1), move |_t, x| x + kick),
             None => automaton,
         };
         let run = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-6).run("run", 1.0, 0.0..10.05).unwrap();

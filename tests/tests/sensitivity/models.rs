@@ -1,7 +1,10 @@
 //! The systems of the tests, each written once over numbers that carry derivatives.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Coords, Edges, Entry, Fall, Lift, Linearize, Number, Polynomial};
+use saltus::{
+    About, Automaton, Clock, Clocks, Coords, Edges, Entry, Fall, Lift, Limit, Linearize, Number, Polynomial, Refusal,
+    Solution,
+};
 
 /// A ball that bounces on a table at rest or moving as A sin(w t), flying or lying.
 #[derive(Clone, Copy, Debug)]
@@ -75,23 +78,21 @@ impl Automaton for Bounce {
     fn flow(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, mode: Phase) -> Edges<Floor> {
+    fn edges(&self, mode: Phase) -> Edges<'_, Floor> {
         if mode == Phase::Flight { Edges::from([Floor]) } else { Edges::none() }
     }
     fn guard(&self, edge: Floor, t: f64, x: &Vector2<f64>) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn affine(&self, _: Floor) -> bool {
-        self.amplitude == 0.0
+    #[inline]
+    fn about(&self, _: Floor) -> About {
+        About::new().affine_if(self.amplitude == 0.0).terminal_if(self.ends)
     }
-    fn terminal(&self, _: Floor) -> bool {
-        self.ends
+    fn reset(&self, _: Phase, edge: Floor, t: f64, x: &Vector2<f64>) -> Result<(Phase, Vector2<f64>), Refusal> {
+        Ok((Phase::Flight, self.reset_at(edge, t, x)))
     }
-    fn reset(&self, edge: Floor, t: f64, x: &Vector2<f64>) -> (Phase, Vector2<f64>) {
-        (Phase::Flight, self.reset_at(edge, t, x))
-    }
-    fn exact(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        self.exact_at(mode, t, x)
+    fn solution(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        self.solution_at(mode, t, x)
     }
     fn falls(&self, _: Phase, _: Floor, _: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {
         if !self.told {
@@ -100,7 +101,8 @@ impl Automaton for Bounce {
         let speed = (x[1] * x[1] + 2.0 * self.g * (x[0] - self.floor)).sqrt();
         Fall::In((x[1] + speed) / self.g, vector![self.floor, -speed])
     }
-    fn beyond(&self, mode: Phase, t: f64, x: &Vector2<f64>) -> Option<(Phase, Vector2<f64>)> {
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Phase, Vector2<f64>)> {
+        let &Limit { mode, t, x, .. } = limit;
         self.beyond_over(mode, t, x.over(), self.parameters()).map(|x| (Phase::Rest, x.into()))
     }
 }
@@ -159,7 +161,7 @@ impl Automaton for Dragged {
     fn flow(&self, way: Way, t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         self.flow_at(way, t, x)
     }
-    fn edges(&self, way: Way) -> Edges<Turn> {
+    fn edges(&self, way: Way) -> Edges<'_, Turn> {
         match way {
             Way::Up => Edges::from([Turn::Floor, Turn::Apex]),
             Way::Down => Edges::from([Turn::Floor]),
@@ -168,9 +170,9 @@ impl Automaton for Dragged {
     fn guard(&self, turn: Turn, t: f64, x: &Vector2<f64>) -> f64 {
         self.guard_at(turn, t, x)
     }
-    fn reset(&self, turn: Turn, t: f64, x: &Vector2<f64>) -> (Way, Vector2<f64>) {
+    fn reset(&self, _: Way, turn: Turn, t: f64, x: &Vector2<f64>) -> Result<(Way, Vector2<f64>), Refusal> {
         let after: Vector2<f64> = self.reset_at(turn, t, x);
-        (if turn == Turn::Floor && after[1] > 0.0 { Way::Up } else { Way::Down }, after)
+        Ok((if turn == Turn::Floor && after[1] > 0.0 { Way::Up } else { Way::Down }, after))
     }
 }
 
@@ -239,7 +241,7 @@ impl Automaton for Coin {
     fn flow(&self, side: Side, t: f64, x: &f64) -> f64 {
         self.flow_at(side, t, x)
     }
-    fn edges(&self, side: Side) -> Edges<When> {
+    fn edges(&self, side: Side) -> Edges<'_, When> {
         match side {
             Side::Ramp => Edges::from([When::Stop]),
             Side::Grow => Edges::from([When::Add]),
@@ -252,17 +254,18 @@ impl Automaton for Coin {
     fn guard(&self, when: When, t: f64, x: &f64) -> f64 {
         self.guard_at(when, t, x)
     }
-    fn reset(&self, when: When, t: f64, x: &f64) -> (Side, f64) {
+    fn reset(&self, _: Side, when: When, t: f64, x: &f64) -> Result<(Side, f64), Refusal> {
         let to = match when {
             When::Stop | When::Catch => Side::Still,
             When::Add => Side::Grown,
             When::Square => Side::Squared,
             When::Throw => Side::Flung,
         };
-        (to, self.reset_over(when, t, *x, self.parameters()))
+        Ok((to, self.reset_over(when, t, *x, self.parameters())))
     }
-    fn entry(&self, when: When) -> Entry {
-        if when == When::Catch { Entry::Fire } else { Entry::Refuse }
+    #[inline]
+    fn about(&self, when: When) -> About {
+        About::new().entry(if when == When::Catch { Entry::Fire } else { Entry::Refuse })
     }
 }
 
@@ -301,20 +304,20 @@ impl Automaton for Tossed {
     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, _: ()) -> Edges<()> {
+    fn edges(&self, _: ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn affine(&self, (): ()) -> bool {
-        self.power == 1
+    fn about(&self, (): ()) -> About {
+        About::new().affine_if(self.power == 1)
     }
-    fn exact(&self, mode: (), t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        self.exact_at(mode, t, x)
+    fn solution(&self, mode: (), t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        self.solution_at(mode, t, x)
     }
-    fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-        ((), self.reset_at(edge, t, x))
+    fn reset(&self, (): (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
     }
 }
 
@@ -388,18 +391,18 @@ impl Automaton for Hopper {
     fn flow(&self, gait: Gait, t: f64, x: &Coords<4>) -> Coords<4> {
         self.flow_at(gait, t, x)
     }
-    fn edges(&self, gait: Gait) -> Edges<Step> {
+    fn edges(&self, gait: Gait) -> Edges<'_, Step> {
         Edges::from([if gait == Gait::Flight { Step::Touchdown } else { Step::Liftoff }])
     }
     fn guard(&self, step: Step, t: f64, x: &Coords<4>) -> f64 {
         self.guard_at(step, t, x)
     }
-    fn reset(&self, step: Step, t: f64, x: &Coords<4>) -> (Gait, Coords<4>) {
+    fn reset(&self, _: Gait, step: Step, t: f64, x: &Coords<4>) -> Result<(Gait, Coords<4>), Refusal> {
         let after = self.reset_over(step, t, x.over(), self.parameters());
-        match (step, after) {
+        Ok(match (step, after) {
             (Step::Touchdown, [foot, angle, rate, _]) => (Gait::Stance, [foot, angle, rate].into()),
             (Step::Liftoff, after) => (Gait::Flight, after.into()),
-        }
+        })
     }
 }
 
@@ -425,6 +428,9 @@ impl Linearize for Dosed {
     fn reset_over<D: Number>(&self, (): (), _t: D, x: D, [_, dose]: [D; 2]) -> D {
         x + dose
     }
+    fn tick_over<D: Number>(&self, (): (), (): (), t: f64, _: [D; 2]) -> Option<D> {
+        Some(D::from(t)) // each second, whatever the parameters
+    }
 }
 
 impl Automaton for Dosed {
@@ -435,16 +441,16 @@ impl Automaton for Dosed {
     fn flow(&self, mode: (), t: f64, x: &f64) -> f64 {
         self.flow_at(mode, t, x)
     }
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::none()
     }
     fn guard(&self, edge: (), t: f64, x: &f64) -> f64 {
         self.guard_at(edge, t, x)
     }
-    fn reset(&self, edge: (), t: f64, x: &f64) -> ((), f64) {
-        ((), self.reset_at(edge, t, x))
+    fn reset(&self, (): (), edge: (), t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
     }
-    fn scheduled(&self, (): (), t: f64) -> Option<(f64, ())> {
-        Some((t.floor() + 1.0, ()))
+    fn clocks(&self, (): ()) -> Clocks<'_, ()> {
+        Clocks::from([(Clock::every(1.0), ())])
     }
 }

@@ -1,7 +1,7 @@
 //! Balls under quadratic drag, whose law of flight is smooth on either side of the apex: rising and falling are two modes.
 
 use nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Entry, Fall, Polynomial};
+use saltus::{About, Automaton, Edges, Entry, Fall, Limit, Refusal, Solution};
 
 use super::Ball;
 use crate::flight::{QuadraticDragFlight, VerticalFlight};
@@ -41,6 +41,13 @@ pub enum Turn {
     Floor,
 }
 
+impl<R: Restitution> Ball<QuadraticDragFlight, R> {
+    /// A time `s` later in flight.
+    fn flown(&self, _phase: Phase, _t: f64, x: &Vector2<f64>, s: f64) -> Vector2<f64> {
+        if s == 0.0 { *x } else { self.flight.after(s, x) }
+    }
+}
+
 impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
     type Mode = Phase;
     type State = Vector2<f64>;
@@ -57,7 +64,7 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
     }
 
     #[inline]
-    fn edges(&self, phase: Phase) -> Edges<Turn> {
+    fn edges(&self, phase: Phase) -> Edges<'_, Turn> {
         match phase {
             Phase::Rising => Edges::from([Turn::Apex]),
             Phase::Falling => Edges::from([Turn::Floor]),
@@ -73,39 +80,30 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
         }
     }
 
+    /// A start that is called rising and falls goes on falling.
     #[inline]
-    fn affine(&self, _turn: Turn) -> bool {
-        true
+    fn about(&self, turn: Turn) -> About {
+        let entry = if turn == Turn::Apex { Entry::Fire } else { Entry::Refuse };
+        About::new().entry(entry).affine()
     }
 
     #[inline]
-    fn reset(&self, turn: Turn, _t: f64, x: &Vector2<f64>) -> (Phase, Vector2<f64>) {
-        match turn {
+    fn reset(&self, _: Phase, turn: Turn, _t: f64, x: &Vector2<f64>) -> Result<(Phase, Vector2<f64>), Refusal> {
+        Ok(match turn {
             Turn::Apex => (Phase::Falling, vector![x[0], x[1].min(0.0)]),
             Turn::Floor => {
                 let rebound = self.rebound(x[1]);
                 (if rebound > 0.0 { Phase::Rising } else { Phase::Rest }, vector![0.0, rebound])
             }
-        }
-    }
-
-    /// A start that is called rising and falls goes on falling.
-    fn entry(&self, turn: Turn) -> Entry {
-        match turn {
-            Turn::Apex => Entry::Fire,
-            Turn::Floor => Entry::Refuse,
-        }
+        })
     }
 
     #[inline]
-    fn exact(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
-        (phase == Phase::Rest).then(|| Polynomial::from([*x]))
-    }
-
-    #[inline]
-    fn flown(&self, _phase: Phase, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        // In flight: rest is solved exactly.
-        Some(if s == 0.0 { *x } else { self.flight.after(s, x) })
+    fn solution(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Solution<Self> {
+        match phase {
+            Phase::Rising | Phase::Falling => Solution::Formula(Self::flown),
+            Phase::Rest => Solution::Polynomial([*x].into()),
+        }
     }
 
     #[inline]
@@ -117,7 +115,7 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
         arrival.unwrap_or(Fall::Never)
     }
 
-    fn beyond(&self, _phase: Phase, _t: f64, _x: &Vector2<f64>) -> Option<(Phase, Vector2<f64>)> {
+    fn beyond(&self, _: &Limit<'_, Self>) -> Option<(Phase, Vector2<f64>)> {
         Some((Phase::Rest, vector![0.0, 0.0]))
     }
 }

@@ -1,7 +1,7 @@
 //! Balls whose law of flight is smooth from one impact to the next: two modes, one edge.
 
 use nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Fall, Polynomial};
+use saltus::{About, Automaton, Edges, Fall, Limit, Polynomial, Refusal, Solution};
 
 use super::Ball;
 use crate::flight::{LinearDragFlight, VacuumFlight, VerticalFlight};
@@ -42,6 +42,13 @@ impl SmoothFlight for VacuumFlight {
 
 impl SmoothFlight for LinearDragFlight {}
 
+impl<F: SmoothFlight, R: Restitution> Ball<F, R> {
+    /// A time `s` later in flight.
+    fn flown(&self, _mode: Mode, _t: f64, x: &Vector2<f64>, s: f64) -> Vector2<f64> {
+        if s == 0.0 { *x } else { self.flight.after(s, x) }
+    }
+}
+
 impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
     type Mode = Mode;
     type State = Vector2<f64>;
@@ -56,7 +63,7 @@ impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
     }
 
     #[inline]
-    fn edges(&self, mode: Mode) -> Edges<Floor> {
+    fn edges(&self, mode: Mode) -> Edges<'_, Floor> {
         match mode {
             Mode::Flight => Edges::from([Floor]),
             Mode::Rest => Edges::none(),
@@ -69,29 +76,23 @@ impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
     }
 
     #[inline]
-    fn affine(&self, Floor: Floor) -> bool {
-        true
+    fn about(&self, Floor: Floor) -> About {
+        About::new().affine()
     }
 
     #[inline]
-    fn reset(&self, Floor: Floor, _t: f64, x: &Vector2<f64>) -> (Mode, Vector2<f64>) {
+    fn reset(&self, _: Mode, Floor: Floor, _t: f64, x: &Vector2<f64>) -> Result<(Mode, Vector2<f64>), Refusal> {
         let rebound = self.rebound(x[1]);
         let mode = if rebound > 0.0 { Mode::Flight } else { Mode::Rest };
-        (mode, vector![0.0, rebound])
+        Ok((mode, vector![0.0, rebound]))
     }
 
     #[inline]
-    fn exact(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
+    fn solution(&self, mode: Mode, _t: f64, x: &Vector2<f64>) -> Solution<Self> {
         match mode {
-            Mode::Flight => self.flight.polynomial(x),
-            Mode::Rest => Some(Polynomial::from([*x])),
+            Mode::Flight => self.flight.polynomial(x).map_or(Solution::Formula(Self::flown), Solution::Polynomial),
+            Mode::Rest => Solution::Polynomial([*x].into()),
         }
-    }
-
-    #[inline]
-    fn flown(&self, _mode: Mode, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        // In flight: rest is solved exactly.
-        Some(if s == 0.0 { *x } else { self.flight.after(s, x) })
     }
 
     #[inline]
@@ -99,7 +100,7 @@ impl<F: SmoothFlight, R: Restitution> Automaton for Ball<F, R> {
         self.flight.impact(x).map_or(Fall::Never, |impact| Fall::In(impact.time, vector![0.0, -impact.speed]))
     }
 
-    fn beyond(&self, _mode: Mode, _t: f64, _x: &Vector2<f64>) -> Option<(Mode, Vector2<f64>)> {
+    fn beyond(&self, _: &Limit<'_, Self>) -> Option<(Mode, Vector2<f64>)> {
         Some((Mode::Rest, vector![0.0, 0.0]))
     }
 }

@@ -68,7 +68,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Flight<'_, D, N, R> 
             return None;
         };
         self.coast(time);
-        self.state = self.cloud.reset(touch, time.seconds(), &self.state).1;
+        self.state = self.cloud.touched(touch, &self.state);
         match touch {
             Touch::Balls(i, j) => self.changed([i, j]),
             Touch::Low { ball, .. } | Touch::High { ball, .. } => self.changed([ball, ball]),
@@ -78,9 +78,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Flight<'_, D, N, R> 
 
     /// Flies freely up to `time`.
     fn coast(&mut self, time: Time) {
-        if let Some(state) = self.cloud.flown((), 0.0, &self.state, time.since(self.now)) {
-            self.state = state;
-        }
+        self.state = self.cloud.flown((), 0.0, &self.state, time.since(self.now));
         self.now = time;
     }
 

@@ -6,7 +6,7 @@ mod swarm;
 
 use std::fmt;
 
-use saltus::{Automaton, Edges, Entry, Fall};
+use saltus::{About, Automaton, Edges, Entry, Fall, Refusal, Solution};
 
 use crate::parameter::{ParameterError, finite, positive};
 use crate::restitution::{Cor, Restitution};
@@ -182,6 +182,41 @@ fn touch<const D: usize, const N: usize>(k: usize) -> Touch {
     }
 }
 
+impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
+    /// The state after a touch.
+    fn touched(&self, touch: Touch, x: &Swarm<D, N>) -> Swarm<D, N> {
+        let mut after = *x;
+        match (touch, &self.walls) {
+            (Touch::Balls(i, j), _) => self.impact(i, j, &mut after),
+            (Touch::Low { ball, axis }, Some(walls)) => {
+                let v = &mut after.velocities[ball][axis];
+                *v = walls.law.rebound((-*v).max(0.0));
+                after.centres[ball][axis] = walls.low[axis] + self.radii[ball];
+            }
+            (Touch::High { ball, axis }, Some(walls)) => {
+                let v = &mut after.velocities[ball][axis];
+                *v = -walls.law.rebound(v.max(0.0));
+                after.centres[ball][axis] = walls.high[axis] - self.radii[ball];
+            }
+            (_, None) => {}
+        }
+        after
+    }
+
+    /// A time `s` later, without a touch.
+    fn flown(&self, (): (), _t: f64, x: &Swarm<D, N>, s: f64) -> Swarm<D, N> {
+        let mut after = *x;
+        for (centre, velocity) in after.centres.iter_mut().zip(&mut after.velocities) {
+            for k in 0..D {
+                let bend = s * self.gravity[k];
+                centre[k] += s * (velocity[k] + 0.5 * bend);
+                velocity[k] += bend;
+            }
+        }
+        after
+    }
+}
+
 impl<const D: usize, const N: usize, R: Restitution + Copy> Automaton for Cloud<D, N, R> {
     type Mode = ();
     type State = Swarm<D, N>;
@@ -191,7 +226,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Automaton for Cloud<
         Swarm { centres: x.velocities, velocities: [self.gravity; N] }
     }
 
-    fn edges(&self, (): ()) -> Edges<Touch> {
+    fn edges(&self, (): ()) -> Edges<'_, Touch> {
         let pairs = N * N.saturating_sub(1) / 2;
         Edges::indexed(if self.walls.is_some() { pairs + 2 * D * N } else { pairs }, touch::<D, N>)
     }
@@ -209,41 +244,18 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Automaton for Cloud<
         }
     }
 
-    fn reset(&self, touch: Touch, _t: f64, x: &Swarm<D, N>) -> ((), Swarm<D, N>) {
-        let mut after = *x;
-        match (touch, &self.walls) {
-            (Touch::Balls(i, j), _) => self.impact(i, j, &mut after),
-            (Touch::Low { ball, axis }, Some(walls)) => {
-                let v = &mut after.velocities[ball][axis];
-                *v = walls.law.rebound((-*v).max(0.0));
-                after.centres[ball][axis] = walls.low[axis] + self.radii[ball];
-            }
-            (Touch::High { ball, axis }, Some(walls)) => {
-                let v = &mut after.velocities[ball][axis];
-                *v = -walls.law.rebound(v.max(0.0));
-                after.centres[ball][axis] = walls.high[axis] - self.radii[ball];
-            }
-            (_, None) => {}
-        }
-        ((), after)
+    fn reset(&self, (): (), touch: Touch, _t: f64, x: &Swarm<D, N>) -> Result<((), Swarm<D, N>), Refusal> {
+        Ok(((), self.touched(touch, x)))
     }
-
     /// Balls that overlap by rounding part or meet at once: [`falls`](Automaton::falls) decides.
-    fn entry(&self, _: Touch) -> Entry {
-        Entry::Wait
+    #[inline]
+    fn about(&self, _: Touch) -> About {
+        About::new().entry(Entry::Wait)
     }
 
     #[inline]
-    fn flown(&self, (): (), _t: f64, x: &Swarm<D, N>, s: f64) -> Option<Swarm<D, N>> {
-        let mut after = *x;
-        for (centre, velocity) in after.centres.iter_mut().zip(&mut after.velocities) {
-            for k in 0..D {
-                let bend = s * self.gravity[k];
-                centre[k] += s * (velocity[k] + 0.5 * bend);
-                velocity[k] += bend;
-            }
-        }
-        Some(after)
+    fn solution(&self, (): (), _t: f64, _x: &Swarm<D, N>) -> Solution<Self> {
+        Solution::Formula(Self::flown)
     }
 
     #[inline]

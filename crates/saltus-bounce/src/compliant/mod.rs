@@ -4,7 +4,7 @@ mod contacts;
 mod linear;
 
 use nalgebra::{Vector2, vector};
-use saltus::{Automaton, Edges, Fall, Polynomial};
+use saltus::{About, Automaton, Edges, Fall, Refusal, Solution};
 
 use crate::contact::ContactLaw;
 use crate::parameter::{ParameterError, not_negative, positive};
@@ -125,6 +125,13 @@ impl<L: ContactLaw> Compliant<L> {
         self.law.force(-x[0], -x[1])
     }
 
+    /// A time `s` later in contact, by a law that is linear.
+    fn pressed(&self, _: Stage, _t: f64, x: &Vector2<f64>, s: f64) -> Vector2<f64> {
+        let Some(contact) = self.linear() else { return x.map(|_| f64::NAN) };
+        let [d, u] = contact.after(s, [-x[0], -x[1]]);
+        vector![-d, -u]
+    }
+
     fn linear(&self) -> Option<Linear> {
         self.law.linear().map(|law| Linear::new(law, self.mass, self.mass * self.gravity))
     }
@@ -150,7 +157,7 @@ impl<L: ContactLaw> Automaton for Compliant<L> {
     }
 
     #[inline]
-    fn edges(&self, stage: Stage) -> Edges<Moment> {
+    fn edges(&self, stage: Stage) -> Edges<'_, Moment> {
         match stage {
             Stage::Fall => Edges::from([Moment::FirstContact]),
             Stage::Compression => Edges::from([Moment::GreatestDeformation]),
@@ -171,33 +178,32 @@ impl<L: ContactLaw> Automaton for Compliant<L> {
     }
 
     #[inline]
-    fn affine(&self, moment: Moment) -> bool {
-        moment != Moment::LiftOff
+    fn about(&self, moment: Moment) -> About {
+        About::new().affine_if(moment != Moment::LiftOff)
     }
 
     #[inline]
-    fn reset(&self, moment: Moment, _t: f64, x: &Vector2<f64>) -> (Stage, Vector2<f64>) {
-        match moment {
+    fn reset(&self, _: Stage, moment: Moment, _t: f64, x: &Vector2<f64>) -> Result<(Stage, Vector2<f64>), Refusal> {
+        Ok(match moment {
             Moment::FirstContact => (Stage::Compression, vector![0.0, x[1]]),
             Moment::GreatestDeformation => (Stage::Restitution, vector![x[0], 0.0]),
             Moment::LiftOff => (Stage::Rise, *x),
             Moment::LeastDeformation => (Stage::Lying, vector![x[0], 0.0]),
             Moment::Apex if x[0] < 0.0 => (Stage::Compression, vector![x[0], 0.0]),
             Moment::Apex => (Stage::Fall, vector![x[0], 0.0]),
-        }
+        })
     }
 
     #[inline]
-    fn exact(&self, stage: Stage, _t: f64, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
+    fn solution(&self, stage: Stage, _t: f64, x: &Vector2<f64>) -> Solution<Self> {
         let g = self.gravity;
-        (!stage.is_contact()).then(|| Polynomial::from([*x, vector![x[1], -g], vector![-0.5 * g, 0.0]]))
-    }
-
-    #[inline]
-    fn flown(&self, stage: Stage, _t: f64, x: &Vector2<f64>, s: f64) -> Option<Vector2<f64>> {
-        let contact = self.linear().filter(|_| stage.is_contact())?;
-        let [d, u] = contact.after(s, [-x[0], -x[1]]);
-        Some(vector![-d, -u])
+        if !stage.is_contact() {
+            Solution::Polynomial([*x, vector![x[1], -g], vector![-0.5 * g, 0.0]].into())
+        } else if self.law.linear().is_some() {
+            Solution::Formula(Self::pressed)
+        } else {
+            Solution::Steps
+        }
     }
 
     fn falls(&self, _: Stage, moment: Moment, _t: f64, x: &Vector2<f64>) -> Fall<Vector2<f64>> {

@@ -1,7 +1,7 @@
 //! The flock as a hybrid automaton: what each ball would do alone, and the meetings of two.
 
 use nalgebra::Vector3;
-use saltus::{Automaton, Edges, Entry, ErrorKind, Fall, Polynomial, State};
+use saltus::{About, Automaton, Clocks, Edges, Entry, Fall, Limit, Refusal, Solution, State, Ticking};
 
 use super::{CHANGE, Flock, Flying, Happens, Meeting, Stances};
 use crate::cloud::meeting_of_balls;
@@ -9,6 +9,24 @@ use crate::effects::Effect;
 use crate::flyer::{Event, Grip, Stance};
 use crate::restitution::Restitution;
 use crate::walls::{Face, Walls};
+
+impl<const N: usize, E, W, R, G, C> Flock<N, E, W, R, G, C>
+where
+    E: Effect<3, Vector3<f64>>,
+    W: Walls<3>,
+    R: Restitution,
+    G: Grip<3, Vector3<f64>>,
+    C: Restitution,
+{
+    /// A time `s` later, where each ball's solution is known.
+    fn flown(&self, stances: Stances<N>, t: f64, x: &Flying<N>, s: f64) -> Flying<N> {
+        x.map(|ball| {
+            let (flyer, stance, x) = (&self.balls.get(ball)?.1, stances.of(ball), x.ball(ball));
+            flyer.solution(stance, t, &x).at(flyer, stance, t, &x, s)
+        })
+        .unwrap_or(*x)
+    }
+}
 
 impl<const N: usize, E, W, R, G, C> Automaton for Flock<N, E, W, R, G, C>
 where
@@ -27,7 +45,7 @@ where
         x.map(|ball| Some(self.balls.get(ball)?.1.flow(stances.of(ball), t, &x.ball(ball)))).unwrap_or(*x)
     }
 
-    fn edges(&self, stances: Stances<N>) -> Edges<Meeting> {
+    fn edges(&self, stances: Stances<N>) -> Edges<'_, Meeting> {
         Edges::indexed(self.count(&stances), Meeting)
     }
 
@@ -40,28 +58,27 @@ where
         }
     }
 
-    fn affine(&self, meeting: Meeting) -> bool {
+    #[inline]
+    fn about(&self, meeting: Meeting) -> About {
         // Where a ball touches a face, that guard is a constant.
-        match self.happens(meeting, &Stances::FLIGHT) {
+        let affine = match self.happens(meeting, &Stances::FLIGHT) {
             Happens::To(ball, Event::Meet(face)) => {
                 let walls = self.balls[ball].1.walls();
                 walls.cells() == 1 && walls.straight(face)
             }
             _ => false,
-        }
+        };
+        // What overlaps by rounding is put right at once.
+        About::new().affine_if(affine).entry(Entry::Fire)
     }
 
-    fn reset(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> (Stances<N>, Flying<N>) {
-        self.take(x.stances(), meeting, t, x).unwrap_or((x.stances(), *x))
-    }
-
-    fn take(
+    fn reset(
         &self,
         stances: Stances<N>,
         meeting: Meeting,
         t: f64,
         x: &Flying<N>,
-    ) -> Result<(Stances<N>, Flying<N>), ErrorKind> {
+    ) -> Result<(Stances<N>, Flying<N>), Refusal> {
         let x = x.doing(stances);
         let after = match self.happens(meeting, &stances) {
             Happens::Balls(i, j) => self.collided(i, j, &self.restitution, t, &x),
@@ -76,7 +93,7 @@ where
                 let (stance, moving) = match event {
                     // Inside by its rounding, on its way out.
                     Event::Meet(face) if parts(face) => (stances.of(ball), flyer.outside(face, t, &moving)),
-                    event => flyer.take(stances.of(ball), event, t, &moving)?,
+                    event => flyer.reset(stances.of(ball), event, t, &moving)?,
                 };
                 let mut after = x;
                 after.put(ball, stance, moving);
@@ -85,7 +102,7 @@ where
             Happens::Change => {
                 let mut after = x;
                 for (ball, (_, flyer)) in self.balls.iter().enumerate() {
-                    let (stance, moving) = flyer.take(stances.of(ball), Event::Change, t, &x.ball(ball))?;
+                    let (stance, moving) = flyer.reset(stances.of(ball), Event::Change, t, &x.ball(ball))?;
                     after.put(ball, stance, moving);
                 }
                 after
@@ -96,29 +113,26 @@ where
         Ok((after.stances(), after))
     }
 
-    /// What overlaps by rounding is put right at once.
-    fn entry(&self, _: Meeting) -> Entry {
-        Entry::Fire
-    }
-
-    fn exact(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Option<Polynomial<Flying<N>>> {
+    fn solution(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Solution<Self> {
         let mut parts = [x.with(|_| 0.0); 3];
+        let (mut polynomial, mut exact) = (true, true);
         for (ball, (_, flyer)) in self.balls.iter().enumerate() {
             let stance = stances.of(ball);
-            let polynomial = flyer.exact(stance, t, &x.ball(ball))?;
-            for (part, c) in parts.iter_mut().zip(polynomial.coefficients()) {
-                part.put(ball, stance, *c);
+            let solution = flyer.solution(stance, t, &x.ball(ball));
+            match &solution {
+                Solution::Polynomial(own) => {
+                    for (part, c) in parts.iter_mut().zip(own.coefficients()) {
+                        part.put(ball, stance, *c);
+                    }
+                }
+                other => (polynomial, exact) = (false, exact && other.is_exact()),
             }
         }
-        Some(Polynomial::from(parts))
-    }
-
-    fn flown(&self, stances: Stances<N>, t: f64, x: &Flying<N>, s: f64) -> Option<Flying<N>> {
-        x.map(|ball| {
-            let (flyer, stance, x) = (&self.balls.get(ball)?.1, stances.of(ball), x.ball(ball));
-            let exact = flyer.exact(stance, t, &x).map(|polynomial| polynomial.at(s));
-            exact.or_else(|| flyer.flown(stance, t, &x, s))
-        })
+        match (polynomial, exact) {
+            (true, _) => Solution::Polynomial(parts.into()),
+            (_, true) => Solution::Formula(Self::flown),
+            _ => Solution::Steps,
+        }
     }
 
     fn falls(&self, stances: Stances<N>, meeting: Meeting, t: f64, x: &Flying<N>) -> Fall<Flying<N>> {
@@ -139,13 +153,28 @@ where
         }
     }
 
-    fn beyond(&self, stances: Stances<N>, t: f64, x: &Flying<N>) -> Option<(Stances<N>, Flying<N>)> {
-        let after = self.accumulated(t, &x.doing(stances))?;
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Stances<N>, Flying<N>)> {
+        let after = self.accumulated(limit.t, &limit.x.doing(limit.mode))?;
         Some((after.stances(), after))
     }
 
-    fn scheduled(&self, _: Stances<N>, t: f64) -> Option<(f64, Meeting)> {
+    fn clocks(&self, _: Stances<N>) -> Clocks<'_, Meeting> {
+        let changing = self.after(f64::NEG_INFINITY).is_some();
+        if changing { Clocks::asked(self, CHANGE) } else { Clocks::none() }
+    }
+}
+
+/// The changes of the walls' motions.
+impl<const N: usize, E, W, R, G, C> Ticking for Flock<N, E, W, R, G, C>
+where
+    E: Effect<3, Vector3<f64>>,
+    W: Walls<3>,
+    R: Restitution,
+    G: Grip<3, Vector3<f64>>,
+    C: Restitution,
+{
+    fn after(&self, t: f64) -> Option<f64> {
         let changes = self.balls.iter().filter_map(|(_, flyer)| flyer.walls().changes(t));
-        changes.min_by(f64::total_cmp).map(|t| (t, CHANGE))
+        changes.min_by(f64::total_cmp)
     }
 }

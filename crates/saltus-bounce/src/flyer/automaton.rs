@@ -1,7 +1,7 @@
 //! The ball among walls as a hybrid automaton.
 
 use nalgebra::SVector;
-use saltus::{Automaton, Edges, Entry, ErrorKind, Polynomial};
+use saltus::{About, Automaton, Clocks, Edges, Entry, Limit, Refusal, Solution, Ticking};
 
 use super::contact::{VEERS, forwards, none};
 use super::{Event, Flyer, Grip, Moving, Stance, Turning};
@@ -70,6 +70,23 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             _ => None,
         }
     }
+
+    /// A time `s` later on a ride.
+    fn carried(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>, s: f64) -> Moving<N, S> {
+        let carried = self.ridden(stance).and_then(|face| Some((face, self.walls.carried(face, t, t + s)?)));
+        let Some((face, (moved, speed))) = carried else { return *x };
+        let touch = self.touch(face, t, x);
+        let length = self.walls.gradient(face, t, &x.position).norm();
+        let n = touch.normal;
+        let friction = self.friction(stance, &touch, &SVector::zeros());
+        let a = touch.free - n * touch.free.dot(&n) + friction;
+        let v = x.velocity - n * x.velocity.dot(&n);
+        Moving {
+            position: x.position + (v + a * (0.5 * s)) * s + n * (moved / length),
+            velocity: v + a * s + n * (speed / length),
+            spin: x.spin.plus(self.grip.torque(&friction, &n).times(s)),
+        }
+    }
 }
 
 impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Automaton
@@ -85,7 +102,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     #[inline]
-    fn edges(&self, stance: Stance<N>) -> Edges<Event<N>> {
+    fn edges(&self, stance: Stance<N>) -> Edges<'_, Event<N>> {
         let cell = stance.cell();
         let faces = (0..self.walls.faces(cell)).filter(|&index| !stance.touches(index));
         let meets = faces.map(|index| Event::Meet(Face { cell, index }));
@@ -128,19 +145,17 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     #[inline]
-    fn affine(&self, event: Event<N>) -> bool {
-        match event {
-            Event::Meet(face) | Event::Stop { face, .. } | Event::Veer { face, .. } => self.walls.straight(face),
-            Event::Turn => true,
-            Event::Leave(_) | Event::Slip(_) | Event::Change => false,
-        }
-    }
-
-    fn reset(&self, event: Event<N>, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
-        match event {
+    fn reset(
+        &self,
+        stance: Stance<N>,
+        event: Event<N>,
+        t: f64,
+        x: &Moving<N, S>,
+    ) -> Result<(Stance<N>, Moving<N, S>), Refusal> {
+        Ok(match event {
             Event::Meet(face) => match self.walls.leads(face, t, &x.position) {
                 Some(cell) => (Stance::Flight { cell }, *x),
-                None => self.struck(Stance::Flight { cell: face.cell }, face, t, x),
+                None => self.struck(stance, face, t, x),
             },
             Event::Leave(face) => (Stance::Flight { cell: face.cell }, self.beside(face, t, x)),
             Event::Stop { face, along } => self.stopped(face, &along, t, x),
@@ -148,70 +163,62 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             Event::Veer { face, .. } => {
                 (Stance::Slide { face, along: self.slip(face, t, x).0 }, self.beside(face, t, x))
             }
-            Event::Change | Event::Turn => (Stance::FLIGHT, *x),
-        }
-    }
-
-    #[inline]
-    fn take(
-        &self,
-        stance: Stance<N>,
-        event: Event<N>,
-        t: f64,
-        x: &Moving<N, S>,
-    ) -> Result<(Stance<N>, Moving<N, S>), ErrorKind> {
-        Ok(match (event, stance) {
-            (Event::Meet(face), stance)
-                if !matches!(stance, Stance::Flight { .. }) && self.walls.leads(face, t, &x.position).is_none() =>
-            {
-                self.struck(stance, face, t, x)
-            }
-            (Event::Change, Stance::Slide { face, .. } | Stance::Yield { face, .. } | Stance::Hold { face }) => {
-                self.changed(stance, face, t, x)
-            }
-            (Event::Change | Event::Turn, _) => (stance, *x),
-            _ => self.reset(event, t, x),
+            Event::Change => match stance {
+                Stance::Slide { face, .. } | Stance::Yield { face, .. } | Stance::Hold { face } => {
+                    self.changed(stance, face, t, x)
+                }
+                Stance::Flight { .. } | Stance::Corner { .. } => (stance, *x),
+            },
+            Event::Turn => (stance, *x),
         })
     }
 
-    fn entry(&self, event: Event<N>) -> Entry {
+    #[inline]
+    fn about(&self, event: Event<N>) -> About {
+        let about = About::new().affine_if(match event {
+            Event::Meet(face) | Event::Stop { face, .. } | Event::Veer { face, .. } => self.walls.straight(face),
+            Event::Turn => true,
+            Event::Leave(_) | Event::Slip(_) | Event::Change => false,
+        });
         match event {
-            Event::Meet(_) => Entry::Refuse,
-            Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Veer { .. } | Event::Change => Entry::Fire,
-            Event::Turn => Entry::Wait,
+            Event::Meet(_) => about,
+            Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Veer { .. } | Event::Change => {
+                about.entry(Entry::Fire)
+            }
+            Event::Turn => about.entry(Entry::Wait),
         }
     }
 
     #[inline]
-    fn exact(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Option<Polynomial<Moving<N, S>>> {
-        self.uniform(stance).then(|| {
+    fn solution(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Solution<Self> {
+        if self.uniform(stance) {
             let rate = self.rate(stance, t, x);
             let half = Moving { position: rate.velocity * 0.5, velocity: SVector::zeros(), spin: S::NONE };
-            Polynomial::from([*x, rate, half])
-        })
+            Solution::Polynomial([*x, rate, half].into())
+        } else if self.ridden(stance).is_some_and(|face| self.walls.carried(face, t, t).is_some()) {
+            Solution::Formula(Self::carried)
+        } else {
+            Solution::Steps
+        }
     }
 
-    fn flown(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>, s: f64) -> Option<Moving<N, S>> {
-        let face = self.ridden(stance)?;
-        let (moved, speed) = self.walls.carried(face, t, t + s)?;
-        let touch = self.touch(face, t, x);
-        let length = self.walls.gradient(face, t, &x.position).norm();
-        let n = touch.normal;
-        let friction = self.friction(stance, &touch, &SVector::zeros());
-        let a = touch.free - n * touch.free.dot(&n) + friction;
-        let v = x.velocity - n * x.velocity.dot(&n);
-        Some(Moving {
-            position: x.position + (v + a * (0.5 * s)) * s + n * (moved / length),
-            velocity: v + a * s + n * (speed / length),
-            spin: x.spin.plus(self.grip.torque(&friction, &n).times(s)),
-        })
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Stance<N>, Moving<N, S>)> {
+        Some(self.accumulated(limit.mode, limit.t, limit.x))
     }
 
-    fn beyond(&self, stance: Stance<N>, t: f64, x: &Moving<N, S>) -> Option<(Stance<N>, Moving<N, S>)> {
-        Some(self.accumulated(stance, t, x))
+    #[inline]
+    fn clocks(&self, _: Stance<N>) -> Clocks<'_, Event<N>> {
+        // Known when the walls are: a scene in which none changes has no clock.
+        let changing = self.walls.changes(f64::NEG_INFINITY).is_some();
+        if changing { Clocks::asked(self, Event::Change) } else { Clocks::none() }
     }
+}
 
-    fn scheduled(&self, _: Stance<N>, t: f64) -> Option<(f64, Event<N>)> {
-        self.walls.changes(t).map(|t| (t, Event::Change))
+/// The changes of the walls' motions.
+impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Ticking
+    for Flyer<N, S, E, W, R, G>
+{
+    fn after(&self, t: f64) -> Option<f64> {
+        self.walls.changes(t)
     }
 }

@@ -15,6 +15,9 @@ use crate::parameter::ParameterError;
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, MOST_FACES, Walls};
 
+/// How many edges beside the faces a stance may have: leave, stop and veer of [`Stance::Yield`].
+pub(crate) const MOST_ENDS: usize = 3;
+
 pub use grip::{Block, Grip, Keeps, Rolls};
 pub use moving::{Moving, Turning};
 pub use stance::{Event, Stance};
@@ -84,8 +87,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     pub fn gripped(effects: E, walls: W, restitution: R, grip: G) -> Result<Self, ParameterError> {
         let most = (0..walls.cells()).map(|cell| walls.faces(cell)).max().unwrap_or(0);
         if most > MOST_FACES {
-            let give = "at most 12; cut space into cells";
-            return Err(ParameterError::new("a number of faces of one cell", most as f64, give));
+            const GIVE: &str = "at most 13; cut space into cells";
+            const { assert!(MOST_FACES == 13) };
+            return Err(ParameterError::new("a number of faces of one cell", most as f64, GIVE));
         }
         Ok(Self { effects, walls, restitution, grip, spin: PhantomData })
     }

@@ -5,7 +5,7 @@ mod impact;
 mod row;
 mod stack;
 
-use saltus::{Automaton, Edges, Polynomial};
+use saltus::{About, Automaton, Edges, Limit, Refusal, Solution};
 
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::restitution::{Cor, Restitution};
@@ -193,7 +193,7 @@ impl<const N: usize, R: Restitution + Copy> Automaton for Line<N, R> {
     }
 
     #[inline]
-    fn edges(&self, _: Lying) -> Edges<Contact> {
+    fn edges(&self, _: Lying) -> Edges<'_, Contact> {
         match (self.floor, self.wall.is_some()) {
             (true, true) => Edges::indexed(N + 1, Contact),
             (true, false) => Edges::indexed(N, Contact),
@@ -212,32 +212,28 @@ impl<const N: usize, R: Restitution + Copy> Automaton for Line<N, R> {
     }
 
     #[inline]
-    fn affine(&self, _: Contact) -> bool {
-        true
+    fn about(&self, _: Contact) -> About {
+        About::new().affine()
     }
 
     #[inline]
-    fn reset(&self, contact: Contact, _t: f64, x: &Row<N>) -> (Lying, Row<N>) {
-        self.struck(contact, Lying::NONE, x)
-    }
-
-    #[inline]
-    fn take(&self, lying: Lying, contact: Contact, _t: f64, x: &Row<N>) -> Result<(Lying, Row<N>), saltus::ErrorKind> {
+    fn reset(&self, lying: Lying, contact: Contact, _t: f64, x: &Row<N>) -> Result<(Lying, Row<N>), Refusal> {
         Ok(self.struck(contact, lying, x))
     }
 
     #[inline]
-    fn exact(&self, lying: Lying, t: f64, x: &Row<N>) -> Option<Polynomial<Row<N>>> {
+    fn solution(&self, lying: Lying, t: f64, x: &Row<N>) -> Solution<Self> {
         let (slope, lying) = (self.flow(lying, t, x), lying.balls);
         let bend = |i: usize| {
             let below = if i == 0 { 0.0 } else { self.acceleration(i - 1, lying) };
             0.5 * (self.acceleration(i, lying) - below)
         };
-        Some(Polynomial::from([*x, slope, Row { gaps: std::array::from_fn(bend), velocities: [0.0; N] }]))
+        let bend = Row { gaps: std::array::from_fn(bend), velocities: [0.0; N] };
+        Solution::Polynomial([*x, slope, bend].into())
     }
 
-    fn beyond(&self, lying: Lying, _t: f64, x: &Row<N>) -> Option<(Lying, Row<N>)> {
-        let closed = self.collapsing(lying, x);
-        Some(self.merged(lying, &closed, x))
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Lying, Row<N>)> {
+        let closed = self.collapsing(limit.mode, limit.x);
+        Some(self.merged(limit.mode, &closed, limit.x))
     }
 }

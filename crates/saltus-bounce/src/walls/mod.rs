@@ -98,8 +98,9 @@ pub trait Walls<const N: usize> {
     }
 }
 
-/// How many faces a cell may have.
-pub const MOST_FACES: usize = 12;
+/// How many faces a cell may have: with what may end a contact by itself, as many as a mode may
+/// have edges that are collected; a [`Corner`](crate::Stance::Corner) has bits for more.
+pub const MOST_FACES: usize = saltus::Edges::<()>::INLINE - crate::flyer::MOST_ENDS;
 
 /// The earlier of two times that may be none.
 fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {

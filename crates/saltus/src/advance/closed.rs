@@ -6,6 +6,7 @@ use crate::automaton::Automaton;
 use crate::cross::{Undefined, chebyshev};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
+use crate::solution::Formula;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -13,7 +14,7 @@ use crate::trajectory::{Piece, horner};
 
 use super::crossing::Close;
 use super::exact::natural;
-use super::{Advance, ArcEnd, Clock};
+use super::{Advance, ArcEnd, Span};
 
 /// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
 const AS_GOOD_AS_EXACT: f64 = 1e-12;
@@ -25,13 +26,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         x: &A::State,
-        clock: &Clock,
+        formula: Formula<A>,
+        clock: &Span,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
         let automaton = self.automaton;
         let (now, t) = (clock.now, clock.now.seconds());
-        let at = |s: f64| automaton.flown(mode, t, x, s).unwrap_or_else(|| x.with(|_| f64::NAN));
+        let at = |s: f64| formula(automaton, mode, t, x, s);
         let remaining = clock.end.since(now);
         let search = |this: &mut Self, edge, limit, start| {
             let natural = natural(&[*x, this.flow(mode, t, x)]);

@@ -36,7 +36,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut powers = Powers::new();
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge, first));
-            let affine = self.automaton.affine(edge);
+            let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;

@@ -2,8 +2,9 @@
 
 use std::cell::Cell;
 
-use crate::automaton::{Automaton, Entry, Fall};
+use crate::automaton::{Automaton, Entry};
 use crate::error::{Error, ErrorKind, Place};
+use crate::solution::Fall;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
@@ -24,7 +25,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let t = now.seconds();
         let mut zero = None;
         self.memory.wall_count = 0;
-        for edge in self.automaton.edges(mode).iter() {
+        let edges = self.automaton.edges(mode);
+        if let Some(flaw) = edges.flaw() {
+            return Err(Error::new(ErrorKind::Model, Place::new(t, mode, None::<A::Edge>, x)).noting(Some(flaw)));
+        }
+        for edge in edges.iter() {
             self.memory.stats.guards += 1;
             let g = self.automaton.guard(edge, t, x);
             let spent = self.memory.spent_as(edge);
@@ -80,7 +85,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             return Ok(!spent && slope < 0.0);
         }
-        match self.automaton.entry(edge) {
+        match self.automaton.about(edge).entry {
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {

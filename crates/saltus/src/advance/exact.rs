@@ -2,18 +2,19 @@
 
 use std::cell::LazyCell;
 
-use crate::automaton::{Automaton, Polynomial};
+use crate::automaton::Automaton;
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::poly::{quadratic_fall, quadratic_touch};
+use crate::solution::Polynomial;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{Close, less_constant, only_touched, unlevelled};
-use super::{Advance, ArcEnd, Clock};
+use super::{Advance, ArcEnd, Span};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
@@ -21,7 +22,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         solution: &Polynomial<A::State>,
-        clock: &Clock,
+        clock: &Span,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
@@ -30,7 +31,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let natural = LazyCell::new(|| natural(c));
         let at = |s: f64| horner(c, s);
         let search = |this: &mut Self, edge, limit, start| {
-            if c.len() <= 3 && this.automaton.affine(edge) {
+            if c.len() <= 3 && this.automaton.about(edge).affine {
                 return Ok((this.fall_of_parabola(edge, now, c, limit, start), true));
             }
             this.fall_in_windows(edge, now, *natural, at, limit, start)

@@ -19,13 +19,14 @@ use crate::error::Error;
 use crate::observe::Observer;
 use crate::series::Tape;
 use crate::simulation::{Options, Stats, Stop};
+use crate::solution::Solution;
 use crate::step::Stepper;
 use crate::time::Time;
 
 /// The span of a run and where it stands.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Clock {
+pub(crate) struct Span {
     pub(crate) start: Time,
     pub(crate) now: Time,
     pub(crate) end: Time,
@@ -81,8 +82,6 @@ pub(crate) struct Memory<E> {
     /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
     walls: [Option<(E, f64)>; MOST_IDLE],
     wall_count: usize,
-    /// When a scheduled edge was last taken.
-    clock_took: Option<f64>,
     slack: f64,
     last_duration: f64,
     longest_duration: f64,
@@ -104,7 +103,6 @@ impl<E: Copy + PartialEq> Memory<E> {
             idle_count: 0,
             walls: [None; MOST_IDLE],
             wall_count: 0,
-            clock_took: None,
             slack: 0.0,
             last_duration: 0.0,
             longest_duration: 0.0,
@@ -246,59 +244,40 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         x: &A::State,
-        clock: &Clock,
+        clock: &Span,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
-        let &Clock { now, .. } = clock;
+        let &Span { now, .. } = clock;
         if let Some(edge) = self.enter(mode, x, now)? {
             return Ok(ArcEnd::Crossing { edge, time: now, before: *x });
         }
-        let scheduled = self.scheduled(mode, clock);
-        let horizon = scheduled.map_or(clock.end, |(t, _)| Time::new(t));
         // What is left of the span may be the rounding of the jumps' times.
-        let (time, state) = if horizon.since(now) <= 2.0 * f64::EPSILON * now.since(clock.start) {
-            (now, *x)
+        if clock.end.since(now) <= 2.0 * f64::EPSILON * now.since(clock.start) {
+            return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state: *x });
+        }
+        let stepped = self.options.stepped;
+        if !stepped
+            && !observer.wants_pieces()
+            && let Some(end) = self.told(mode, x, now, clock.end.since(now), observer)
+        {
+            return Ok(end);
+        }
+        let end = if stepped {
+            self.stepped(mode, *x, *clock, true, observer)
         } else {
-            let stepped = self.options.stepped;
-            if !stepped
-                && !observer.wants_pieces()
-                && let Some(end) = self.told(mode, x, now, horizon.since(now), observer)
-            {
-                return Ok(end);
-            }
-            let (t, within) = (now.seconds(), Clock { end: horizon, ..*clock });
-            let solution = if stepped { None } else { self.automaton.exact(mode, t, x) };
-            let end = if let Some(solution) = solution {
-                self.exact(mode, &solution, &within, observer)
-            } else if !stepped && self.automaton.flown(mode, t, x, 0.0).is_some() {
-                self.closed(mode, x, &within, observer)
-            } else if stepped {
-                self.stepped(mode, *x, within, true, observer)
-            } else {
-                self.by_series(mode, *x, within, observer)
-            };
-            match end? {
-                ArcEnd::Stop { stop: Stop::Time, time, state } => (time, state),
-                end => return Ok(end),
+            match self.automaton.solution(mode, now.seconds(), x) {
+                Solution::Polynomial(polynomial) => self.exact(mode, &polynomial, clock, observer),
+                Solution::Formula(formula) => self.closed(mode, x, formula, clock, observer),
+                Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
+                Solution::Steps => self.stepped(mode, *x, *clock, true, observer),
             }
         };
-        Ok(match scheduled {
-            Some((t, edge)) => {
-                self.memory.clock_took = Some(t);
-                ArcEnd::Crossing { edge, time, before: state }
+        match end? {
+            ArcEnd::Stop { stop: Stop::Time, state, .. } => {
+                Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state })
             }
-            None => ArcEnd::Stop { stop: Stop::Time, time: clock.end, state },
-        })
-    }
-
-    /// The next scheduled edge after the start of the span; one that falls on the present time is due unless one was just taken.
-    #[inline]
-    fn scheduled(&self, mode: A::Mode, clock: &Clock) -> Option<(f64, A::Edge)> {
-        let now = clock.now.seconds();
-        let taken = self.memory.clock_took == Some(now);
-        let after = if taken { now } else { now.next_down().max(clock.start.seconds()) };
-        let next = self.automaton.scheduled(mode, after)?;
-        (next.0 > after && next.0 <= clock.end.seconds()).then_some(next)
+            end => Ok(end),
+        }
     }
 
     /// How the search for `edge` starts on the first piece of an arc.

@@ -7,6 +7,7 @@ use crate::observe::{Inspection, Observer};
 use crate::poly::MAX_DEGREE;
 use crate::series::{MOST_COEFFICIENTS, NextKink, RECIPROCALS, Series};
 use crate::simulation::Stop;
+use crate::solution::Flow;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
@@ -15,7 +16,7 @@ use crate::trajectory::Piece;
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
 use super::stepped::{evened, remaining, searched, wrong_dimension};
-use super::{Advance, ArcEnd, Clock};
+use super::{Advance, ArcEnd, Span};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
 const LOWEST: usize = 6;
@@ -41,7 +42,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         mut x: A::State,
-        mut clock: Clock,
+        flow: Flow<A>,
+        mut clock: Span,
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let tolerance = self.options.tolerance;
@@ -57,12 +59,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let longest = remaining.min(self.options.longest_step);
             let wanted = longest.min(AS_LAST * self.memory.last_duration - clock.now.since(began));
-            let Some(mut expansion) = self.expanded(mode, clock.now, &x, order, &mut c)? else {
+            let Some(mut expansion) = self.expanded(mode, flow, clock.now, &x, order, &mut c)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
             let mut ahead = self.ahead(&expansion, &c, longest);
             if ahead.kink.is_none() && expansion.reach < wanted {
-                self.expand_further(mode, clock.now, &x, &mut expansion, &mut c);
+                self.expand_further(mode, flow, clock.now, &x, &mut expansion, &mut c);
                 ahead = self.ahead(&expansion, &c, longest);
             }
             if let Some(place) = ahead.kink
@@ -117,6 +119,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn expanded(
         &mut self,
         mode: A::Mode,
+        flow: Flow<A>,
         now: Time,
         x: &A::State,
         order: usize,
@@ -125,9 +128,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut unit = 1.0;
         loop {
             let mut series = Series::around(self.tape, now.seconds(), x, 0, order, unit);
-            if !self.automaton.series(mode, &mut series) {
-                return Ok(None);
-            }
+            flow(self.automaton, mode, &mut series);
             if let Some(dimension) = series.mismatch() {
                 return Err(wrong_dimension(dimension, mode, now, x));
             }
@@ -150,6 +151,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn expand_further(
         &mut self,
         mode: A::Mode,
+        flow: Flow<A>,
         now: Time,
         x: &A::State,
         expansion: &mut Expansion,
@@ -157,9 +159,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) {
         let (known, order) = (expansion.order, (expansion.order + FURTHER).min(HIGHEST));
         let mut series = Series::around(self.tape, now.seconds(), x, known, order, expansion.unit);
-        if order == known || !self.automaton.series(mode, &mut series) {
+        if order == known {
             return;
         }
+        flow(self.automaton, mode, &mut series);
         self.memory.stats.flows += (order - known) as u64;
         series.read(c);
         let reach = expansion.unit * reach(&self.options.tolerance, &c[..=order]);
@@ -173,7 +176,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn believed(&mut self, way: &Way<A>, c: &[A::State], unit: f64, mut h: f64) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
-            let limit = searched(h, remaining, since);
+            let limit = searched(h, remaining, since, now.after(remaining));
             let mut held = std::mem::take(self.held);
             held.0.clear();
             let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut held));

@@ -1,12 +1,13 @@
 //! The first crossing on a solution that is known, and the end of the arc there.
 
-use crate::automaton::{Automaton, Fall};
+use crate::automaton::Automaton;
 use crate::cross::{Crossing, Evidence, Searched, Start, settle};
 use crate::error::Error;
 use crate::observe::{Inspection, Observer};
+use crate::solution::Fall;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
+use crate::time::{Time, grace};
 
 use super::crossing::{Close, together};
 use super::{Advance, ArcEnd};
@@ -44,7 +45,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<First<A>>, Error> {
         let mut found: Option<First<A>> = None;
         for edge in self.automaton.edges(mode).iter() {
-            let limit = found.as_ref().map_or(past(remaining), |first| first.crossing.outside);
+            let limit = found.as_ref().map_or(past(now, remaining), |first| first.crossing.outside);
             let mut arrival = None;
             let (Searched { fall, evidence }, by_formula) = match self.automaton.falls(mode, edge, now.seconds(), x) {
                 Fall::Unknown => search(self, edge, limit, self.start(edge, true))?,
@@ -86,7 +87,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         self.memory.stats.exact += 1;
         self.arrived();
-        let span = past(remaining);
+        let span = past(now, remaining);
         observer.inspection(&Inspection { mode, edge, start: now, span, evidence: Evidence::Isolated });
         Some(ArcEnd::Crossing { edge, time: now.after(s), before: state })
     }
@@ -163,6 +164,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
 /// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken at it.
 #[inline]
-fn past(remaining: f64) -> f64 {
-    remaining * (1.0 + 4.0 * f64::EPSILON)
+fn past(now: Time, remaining: f64) -> f64 {
+    remaining + grace(now.after(remaining).seconds())
 }

@@ -11,11 +11,11 @@ use crate::observe::{Inspection, Observer};
 use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{Time, resolution};
+use crate::time::{Time, grace, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
-use super::{Advance, ArcEnd, Clock};
+use super::{Advance, ArcEnd, Span};
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
@@ -28,7 +28,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         mut x: A::State,
-        mut clock: Clock,
+        mut clock: Span,
         mut first: bool,
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
@@ -62,7 +62,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.step = Some(0.1 * h);
                 continue;
             }
-            let limit = searched(h, remaining, clock.now.since(began));
+            let limit = searched(h, remaining, clock.now.since(began), clock.end);
             let found = if clear {
                 None
             } else {
@@ -227,7 +227,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             // What the guard rises by on the way of the flow and on that of the dense output; and whether a fall on the latter is beyond rounding.
-            let (rate, told, falls) = if self.automaton.affine(edge) {
+            let (rate, told, falls) = if self.automaton.about(edge).affine {
                 self.memory.stats.guards += 3;
                 let guard = |x: &A::State| self.automaton.guard(edge, t, x);
                 let constant = guard(&slope.with(|_| 0.0));
@@ -271,7 +271,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let Some(reach) = self.stepper.reach(h, trial.as_ref()) else { return false };
         let (edges, t) = (self.automaton.edges(mode), now.seconds());
         for edge in edges.iter() {
-            if !self.automaton.affine(edge) {
+            if !self.automaton.about(edge).affine {
                 return false;
             }
             self.memory.stats.guards += x.len() as u64 + 2;
@@ -353,9 +353,9 @@ const LAST: f64 = 1e300;
 /// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
 /// stands and any other is infinite, which is an error.
 #[inline]
-pub(super) fn remaining(clock: &Clock) -> f64 {
-    let remaining = clock.end.since(clock.now);
-    if remaining < f64::INFINITY { remaining } else { LAST - clock.now.seconds() }
+pub(super) fn remaining(span: &Span) -> f64 {
+    let remaining = span.end.since(span.now);
+    if remaining < f64::INFINITY { remaining } else { LAST - span.now.seconds() }
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
@@ -372,8 +372,8 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
 
 /// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc began: the last one a few roundings past its end.
 #[inline]
-pub(super) fn searched(h: f64, remaining: f64, since: f64) -> f64 {
-    if h >= remaining { h + 8.0 * f64::EPSILON * h.max(since) } else { h }
+pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
+    if h >= remaining { h + (8.0 * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, RowDVector};
 use num_dual::{Dual2_64, Dual64};
 
 use super::{Lift, Linearize, moving, moving_in, velocity};
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::{Error, ErrorKind, Place, Refusal};
 use crate::state::State;
 use crate::time::resolution;
 
@@ -20,7 +20,8 @@ use crate::time::resolution;
 /// | `time_by_parameters` | 1 × P | `-g_p / ġ` |
 ///
 /// where g is the guard, R the reset, f⁻ and f⁺ the flows at both sides, and `ġ = g_t + g_x f⁻ < 0` the rate at which the guard falls.
-/// An edge that the clock takes has no guard and a time that nothing moves: `Ξ = R_x`, `R_p`, and zeros.
+/// An edge that a clock takes has no guard, and a time τ(p) that the state does not move: `Ξ = R_x`,
+/// `R_p - (f⁺ - R_x f⁻ - R_t) τ_p`, and the times 0 and `τ_p` ([`Linearize::tick_over`]).
 /// Units are those of the quotients: a coordinate after by a coordinate before, seconds by a coordinate, and so on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saltation {
@@ -46,6 +47,8 @@ pub struct Saltation {
 ///
 /// # Errors
 /// [`ErrorKind::Grazing`] if the guard does not fall at `x` with a rate that exceeds rounding: the jump has no derivative there.
+/// [`ErrorKind::ClockDerivative`] if a clock takes the edge, there are parameters, and
+/// [`Linearize::tick_over`] does not say how they move its time.
 pub fn saltation<A: Linearize>(
     automaton: &A,
     mode: A::Mode,
@@ -53,10 +56,10 @@ pub fn saltation<A: Linearize>(
     t: f64,
     x: &A::State,
 ) -> Result<Saltation, Error> {
-    let failed = |kind| Error::new(kind, Place::new(t, mode, Some(edge), x));
+    let failed = |refusal: Refusal| refusal.at(Place::new(t, mode, Some(edge), x));
     let passage = Passage::of(automaton, mode, edge, t, x).map_err(failed)?;
     if passage.grazes(f64::INFINITY) {
-        return Err(failed(ErrorKind::Grazing));
+        return Err(failed(Refusal::of(ErrorKind::Grazing)));
     }
     let (rows, columns, parameters) = (passage.after.len(), x.len(), automaton.parameters().len());
     let zero = x.with(|_| 0.0);
@@ -68,13 +71,13 @@ pub fn saltation<A: Linearize>(
     };
     for k in 0..columns {
         let unit = x.with(|i| if i == k { 1.0 } else { 0.0 });
-        let delay = passage.delay(&unit, None);
+        let delay = passage.delay(&unit, None).map_err(failed)?;
         let after = passage.across(&unit, None, delay);
         jump.time_by_state[k] = delay;
         (0..rows).for_each(|i| jump.state[(i, k)] = after.get(i));
     }
     for k in 0..parameters {
-        let delay = passage.delay(&zero, Some(k));
+        let delay = passage.delay(&zero, Some(k)).map_err(failed)?;
         let after = passage.across(&zero, Some(k), delay);
         jump.time_by_parameters[k] = delay;
         (0..rows).for_each(|i| jump.parameters[(i, k)] = after.get(i));
@@ -89,6 +92,7 @@ pub fn saltation<A: Linearize>(
 /// `δx⁺ = R_x (δx + f⁻ τ) + R_t τ + R_p δp - f⁺ τ`: the saltation matrix times δx, without the matrix.
 pub(super) struct Passage<'a, A: Linearize> {
     automaton: &'a A,
+    mode: A::Mode,
     edge: A::Edge,
     t: f64,
     x: &'a A::State,
@@ -103,29 +107,35 @@ pub(super) struct Passage<'a, A: Linearize> {
     gradient: A::State,
     rate: f64,
     bend: f64,
-    /// The clock takes it, at a time that nothing moves.
-    scheduled: bool,
+    /// Whether a clock takes it, at a time that only parameters move.
+    by_clock: bool,
 }
 
 impl<'a, A: Linearize> Passage<'a, A> {
-    pub(super) fn of(
-        automaton: &'a A,
-        mode: A::Mode,
-        edge: A::Edge,
-        t: f64,
-        x: &'a A::State,
-    ) -> Result<Self, ErrorKind> {
-        let (to, after) = automaton.take(mode, edge, t, x)?;
+    pub(super) fn of(automaton: &'a A, mode: A::Mode, edge: A::Edge, t: f64, x: &'a A::State) -> Result<Self, Refusal> {
+        let (to, after) = automaton.reset(mode, edge, t, x)?;
         let flows = (automaton.flow(mode, t, x), automaton.flow(to, t, &after));
         let p = automaton.parameters();
-        // What is not among the edges of its mode is taken by the clock.
-        if !automaton.edges(mode).iter().any(|other| other == edge) {
-            let gradient = x.with(|_| 0.0);
-            let (guard, rate, bend) = (0.0, 0.0, 0.0);
-            return Ok(Self { automaton, edge, t, x, to, after, flows, guard, gradient, rate, bend, scheduled: true });
+        let standing = Self {
+            automaton,
+            mode,
+            edge,
+            t,
+            x,
+            to,
+            after,
+            flows,
+            guard: 0.0,
+            gradient: x.with(|_| 0.0),
+            rate: 0.0,
+            bend: 0.0,
+            by_clock: true,
+        };
+        if automaton.clocks(mode).edges().any(|other| other == edge) {
+            return Ok(standing);
         }
         // Along the flow x moves with velocity f and acceleration df/dt.
-        let f = &flows.0;
+        let f = &standing.flows.0;
         let changing = automaton.flow_over(mode, Dual64::new(t, 1.0), moving(x, f), moving_in(&p, None));
         let along = x.lift(|i| Dual2_64::new(x.get(i), f.get(i), A::State::pick(&changing, i).eps));
         let fixed = p.lift(|i| Dual2_64::new(p.get(i), 0.0, 0.0));
@@ -133,7 +143,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
         let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;
         let gradient = x.with(slope);
         let (guard, rate, bend) = (guard.re, guard.v1, guard.v2);
-        Ok(Self { automaton, edge, t, x, to, after, flows, guard, gradient, rate, bend, scheduled: false })
+        Ok(Self { guard, gradient, rate, bend, by_clock: false, ..standing })
     }
 
     /// Whether the crossing has no speed, but for rounding, at the end of an arc of `duration`.
@@ -142,7 +152,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// unless g̈ has had just the arc to build it up (as in the last of a ball's bounces, however low), the guard must have fallen from further
     /// away than its rounding, ġ²/2g̈.
     pub(super) fn grazes(&self, duration: f64) -> bool {
-        if self.scheduled {
+        if self.by_clock {
             return false;
         }
         let (rate, bend) = (self.rate.abs(), self.bend.abs());
@@ -155,18 +165,26 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether the state before is outside the guard by more than rounding, as only an edge that fires on entry allows.
     pub(super) fn is_outside(&self) -> bool {
-        !self.scheduled
+        !self.by_clock
             && self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
     }
 
     /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any, moving.
-    pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> f64 {
-        if self.scheduled { 0.0 } else { -(self.along(dx) + self.by_parameter(p)) / self.rate }
+    pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> Result<f64, Refusal> {
+        if !self.by_clock {
+            return Ok(-(self.along(dx) + self.by_parameter(p)) / self.rate);
+        }
+        if p.is_none() {
+            return Ok(0.0);
+        }
+        let parameters = moving_in(&self.automaton.parameters(), p);
+        let tick = self.automaton.tick_over(self.mode, self.edge, self.t, parameters);
+        tick.map(|tick: Dual64| tick.eps).ok_or_else(|| Refusal::of(ErrorKind::ClockDerivative))
     }
 
     /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the rounding of the guard's terms can tell.
     pub(super) fn keeps(&self, last: f64, dx: &A::State, p: Option<usize>) -> bool {
-        if self.scheduled {
+        if self.by_clock {
             return false;
         }
         let by_parameter = self.by_parameter(p);

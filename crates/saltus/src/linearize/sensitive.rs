@@ -4,8 +4,11 @@ use num_dual::Dual64;
 
 use super::passage::Passage;
 use super::{Linearize, moving, moving_in, velocity};
-use crate::automaton::{Automaton, Edges, Entry, Fall, Polynomial};
-use crate::error::ErrorKind;
+use crate::automaton::{About, Automaton, Entry, Limit};
+use crate::clocks::Clocks;
+use crate::edges::Edges;
+use crate::error::{ErrorKind, Refusal};
+use crate::solution::{Fall, Polynomial, Solution};
 use crate::state::State;
 use crate::trajectory::Jump;
 
@@ -67,7 +70,7 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 ///
 /// ```
 /// # use saltus::nalgebra::{Vector2, vector};
-/// # use saltus::{Automaton, Edges, Linearize, Number};
+/// # use saltus::{Automaton, Edges, Linearize, Number, Refusal};
 /// # struct Ball { gravity: f64, cor: f64 }
 /// # impl Linearize for Ball {
 /// #     type Parameters = [f64; 2];
@@ -81,10 +84,10 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 /// #     type State = Vector2<f64>;
 /// #     type Edge = ();
 /// #     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> { self.flow_at(mode, t, x) }
-/// #     fn edges(&self, _: ()) -> Edges<()> { Edges::from([()]) }
+/// #     fn edges(&self, _: ()) -> Edges<'_, ()> { Edges::from([()]) }
 /// #     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 { self.guard_at(edge, t, x) }
-/// #     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-/// #         ((), self.reset_at(edge, t, x))
+/// #     fn reset(&self, _: (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+/// #         Ok(((), self.reset_at(edge, t, x)))
 /// #     }
 /// # }
 /// use saltus::{Sensitive, Simulation, Stop, Wrt};
@@ -166,6 +169,26 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
             Wrt::Initial(_) => None,
         }
     }
+
+    /// The derivatives of a polynomial's coefficients at fixed t are the coefficients of the columns.
+    fn polynomial(&self, mode: A::Mode, t: f64, x: &Tangent<A::State, K>) -> Option<Polynomial<Tangent<A::State, K>>> {
+        let Solution::Polynomial(solution) = self.automaton.solution(mode, t, &x.x) else { return None };
+        let p = self.automaton.parameters();
+        let columns: [_; K] = std::array::from_fn(|k| {
+            let parameters = moving_in(&p, self.parameter(k));
+            self.automaton.exact_over(mode, Dual64::from(t), moving(&x.x, &x.columns[k]), parameters)
+        });
+        if columns.iter().any(Option::is_none) {
+            return None;
+        }
+        Some(solution.map(|power, c| {
+            let columns = std::array::from_fn(|k| {
+                let column = columns[k].as_ref().and_then(|column| column.coefficients().get(power));
+                column.map_or_else(|| c.with(|_| 0.0), |column| velocity(column, c))
+            });
+            Tangent { x: *c, columns, ..*x }
+        }))
+    }
 }
 
 impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
@@ -185,7 +208,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         Tangent { x: self.automaton.flow(mode, t, &x.x), columns, ..*x }
     }
 
-    fn edges(&self, mode: A::Mode) -> Edges<A::Edge> {
+    fn edges(&self, mode: A::Mode) -> Edges<'_, A::Edge> {
         self.automaton.edges(mode)
     }
 
@@ -194,18 +217,13 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         self.automaton.guard(edge, t, &x.x)
     }
 
-    /// The state alone: what becomes of the columns depends on the mode left, and is [`take`](Self::take)'s to say. Here they are NaN.
-    fn reset(&self, edge: A::Edge, t: f64, x: &Self::State) -> (A::Mode, Self::State) {
-        let (to, after) = self.automaton.reset(edge, t, &x.x);
-        (to, Tangent { x: after, columns: [after.with(|_| f64::NAN); K], dt: [f64::NAN; K], jumped: t })
-    }
-
-    fn take(&self, mode: A::Mode, edge: A::Edge, t: f64, x: &Self::State) -> Result<(A::Mode, Self::State), ErrorKind> {
+    /// The reset of the state, and what it makes of the columns.
+    fn reset(&self, mode: A::Mode, edge: A::Edge, t: f64, x: &Self::State) -> Result<(A::Mode, Self::State), Refusal> {
         let passage = Passage::of(self.automaton, mode, edge, t, &x.x)?;
         let duration = t - x.jumped;
         let (grazes, at_once) = (passage.grazes(duration), passage.is_at_once(duration));
         // An edge that fires where the last jump led happens when that jump happens.
-        let follows = self.automaton.entry(edge) == Entry::Fire && passage.is_outside();
+        let follows = self.automaton.about(edge).entry == Entry::Fire && passage.is_outside();
         let mut after = Tangent { x: passage.after, columns: [passage.after; K], dt: x.dt, jumped: t };
         for (k, column) in x.columns.iter().enumerate() {
             let p = self.parameter(k);
@@ -213,46 +231,23 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
             // end of a Zeno sequence every jump is within rounding of the next.
             let keeps = follows || passage.keeps(x.dt[k], column, p);
             if grazes && !(follows || keeps && at_once) {
-                return Err(ErrorKind::Grazing);
+                return Err(Refusal::of(ErrorKind::Grazing));
             }
             if !keeps {
-                after.dt[k] = passage.delay(column, p);
+                after.dt[k] = passage.delay(column, p)?;
             }
             after.columns[k] = passage.across(column, p, after.dt[k]);
         }
         Ok((passage.to, after))
     }
 
-    fn entry(&self, edge: A::Edge) -> Entry {
-        self.automaton.entry(edge)
+    #[inline]
+    fn about(&self, edge: A::Edge) -> About {
+        self.automaton.about(edge)
     }
 
-    fn affine(&self, edge: A::Edge) -> bool {
-        self.automaton.affine(edge)
-    }
-
-    fn terminal(&self, edge: A::Edge) -> bool {
-        self.automaton.terminal(edge)
-    }
-
-    /// The derivatives of the coefficients at fixed t are the coefficients of the columns.
-    fn exact(&self, mode: A::Mode, t: f64, x: &Self::State) -> Option<Polynomial<Self::State>> {
-        let solution = self.automaton.exact(mode, t, &x.x)?;
-        let p = self.automaton.parameters();
-        let columns: [_; K] = std::array::from_fn(|k| {
-            let parameters = moving_in(&p, self.parameter(k));
-            self.automaton.exact_over(mode, Dual64::from(t), moving(&x.x, &x.columns[k]), parameters)
-        });
-        if columns.iter().any(Option::is_none) {
-            return None;
-        }
-        Some(solution.map(|power, c| {
-            let columns = std::array::from_fn(|k| {
-                let column = columns[k].as_ref().and_then(|column| column.coefficients().get(power));
-                column.map_or_else(|| c.with(|_| 0.0), |column| velocity(column, c))
-            });
-            Tangent { x: *c, columns, ..*x }
-        }))
+    fn solution(&self, mode: A::Mode, t: f64, x: &Self::State) -> Solution<Self> {
+        self.polynomial(mode, t, x).map_or(Solution::Steps, Solution::Polynomial)
     }
 
     /// Where the solution is exact, its columns are known at every time.
@@ -261,7 +256,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
             Fall::Unknown => Fall::Unknown,
             Fall::Never => Fall::Never,
             Fall::After(s) => Fall::After(s),
-            Fall::In(s, state) => match self.exact(mode, t, x) {
+            Fall::In(s, state) => match self.polynomial(mode, t, x) {
                 Some(solution) => Fall::In(s, Tangent { x: state, ..solution.at(s) }),
                 None => Fall::Unknown,
             },
@@ -269,8 +264,9 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
     }
 
     /// At a limit the jumps' times t*ₙ have converged, and so have their derivatives.
-    fn beyond(&self, mode: A::Mode, t: f64, x: &Self::State) -> Option<(A::Mode, Self::State)> {
-        let (to, after) = self.automaton.beyond(mode, t, &x.x)?;
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(A::Mode, Self::State)> {
+        let &Limit { mode, edges, t, x } = limit;
+        let (to, after) = self.automaton.beyond(&Limit::new(mode, edges, t, &x.x))?;
         let (before, onward) = (self.automaton.flow(mode, t, &x.x), self.automaton.flow(to, t, &after));
         let p = self.automaton.parameters();
         let mut beyond = Tangent { x: after, columns: [after; K], dt: x.dt, jumped: t };
@@ -284,18 +280,16 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         Some((to, beyond))
     }
 
-    fn scheduled(&self, mode: A::Mode, t: f64) -> Option<(f64, A::Edge)> {
-        self.automaton.scheduled(mode, t)
+    #[inline]
+    fn clocks(&self, mode: A::Mode) -> Clocks<'_, A::Edge> {
+        self.automaton.clocks(mode)
     }
 
-    fn flaw(&self, mode: A::Mode) -> Option<String> {
+    fn validate(&self, mode: A::Mode) -> Result<(), String> {
         let count = self.automaton.parameters().len();
-        let beyond = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count);
-        let beyond = beyond.map(|p| format!("there is no parameter {p}: the model has {count}, counted from 0"));
-        beyond.or_else(|| self.automaton.flaw(mode))
-    }
-
-    fn has_mode(&self, mode: A::Mode) -> bool {
-        self.automaton.has_mode(mode)
+        match (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
+            Some(p) => Err(format!("there is no parameter {p}: the model has {count}, counted from 0")),
+            None => self.automaton.validate(mode),
+        }
     }
 }

@@ -54,7 +54,7 @@ use crate::trajectory::Jump;
 /// use std::f64::consts::{PI, TAU};
 /// use saltus::nalgebra::Vector2;
 /// use saltus::return_map::{ReturnMap, Section};
-/// use saltus::{Automaton, Edges, Linearize, Number, Over, Simulation};
+/// use saltus::{Automaton, Edges, Linearize, Number, Over, Refusal, Simulation};
 ///
 /// struct Table { g: f64, amplitude: f64, omega: f64, cor: f64 }
 ///
@@ -78,10 +78,10 @@ use crate::trajectory::Jump;
 /// #     type State = Vector2<f64>;
 /// #     type Edge = ();
 /// #     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> { self.flow_at(mode, t, x) }
-/// #     fn edges(&self, _: ()) -> Edges<()> { Edges::from([()]) }
+/// #     fn edges(&self, _: ()) -> Edges<'_, ()> { Edges::from([()]) }
 /// #     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 { self.guard_at(edge, t, x) }
-/// #     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) {
-/// #         ((), self.reset_at(edge, t, x))
+/// #     fn reset(&self, _: (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+/// #         Ok(((), self.reset_at(edge, t, x)))
 /// #     }
 /// # }
 ///

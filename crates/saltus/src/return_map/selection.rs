@@ -16,7 +16,7 @@ const HELD: f64 = 1e-6;
 ///
 /// ```
 /// # use saltus::nalgebra::{Vector2, vector};
-/// # use saltus::{Automaton, Edges, Linearize, Number};
+/// # use saltus::{Automaton, Edges, Linearize, Number, Refusal};
 /// # struct Ball;
 /// # impl Linearize for Ball {
 /// #     type Parameters = [f64; 0];
@@ -30,9 +30,11 @@ const HELD: f64 = 1e-6;
 /// #     type State = Vector2<f64>;
 /// #     type Edge = ();
 /// #     fn flow(&self, mode: (), t: f64, x: &Vector2<f64>) -> Vector2<f64> { self.flow_at(mode, t, x) }
-/// #     fn edges(&self, _: ()) -> Edges<()> { Edges::from([()]) }
+/// #     fn edges(&self, _: ()) -> Edges<'_, ()> { Edges::from([()]) }
 /// #     fn guard(&self, edge: (), t: f64, x: &Vector2<f64>) -> f64 { self.guard_at(edge, t, x) }
-/// #     fn reset(&self, edge: (), t: f64, x: &Vector2<f64>) -> ((), Vector2<f64>) { ((), self.reset_at(edge, t, x)) }
+/// #     fn reset(&self, _: (), edge: (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+/// #         Ok(((), self.reset_at(edge, t, x)))
+/// #     }
 /// # }
 /// use saltus::Simulation;
 /// use saltus::return_map::{ReturnMap, Selection};

@@ -38,8 +38,7 @@ impl<S, L: AsRef<[S]>, T: AsRef<[S]>> AsRef<[S]> for Either<L, T> {
     }
 }
 
-/// What a trial kept says which method made it.
-impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
+impl<L: Stepper, T: Stepper> Stepper for Either<L, T> {
     type Stages<S: State> = Either<L::Stages<S>, T::Stages<S>>;
     type Dense<S: State> = Either<L::Dense<S>, T::Dense<S>>;
 
@@ -47,6 +46,13 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
         match self {
             Self::Loose(method) => method.jacobians(),
             Self::Tight(method) => method.jacobians(),
+        }
+    }
+
+    fn for_tolerance(self, relative: f64) -> Self {
+        match self {
+            Self::Loose(method) => Self::Loose(method.for_tolerance(relative)),
+            Self::Tight(method) => Self::Tight(method.for_tolerance(relative)),
         }
     }
 
@@ -83,18 +89,20 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
     #[inline]
     fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, square: impl Fn(&S) -> f64) -> f64 {
         let Trial { end, slope, stages } = trial;
-        match stages {
-            Either::Loose(stages) => L::default().error(h, Trial { end, slope, stages }, square),
-            Either::Tight(stages) => T::default().error(h, Trial { end, slope, stages }, square),
+        match (self, stages) {
+            (Self::Loose(method), Either::Loose(stages)) => method.error(h, Trial { end, slope, stages }, square),
+            (Self::Tight(method), Either::Tight(stages)) => method.error(h, Trial { end, slope, stages }, square),
+            _ => f64::INFINITY, // a trial of the other method's: never accepted
         }
     }
 
     #[inline]
     fn reach<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>) -> Option<S> {
         let Trial { end, slope, stages } = trial;
-        match stages {
-            Either::Loose(stages) => L::default().reach(h, Trial { end, slope, stages }),
-            Either::Tight(stages) => T::default().reach(h, Trial { end, slope, stages }),
+        match (self, stages) {
+            (Self::Loose(method), Either::Loose(stages)) => method.reach(h, Trial { end, slope, stages }),
+            (Self::Tight(method), Either::Tight(stages)) => method.reach(h, Trial { end, slope, stages }),
+            _ => None,
         }
     }
 
@@ -108,9 +116,100 @@ impl<L: Stepper + Default, T: Stepper + Default> Stepper for Either<L, T> {
         trial: Trial<&S, &Self::Stages<S>>,
     ) -> Self::Dense<S> {
         let Trial { end, slope, stages } = trial;
-        match stages {
-            Either::Loose(stages) => Either::Loose(L::default().dense(flow, t, x, h, Trial { end, slope, stages })),
-            Either::Tight(stages) => Either::Tight(T::default().dense(flow, t, x, h, Trial { end, slope, stages })),
+        match (self, stages) {
+            (Self::Loose(method), Either::Loose(stages)) => {
+                Either::Loose(method.dense(flow, t, x, h, Trial { end, slope, stages }))
+            }
+            (Self::Tight(method), Either::Tight(stages)) => {
+                Either::Tight(method.dense(flow, t, x, h, Trial { end, slope, stages }))
+            }
+            _ => {
+                let slope = flow(t, x);
+                let trial = self.trial(flow, t, x, &slope, h); // by this one
+                self.dense(flow, t, x, h, trial.as_ref())
+            }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Euler's method with an error that is trusted more or less: a method with a parameter.
+    #[derive(Clone, Copy, Debug, Default, PartialEq)]
+    struct Euler {
+        trust: f64,
+    }
+
+    impl Stepper for Euler {
+        type Stages<S: State> = S;
+        type Dense<S: State> = [S; 2];
+
+        fn error_order(&self) -> f64 {
+            2.0
+        }
+        fn for_tolerance(self, relative: f64) -> Self {
+            Self { trust: self.trust * relative }
+        }
+        fn trial<S: State>(
+            &self,
+            flow: &mut impl FnMut(f64, &S) -> S,
+            t: f64,
+            x: &S,
+            slope: &S,
+            h: f64,
+        ) -> Trial<S, S> {
+            let end = x.with(|i| x.get(i) + h * slope.get(i));
+            Trial { end, slope: flow(t + h, &end), stages: *slope }
+        }
+        fn error<S: State>(&self, h: f64, trial: Trial<&S, &S>, square: impl Fn(&S) -> f64) -> f64 {
+            self.trust * square(&trial.end.with(|i| 0.5 * h * (trial.slope.get(i) - trial.stages.get(i))))
+        }
+        fn reach<S: State>(&self, h: f64, trial: Trial<&S, &S>) -> Option<S> {
+            Some(trial.end.with(|i| self.trust * h * trial.stages.get(i).abs()))
+        }
+        fn dense<S: State>(
+            &self,
+            _: &mut impl FnMut(f64, &S) -> S,
+            _: f64,
+            x: &S,
+            h: f64,
+            trial: Trial<&S, &S>,
+        ) -> [S; 2] {
+            [*x, x.with(|i| self.trust * h * trial.stages.get(i))]
+        }
+    }
+
+    /// The very method is asked that is held, not another of its type.
+    #[test]
+    fn a_method_keeps_its_parameter() {
+        let mut flow = |_: f64, x: &f64| -x;
+        for method in [Euler { trust: 7.0 }, Euler { trust: 0.25 }] {
+            for either in [Either::<Euler, Euler>::Loose(method), Either::Tight(method)] {
+                let (own, trial) =
+                    (method.trial(&mut flow, 0.0, &2.0, &-2.0, 0.5), either.trial(&mut flow, 0.0, &2.0, &-2.0, 0.5));
+                let square = |e: &f64| e * e;
+                assert_eq!(either.error(0.5, trial.as_ref(), square), method.error(0.5, own.as_ref(), square));
+                assert_eq!(either.reach(0.5, trial.as_ref()), method.reach(0.5, own.as_ref()));
+                let dense = either.dense(&mut flow, 0.0, &2.0, 0.5, trial.as_ref());
+                assert_eq!(dense.as_ref(), method.dense(&mut flow, 0.0, &2.0, 0.5, own.as_ref()));
+                assert!(matches!(
+                    either.for_tolerance(0.5),
+                    Either::Loose(Euler { trust }) | Either::Tight(Euler { trust }) if trust == 0.5 * method.trust
+                ));
+            }
+        }
+    }
+
+    /// A trial of the other method is never accepted, and its dense output is made anew.
+    #[test]
+    fn a_trial_of_the_other_method() {
+        let mut flow = |_: f64, x: &f64| -x;
+        let [one, other] = [Either::<Euler, Euler>::Loose(Euler { trust: 1.0 }), Either::Tight(Euler { trust: 2.0 })];
+        let trial = one.trial(&mut flow, 0.0, &2.0, &-2.0, 0.5);
+        assert_eq!(other.error(0.5, trial.as_ref(), |e| e * e), f64::INFINITY);
+        assert_eq!(other.reach(0.5, trial.as_ref()), None);
+        assert_eq!(other.dense(&mut flow, 0.0, &2.0, 0.5, trial.as_ref()).as_ref(), [2.0, -2.0]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use saltus::{Automaton, Coords, Edges, Entry, Jump, Observer, Polynomial, Simulation, State as _, Stop};
+use saltus::{About, Automaton, Coords, Edges, Entry, Jump, Limit, Observer, Polynomial, Refusal, Simulation, Solution, State as _, Stop};
 
 use super::{Answer, Jumps, MOST_EVENTS, State, System, TOLERANCE};
 
@@ -35,7 +35,7 @@ impl Automaton for Model<'_> {
     fn flow(&self, _: Mode, t: f64, x: &State) -> State {
         (self.0.flow)(t, x)
     }
-    fn edges(&self, mode: Mode) -> Edges<Edge> {
+    fn edges(&self, mode: Mode) -> Edges<'_, Edge> {
         match mode {
             Mode::Flow(above) => (0..self.0.guards.len()).map(|guard| Edge { guard, above }).collect(),
             Mode::Rest => Edges::none(),
@@ -45,23 +45,24 @@ impl Automaton for Model<'_> {
         let g = (self.0.guards[guard])(t, x);
         if above[guard] { g } else { -g }
     }
-    fn reset(&self, Edge { guard, mut above }: Edge, _t: f64, x: &State) -> (Mode, State) {
-        match &self.0.jumps {
+    fn reset(&self, _: Mode, Edge { guard, mut above }: Edge, _t: f64, x: &State) -> Result<(Mode, State), Refusal> {
+        Ok(match &self.0.jumps {
             Jumps::None(_) => {
                 above[guard] = !above[guard];
                 (Mode::Flow(above), *x)
             }
             Jumps::Reset { reset, .. } => (Mode::Flow(above), reset(guard, x, 0.0)),
-        }
+        })
     }
     /// A ball on the floor is below a line above it, and that is no mistake.
-    fn entry(&self, _: Edge) -> Entry {
-        Entry::Wait
+    #[inline]
+    fn about(&self, _: Edge) -> About {
+        About::new().entry(Entry::Wait)
     }
-    fn exact(&self, mode: Mode, _t: f64, x: &State) -> Option<Polynomial<State>> {
-        (mode == Mode::Rest).then(|| Polynomial::from([*x]))
+    fn solution(&self, mode: Mode, _t: f64, x: &State) -> Solution<Self> {
+        if mode == Mode::Rest { Solution::Polynomial([*x].into()) } else { Solution::Steps }
     }
-    fn beyond(&self, _: Mode, _t: f64, _x: &State) -> Option<(Mode, State)> {
+    fn beyond(&self, _: &Limit<'_, Self>) -> Option<(Mode, State)> {
         match self.0.jumps {
             Jumps::Reset { rest: Some(rest), .. } => Some((Mode::Rest, rest)),
             _ => None,
@@ -106,14 +107,14 @@ pub fn split_in_two() -> Result<(usize, f64), String> {
         fn flow(&self, _: usize, _t: f64, x: &Coords<2>) -> Coords<2> {
             *x
         }
-        fn edges(&self, cells: usize) -> Edges<()> {
+        fn edges(&self, cells: usize) -> Edges<'_, ()> {
             if cells == 1 { Edges::from([()]) } else { Edges::none() }
         }
         fn guard(&self, (): (), _t: f64, x: &Coords<2>) -> f64 {
             2.0 - x[0]
         }
-        fn reset(&self, (): (), _t: f64, x: &Coords<2>) -> (usize, Coords<2>) {
-            (2, Coords::from([0.25 * x[0], 0.75 * x[0]]))
+        fn reset(&self, _: usize, (): (), _t: f64, x: &Coords<2>) -> Result<(usize, Coords<2>), Refusal> {
+            Ok((2, Coords::from([0.25 * x[0], 0.75 * x[0]])))
         }
     }
     let simulation = Simulation::of(&Cell).tolerance(TOLERANCE).absolute_tolerance(TOLERANCE);

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use saltus::step::Stepper;
-use saltus::{Automaton, Edges, Jump, Observer, Rodas5P, Series, Simulation};
+use saltus::{About, Automaton, Edges, Jump, Observer, Refusal, Rodas5P, Series, Simulation, Solution};
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Cor, Mode, Phase};
 
@@ -65,6 +65,13 @@ pub enum Turn {
     Floor,
 }
 
+impl Stepped {
+    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) {
+        let (g, k) = (self.0.gravity, if rising { -self.0.drag } else { self.0.drag });
+        series.flow(|_t, [_, v]| [v, k * (v * v) - g]);
+    }
+}
+
 impl Automaton for Stepped {
     type Mode = bool;
     type State = [f64; 2];
@@ -75,12 +82,11 @@ impl Automaton for Stepped {
         [x[1], self.0.smooth(rising, x[1])]
     }
     #[inline]
-    fn series(&self, rising: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
-        let (g, k) = (self.0.gravity, if rising { -self.0.drag } else { self.0.drag });
-        series.flow(|_t, [_, v]| [v, k * (v * v) - g])
+    fn solution(&self, _: bool, _t: f64, _x: &[f64; 2]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
     #[inline]
-    fn edges(&self, rising: bool) -> Edges<Turn> {
+    fn edges(&self, rising: bool) -> Edges<'_, Turn> {
         Edges::from([if rising { Turn::Apex } else { Turn::Floor }])
     }
     #[inline]
@@ -91,15 +97,15 @@ impl Automaton for Stepped {
         }
     }
     #[inline]
-    fn affine(&self, _: Turn) -> bool {
-        true
+    fn about(&self, _: Turn) -> About {
+        About::new().affine()
     }
     #[inline]
-    fn reset(&self, turn: Turn, _t: f64, x: &[f64; 2]) -> (bool, [f64; 2]) {
-        match turn {
+    fn reset(&self, _: bool, turn: Turn, _t: f64, x: &[f64; 2]) -> Result<(bool, [f64; 2]), Refusal> {
+        Ok(match turn {
             Turn::Apex => (false, [x[0], 0.0]),
             Turn::Floor => (true, [0.0, -self.0.cor * x[1]]),
-        }
+        })
     }
 }
 
@@ -116,7 +122,7 @@ impl Automaton for Flight {
         [x[1], -self.0.gravity]
     }
     #[inline]
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::from([()])
     }
     #[inline]
@@ -124,12 +130,12 @@ impl Automaton for Flight {
         x[0]
     }
     #[inline]
-    fn affine(&self, (): ()) -> bool {
-        true
+    fn about(&self, (): ()) -> About {
+        About::new().affine()
     }
     #[inline]
-    fn reset(&self, (): (), _t: f64, x: &[f64; 2]) -> ((), [f64; 2]) {
-        ((), [0.0, -self.0.cor * x[1]])
+    fn reset(&self, (): (), (): (), _t: f64, x: &[f64; 2]) -> Result<((), [f64; 2]), Refusal> {
+        Ok(((), [0.0, -self.0.cor * x[1]]))
     }
 }
 
@@ -189,6 +195,18 @@ pub fn drag_stepped<M: Stepper + 'static>(method: &'static str, stepper: M) -> E
 /// One mode without edges.
 struct Orbit;
 
+impl Orbit {
+    fn series(&self, (): (), series: &mut Series<'_, [f64; 4]>) {
+        use arenstorf::MU;
+        series.flow(|_t, [x, y, u, v]| {
+            let (a, b) = (x + MU, x - (1.0 - MU));
+            let y2 = y * y;
+            let (p, q) = ((1.0 - MU) * (a * a + y2).powf(-1.5), MU * (b * b + y2).powf(-1.5));
+            [u, v, x + 2.0 * v - p * a - q * b, y - 2.0 * u - (p + q) * y]
+        });
+    }
+}
+
 impl Automaton for Orbit {
     type Mode = ();
     type State = [f64; 4];
@@ -199,23 +217,17 @@ impl Automaton for Orbit {
         arenstorf::flow(*x)
     }
     #[inline]
-    fn series(&self, (): (), series: &mut Series<'_, [f64; 4]>) -> bool {
-        use arenstorf::MU;
-        series.flow(|_t, [x, y, u, v]| {
-            let (a, b) = (x + MU, x - (1.0 - MU));
-            let y2 = y * y;
-            let (p, q) = ((1.0 - MU) * (a * a + y2).powf(-1.5), MU * (b * b + y2).powf(-1.5));
-            [u, v, x + 2.0 * v - p * a - q * b, y - 2.0 * u - (p + q) * y]
-        })
+    fn solution(&self, (): (), _t: f64, _x: &[f64; 4]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::none()
     }
     fn guard(&self, (): (), _t: f64, _x: &[f64; 4]) -> f64 {
         1.0
     }
-    fn reset(&self, (): (), _t: f64, x: &[f64; 4]) -> ((), [f64; 4]) {
-        ((), *x)
+    fn reset(&self, (): (), (): (), _t: f64, x: &[f64; 4]) -> Result<((), [f64; 4]), Refusal> {
+        Ok(((), *x))
     }
 }
 
@@ -246,14 +258,14 @@ impl Automaton for Stiff {
     fn flow(&self, (): (), _t: f64, x: &[f64; 2]) -> [f64; 2] {
         van_der_pol::flow(*x)
     }
-    fn edges(&self, (): ()) -> Edges<()> {
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::none()
     }
     fn guard(&self, (): (), _t: f64, _x: &[f64; 2]) -> f64 {
         1.0
     }
-    fn reset(&self, (): (), _t: f64, x: &[f64; 2]) -> ((), [f64; 2]) {
-        ((), *x)
+    fn reset(&self, (): (), (): (), _t: f64, x: &[f64; 2]) -> Result<((), [f64; 2]), Refusal> {
+        Ok(((), *x))
     }
 }
 
@@ -275,6 +287,12 @@ pub fn stiff() -> Entry {
 /// x'' = -x; the side of zero is the mode, and each crossing a jump.
 struct Oscillator;
 
+impl Oscillator {
+    fn series(&self, _: bool, series: &mut Series<'_, [f64; 2]>) {
+        series.flow(|_t, [x, v]| [v, -x]);
+    }
+}
+
 impl Automaton for Oscillator {
     type Mode = bool;
     type State = [f64; 2];
@@ -285,11 +303,11 @@ impl Automaton for Oscillator {
         [x[1], -x[0]]
     }
     #[inline]
-    fn series(&self, _: bool, series: &mut Series<'_, [f64; 2]>) -> bool {
-        series.flow(|_t, [x, v]| [v, -x])
+    fn solution(&self, _: bool, _t: f64, _x: &[f64; 2]) -> Solution<Self> {
+        Solution::Series(Self::series)
     }
     #[inline]
-    fn edges(&self, above: bool) -> Edges<bool> {
+    fn edges(&self, above: bool) -> Edges<'_, bool> {
         Edges::from([above])
     }
     #[inline]
@@ -297,12 +315,12 @@ impl Automaton for Oscillator {
         if above { x[0] } else { -x[0] }
     }
     #[inline]
-    fn affine(&self, _: bool) -> bool {
-        true
+    fn about(&self, _: bool) -> About {
+        About::new().affine()
     }
     #[inline]
-    fn reset(&self, above: bool, _t: f64, x: &[f64; 2]) -> (bool, [f64; 2]) {
-        (!above, *x)
+    fn reset(&self, _: bool, above: bool, _t: f64, x: &[f64; 2]) -> Result<(bool, [f64; 2]), Refusal> {
+        Ok((!above, *x))
     }
 }
 
@@ -345,14 +363,14 @@ impl<G: Fn(f64) -> f64> Automaton for Watched<G> {
     fn flow(&self, _: bool, _t: f64, x: &[f64; 2]) -> [f64; 2] {
         [x[1], -x[0]]
     }
-    fn edges(&self, above: bool) -> Edges<bool> {
+    fn edges(&self, above: bool) -> Edges<'_, bool> {
         Edges::from([above])
     }
     fn guard(&self, above: bool, t: f64, _x: &[f64; 2]) -> f64 {
         if above { (self.0)(t) } else { -(self.0)(t) }
     }
-    fn reset(&self, above: bool, _t: f64, x: &[f64; 2]) -> (bool, [f64; 2]) {
-        (!above, *x)
+    fn reset(&self, _: bool, above: bool, _t: f64, x: &[f64; 2]) -> Result<(bool, [f64; 2]), Refusal> {
+        Ok((!above, *x))
     }
 }
 

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use saltus::cross::Evidence;
 use saltus::step::Stepper;
-use saltus::{Automaton, Cause, Ending, Inspection, Jump, Observer, Piece, Run, Simulation, Time, Trajectory};
+use saltus::{
+    Automaton, Cause, Ending, Inspection, Jump, Observer, Piece, Run, Simulation, Solution, Time, Trajectory,
+};
 
 use super::RunError;
 use super::explain::{Advance, ModePlan};
@@ -241,14 +243,11 @@ where
     fn modes(&self, method: Method) -> Vec<ModePlan> {
         let plan = |mode: A::Mode| {
             let (automaton, reader) = (&*self.automaton, &*self.reader);
-            let advance = if automaton.exact(mode, 0.0, &self.state).is_some() {
-                Advance::Exact
-            } else if automaton.flown(mode, 0.0, &self.state, 0.0).is_some() {
-                Advance::Formula
-            } else if method.is_stiff() {
-                Advance::Stiff(method.name())
-            } else {
-                Advance::Explicit(method.name())
+            let advance = match automaton.solution(mode, 0.0, &self.state) {
+                Solution::Polynomial(_) => Advance::Exact,
+                Solution::Formula(_) => Advance::Formula,
+                _ if method.is_stiff() => Advance::Stiff(method.name()),
+                _ => Advance::Explicit(method.name()),
             };
             let mut edges = reader.edges(automaton, mode);
             edges.dedup();

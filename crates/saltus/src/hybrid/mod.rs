@@ -1,15 +1,20 @@
 //! An automaton put together from closures.
 
-use std::fmt;
+mod model;
+mod names;
 
-use crate::automaton::{Automaton, Edges, Entry, Polynomial};
-use crate::reverse::Invertible;
+use std::fmt;
+use std::sync::OnceLock;
+
+use crate::automaton::{About, Entry};
+use crate::clocks::Clock;
 use crate::series::{Jet, Series};
+use crate::solution::Polynomial;
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;
 type Guard<'a, S> = Box<dyn Fn(f64, &S) -> f64 + Send + Sync + 'a>;
-type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) -> bool + Send + Sync + 'a>;
+type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) + Send + Sync + 'a>;
 type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 
 /// A hybrid automaton built from closures, its modes named by strings.
@@ -32,7 +37,7 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// # Ok::<(), saltus::Error>(())
 /// ```
 ///
-/// Where speed matters, implement [`Automaton`] instead: the closures are called through pointers.
+/// Where speed matters, implement [`Automaton`](crate::Automaton) instead: the closures are called through pointers.
 ///
 /// A name that is misspelt (a mode that an edge leads to or from, an edge that [`entry`](Self::entry) or [`affine`](Self::affine) is about)
 /// is found when a run starts, which then fails with an error that names it and suggests the nearest.
@@ -53,6 +58,8 @@ pub struct Hybrid<'a, S> {
     misses: Vec<(&'static str, &'static str, &'static str)>,
     /// By which method something was said twice of a mode, and of which.
     twice: Option<(&'static str, &'static str)>,
+    /// What is wrong with it as a whole, once it was asked.
+    flaw: OnceLock<Option<String>>,
 }
 
 struct Mode<'a, S> {
@@ -62,22 +69,18 @@ struct Mode<'a, S> {
     exact: Option<Exact<'a, S>>,
     beyond: Option<(&'static str, Flow<'a, S>)>,
     edges: Vec<EdgeOf<'a, S>>,
+    /// Those of the edges that have guards, and those that clocks take.
+    guarded: Vec<Link>,
+    clocks: Vec<(Clock, Link)>,
 }
 
 struct EdgeOf<'a, S> {
     to: &'static str,
-    when: When<'a, S>,
+    /// None of an edge that a clock takes.
+    guard: Option<Guard<'a, S>>,
     reset: Flow<'a, S>,
-    entry: Entry,
-    affine: bool,
-    terminal: bool,
+    about: About,
     inverse: Option<(Guard<'a, S>, Flow<'a, S>)>,
-}
-
-/// What takes an edge: the state, or the clock.
-enum When<'a, S> {
-    Guard(Guard<'a, S>),
-    Clock(Box<dyn Fn(f64) -> Option<f64> + Send + Sync + 'a>),
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
@@ -103,30 +106,23 @@ impl fmt::Debug for Link {
     }
 }
 
-impl<'a, S> EdgeOf<'a, S> {
-    fn new(to: &'static str, when: When<'a, S>, reset: Flow<'a, S>) -> Self {
-        Self { to, when, reset, entry: Entry::Refuse, affine: false, terminal: false, inverse: None }
+impl<'a, S> Mode<'a, S> {
+    /// Adds an edge with a guard.
+    fn guarded_by(&mut self, edge: EdgeOf<'a, S>) {
+        self.guarded.push(Link { from: self.name, to: edge.to, place: self.edges.len() });
+        self.edges.push(edge);
     }
 }
 
-/// The multiples of a `period` in seconds: the first one strictly after a time, for [`Hybrid::scheduled`].
-///
-/// Multiple k is k · period rounded once, so the hundred-thousandth is as exact as the first. A period that is not positive has no multiples.
-///
-/// ```
-/// let next = saltus::every(0.1);
-/// assert_eq!((next(0.0), next(0.3), next(0.1 * 3.0)), (Some(0.1), Some(0.1 * 3.0), Some(0.4)));
-/// ```
-pub fn every(period: f64) -> impl Fn(f64) -> Option<f64> + Copy + Send + Sync {
-    move |t| {
-        let near = (t / period).round();
-        [near - 1.0, near, near + 1.0, near + 2.0].into_iter().map(|k| k * period).find(|&multiple| multiple > t)
+impl<'a, S> EdgeOf<'a, S> {
+    fn new(to: &'static str, guard: Option<Guard<'a, S>>, reset: Flow<'a, S>) -> Self {
+        Self { to, guard, reset, about: About::new(), inverse: None }
     }
 }
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), misses: Vec::new(), twice: None }
+        Self { modes: Vec::new(), misses: Vec::new(), twice: None, flaw: OnceLock::new() }
     }
 }
 
@@ -152,7 +148,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see [`Automaton::series`].
+    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see [`Solution::Series`](crate::Solution::Series).
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -202,8 +198,7 @@ impl<'a, S: State> Hybrid<'a, S> {
 
     /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t, x⁻) into `to`.
     ///
-    /// Edges that cross at one time are taken in the order in which they are declared. A mode has at most [`Edges::INLINE`] edges;
-    /// a run with more does not start.
+    /// Edges that cross at one time are taken in the order in which they are declared.
     #[must_use]
     pub fn edge(
         mut self,
@@ -212,30 +207,34 @@ impl<'a, S: State> Hybrid<'a, S> {
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        self.entry_of(from).edges.push(EdgeOf::new(to, When::Guard(Box::new(guard)), Box::new(reset)));
+        let edge = EdgeOf::new(to, Some(Box::new(guard)), Box::new(reset));
+        self.entry_of(from).guarded_by(edge);
         self
     }
 
-    /// Declares an edge that the clock takes: `next` gives the first time strictly after its argument; see [`every`].
+    /// Declares an edge that a clock takes; see [`Clock`].
     ///
     /// ```
-    /// use saltus::{Hybrid, Simulation, every};
+    /// use saltus::{Clock, Hybrid, Simulation};
     /// let kicked = Hybrid::new()
     ///     .mode("drift", |_t, _x: &f64| 0.0)
-    ///     .scheduled("drift", "drift", every(0.1), |_t, x| x + 1.0);
+    ///     .clock("drift", "drift", Clock::every(0.1), |_t, x| x + 1.0);
     /// let run = Simulation::of(&kicked).run("drift", 0.0, 0.0..1.05)?;
     /// assert_eq!(run.state, 10.0);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
-    pub fn scheduled(
+    pub fn clock(
         mut self,
         from: &'static str,
         to: &'static str,
-        next: impl Fn(f64) -> Option<f64> + Send + Sync + 'a,
+        clock: Clock,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        self.entry_of(from).edges.push(EdgeOf::new(to, When::Clock(Box::new(next)), Box::new(reset)));
+        let mode = self.entry_of(from);
+        let place = mode.edges.len();
+        mode.edges.push(EdgeOf::new(to, None, Box::new(reset)));
+        mode.clocks.push((clock, Link { from, to, place }));
         self
     }
 
@@ -251,8 +250,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// ```
     #[must_use]
     pub fn terminal(mut self, from: &'static str, guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a) -> Self {
-        let edge = EdgeOf::new(from, When::Guard(Box::new(guard)), Box::new(|_, x| *x));
-        self.entry_of(from).edges.push(EdgeOf { terminal: true, ..edge });
+        let edge = EdgeOf::new(from, Some(Box::new(guard)), Box::new(|_, x| *x));
+        self.entry_of(from).guarded_by(EdgeOf { about: About::new().terminal(), ..edge });
         self
     }
 
@@ -260,19 +259,19 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// A [`terminal`](Self::terminal) edge leads from its mode to itself.
     #[must_use]
     pub fn entry(mut self, from: &'static str, to: &'static str, entry: Entry) -> Self {
-        self.between("entry", from, to, |edge| edge.entry = entry);
+        self.between("entry", from, to, |edge| edge.about.entry = entry);
         self
     }
 
-    /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`Automaton::affine`].
+    /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`About::affine`].
     #[must_use]
     pub fn affine(mut self, from: &'static str, to: &'static str) -> Self {
-        self.between("affine", from, to, |edge| edge.affine = true);
+        self.between("affine", from, to, |edge| edge.about.affine = true);
         self
     }
 
     /// Gives the inverse of the edge declared last from `from` to `to`, so that a run can go [backwards](crate::Reversed) through it:
-    /// the `image` margin, positive in `to` and zero just after the jump, and x⁻ from x⁺. See [`Invertible`].
+    /// the `image` margin, positive in `to` and zero just after the jump, and x⁻ from x⁺. See [`Invertible`](crate::Invertible).
     ///
     /// A run backwards is refused where it could meet an edge without an inverse. An edge that is never met backwards may be given
     /// the margin 1.
@@ -321,8 +320,10 @@ impl<'a, S: State> Hybrid<'a, S> {
     }
 
     fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
+        self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
-            self.modes.push(Mode { name, flow: None, series: None, exact: None, beyond: None, edges: Vec::new() });
+            let (edges, guarded, clocks) = (Vec::new(), Vec::new(), Vec::new());
+            self.modes.push(Mode { name, flow: None, series: None, exact: None, beyond: None, edges, guarded, clocks });
             self.modes.len() - 1
         });
         &mut self.modes[index]
@@ -345,28 +346,12 @@ impl<'a, S: State> Hybrid<'a, S> {
         }
     }
 
-    /// Every edge of `mode`, also those of the clock.
+    /// Every edge of `mode`, also those of clocks.
     fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m EdgeOf<'a, S>)> {
         let from = mode.name;
         mode.edges.iter().enumerate().map(move |(place, edge)| (Link { from, to: edge.to, place }, edge))
     }
 
-    fn declares(&self, name: &str) -> bool {
-        self.find(name).is_some_and(|mode| mode.flow.is_some() || mode.exact.is_some())
-    }
-
-    /// What to do about a mode that is not declared.
-    fn declare(&self, name: &str) -> String {
-        let declared = self.modes.iter().map(|mode| mode.name).filter(|name| self.declares(name));
-        let near = declared.map(|other| (distance(name, other), other)).min_by_key(|near| near.0);
-        let most = (name.chars().count() / 3).max(1);
-        match near.filter(|near| near.0 <= most) {
-            Some((_, other)) => format!("did you mean {other:?}? If not, declare it with Hybrid::mode"),
-            None => "declare it with Hybrid::mode".into(),
-        }
-    }
-
-    /// Looks for the very name first, which is what a run mostly has: to compare letters takes longer than many a guard.
     #[inline]
     fn find(&self, name: &str) -> Option<&Mode<'a, S>> {
         let same = self.modes.iter().find(|mode| std::ptr::eq(mode.name, name));
@@ -376,180 +361,4 @@ impl<'a, S: State> Hybrid<'a, S> {
     fn edge_of(&self, link: Link) -> Option<&EdgeOf<'a, S>> {
         self.find(link.from)?.edges.get(link.place)
     }
-}
-
-impl<S: State> Automaton for Hybrid<'_, S> {
-    type Mode = &'static str;
-    type State = S;
-    type Edge = Link;
-
-    fn flow(&self, mode: &'static str, t: f64, x: &S) -> S {
-        let mode = self.find(mode);
-        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
-            return flow(t, x);
-        }
-        match mode.and_then(|mode| mode.exact.as_ref()) {
-            // The solution's slope where it starts.
-            Some(solution) => solution(t, x).coefficients().get(1).copied().unwrap_or_else(|| x.with(|_| 0.0)),
-            None => x.with(|_| f64::NAN),
-        }
-    }
-
-    fn edges(&self, mode: &'static str) -> Edges<Link> {
-        let edges = self.find(mode).map_or(&[][..], |mode| &mode.edges[..]);
-        let guarded = edges.iter().enumerate().filter(|(_, edge)| matches!(edge.when, When::Guard(_)));
-        guarded.map(|(place, edge)| Link { from: mode, to: edge.to, place }).collect()
-    }
-
-    fn guard(&self, edge: Link, t: f64, x: &S) -> f64 {
-        match self.edge_of(edge).map(|edge| &edge.when) {
-            Some(When::Guard(guard)) => guard(t, x),
-            _ => f64::NAN,
-        }
-    }
-
-    fn scheduled(&self, mode: &'static str, t: f64) -> Option<(f64, Link)> {
-        let edges = self.find(mode)?.edges.iter().enumerate();
-        let due = edges.filter_map(|(place, edge)| match &edge.when {
-            When::Clock(next) => Some((next(t)?, Link { from: mode, to: edge.to, place })),
-            When::Guard(_) => None,
-        });
-        due.min_by(|a, b| a.0.total_cmp(&b.0))
-    }
-
-    fn reset(&self, edge: Link, t: f64, x: &S) -> (&'static str, S) {
-        (edge.to, self.edge_of(edge).map_or(*x, |edge| (edge.reset)(t, x)))
-    }
-
-    fn entry(&self, edge: Link) -> Entry {
-        self.edge_of(edge).map_or(Entry::Refuse, |edge| edge.entry)
-    }
-
-    fn affine(&self, edge: Link) -> bool {
-        self.edge_of(edge).is_some_and(|edge| edge.affine)
-    }
-
-    fn terminal(&self, edge: Link) -> bool {
-        self.edge_of(edge).is_some_and(|edge| edge.terminal)
-    }
-
-    fn series(&self, mode: &'static str, series: &mut Series<'_, S>) -> bool {
-        self.find(mode).and_then(|mode| mode.series.as_ref()).is_some_and(|flow| flow(series))
-    }
-
-    fn exact(&self, mode: &'static str, t: f64, x: &S) -> Option<Polynomial<S>> {
-        self.find(mode)?.exact.as_ref().map(|solution| solution(t, x))
-    }
-
-    fn beyond(&self, mode: &'static str, t: f64, x: &S) -> Option<(&'static str, S)> {
-        let (to, reset) = self.find(mode)?.beyond.as_ref()?;
-        Some((to, reset(t, x)))
-    }
-
-    fn flaw(&self, mode: &'static str) -> Option<String> {
-        if !self.declares(mode) {
-            return Some(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
-        }
-        if let Some((method, name)) = self.twice {
-            return Some(format!(
-                "Hybrid::{method} says twice what holds in mode {name:?}: say it once, or give one of them its own name"
-            ));
-        }
-        for mode in &self.modes {
-            let (name, most) = (mode.name, Edges::<Link>::INLINE);
-            if !self.declares(name) {
-                let what = if mode.edges.is_empty() { "is named" } else { "has an edge" };
-                return Some(format!("mode {name:?} {what} but is not declared: {}", self.declare(name)));
-            }
-            if let Some((link, edge)) = Self::links(mode).find(|(_, edge)| !self.declares(edge.to)) {
-                let to = self.declare(edge.to);
-                return Some(format!("edge {link:?} leads to mode {:?}, which is not declared: {to}", edge.to));
-            }
-            if let Some((to, _)) = mode.beyond.as_ref().filter(|(to, _)| !self.declares(to)) {
-                let declare = self.declare(to);
-                return Some(format!("beyond a limit in {name:?} lies mode {to:?}, which is not declared: {declare}"));
-            }
-            if mode.edges.len() > most {
-                let count = mode.edges.len();
-                return Some(format!("mode {name:?} has {count} edges, more than {most}: implement Automaton instead"));
-            }
-        }
-        let (method, from, to) = self.misses.first()?;
-        Some(format!(
-            "Hybrid::{method} is about an edge {from} -> {to} that was not declared before it: declare it first, or mend the names"
-        ))
-    }
-
-    fn has_mode(&self, mode: &'static str) -> bool {
-        self.declares(mode)
-    }
-}
-
-impl<S: State> Invertible for Hybrid<'_, S> {
-    fn edges_into(&self, mode: &'static str) -> Edges<Link> {
-        let links = self.modes.iter().flat_map(Self::links);
-        links.filter(|(link, edge)| link.to == mode && !edge.terminal).map(|(link, _)| link).collect()
-    }
-
-    fn image(&self, edge: Link, t: f64, x: &S) -> f64 {
-        let inverse = self.edge_of(edge).and_then(|edge| edge.inverse.as_ref());
-        inverse.map_or(f64::NAN, |(image, _)| image(t, x))
-    }
-
-    fn undo(&self, edge: Link, t: f64, x: &S) -> (&'static str, S) {
-        let inverse = self.edge_of(edge).and_then(|edge| edge.inverse.as_ref());
-        (edge.from, inverse.map_or_else(|| x.with(|_| f64::NAN), |(_, undo)| undo(t, x)))
-    }
-
-    /// Looks at every edge that a run backwards from `mode` could meet.
-    fn undo_flaw(&self, mode: &'static str) -> Option<String> {
-        let mut met = vec![mode];
-        let mut next = 0;
-        while let Some(&mode) = met.get(next) {
-            next += 1;
-            let into = || self.modes.iter().flat_map(Self::links).filter(move |(link, _)| link.to == mode);
-            let count = into().filter(|(_, edge)| !edge.terminal).count();
-            if count > Edges::<Link>::INLINE {
-                let most = Edges::<Link>::INLINE;
-                return Some(format!(
-                    "{count} edges lead into mode {mode:?}, more than {most}: implement Invertible instead"
-                ));
-            }
-            for (link, edge) in into().filter(|(_, edge)| !edge.terminal) {
-                if edge.inverse.is_none() {
-                    return Some(format!(
-                        "edge {link:?} has no inverse, so that a run cannot go backwards into mode {:?}: give one with Hybrid::inverse",
-                        link.from
-                    ));
-                }
-                if !met.contains(&link.from) {
-                    met.push(link.from);
-                }
-            }
-        }
-        None
-    }
-}
-
-/// How many characters must be changed, added, left out or exchanged with their neighbour to make one name of another
-/// (optimal string alignment).
-fn distance(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut rows = [Vec::new(), (0..=other.len()).collect::<Vec<_>>()];
-    let mut last = None;
-    for (i, c) in one.chars().enumerate() {
-        let mut row = vec![i + 1];
-        for (j, &d) in other.iter().enumerate() {
-            let [before, above] = &rows;
-            let mut least = (above[j] + usize::from(c != d)).min(above[j + 1] + 1).min(row[j] + 1);
-            if j > 0 && i > 0 && Some(d) == last && other[j - 1] == c {
-                least = least.min(before[j - 1] + 1);
-            }
-            row.push(least);
-        }
-        let [_, above] = rows;
-        rows = [above, row];
-        last = Some(c);
-    }
-    rows[1][other.len()]
 }

@@ -1,0 +1,78 @@
+//! Whether the names of an automaton of closures are those of its modes and edges, and which was meant.
+
+use super::Hybrid;
+use crate::state::State;
+
+impl<S: State> Hybrid<'_, S> {
+    pub(super) fn declares(&self, name: &str) -> bool {
+        self.find(name).is_some_and(|mode| mode.flow.is_some() || mode.exact.is_some())
+    }
+
+    /// What to do about a mode that is not declared.
+    pub(super) fn declare(&self, name: &str) -> String {
+        let declared = self.modes.iter().map(|mode| mode.name).filter(|name| self.declares(name));
+        let near = declared.map(|other| (distance(name, other), other)).min_by_key(|near| near.0);
+        let most = (name.chars().count() / 3).max(1);
+        match near.filter(|near| near.0 <= most) {
+            Some((_, other)) => format!("did you mean {other:?}? If not, declare it with Hybrid::mode"),
+            None => "declare it with Hybrid::mode".into(),
+        }
+    }
+
+    /// Looks for the very name first, which is what a run mostly has: to compare letters takes longer than many a guard.
+    /// What keeps every run from starting.
+    pub(super) fn find_flaw(&self) -> Option<String> {
+        if let Some((method, name)) = self.twice {
+            return Some(format!(
+                "Hybrid::{method} says twice what holds in mode {name:?}: say it once, or give one of them its own name"
+            ));
+        }
+        for mode in &self.modes {
+            let name = mode.name;
+            if !self.declares(name) {
+                let what = if mode.edges.is_empty() { "is named" } else { "has an edge" };
+                return Some(format!("mode {name:?} {what} but is not declared: {}", self.declare(name)));
+            }
+            if let Some((link, edge)) = Self::links(mode).find(|(_, edge)| !self.declares(edge.to)) {
+                let to = self.declare(edge.to);
+                return Some(format!("edge {link:?} leads to mode {:?}, which is not declared: {to}", edge.to));
+            }
+            if let Some((to, _)) = mode.beyond.as_ref().filter(|(to, _)| !self.declares(to)) {
+                let declare = self.declare(to);
+                return Some(format!("beyond a limit in {name:?} lies mode {to:?}, which is not declared: {declare}"));
+            }
+            for (clock, link) in &mode.clocks {
+                if let Err(flaw) = clock.validate() {
+                    return Some(format!("the clock of edge {link:?} {flaw}"));
+                }
+            }
+        }
+        let (method, from, to) = self.misses.first()?;
+        Some(format!(
+            "Hybrid::{method} is about an edge {from} -> {to} that was not declared before it: declare it first, or mend the names"
+        ))
+    }
+}
+
+/// How many characters must be changed, added, left out or exchanged with their neighbour to make one name of another
+/// (optimal string alignment).
+fn distance(one: &str, other: &str) -> usize {
+    let other: Vec<char> = other.chars().collect();
+    let mut rows = [Vec::new(), (0..=other.len()).collect::<Vec<_>>()];
+    let mut last = None;
+    for (i, c) in one.chars().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, &d) in other.iter().enumerate() {
+            let [before, above] = &rows;
+            let mut least = (above[j] + usize::from(c != d)).min(above[j + 1] + 1).min(row[j] + 1);
+            if j > 0 && i > 0 && Some(d) == last && other[j - 1] == c {
+                least = least.min(before[j - 1] + 1);
+            }
+            row.push(least);
+        }
+        let [_, above] = rows;
+        rows = [above, row];
+        last = Some(c);
+    }
+    rows[1][other.len()]
+}

@@ -1,0 +1,288 @@
+//! What the engine asks of a model and promises it: edges, resets that refuse, limits, modes, clocks with derivatives.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use saltus::{About, Automaton, Edges, ErrorKind, Hybrid, Limit, Refusal, Simulation, Solution, Stop};
+
+/// A rising line with a mark at each integer, watched by as many edges, listed in one of three ways.
+struct Ladder {
+    count: usize,
+    list: Option<Vec<usize>>,
+}
+
+impl Automaton for Ladder {
+    type Mode = ();
+    type State = f64;
+    type Edge = usize;
+
+    fn flow(&self, (): (), _t: f64, _x: &f64) -> f64 {
+        1.0
+    }
+    fn solution(&self, (): (), _t: f64, x: &f64) -> Solution<Self> {
+        Solution::Polynomial([*x, 1.0].into())
+    }
+    fn edges(&self, (): ()) -> Edges<'_, usize> {
+        match &self.list {
+            Some(list) => Edges::kept(list),
+            None if self.count > 1000 => Edges::indexed(self.count, |rung| rung),
+            None => (0..self.count).collect(),
+        }
+    }
+    fn guard(&self, rung: usize, _t: f64, x: &f64) -> f64 {
+        rung as f64 + 0.5 - x
+    }
+    fn about(&self, _: usize) -> About {
+        About::new().affine().entry(saltus::Entry::Wait)
+    }
+    fn reset(&self, (): (), rung: usize, _t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        if rung == 1_000_002 { Err(std::fmt::Error.into()) } else { Ok(((), *x)) }
+    }
+}
+
+/// However many edges there are, and however they are listed, each is taken.
+#[test]
+fn every_edge_is_watched() {
+    for count in [1, 15, 16, 17, 18, 100] {
+        for list in [None, Some((0..count).collect())] {
+            let ladder = Ladder { count, list };
+            let run = Simulation::of(&ladder).run((), 0.0, 0.0..count as f64);
+            if ladder.list.is_none() && count > Edges::<()>::INLINE {
+                // Collected, they are more than there is room for: said at once, not left out.
+                let error = run.unwrap_err().error;
+                assert_eq!((error.kind(), error.t()), (ErrorKind::Model, 0.0));
+                assert!(error.to_string().starts_with(&format!("{count} edges were collected")), "{error}");
+                continue;
+            }
+            let taken: Vec<_> = run.unwrap().trajectory.jumps().iter().filter_map(saltus::Jump::edge).collect();
+            assert_eq!(taken, (0..count).collect::<Vec<_>>());
+        }
+    }
+    // A million by index: the last three.
+    let ladder = Ladder { count: 1_000_000, list: None };
+    let run = Simulation::of(&ladder).run((), 999_997.0, 999_997.0..1e6).unwrap();
+    let taken: Vec<_> = run.trajectory.jumps().iter().filter_map(saltus::Jump::edge).collect();
+    assert_eq!(taken, [999_997, 999_998, 999_999]);
+}
+
+#[test]
+fn a_hybrid_with_many_edges() {
+    let ladder = (0..40).fold(Hybrid::new().mode("up", |_t, _x: &f64| 1.0), |ladder, rung| {
+        let mark = f64::from(rung) + 0.5;
+        ladder.edge("up", "up", move |_t, x| mark - x, move |_t, x| *x).entry("up", "up", saltus::Entry::Wait)
+    });
+    let run = Simulation::of(&ladder).run("up", 0.0, 0.0..40.0).unwrap();
+    let taken: Vec<_> = run.trajectory.jumps().iter().filter_map(|jump| Some(jump.edge()?.place)).collect();
+    assert_eq!(taken, (0..40).collect::<Vec<_>>());
+}
+
+/// An error of any kind becomes a refusal by `?`, and a failure with time, mode, edge and state.
+#[test]
+fn a_reset_may_refuse() {
+    let ladder = Ladder { count: 1_000_003, list: None };
+    let failed = Simulation::of(&ladder).run((), 1_000_000.0, 0.0..9.0).unwrap_err();
+    assert_eq!((failed.error.kind(), failed.error.edge()), (ErrorKind::Refused, Some("1000002")));
+    assert_eq!((failed.error.t(), failed.error.state()), (2.5, &[1_000_002.5][..]));
+    assert_eq!(failed.trajectory.jumps().len(), 2);
+}
+
+/// Two balls above one floor, in one mode: which one has come to rest, only the edges can say.
+struct Two;
+
+impl Automaton for Two {
+    type Mode = [bool; 2]; // lying?
+    type State = [f64; 4];
+    type Edge = usize;
+
+    fn flow(&self, lies: [bool; 2], _t: f64, x: &[f64; 4]) -> [f64; 4] {
+        let fall = |ball: usize| if lies[ball] { 0.0 } else { -9.8 };
+        [x[1], fall(0), x[3], fall(1)]
+    }
+    fn edges(&self, lies: [bool; 2]) -> Edges<'_, usize> {
+        (0..2).filter(|&ball| !lies[ball]).collect()
+    }
+    fn guard(&self, ball: usize, _t: f64, x: &[f64; 4]) -> f64 {
+        x[2 * ball]
+    }
+    fn about(&self, _: usize) -> About {
+        About::new().affine()
+    }
+    fn solution(&self, lies: [bool; 2], t: f64, x: &[f64; 4]) -> Solution<Self> {
+        let [_, a, _, b] = self.flow(lies, t, x);
+        Solution::Polynomial([*x, [x[1], a, x[3], b], [0.5 * a, 0.0, 0.5 * b, 0.0]].into())
+    }
+    fn reset(&self, lies: [bool; 2], ball: usize, _t: f64, x: &[f64; 4]) -> Result<([bool; 2], [f64; 4]), Refusal> {
+        let mut after = *x;
+        (after[2 * ball], after[2 * ball + 1]) = (0.0, -0.5 * x[2 * ball + 1]);
+        Ok((lies, after))
+    }
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<([bool; 2], [f64; 4])> {
+        let (mut lies, mut x) = (limit.mode, *limit.x);
+        for &ball in limit.edges {
+            lies[ball] = true;
+            (x[2 * ball], x[2 * ball + 1]) = (0.0, 0.0);
+        }
+        Some((lies, x))
+    }
+}
+
+#[test]
+fn a_limit_says_whose_jumps_accumulated() {
+    let rest = |height: f64| 3.0 * (2.0 * height / 9.8_f64).sqrt();
+    for heights in [[1.0, 7.0], [7.0, 1.0], [1.0, 1.3]] {
+        let run = Simulation::of(&Two).run([false; 2], [heights[0], 0.0, heights[1], 0.0], 0.0..9.0).unwrap();
+        assert_eq!((run.stop, run.mode, run.state), (Stop::Time, [true; 2], [0.0; 4]));
+        let limits = run.trajectory.jumps().iter().filter(|jump| jump.edge().is_none());
+        let limits: Vec<_> = limits.map(|jump| (jump.t(), jump.to)).collect();
+        let first = usize::from(heights[1] < heights[0]);
+        assert_eq!(limits[0].1, [first == 0, first == 1], "{heights:?}");
+        assert!((limits[0].0 - rest(heights[first])).abs() < 1e-9, "{limits:?}");
+        assert!((limits[1].0 - rest(heights[1 - first])).abs() < 1e-9, "{limits:?}");
+    }
+}
+
+/// A mode that a model does not have is found wherever a run is led to it, also beyond a limit.
+#[test]
+fn modes_are_validated() {
+    struct Odd;
+    impl Automaton for Odd {
+        type Mode = u8;
+        type State = [f64; 2];
+        type Edge = u8;
+        fn flow(&self, _: u8, _t: f64, x: &[f64; 2]) -> [f64; 2] {
+            [x[1], -10.0]
+        }
+        fn edges(&self, mode: u8) -> Edges<'_, u8> {
+            Edges::from([mode])
+        }
+        fn guard(&self, _: u8, _t: f64, x: &[f64; 2]) -> f64 {
+            x[0]
+        }
+        fn reset(&self, mode: u8, _: u8, _t: f64, x: &[f64; 2]) -> Result<(u8, [f64; 2]), Refusal> {
+            Ok((if mode == 2 { 2 } else { mode + 2 }, [0.0, -0.5 * x[1]]))
+        }
+        fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(u8, [f64; 2])> {
+            assert_eq!((limit.mode, limit.edges), (2, &[2][..]));
+            Some((9, [1.0, 0.0]))
+        }
+        fn validate(&self, mode: u8) -> Result<(), String> {
+            if mode < 5 { Ok(()) } else { Err(format!("{mode} is too high")) }
+        }
+    }
+    let fails = |mode| Simulation::of(&Odd).run(mode, [1.0, 0.0], 0.0..9.0).unwrap_err().error;
+    assert_eq!((fails(5).kind(), fails(5).to_string()), (ErrorKind::Model, "5 is too high".into()));
+    let error = fails(1).to_string();
+    assert!(error.starts_with("the reset of edge 3 leads to mode 5: 5 is too high"), "{error}");
+    let error = fails(2);
+    let expected = "Automaton::beyond leads to mode 9: 9 is too high";
+    assert_eq!((error.kind(), error.to_string()), (ErrorKind::Model, expected.into()));
+}
+
+#[cfg(feature = "num-dual")]
+mod derivatives {
+    use super::*;
+    use saltus::{Clock, Clocks, Linearize, Number, Sensitive, Wrt, saltation};
+
+    /// A switched supply: on for a part `duty` of each second, off for the rest; x' = u - x.
+    struct Supply {
+        duty: f64,
+        clocks: [(Clock, bool); 2],
+        /// Whether the model says how the duty moves its clock.
+        says: bool,
+    }
+
+    impl Supply {
+        fn new(duty: f64, says: bool) -> Self {
+            let (on, off) = (Clock::every(1.0).after(0.0), Clock::every(1.0).after(duty));
+            Self { duty, clocks: [(on, true), (off, false)], says }
+        }
+
+        /// At the end of n periods from x = 0: each adds what its last part has left, e^-(1-d) - e^-1.
+        fn after(&self, periods: u32) -> (f64, f64) {
+            let left: f64 = (0..periods).map(|k| (-f64::from(k)).exp()).sum();
+            let e = |s: f64| (-s).exp();
+            ((e(1.0 - self.duty) - e(1.0)) * left, e(1.0 - self.duty) * left)
+        }
+    }
+
+    impl Automaton for Supply {
+        type Mode = bool; // on?
+        type State = f64;
+        type Edge = bool;
+
+        fn flow(&self, on: bool, t: f64, x: &f64) -> f64 {
+            self.flow_at(on, t, x)
+        }
+        fn edges(&self, _: bool) -> Edges<'_, bool> {
+            Edges::none()
+        }
+        fn guard(&self, _: bool, _t: f64, _x: &f64) -> f64 {
+            1.0
+        }
+        fn clocks(&self, _: bool) -> Clocks<'_, bool> {
+            Clocks::kept(&self.clocks)
+        }
+        fn reset(&self, _: bool, to: bool, t: f64, x: &f64) -> Result<(bool, f64), Refusal> {
+            Ok((to, self.reset_at(to, t, x)))
+        }
+    }
+
+    impl Linearize for Supply {
+        type Parameters = [f64; 1];
+        fn parameters(&self) -> [f64; 1] {
+            [self.duty]
+        }
+        fn flow_over<D: Number>(&self, on: bool, _t: D, x: D, _: [D; 1]) -> D {
+            -x + if on { 1.0 } else { 0.0 }
+        }
+        fn guard_over<D: Number>(&self, _: bool, _t: D, _x: D, _: [D; 1]) -> D {
+            D::from(1.0)
+        }
+        fn reset_over<D: Number>(&self, _: bool, _t: D, x: D, _: [D; 1]) -> D {
+            x
+        }
+        fn tick_over<D: Number>(&self, _: bool, on: bool, t: f64, [duty]: [D; 1]) -> Option<D> {
+            self.says.then(|| if on { D::from(t) } else { duty + (t - self.duty).round() })
+        }
+    }
+
+    /// The duty cycle of a switched supply: the derivative against the closed form and differences.
+    #[test]
+    fn a_duty_cycle() {
+        for duty in [0.1, 0.3, 0.75] {
+            let run = |duty: f64| {
+                let supply = Supply::new(duty, true);
+                Simulation::of(&supply).tolerance(1e-13).run(true, 0.0, 0.0..9.999_999).unwrap().state
+            };
+            let supply = Supply::new(duty, true);
+            let sensitive = Sensitive::of(&supply, [Wrt::Parameter(0), Wrt::Initial(0)]);
+            let simulation = Simulation::of(&sensitive).tolerance(1e-13);
+            let end = simulation.run(true, sensitive.start(0.0, 0.0), 0.0..10.0).unwrap();
+            let (x, by_duty) = supply.after(10);
+            assert!((end.state.x - x).abs() < 1e-10, "{} {x}", end.state.x);
+            assert!((end.state.columns[0] - by_duty).abs() < 1e-10, "{} {by_duty}", end.state.columns[0]);
+            assert!((end.state.columns[1] - (-10.0_f64).exp()).abs() < 1e-10);
+            let h = 1e-5;
+            let difference = (run(duty + h) - run(duty - h)) / (2.0 * h);
+            assert!((end.state.columns[0] - difference).abs() < 1e-5, "{} {difference}", end.state.columns[0]);
+            // The tick moves with the duty, and the saltation says so.
+            let jump = saltation(&supply, true, false, 2.0 + duty, &0.5).unwrap();
+            assert_eq!((jump.time_by_parameters[0], jump.time_by_state[0]), (1.0, 0.0));
+            assert!((jump.parameters[(0, 0)] - 1.0).abs() < 1e-15, "f- less f+ is the supply");
+        }
+    }
+
+    /// What is not said is not taken for zero.
+    #[test]
+    fn a_clock_whose_derivative_is_not_said() {
+        let supply = Supply::new(0.3, false);
+        let by_duty = Sensitive::of(&supply, [Wrt::Parameter(0)]);
+        let error = Simulation::of(&by_duty).run(true, by_duty.start(0.0, 0.0), 0.0..3.0).unwrap_err().error;
+        assert_eq!((error.kind(), error.t()), (ErrorKind::ClockDerivative, 0.3));
+        assert!(error.to_string().contains("Linearize::tick_over"), "{error}");
+        assert_eq!(saltation(&supply, true, false, 0.3, &0.5).unwrap_err().kind(), ErrorKind::ClockDerivative);
+        // The start moves no clock.
+        let by_start = Sensitive::of(&supply, [Wrt::Initial(0)]);
+        let end = Simulation::of(&by_start).run(true, by_start.start(0.0, 0.0), 0.0..3.0).unwrap();
+        assert!((end.state.columns[0] - (-3.0_f64).exp()).abs() < 1e-8);
+    }
+}
