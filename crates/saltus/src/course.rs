@@ -104,7 +104,7 @@ pub struct Checkpoint<A: Automaton> {
     /// The time of the last jump that was not at once after another.
     instant: Time,
     cascade: usize,
-    contraction: Contraction,
+    contraction: Contraction<A::State>,
     recent: Recent<A::Edge>,
     ticks: Ticks<A::Mode>,
     limits: Limits,
@@ -347,12 +347,9 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 return Ok(Next::Stop(Stop::Terminal { edge }));
             }
         }
-        arc.jumped(mode, &x, edge, (!at_once).then_some(duration), now);
-        // x is x⁺.
+        arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
         at.recent.push(edge);
-        if !at_once {
-            at.contraction.push(duration);
-        }
+        at.contraction.push(if at_once { 0.0 } else { duration }, &after);
         let elapsed = time.since(at.span.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
@@ -403,7 +400,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        (at.contraction, at.recent, at.cascade) = (Contraction::new(), Recent::new(), 0);
+        at.contraction.forget();
+        (at.recent, at.cascade) = (Recent::new(), 0);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }

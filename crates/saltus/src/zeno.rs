@@ -1,5 +1,6 @@
-//! Zeno: when the times between jumps shrink so that infinitely many fit before a limit.
+//! Zeno: jumps accumulate where the times between them *and* what they change contract to nothing.
 
+use crate::state::State;
 use crate::time::resolution;
 
 /// How many durations are remembered.
@@ -16,32 +17,75 @@ const CLEARLY_BELOW_ONE: f64 = 0.995;
 /// one time.
 const ALIKE: f64 = 1e-3;
 
-/// Watches the durations between jumps for geometric contraction.
+/// A coordinate that differs by this part of itself from a cycle ago has been rounded: a landing
+/// leaves a height a few units in the last place off.
+const STILL: f64 = 8.0 * f64::EPSILON;
+
+/// The states kept: two cycles back from the last jump.
+const STATES: usize = 2 * LONGEST_CYCLE + 1;
+
+/// Watches the durations between jumps, and how far the states x⁺ after them move from cycle to
+/// cycle, for geometric contraction.
+///
+/// Both are needed: the collisions of an elastic chain come ever closer in time while each changes
+/// as much as the one before, and no state lies beyond them.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Contraction {
+pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
+    /// The states x⁺ after the last jumps at each of the last instants.
+    after: Vec<S>,
+    /// The longest way that x⁺ went in a cycle of 1, 2, ... jumps since jumps began to accumulate.
+    longest: [f64; LONGEST_CYCLE],
     count: usize,
 }
 
-impl Contraction {
+impl<S: State> Contraction<S> {
     pub(crate) const fn new() -> Self {
-        Self { durations: [0.0; MEMORY], count: 0 }
+        Self { durations: [0.0; MEMORY], after: Vec::new(), longest: [0.0; LONGEST_CYCLE], count: 0 }
     }
 
-    /// Adds the time since the last jump; jumps at one time are one instant and add nothing.
+    /// Starts anew, keeping the memory.
+    pub(crate) fn forget(&mut self) {
+        self.after.clear();
+        (self.longest, self.count) = ([0.0; LONGEST_CYCLE], 0);
+    }
+
+    /// Adds the time since the last jump and the state `after` this one; of jumps at one time the
+    /// last one counts.
     #[inline]
-    pub(crate) fn push(&mut self, duration: f64) {
-        if duration == 0.0 {
-            return;
+    pub(crate) fn push(&mut self, duration: f64, after: &S) {
+        if duration > 0.0 {
+            self.durations[self.count % MEMORY] = duration;
+            if self.after.len() < STATES {
+                self.after.push(*after);
+            } else {
+                self.after[self.count % STATES] = *after;
+            }
+            self.count += 1;
+            for cycle in 1..=LONGEST_CYCLE.min(self.after.len() - 1) {
+                self.longest[cycle - 1] = self.longest[cycle - 1].max(way(self.state(0), self.state(cycle)));
+            }
+        } else if self.count > 0 {
+            self.after[(self.count - 1) % STATES] = *after;
         }
-        self.durations[self.count % MEMORY] = duration;
-        self.count += 1;
+    }
+
+    /// x⁺ at the instant `back` instants ago, 0 for the last one.
+    fn state(&self, back: usize) -> &S {
+        &self.after[(self.count - 1 - back) % STATES]
     }
 
     /// The duration `back` jumps ago, 0 for the last one.
     fn last(&self, back: usize) -> f64 {
         self.durations[(self.count - 1 - back) % MEMORY]
+    }
+
+    /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
+    /// that what remains of its way is less than the longest cycle's.
+    fn displacements_contract(&self, cycle: usize) -> bool {
+        let (now, before) = (way(self.state(0), self.state(cycle)), way(self.state(cycle), self.state(2 * cycle)));
+        now == 0.0 || now < before && now * now <= self.longest[cycle - 1] * (before - now)
     }
 
     /// The time from the last jump to the limit, if the durations contract and the next one is shorter than the resolution of the time `elapsed`.
@@ -65,7 +109,7 @@ impl Contraction {
     fn certified(&self, resolution: f64, most: f64) -> Option<f64> {
         let known = self.count.min(MEMORY);
         let bound = |cycle| {
-            if known < cycle + 4 {
+            if known < cycle + 4 || self.after.len() <= 2 * cycle {
                 return None;
             }
             let ratios = (0..4.max(cycle)).filter(|i| i + cycle < known).map(|i| self.last(i) / self.last(i + cycle));
@@ -75,11 +119,27 @@ impl Contraction {
             }
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
             let longest = (0..cycle).map(|i| self.last(i)).fold(0.0, f64::max);
-            (ratio < most && longest * ratio < resolution).then(|| last_cycle * ratio / (1.0 - ratio))
+            (ratio < most && longest * ratio < resolution && self.displacements_contract(cycle))
+                .then(|| last_cycle * ratio / (1.0 - ratio))
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of one would seem to hardly contract.
         (1..=LONGEST_CYCLE).filter_map(bound).reduce(|best, next| if next < 0.5 * best { next } else { best })
     }
+}
+
+/// |x - y|, where a coordinate that differs by no more than its rounding does not differ; endless
+/// where the two have unlike dimensions.
+#[inline]
+fn way<S: State>(x: &S, y: &S) -> f64 {
+    if x.len() != y.len() {
+        return f64::INFINITY;
+    }
+    let square = |i: usize| {
+        let (x, y) = (x.get(i), y.get(i));
+        let by = (y - x).abs();
+        if by <= STILL * x.abs().max(y.abs()) { 0.0 } else { by * by }
+    };
+    (0..x.len()).map(square).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
@@ -95,7 +155,7 @@ mod tests {
         let mut d = 1.0;
         let mut sum = 0.0;
         while contraction.remaining(LATE, false).is_none() {
-            contraction.push(d);
+            contraction.push(d, &d);
             sum += d;
             d *= 0.8;
         }
@@ -103,10 +163,26 @@ mod tests {
     }
 
     #[test]
+    fn jumps_that_stay_as_large_are_not_zeno() {
+        for growth in [1.0, 1.01, 0.999_999] {
+            for turn in [1.0, -1.0] {
+                let mut contraction = Contraction::new();
+                let (mut d, mut by, mut x) = (1.0, 1.0, 0.0);
+                for n in 0..400 {
+                    x += by;
+                    contraction.push(d, &if n % 2 == 0 { x } else { turn * x });
+                    assert_eq!(contraction.remaining(LATE, false), None);
+                    (d, by) = (0.8 * d, growth * by);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_harmonic_series_is_not_zeno() {
         let mut contraction = Contraction::new();
         for n in 1..100_000 {
-            contraction.push(1e-3 / f64::from(n));
+            contraction.push(1e-3 / f64::from(n), &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -115,7 +191,7 @@ mod tests {
     fn a_cascade_is_not_zeno() {
         let mut contraction = Contraction::new();
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
-            contraction.push(duration);
+            contraction.push(duration, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -125,7 +201,7 @@ mod tests {
         // Swings of one length but for rounding, and two collisions a rounding apart.
         let mut contraction = Contraction::new();
         for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
-            contraction.push(duration);
+            contraction.push(duration, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -137,7 +213,7 @@ mod tests {
         let mut sum = 0.0;
         for _ in 0..60 {
             for part in [d, 3.0 * d] {
-                contraction.push(part);
+                contraction.push(part, &part);
                 sum += part;
             }
             d *= 0.5;

@@ -126,17 +126,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Close<A::State> {
         let Crossing { inside, outside, root, rest } = crossing;
         let span = inside.min(remaining);
-        let t = now.after(root).seconds();
+        // The time of the jump, at which the next arc begins: what the guard is then is what it is here.
+        let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
+        let t = time.seconds();
+        self.memory.stats.guards += 1;
+        let outer = self.automaton.guard(edge, now.after(outside).seconds(), &at(outside));
         let mut guard = |x: &A::State| {
             self.memory.stats.guards += 1;
             self.automaton.guard(edge, t, x)
         };
-        let outer = guard(&at(outside));
         let nearest = at(root);
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
         self.memory.slack = 4.0 * g.abs().max(outer.abs());
-        let short = root < 1e-4 * self.memory.longest_duration;
+        let short = self.memory.is_short(root);
         let resolved = root > 64.0 * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();
         let hidden =
@@ -144,7 +147,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let doubtful = self.memory.last == Some(edge) && (hidden || short && !resolved && !by_formula);
         self.memory.spurious = doubtful && self.rises(edge, now, root, &at);
-        let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         Close { span, time, state }
     }
 

@@ -64,6 +64,9 @@ struct Spent<E> {
 /// How many edges that were taken at one time, and go on falling, are remembered.
 const MOST_IDLE: usize = 16;
 
+/// An arc this small a part of the longest one is short.
+const SHORT: f64 = 1e-4;
+
 /// What is kept from arc to arc.
 #[derive(Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -74,7 +77,7 @@ pub(crate) struct Memory<E> {
     spent: Option<Spent<E>>,
     /// The edge of the last jump.
     last: Option<E>,
-    /// Edges taken earlier at this time whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
+    /// Edges taken earlier whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
     idle: [Option<(Spent<E>, f64)>; MOST_IDLE],
     idle_count: usize,
     /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
@@ -142,6 +145,20 @@ impl<E: Copy + PartialEq> Memory<E> {
         walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1)
     }
 
+    /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
+    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen it
+    /// at every arc, until its crossings were lost at its start.
+    #[inline]
+    fn cut(&mut self, size: f64) {
+        self.step = self.step.map(|step| step.min(size));
+    }
+
+    /// Whether an arc is so short beside the longest one that rounding may show in what guards do on it.
+    #[inline]
+    fn is_short(&self, duration: f64) -> bool {
+        duration < SHORT * self.longest_duration
+    }
+
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
     #[inline]
     pub(crate) fn at_once(&self, since: f64) -> bool {
@@ -175,26 +192,54 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// After a jump by `edge` at the end of the arc that began at `x` in `mode`: its root is spent. Without a duration, it was at once after another.
+    /// After a jump by `edge` at the end of the arc that began at `x` in `mode` and came to `before`: its root is spent. Without a duration, it was at once
+    /// after another.
+    ///
+    /// An edge taken before whose guard has fallen on since, beyond a root that is spent, has not come to be taken again.
     #[inline]
-    pub(crate) fn jumped(&mut self, mode: A::Mode, x: &A::State, edge: A::Edge, duration: Option<f64>, t: f64) {
-        if let Some(duration) = duration {
-            self.memory.idle_count = 0;
-            self.memory.last_duration = duration;
-            if duration > self.memory.longest_duration {
-                self.memory.longest_duration = duration;
-            }
-        } else if let Some(last) = self.memory.spent.filter(|last| last.edge != edge) {
-            let g = self.automaton.guard(last.edge, t, x);
-            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, t, x, g) } else { 0.0 };
+    pub(crate) fn jumped(
+        &mut self,
+        (mode, x, began): (A::Mode, &A::State, f64),
+        (edge, before, t): (A::Edge, &A::State, f64),
+        duration: Option<f64>,
+    ) {
+        if duration.is_some() && self.memory.idle_count > 0 {
+            self.forget_risen(t, before);
+        }
+        if let Some(last) = self.memory.spent.filter(|last| last.edge != edge)
+            && duration.is_none_or(|s| self.memory.is_short(s) && self.automaton.guard(last.edge, t, before) < 0.0)
+        {
+            let g = self.automaton.guard(last.edge, began, x);
+            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g) } else { 0.0 };
             if slope < 0.0 {
                 self.memory.idle.rotate_right(1);
                 self.memory.idle[0] = Some((last, slope));
                 self.memory.idle_count = MOST_IDLE.min(self.memory.idle_count + 1);
             }
         }
+        if let Some(duration) = duration {
+            self.memory.last_duration = duration;
+            if duration > self.memory.longest_duration {
+                self.memory.longest_duration = duration;
+            }
+        }
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
         self.memory.last = Some(edge);
+    }
+
+    /// Forgets the edges whose guards have risen since they were taken.
+    #[cold]
+    fn forget_risen(&mut self, t: f64, x: &A::State) {
+        let Memory { idle, idle_count, stats, .. } = &mut *self.memory;
+        let mut kept = 0;
+        for k in 0..*idle_count {
+            stats.guards += 1;
+            if idle[k].is_some_and(|(spent, _)| self.automaton.guard(spent.edge, t, x) < 0.0) {
+                idle[kept] = idle[k];
+                kept += 1;
+            }
+        }
+        *idle_count = kept;
     }
 
     /// From `x` in `mode` to the first crossing or the end of the span.

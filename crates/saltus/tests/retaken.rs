@@ -1,0 +1,61 @@
+//! Edges of a mode to itself whose resets change nothing: each fall is one jump, however near two of them lie and however coarse the numbers of time are.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use std::f64::consts::PI;
+
+use proptest::prelude::*;
+use saltus::step::Stepper;
+use saltus::{Dop853, Entry, Hybrid, Rodas5P, Simulation, Stop, Tsit5};
+
+type Counter<'a> = Hybrid<'a, f64>;
+
+fn counter<'a>() -> Counter<'a> {
+    Hybrid::new().mode("run", |_t, _x: &f64| 1.0)
+}
+
+/// The edges taken, in order.
+fn taken(counter: &Counter, stepper: impl Stepper) -> Vec<usize> {
+    let run = Simulation::of(counter).stepper(stepper).run("run", 0.0, 0.0..1.0).unwrap();
+    assert_eq!(run.stop, Stop::Time);
+    run.trajectory.jumps().iter().filter_map(saltus::Jump::edge).map(|edge| edge.place).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// sin(ωt + φ) falls once a turn.
+    #[test]
+    fn a_guard_of_time_falls_once_a_turn(omega in 0.05..6.0_f64, phase in 0.0..2.0 * PI, decades in 1.0..3.5_f64) {
+        let end = 10.0_f64.powf(decades);
+        let turns = |t: f64| (((omega * t + phase) / PI - 1.0) / 2.0).floor();
+        prop_assume!(turns(end * (1.0 - 1e-12)) == turns(end * (1.0 + 1e-12)));
+        let wave = counter()
+            .edge("run", "run", move |t, _x| (omega * t + phase).sin(), |_t, x| *x)
+            .entry("run", "run", Entry::Wait);
+        let run = Simulation::of(&wave).run("run", 0.0, 0.0..end).unwrap();
+        prop_assert_eq!(run.stop, Stop::Time);
+        prop_assert_eq!(run.trajectory.jumps().len() as f64, turns(end) - turns(0.0));
+    }
+
+    /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other: each once, the earlier one first.
+    #[test]
+    fn falls_a_hair_apart_are_taken_once_each(first in 0.01..0.99_f64, apart in 0_u64..1500, swapped: bool) {
+        let second = f64::from_bits(first.to_bits() + apart);
+        let order = if swapped && apart > 0 { [1, 0] } else { [0, 1] };
+        let [a, b] = if swapped { [second, first] } else { [first, second] };
+        let of_time = counter()
+            .edge("run", "run", move |t, _x| a - t, |_t, x| *x)
+            .edge("run", "run", move |t, _x| b - t, |_t, x| *x)
+            .entry("run", "run", Entry::Wait);
+        let of_state = counter()
+            .edge("run", "run", move |_t, x| a - x, |_t, x| *x)
+            .edge("run", "run", move |_t, x| b - x, |_t, x| *x)
+            .entry("run", "run", Entry::Wait);
+        for counter in [of_time, of_state] {
+            for places in [taken(&counter, Tsit5), taken(&counter, Dop853), taken(&counter, Rodas5P)] {
+                prop_assert!(places == order || apart < 2 && places == [0, 1], "{places:?} instead of {order:?}");
+            }
+        }
+    }
+}
