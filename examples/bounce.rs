@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use saltus::nalgebra::{Vector2, vector};
+use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Hybrid, Simulation};
 use saltus_bounce::{Cor, Drop};
 use saltus_plot::{Arc, HeightTime};

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
-use saltus::nalgebra::{Vector2, vector};
+use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{About, Automaton, Edges, Entry, Jump, Limit, Observer, Refusal, Simulation, Solution};
 use saltus_examples::{Figure, gallery};
 

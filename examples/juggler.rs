@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use saltus::nalgebra::{Vector2, vector};
+use saltus::nalgebra::{self, Vector2, vector};
 use saltus::return_map::{ReturnMap, Selection};
 use saltus::{Automaton, Edges, Linearize, Number, Polynomial, Refusal, Simulation, Solution};
 use saltus_examples::{Figure, gallery};

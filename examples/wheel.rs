@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use saltus::nalgebra::{Vector2, vector};
+use saltus::nalgebra::{self, Vector2, vector};
 use saltus::return_map::{ReturnMap, Section};
 use saltus::{About, Automaton, Edges, Linearize, Number, Refusal, Simulation};
 use saltus_examples::{Figure, gallery};

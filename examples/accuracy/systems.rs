@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use saltus::nalgebra::{Vector2, Vector4, vector};
+use saltus::nalgebra::{self, Vector2, Vector4, vector};
 use saltus::{Automaton, Dop853, Hybrid, Rodas5P, Run, Simulation, State, Tsit5, WorkPrecision};
 use saltus_bounce::contact::Hertz;
 use saltus_bounce::flight::QuadraticDragFlight;

@@ -124,6 +124,25 @@ fn resumed_to_the_bit() {
     }
 }
 
+/// A checkpoint of another format, or of none, is refused by name: it would be gone on from otherwise.
+#[test]
+fn another_format_is_refused() {
+    let course = Simulation::of(&Drag).start(Mode::Falling, START, 0.0..10.0).unwrap();
+    let mut written = serde_json::to_value(course.checkpoint()).unwrap();
+    let format = written["format"].as_u64().unwrap();
+    for other in [format - 1, format + 1, u64::from(u32::MAX)] {
+        written["format"] = other.into();
+        let refused = serde_json::from_value::<Checkpoint<Drag>>(written.clone()).unwrap_err().to_string();
+        assert!(
+            refused.contains(&format!("of format {other}, and this version of saltus reads format {format}")),
+            "{refused}"
+        );
+    }
+    written.as_object_mut().unwrap().remove("format");
+    let refused = serde_json::from_value::<Checkpoint<Drag>>(written).unwrap_err().to_string();
+    assert!(refused.contains("missing field `format`"), "{refused}");
+}
+
 #[test]
 fn a_trajectory_written_and_read_back() {
     let run = Simulation::of(&Drag).run(Mode::Falling, START, 0.0..5.0).unwrap();

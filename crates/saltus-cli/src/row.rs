@@ -31,7 +31,7 @@ pub(crate) struct Seconds {
 }
 
 impl From<Timing> for Seconds {
-    fn from(Timing { median, least, greatest }: Timing) -> Self {
+    fn from(Timing { median, least, greatest, .. }: Timing) -> Self {
         Self { seconds: median, seconds_low: least, seconds_high: greatest }
     }
 }

@@ -18,7 +18,7 @@ use crate::state::State;
 /// and [`reset`](Self::reset). The others have defaults that say nothing.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Automaton, Edges, Refusal, Simulation};
 ///
 /// /// A ball that keeps 0.8 of its speed at each impact.

@@ -19,7 +19,7 @@ use crate::trajectory::{Jump, Piece};
 /// Of edges that carry data (`Liftoff { foot: f64 }`) the first 64 have rows of their own, the rest share one.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Certificate, Hybrid, Simulation};
 ///
 /// let ball = Hybrid::new()
@@ -52,6 +52,7 @@ pub struct Certificate<A: Automaton> {
 /// How the searches for an edge came out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Tally {
     /// Searches in which bounds left no room for a crossing.
     pub excluded: u64,

@@ -6,11 +6,12 @@ use std::ops::Range;
 use crate::advance::{Advance, ArcEnd, Held, Memory, Span};
 use crate::automaton::{Automaton, Limit};
 use crate::clocks::Ticks;
+use crate::ending::{Ending, Limits, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::observe::Observer;
 use crate::recent::Recent;
 use crate::series::Tape;
-use crate::simulation::{Ending, Options, Stats, Stop};
+use crate::simulation::Options;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::time::Time;
@@ -20,7 +21,7 @@ use crate::zeno::Contraction;
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Hybrid, Simulation};
 ///
 /// let ball = Hybrid::new()
@@ -51,22 +52,26 @@ struct Stand<A: Automaton> {
     mode: A::Mode,
     state: A::State,
     now: Time,
-    /// See [`Checkpoint`].
-    instant: Time,
+    /// See [`Checkpoint`]; nothing where that is now, as it mostly is.
+    instant: Option<Time>,
 }
 
 /// What comes after an arc and the jump at its end.
 enum Next<A: Automaton> {
     Arc,
-    /// Infinitely many jumps in the time that remains.
+    /// Infinitely many jumps in the time that remains; not `certified` where rounding hides whether.
     Limit {
         remaining: f64,
+        certified: bool,
     },
     Stop(Stop<A::Edge>),
 }
 
 /// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes it, [`Simulation::resume`](crate::Simulation::resume)
 /// goes on from it; the feature `serde` writes and reads it.
+///
+/// What is written bears the number of its format, and one of another number is refused: a run goes on
+/// to the bit only with what it was begun with.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation, Stop};
@@ -91,6 +96,7 @@ enum Next<A: Automaton> {
     ))
 )]
 pub struct Checkpoint<A: Automaton> {
+    format: Format,
     mode: A::Mode,
     state: A::State,
     span: Span,
@@ -101,8 +107,39 @@ pub struct Checkpoint<A: Automaton> {
     contraction: Contraction<A::State>,
     recent: Recent<A::Edge>,
     ticks: Ticks<A::Mode>,
+    limits: Limits,
     memory: Memory<A::Edge>,
     stop: Option<Stop<A::Edge>>,
+}
+
+/// The format of a checkpoint that is written: a number, raised whenever a field is added, removed or
+/// changes its meaning (tests/running.rs, `another_format_is_refused`).
+#[derive(Clone, Copy, Debug)]
+struct Format;
+
+#[cfg(feature = "serde")]
+mod format {
+    use super::Format;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    const NUMBER: u32 = 2;
+
+    impl Serialize for Format {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            NUMBER.serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Format {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            match u32::deserialize(deserializer)? {
+                NUMBER => Ok(Self),
+                other => Err(D::Error::custom(format_args!(
+                    "a checkpoint of format {other}, and this version of saltus reads format {NUMBER}: go on with the version that wrote it, or run again from the start"
+                ))),
+            }
+        }
+    }
 }
 
 impl<A: Automaton> Checkpoint<A> {
@@ -110,6 +147,7 @@ impl<A: Automaton> Checkpoint<A> {
         let start = Time::new(span.start);
         let span = Span { start, now: start, end: Time::new(span.end) };
         Self {
+            format: Format,
             mode,
             state,
             span,
@@ -119,6 +157,7 @@ impl<A: Automaton> Checkpoint<A> {
             contraction: Contraction::new(),
             recent: Recent::new(),
             ticks: Ticks::new(),
+            limits: Limits::default(),
             memory,
             stop: None,
         }
@@ -214,8 +253,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         };
         self.at.stop = Some(stop);
-        let Checkpoint { mode, state, span, jumps, .. } = self.at;
-        Ok(Ending { stop, stats: self.stats(), time: span.now, jumps, mode, state })
+        let Checkpoint { mode, state, span, jumps, limits, .. } = self.at;
+        Ok(Ending { stop, stats: self.stats(), time: span.now, jumps, mode, state, limits })
     }
 
     /// Advances through one arc and the jump at its end; says why the run is over, once it is.
@@ -233,7 +272,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     #[inline]
     fn stand(&self) -> Stand<A> {
         let Checkpoint { mode, state, span: Span { now, .. }, instant, .. } = self.at;
-        Stand { mode, state, now, instant }
+        Stand { mode, state, now, instant: (instant != now).then_some(instant) }
     }
 
     #[inline]
@@ -241,8 +280,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Ok(match self.arc_and_jump(stand, observer)? {
             Next::Arc => None,
             Next::Stop(stop) => Some(stop),
-            Next::Limit { remaining } => {
-                let stop = self.at_limit(remaining, observer)?;
+            Next::Limit { remaining, certified } => {
+                let stop = self.at_limit(remaining, certified, observer)?;
                 *stand = self.stand();
                 stop
             }
@@ -270,22 +309,26 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 }
                 _ => {
                     (at.span.now, at.state) = (time, state);
-                    return Ok(Next::Stop(stop));
+                    let endless = matches!(stop, Stop::Time) && at.span.end.seconds() == f64::INFINITY;
+                    return Ok(Next::Stop(if endless { Stop::Forever } else { stop }));
                 }
             },
         };
         if std::mem::take(&mut arc.memory.spurious) {
             (at.span.now, at.state) = (time, before);
             at.recent.push(edge);
-            return Ok(Next::Limit { remaining: 0.0 });
+            let certified = at.contraction.remaining(time.since(at.span.start), true).is_some();
+            return Ok(Next::Limit { remaining: 0.0, certified });
         }
         // Here x⁻ = before, still inside the domain of the mode.
         let now = time.seconds();
         let (to, after) =
             automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, &before))?;
         let duration = time.since(began);
-        let at_once = arc.memory.at_once(time.since(instant));
-        let instant = if at_once { instant } else { time };
+        let since = instant.map_or(duration, |instant| time.since(instant));
+        let at_once = arc.memory.at_once(since);
+        let held = if at_once { Some(instant.unwrap_or(began)) } else { None };
+        let instant = held.unwrap_or(time);
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
@@ -310,7 +353,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let elapsed = time.since(at.span.start);
         let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
-            return Ok(Next::Limit { remaining });
+            return Ok(Next::Limit { remaining, certified: true });
         }
         Ok(if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
@@ -318,20 +361,25 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             // Collisions that go on at one time: what lies beyond them is the model's to say.
             let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
             if at.recent.cycle().with(beyond).is_some() {
-                return Ok(Next::Limit { remaining: 0.0 });
+                return Ok(Next::Limit { remaining: 0.0, certified: true });
             }
             Next::Stop(Stop::Cascade { edge })
         } else if at.memory.stats.evaluations() >= options.most_evaluations {
             Next::Stop(Stop::Evaluations { most: options.most_evaluations })
         } else {
-            *stand = Stand { mode: to, state: after, now: time, instant };
+            *stand = Stand { mode: to, state: after, now: time, instant: held };
             Next::Arc
         })
     }
 
     /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to resolve, and the model says what lies beyond.
     #[cold]
-    fn at_limit(&mut self, remaining: f64, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+    fn at_limit(
+        &mut self,
+        remaining: f64,
+        certified: bool,
+        observer: &mut impl Observer<A>,
+    ) -> Result<Option<Stop<A::Edge>>, Error> {
         let Self { automaton, at, .. } = self;
         let (mode, x) = (at.mode, at.state);
         if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
@@ -341,7 +389,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let limit = at.span.now.seconds();
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
         let Some((to, after)) = at.recent.cycle().with(beyond) else {
-            return Ok(Some(Stop::Zeno { limit }));
+            return Ok(Some(if certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
         };
         if !after.is_finite() || automaton.validate(to).is_err() {
             let (kind, note) = wrong(*automaton, to, after);
@@ -349,6 +397,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
         at.instant = at.span.now;
+        at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         at.contraction.forget();

@@ -27,7 +27,7 @@ use crate::trajectory::{Arc, Piece, Trajectory};
 /// more than that part in 10⁶, and too small only if the distance has a peak narrower than a sixteenth of a step elsewhere.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Closeness, Hybrid, Run, Simulation};
 ///
 /// let ball = |e: f64| Hybrid::new()

@@ -77,15 +77,7 @@ impl<'a, E: Copy> Edges<'a, E> {
     #[inline]
     pub(crate) fn flaw(&self) -> Option<String> {
         let overflows = self.len > Edges::<()>::INLINE && matches!(self.list, List::Inline(_));
-        if overflows { Some(self.overflow()) } else { None }
-    }
-
-    #[cold]
-    fn overflow(&self) -> String {
-        let (len, most) = (self.len, Edges::<()>::INLINE);
-        format!(
-            "{len} edges were collected for a mode, and there is room for {most}: keep a list and lend it by Edges::kept, or name them by Edges::indexed"
-        )
+        if overflows { Some(overflow(self.len)) } else { None }
     }
 
     /// The edges in order.
@@ -102,6 +94,15 @@ impl<'a, E: Copy> Edges<'a, E> {
             List::Indexed(edge) => Some(edge(i)),
         }
     }
+}
+
+/// By value, so that the edges of a mode need not lie in memory for it.
+#[cold]
+fn overflow(len: usize) -> String {
+    let most = Edges::<()>::INLINE;
+    format!(
+        "{len} edges were collected for a mode, and there is room for {most}: keep a list and lend it by Edges::kept, or name them by Edges::indexed"
+    )
 }
 
 /// An array of at most [`Edges::INLINE`]; a longer one does not compile.

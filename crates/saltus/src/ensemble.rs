@@ -13,7 +13,7 @@ use std::ops::{ControlFlow, Range};
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Error, Hybrid, Simulation, ensemble};
 ///
 /// // A thousand balls that leave the floor at 1 m/s to 2 m/s, each until its third impact.

@@ -91,6 +91,9 @@ pub enum ErrorKind {
     Grazing,
     /// The step size fell below the spacing of time.
     StepSize,
+    /// The run ended before it was to, and completeness was asked for: see
+    /// [`Run::complete`](crate::Run::complete).
+    Unfinished,
 }
 
 impl Error {
@@ -147,7 +150,7 @@ impl fmt::Display for Error {
             ErrorKind::Span => {
                 return write!(
                     f,
-                    "the span {said} does not run forwards from a finite time: give start..end with start <= end; to run backwards, implement Invertible and run Reversed"
+                    "the span {said} does not run forwards from a finite time: give start..end with start <= end and a start within 1e300 s; to run backwards, implement Invertible and run Reversed"
                 );
             }
             ErrorKind::Tolerance => {
@@ -205,6 +208,7 @@ impl fmt::Display for Error {
                 f,
                 "edge {by} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
             )?,
+            ErrorKind::Unfinished => write!(f, "the run ended before it was to: {said}")?,
             ErrorKind::StepSize => f.write_str(
                 "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there",
             )?,

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::automaton::{About, Automaton};
+use crate::automaton::{About, Automaton, Entry};
 use crate::edges::Edges;
 use crate::error::Refusal;
 use crate::state::State;
@@ -20,7 +20,7 @@ use crate::state::State;
 /// [`Sides`] makes it of closures.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Filippov, Side, Simulation, TwoSided};
 ///
 /// /// A block of 1 kg on a spring of 100 N/m, rubbing with 3 N.
@@ -159,6 +159,10 @@ pub enum Passage {
     LeaveAbove,
     /// The slide ends downwards.
     LeaveBelow,
+    /// The run ends where a slide loses both flows at once: where the state goes is not unique.
+    Undecided,
+    /// The run ends where a slide begins on a surface against which neither flow pushes.
+    Unpushed,
 }
 
 /// The automaton of a discontinuous flow in Filippov's sense: three modes, [`Side::Above`], [`Side::Below`] and [`Side::Sliding`].
@@ -175,12 +179,14 @@ pub enum Passage {
 /// one that starts there must say to which side it goes: [`side`](Self::side) answers `None`, and a run started there in
 /// [`Side::Sliding`] is refused.
 ///
+/// **If neither points anywhere** (L₊ = L₋ = 0, a surface along which both flows run, or the point at which a slide loses both), the future is not
+/// unique either: a slide ends there, with one of the terminal edges [`Passage::Unpushed`] and [`Passage::Undecided`].
+///
 /// **Drift.** On entry and exit the state is put on the surface, by no more than its rounding where the surface is affine. In between, an affine surface
 /// keeps the state to rounding, because Runge-Kutta methods conserve linear invariants; for a curved or moving one α is chosen such that
 /// h' = -κ h instead of h' = 0 (see [`TwoSided::pull`]), which stays within the same convex set.
 ///
-/// Limits: one surface; where two meet, or where L₊ and L₋ vanish together, Filippov's solution need not be unique and the first
-/// of the two exits is taken.
+/// Limits: one surface. Where two meet, Filippov's solution need not be unique.
 ///
 /// ```
 /// use saltus::{Filippov, Side, Sides, Simulation};
@@ -230,6 +236,15 @@ impl<T: TwoSided> Filippov<T> {
         let n = self.system.normal(t, x);
         let size: f64 = (0..x.len()).map(|i| (n.get(i) * x.get(i)).abs()).sum();
         4.0 * f64::EPSILON * (size + (self.system.surface_rate(t, x) * t).abs())
+    }
+
+    /// How far L₋ - L₊, by which the flows push the state against the surface, is above what rounding may make of zero.
+    fn push(&self, t: f64, x: &T::State) -> f64 {
+        let (above, below) = (self.system.above(t, x), self.system.below(t, x));
+        let (n, rate) = (self.system.normal(t, x), self.system.surface_rate(t, x));
+        let size: f64 = (0..x.len()).map(|i| n.get(i).abs() * (above.get(i).abs() + below.get(i).abs())).sum();
+        let gap: f64 = (0..x.len()).map(|i| n.get(i) * (below.get(i) - above.get(i))).sum();
+        gap - f64::MIN_POSITIVE - 4.0 * f64::EPSILON * (size + 2.0 * rate.abs())
     }
 
     fn slide(&self, t: f64, x: &T::State) -> T::State {
@@ -311,7 +326,10 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         match mode {
             Side::Above => Edges::from([Passage::FromAbove]),
             Side::Below => Edges::from([Passage::FromBelow]),
-            Side::Sliding => Edges::from([Passage::LeaveAbove, Passage::LeaveBelow]),
+            Side::Sliding => {
+                // First what is found at the same time as both exits; last what is asked of a slide that neither exit refuses.
+                Edges::from([Passage::Undecided, Passage::LeaveAbove, Passage::LeaveBelow, Passage::Unpushed])
+            }
         }
     }
 
@@ -321,6 +339,7 @@ impl<T: TwoSided> Automaton for Filippov<T> {
             Passage::FromBelow => -self.system.surface(t, x),
             Passage::LeaveAbove => self.system.hold_above(t, x),
             Passage::LeaveBelow => self.system.hold_below(t, x),
+            Passage::Undecided | Passage::Unpushed => self.push(t, x),
         }
     }
 
@@ -331,20 +350,25 @@ impl<T: TwoSided> Automaton for Filippov<T> {
             Passage::FromAbove | Passage::FromBelow => self.entered(Side::Sliding, t, x),
             Passage::LeaveAbove => self.left(Side::Above, t, x),
             Passage::LeaveBelow => self.left(Side::Below, t, x),
+            Passage::Undecided | Passage::Unpushed => (Side::Sliding, *x),
         })
     }
 
     #[inline]
     fn about(&self, edge: Passage) -> About {
-        let surface = matches!(edge, Passage::FromAbove | Passage::FromBelow);
-        About::new().affine_if(surface && self.system.affine())
+        match edge {
+            Passage::FromAbove | Passage::FromBelow => About::new().affine_if(self.system.affine()),
+            Passage::LeaveAbove | Passage::LeaveBelow => About::new(),
+            Passage::Undecided => About::new().entry(Entry::Wait).terminal(),
+            Passage::Unpushed => About::new().entry(Entry::Fire).terminal(),
+        }
     }
 }
 
 /// A [`TwoSided`] system made of closures: the flows above and below, h and its gradient.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Filippov, Side, Sides, Simulation};
 ///
 /// // Two uniform flows against a unit circle that both must keep to: the state runs round it at speed 1.

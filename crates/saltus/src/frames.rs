@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::advance::Span;
 use crate::automaton::{Automaton, Entry};
 use crate::clocks::Ticks;
+use crate::ending::{Limits, Run, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, listed};
-use crate::simulation::{Run, Stats, Stop};
 use crate::state::State;
 use crate::time::Time;
 use crate::trajectory::{Cause, Jump, Piece, Trajectory};
@@ -22,7 +22,7 @@ const MOST_AT_ONCE: usize = 16;
 /// with the first power of the time of a frame, not with the fourth. `rate` in frames per second; the last frame is cut at the end of the span.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Hybrid, frame_by_frame};
 /// let ball = Hybrid::new()
 ///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -10.0])
@@ -58,6 +58,7 @@ pub fn frame_by_frame<A: Automaton>(
         stats: Stats::default(),
         mode,
         state,
+        limits: Limits::default(),
     };
     let mut now = start;
     let mut ticks = Ticks::new();

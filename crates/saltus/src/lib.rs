@@ -1,9 +1,11 @@
-//! `saltus` integrates **hybrid automata**: continuous flow, guards, resets. No crossing is missed, none is doubled, nothing is endless.
+//! `saltus` integrates **hybrid automata**: continuous flow, guards, resets. Every fall of a guard is
+//! found that a step's samples show, and none of an affine guard is missed; where rounding or haste
+//! may hide one, the run says so; and every run ends, by name.
 //!
 //! Describe a system with closures ([`Hybrid`]) or as a type ([`Automaton`]), then run it ([`Simulation`]).
 //!
 //! ```
-//! use saltus::nalgebra::{Vector2, vector};
+//! use saltus::nalgebra::{self, Vector2, vector};
 //! use saltus::{Hybrid, Simulation};
 //!
 //! let ball = Hybrid::new()
@@ -32,6 +34,7 @@ mod course;
 pub mod cross;
 mod distance;
 mod edges;
+mod ending;
 mod ensemble;
 mod error;
 mod filippov;
@@ -65,17 +68,18 @@ pub use clocks::{Clock, Clocks, Ticking};
 pub use course::{Checkpoint, Course};
 pub use distance::Closeness;
 pub use edges::Edges;
+pub use ending::{Ending, Failed, Limits, Run, Stats, Stop};
 pub use ensemble::ensemble;
 pub use error::{Error, ErrorKind, Refusal};
 pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
 pub use frames::frame_by_frame;
-pub use hybrid::{Hybrid, Link};
+pub use hybrid::{Edge, Hybrid, Link};
 #[cfg(feature = "num-dual")]
 pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
 pub use observe::{Inspection, Observer};
 pub use reverse::{Invertible, Reversed};
 pub use series::{Jet, Series};
-pub use simulation::{Ending, Failed, Run, Simulation, Stats, Stop};
+pub use simulation::Simulation;
 pub use solution::{Fall, Polynomial, Solution};
 pub use state::{Coords, State};
 pub use step::{Auto, Dop853, Rodas5P, Tsit5};

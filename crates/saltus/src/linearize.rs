@@ -112,7 +112,7 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 /// A ball with gravity and coefficient of restitution as parameters:
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Automaton, Edges, Linearize, Number, Refusal, saltation};
 ///
 /// struct Ball {

@@ -35,6 +35,7 @@ use crate::trajectory::{Jump, Piece, Trajectory};
         deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
     ))
 )]
+#[non_exhaustive]
 pub struct Inspection<A: Automaton> {
     /// The mode.
     pub mode: A::Mode,

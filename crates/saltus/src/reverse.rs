@@ -24,7 +24,7 @@ use crate::trajectory::{Arc, Jump, Piece, Trajectory};
 /// undone. A reset that forgets (a ball that lands and stays, a speed set to zero) has no inverse, and no past to be found.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Automaton, Edges, Invertible, Refusal, Reversed, Simulation};
 ///
 /// /// A ball that keeps 0.7 of its speed at each impact.

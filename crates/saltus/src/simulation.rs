@@ -1,24 +1,24 @@
-//! How to run an automaton, how a run ends, what it cost.
+//! How to run an automaton.
 
 use std::fmt;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use crate::advance::Memory;
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
-use crate::copies::shown;
 use crate::course::{Checkpoint, Course};
+use crate::ending::{Ending, Failed, Run, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::Observer;
+use crate::observe::{Inspection, Observer};
 use crate::state::State;
 use crate::step::{Auto, Stepper};
-use crate::time::Time;
-use crate::trajectory::Trajectory;
+use crate::time::{LAST, Time};
+use crate::trajectory::{Jump, Piece, Trajectory};
 
 /// How to run an automaton: its stepper, tolerances and limits.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Hybrid, Simulation, Stop};
 ///
 /// let ball = Hybrid::new()
@@ -62,6 +62,7 @@ pub(crate) struct Options {
     pub(crate) most_evaluations: u64,
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
+    pub(crate) most_bytes: usize,
     /// Whether modes that a formula or a series solves are stepped through all the same.
     pub(crate) stepped: bool,
 }
@@ -70,7 +71,7 @@ impl Options {
     /// Why a run that has cost so much takes no further step, if it does not.
     #[inline]
     pub(crate) fn exceeded<E>(&self, stats: &Stats) -> Option<Stop<E>> {
-        if stats.steps >= self.most_steps {
+        if stats.steps + stats.windows >= self.most_steps {
             Some(Stop::Steps { most: self.most_steps })
         } else if stats.evaluations() >= self.most_evaluations {
             Some(Stop::Evaluations { most: self.most_evaluations })
@@ -80,9 +81,37 @@ impl Options {
     }
 }
 
+/// Records until so many bytes are taken.
+struct Bounded<'t, A: Automaton> {
+    trajectory: &'t mut Trajectory<A>,
+    most: usize,
+}
+
+impl<A: Automaton> Bounded<'_, A> {
+    #[inline]
+    fn full(&self, told: ControlFlow<()>) -> ControlFlow<()> {
+        if self.trajectory.bytes() < self.most { told } else { ControlFlow::Break(()) }
+    }
+}
+
+impl<A: Automaton> Observer<A> for Bounded<'_, A> {
+    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        let told = self.trajectory.piece(mode, piece);
+        self.full(told)
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        let told = self.trajectory.jump(jump);
+        self.full(told)
+    }
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        self.trajectory.inspection(inspection);
+    }
+}
+
 impl<'a, A: Automaton> Simulation<'a, A> {
     /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
-    /// and limits of 10⁷ jumps, 10⁸ steps and 10⁴ jumps at one time; evaluations are not limited.
+    /// and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and 2³⁰ bytes of what is recorded;
+    /// evaluations are not limited.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
@@ -93,6 +122,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             most_evaluations: u64::MAX,
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
+            most_bytes: 1 << 30,
             stepped: false,
         };
         Self { automaton, stepper: Auto::new(), options }
@@ -142,7 +172,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// After how many steps the run ends with [`Stop::Steps`].
+    /// After how many steps the run ends with [`Stop::Steps`]; a further stretch of an exact arc that is
+    /// searched or recorded by itself counts as one.
     #[must_use]
     pub const fn most_steps(mut self, count: u64) -> Self {
         self.options.most_steps = count;
@@ -167,6 +198,22 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
+    /// After how many bytes of its trajectory [`run`](Self::run) ends with [`Stop::Bytes`], counted
+    /// between pieces and between jumps. Memory for up to twice as many may be set aside.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation, Stop};
+    /// let swing = Hybrid::new().mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]]);
+    /// let run = Simulation::of(&swing).most_bytes(10_000).run("swing", [1.0, 0.0], 0.0..f64::INFINITY)?;
+    /// assert_eq!(run.stop, Stop::Bytes { most: 10_000 });
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn most_bytes(mut self, count: usize) -> Self {
+        self.options.most_bytes = count;
+        self
+    }
+
     /// After how many jumps at one and the same time the run ends with [`Stop::Cascade`].
     #[must_use]
     pub const fn longest_cascade(mut self, count: usize) -> Self {
@@ -178,7 +225,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// that saves.
     ///
     /// ```
-    /// use saltus::nalgebra::{Vector2, vector};
+    /// use saltus::nalgebra::{self, Vector2, vector};
     /// use saltus::{Hybrid, Simulation};
     /// let rest = Hybrid::new().mode("rest", |_t, _x: &Vector2<f64>| vector![0.0, 0.0]);
     /// let run = Simulation::of(&rest).stepped().run("rest", vector![1.0, 2.0], 0.0..3.0)?;
@@ -193,7 +240,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
 
     /// Runs from `state` in `mode` over the span of time and records the whole trajectory.
     ///
-    /// The end of the span may be infinite if the automaton ends or comes to rest by itself.
+    /// The end of the span may be infinite: a run in which nothing happens any more ends with
+    /// [`Stop::Forever`], its state that at 10³⁰⁰ s, the last time to which guards are searched.
     ///
     /// # Errors
     /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`] where a function returns that.
@@ -203,10 +251,13 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             Ok(course) => course,
             Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),
         };
-        match course.finish(&mut trajectory) {
-            Ok(Ending { stop, stats, time, mode, state, .. }) => {
+        let most = self.options.most_bytes;
+        match course.finish(&mut Bounded { trajectory: &mut trajectory, most }) {
+            Ok(Ending { stop, stats, time, mode, state, limits, .. }) => {
                 trajectory.finish(time);
-                Ok(Run { trajectory, stop, stats, mode, state })
+                // Nobody else observes.
+                let stop = if stop == Stop::Observer { Stop::Bytes { most } } else { stop };
+                Ok(Run { trajectory, stop, stats, mode, state, limits })
             }
             Err(error) => {
                 trajectory.settle(Time::new(error.t()));
@@ -278,7 +329,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
 
     fn check(&self, mode: A::Mode, state: &A::State, span: &Range<f64>) -> Result<(), Error> {
         let Options { tolerance: Tolerance { relative, absolute }, first_step, longest_step, .. } = self.options;
-        let (kind, note) = if !(span.start.is_finite() && span.start <= span.end) {
+        let (kind, note) = if !(span.start.abs() <= LAST && span.start <= span.end) {
             (ErrorKind::Span, Some(format!("{}..{}", span.start, span.end)))
         } else if !(relative >= 1e-15 && absolute > 0.0 && relative.is_finite() && absolute.is_finite()) {
             (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
@@ -294,222 +345,3 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         Err(Error::new(kind, Place::new(span.start, mode, None::<A::Edge>, state)).noting(note))
     }
 }
-
-/// Why a run ended. Written with `{}`, it is a sentence that says what to do.
-///
-/// ```
-/// use saltus::{Hybrid, Simulation, Stop};
-/// let drain = Hybrid::new().mode("drain", |_t, _x: &f64| -1.0).terminal("drain", |_t, x| *x);
-/// let run = Simulation::of(&drain).run("drain", 2.0, 0.0..3.0)?;
-/// assert!(matches!(run.stop, Stop::Terminal { edge } if edge.from == "drain"));
-/// let run = Simulation::of(&drain).most_steps(0).run("drain", 2.0, 0.0..3.0)?;
-/// assert_eq!(run.stop.to_string(), "the limit of 0 steps was reached: raise Simulation::most_steps to go on");
-/// # Ok::<(), saltus::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Stop<E> {
-    /// The end of the span was reached.
-    Time,
-    /// Jumps accumulate at `limit`, and the model does not say what lies beyond.
-    Zeno {
-        /// The accumulation time, in seconds.
-        limit: f64,
-    },
-    /// A terminal edge was taken.
-    Terminal {
-        /// The edge.
-        edge: E,
-    },
-    /// The observer asked for the end.
-    Observer,
-    /// The limit on jumps was reached.
-    Jumps {
-        /// The limit.
-        most: usize,
-    },
-    /// The limit on steps was reached.
-    Steps {
-        /// The limit.
-        most: u64,
-    },
-    /// The limit on evaluations of flows and guards was reached.
-    Evaluations {
-        /// The limit.
-        most: u64,
-    },
-    /// Too many jumps at one and the same time: the resets send the state round in a circle.
-    Cascade {
-        /// The edge taken last.
-        edge: E,
-    },
-}
-
-impl<E> Stop<E> {
-    /// Whether it was by a limit that these options have raised.
-    pub(crate) fn is_lifted(&self, options: &Options) -> bool {
-        match *self {
-            Self::Jumps { most } => options.most_jumps > most,
-            Self::Steps { most } => options.most_steps > most,
-            Self::Evaluations { most } => options.most_evaluations > most,
-            _ => false,
-        }
-    }
-}
-
-impl<E: fmt::Debug> fmt::Display for Stop<E> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Time => write!(f, "the end of the span was reached"),
-            Self::Zeno { limit } => {
-                write!(
-                    f,
-                    "jumps accumulate at t = {limit}: say what lies there, to go on, by Automaton::beyond or Hybrid::beyond, in each mode of the jumps (and for derivatives by Linearize::beyond_over)"
-                )
-            }
-            Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
-            Self::Observer => write!(f, "the observer ended the run"),
-            Self::Jumps { most } => {
-                write!(f, "the limit of {most} jumps was reached: raise Simulation::most_jumps to go on")
-            }
-            Self::Steps { most } => {
-                write!(f, "the limit of {most} steps was reached: raise Simulation::most_steps to go on")
-            }
-            Self::Evaluations { most } => {
-                write!(
-                    f,
-                    "the limit of {most} evaluations of flows and guards was reached: raise Simulation::most_evaluations to go on"
-                )
-            }
-            Self::Cascade { edge } => {
-                write!(
-                    f,
-                    "too many jumps at one time, the last by edge {edge:?}: let a reset lead away from the guards it meets"
-                )
-            }
-        }
-    }
-}
-
-/// What a run cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Stats {
-    /// Jumps made.
-    pub jumps: usize,
-    /// Steps accepted.
-    pub steps: u64,
-    /// Steps rejected.
-    pub rejected: u64,
-    /// Arcs advanced by an exact solution.
-    pub exact: u64,
-    /// Evaluations of flows; of one given over jets, each order of a series is one.
-    pub flows: u64,
-    /// Evaluations of guards.
-    pub guards: u64,
-    /// Jacobians, each by differences of flows counted above.
-    pub jacobians: u64,
-}
-
-impl Stats {
-    /// Evaluations of flows and guards together.
-    #[must_use]
-    #[inline]
-    pub const fn evaluations(&self) -> u64 {
-        self.flows + self.guards
-    }
-}
-
-/// A recorded run.
-///
-/// ```
-/// use saltus::{Hybrid, Simulation, Stop};
-/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
-/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
-/// assert_eq!((run.stop, run.mode), (Stop::Time, "decay"));
-/// assert_eq!(Some(run.state), run.trajectory.at(1.0));
-/// assert!(run.stats.flows > 6 && run.trajectory.doubts().is_empty());
-/// # Ok::<(), saltus::Error>(())
-/// ```
-pub struct Run<A: Automaton> {
-    /// The hybrid arc.
-    pub trajectory: Trajectory<A>,
-    /// Why it ended.
-    pub stop: Stop<A::Edge>,
-    /// What it cost.
-    pub stats: Stats,
-    /// The mode at the end.
-    pub mode: A::Mode,
-    /// The state at the end.
-    pub state: A::State,
-}
-
-/// How a driven run ended.
-///
-/// ```
-/// use saltus::{Hybrid, Simulation, Stop};
-/// let tank = Hybrid::new()
-///     .mode("fill", |_t, _x: &f64| 1.0)
-///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
-/// let end = Simulation::of(&tank).drive("fill", 0.0, 0.0..5.0, &mut ())?;
-/// assert_eq!((end.stop, end.time.seconds(), end.jumps, end.mode), (Stop::Time, 5.0, 2, "fill"));
-/// # Ok::<(), saltus::Error>(())
-/// ```
-pub struct Ending<A: Automaton> {
-    /// Why it ended.
-    pub stop: Stop<A::Edge>,
-    /// What it cost.
-    pub stats: Stats,
-    /// When it ended.
-    pub time: Time,
-    /// How many jumps were made.
-    pub jumps: usize,
-    /// The mode at the end.
-    pub mode: A::Mode,
-    /// The state at the end.
-    pub state: A::State,
-}
-
-/// A run that failed, and what it had until then.
-///
-/// ```
-/// use saltus::{ErrorKind, Hybrid, Simulation};
-/// // x' = x² from 1 is infinite at t = 1.
-/// let growth = Hybrid::new().mode("grow", |_t, x: &f64| x * x);
-/// let failed = Simulation::of(&growth).run("grow", 1.0, 0.0..2.0).unwrap_err();
-/// assert_eq!(failed.error.kind(), ErrorKind::Flow);
-/// assert!((failed.trajectory.at(0.5).unwrap() - 2.0).abs() < 1e-6);
-/// ```
-pub struct Failed<A: Automaton> {
-    /// What went wrong.
-    pub error: Error,
-    /// The trajectory up to the failure.
-    pub trajectory: Trajectory<A>,
-    /// What it cost.
-    pub stats: Stats,
-}
-
-shown!(Run { stop, mode, state, stats, trajectory });
-shown!(Ending { stop, time, jumps, mode, state, stats });
-
-impl<A: Automaton> From<Box<Failed<A>>> for Error {
-    fn from(failed: Box<Failed<A>>) -> Self {
-        failed.error
-    }
-}
-
-impl<A: Automaton> fmt::Display for Failed<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.error.fmt(f)
-    }
-}
-
-/// The sentence, which is what a `main` shows that returns the error.
-impl<A: Automaton> fmt::Debug for Failed<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(&self.error, f)
-    }
-}
-
-impl<A: Automaton> std::error::Error for Failed<A> {}

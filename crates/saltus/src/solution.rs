@@ -16,7 +16,7 @@ type State<A> = <A as Automaton>::State;
 /// How the state of a mode goes on from where it is: what a model knows of its own flow. A mode answers with the same kind wherever it is entered.
 ///
 /// ```
-/// use saltus::nalgebra::{Vector2, vector};
+/// use saltus::nalgebra::{self, Vector2, vector};
 /// use saltus::{Automaton, Edges, Refusal, Simulation, Solution};
 ///
 /// /// A weight on a spring, x'' = -x, and a stop at x = 0 that sends it back.
@@ -73,7 +73,7 @@ pub enum Solution<A: Automaton + ?Sized> {
     /// [`Jet::abs`](crate::Jet::abs) it ends of itself. Where there is no series (√x at x = 0), the stepper goes on.
     ///
     /// ```
-    /// use saltus::nalgebra::{Vector2, vector};
+    /// use saltus::nalgebra::{self, Vector2, vector};
     /// use saltus::{Automaton, Edges, Refusal, Series, Simulation, Solution};
     ///
     /// /// x'' = -sin x; each passage through the lowest point is a jump.

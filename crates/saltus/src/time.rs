@@ -39,6 +39,10 @@ pub(crate) fn resolution(t: f64) -> f64 {
 /// instant (`crossings_that_coincide`).
 const GRACE: f64 = 4.0;
 
+/// The last time of a run, in seconds: where an endless span ends. Later ones leave the range of
+/// numbers where a stepper multiplies them (tests/endings.rs, `every_limit_stops_every_run`).
+pub(crate) const LAST: f64 = 1e300;
+
 /// How much later than `t` is still at the same instant.
 #[inline]
 pub(crate) fn grace(t: f64) -> f64 {

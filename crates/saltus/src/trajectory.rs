@@ -337,6 +337,15 @@ impl<A: Automaton> Trajectory<A> {
         self.doubts.settle(end);
     }
 
+    /// How much memory what is recorded takes.
+    #[inline]
+    pub(crate) fn bytes(&self) -> usize {
+        self.arcs.len() * (size_of::<Arc<A>>() + size_of::<Jump<A>>())
+            + self.pieces.len() * size_of::<Stored>()
+            + self.coefficients.len() * size_of::<A::State>()
+            + size_of_val(self.doubts.list())
+    }
+
     /// The run got no further than this.
     pub(crate) fn settle(&mut self, end: Time) {
         self.doubts.settle(end);

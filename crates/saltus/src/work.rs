@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::time::Instant;
 
 use crate::automaton::Automaton;
+use crate::ending::{Run, Stats};
 use crate::error::Error;
-use crate::simulation::{Run, Simulation, Stats};
+use crate::simulation::Simulation;
 use crate::step::Stepper;
 
 /// How often a run is timed at most.
@@ -23,6 +24,7 @@ const LOOSER: f64 = 100.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Timing {
     /// The median.
     pub median: f64,
@@ -57,6 +59,7 @@ impl Timing {
 /// One run of a work–precision diagram.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct WorkPoint {
     /// What it was run by.
     pub method: String,

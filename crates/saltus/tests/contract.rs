@@ -286,3 +286,78 @@ mod derivatives {
         assert!((end.state.columns[0] - (-3.0_f64).exp()).abs() < 1e-8);
     }
 }
+
+/// What a run leaves behind is as free as its parts: it can be sent, stored and returned, whatever the automaton is.
+#[test]
+fn what_a_run_leaves_can_be_sent() {
+    /// Not `Send`.
+    struct Shared(std::rc::Rc<f64>);
+    impl Automaton for Shared {
+        type Mode = ();
+        type State = f64;
+        type Edge = ();
+        fn flow(&self, (): (), _t: f64, _x: &f64) -> f64 {
+            *self.0
+        }
+        fn edges(&self, (): ()) -> Edges<'_, ()> {
+            Edges::none()
+        }
+        fn guard(&self, (): (), _t: f64, _x: &f64) -> f64 {
+            1.0
+        }
+        fn reset(&self, (): (), (): (), _t: f64, x: &f64) -> Result<((), f64), Refusal> {
+            Ok(((), *x))
+        }
+    }
+    fn sent<T: Send + Sync + 'static>(_: &T) {}
+    sent(&Simulation::of(&Shared(2.0.into())).run((), 0.0, 0.0..1.0).unwrap());
+    let shared = Shared(2.0.into());
+    let course = Simulation::of(&shared).start((), 0.0, 0.0..1.0).unwrap();
+    sent(&course.checkpoint());
+    let run = Simulation::of(&Shared(1.0.into())).run((), 0.0, 0.0..1.0).unwrap();
+    let there = std::thread::spawn(move || run.trajectory.at(0.5)).join().unwrap();
+    assert!((there.unwrap() - 0.5).abs() < 1e-12);
+}
+
+/// Of edges alike each is what it says, whatever is said of the others.
+#[test]
+fn edges_alike_differ() {
+    use saltus::{Edge, Entry};
+    for waits in 0..3 {
+        let marks = (0..3).fold(Hybrid::new().mode("up", |_t, _x: &f64| 1.0), |up, place| {
+            let mark = 1.0 + f64::from(place);
+            let edge = Edge::new(move |_t, x: &f64| mark - x, |_t, x| *x).affine();
+            up.edge_with("up", "up", if place == waits { edge.entry(Entry::Wait) } else { edge })
+        });
+        // Begun beyond one mark more than waits: the first that does not wait refuses.
+        for beyond in 0..3 {
+            let outcome = Simulation::of(&marks).run("up", 0.5 + f64::from(beyond), 0.0..0.25);
+            let refused = (0..beyond).find(|&place| place != waits);
+            match (outcome, refused) {
+                (Ok(_), None) => {}
+                (Err(failed), Some(place)) => {
+                    assert_eq!(failed.error.kind(), ErrorKind::Entry);
+                    assert!(failed.error.edge().unwrap().ends_with(&format!("(edge {place})")), "{}", failed.error);
+                }
+                (outcome, refused) => panic!("{:?} {refused:?}", outcome.map(|run| run.stop)),
+            }
+        }
+    }
+}
+
+/// Names that are made as a program runs are names like any other, also beside the same ones written down.
+#[test]
+fn names_made_as_a_program_runs() {
+    for count in [1, 2, 17] {
+        let ring = (0..count).fold(Hybrid::new(), |ring, k| {
+            let (here, next) = (format!("room {k}"), format!("room {}", (k + 1) % count));
+            ring.mode(here.clone(), |_t, _x: &f64| 1.0).edge(here, next, |_t, x| 1.0 - x, |_t, _x| 0.0)
+        });
+        let start = ring.name("room 0").unwrap();
+        let run = Simulation::of(&ring).run(start, 0.0, 0.0..40.5).unwrap();
+        assert_eq!((run.mode, run.stats.jumps), (format!("room {}", 40 % count).as_str(), 40));
+        // A name written down is the same one.
+        assert_eq!(Simulation::of(&ring).run("room 0", 0.0, 0.0..40.5).unwrap().mode, run.mode);
+        assert_eq!(ring.name("room 99"), None);
+    }
+}

@@ -4,12 +4,13 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::cross::{Undefined, chebyshev};
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::solution::Formula;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
+use crate::time::{LAST, Time};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::Close;
@@ -18,7 +19,9 @@ use super::{Advance, ArcEnd, Span};
 
 /// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
 const AS_GOOD_AS_EXACT: f64 = 1e-12;
-/// The shortest piece, as a part of its arc.
+/// The longest first piece of an arc, in times in which its solution changes by its own size.
+const FIRST: f64 = 16.0;
+/// The shortest piece, as a part of its arc, or of the time in which its solution changes.
 const SHORTEST: f64 = 1.0 / (1_u64 << 20) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -42,9 +45,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
         };
         let first = self.first_on_solution(mode, x, now, remaining, at, search, observer)?;
+        let cut = self.cut_before(first.as_ref());
+        if let Some((cut, stop)) = cut {
+            let (told, reached) = self.interpolated(mode, x, now, cut, at, observer);
+            let stop = if told.is_break() { Stop::Observer } else { stop };
+            return Ok(ArcEnd::Stop { stop, time: now.after(reached), state: at(reached) });
+        }
         let close = match &first {
             Some(first) => self.close_on_solution(first, now, at, remaining),
-            None => Close { span: remaining, time: clock.end, state: at(remaining) },
+            None => Close { span: remaining, time: clock.end, state: at(remaining.min(LAST)) },
         };
         if !close.state.is_finite() {
             return Err(Error::new(
@@ -52,48 +61,69 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Place::new(close.time.seconds(), mode, None::<A::Edge>, &close.state),
             ));
         }
-        let told = if observer.wants_pieces() {
-            interpolated(mode, now, close.span, at, observer)
-        } else {
-            ControlFlow::Continue(())
-        };
+        let (told, reached) = self.interpolated(mode, x, now, close.span, at, observer);
+        if reached < close.span.min(LAST) && told.is_continue() {
+            let stop = Stop::Steps { most: self.options.most_steps };
+            return Ok(ArcEnd::Stop { stop, time: now.after(reached), state: at(reached) });
+        }
         Ok(ArcEnd::after(first.map(|first| first.edge), told, close.time, close.state))
+    }
+
+    /// Tells `observer`, if it wants to know, of the solution `at` from `x` in pieces of degree eight, as long as they are
+    /// as good as exact; and how far: no further than the run's limits allow, nor than the end of numbers.
+    fn interpolated(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        now: Time,
+        span: f64,
+        at: impl Fn(f64) -> A::State,
+        observer: &mut impl Observer<A>,
+    ) -> (ControlFlow<()>, f64) {
+        let span = span.min(LAST);
+        if !observer.wants_pieces() {
+            return (ControlFlow::Continue(()), span);
+        }
+        let natural = natural(&[*x, self.automaton.flow(mode, now.seconds(), x)]);
+        // Of a long arc the first piece is as long as the solution takes to change.
+        let shortest = SHORTEST * if natural > 0.0 { span.min(natural) } else { span };
+        let mut pieces = 0;
+        let (mut from, mut length) = (0.0, if natural > 0.0 { span.min(FIRST * natural) } else { span });
+        while from < span {
+            let last = from + length >= span;
+            let h = if last { span - from } else { length };
+            let c = fitted(|u| at(from + h * u));
+            if h > shortest && !fits(&c, |u| at(from + h * u), h, now.seconds().abs() + from + h) {
+                length = 0.5 * h;
+                continue;
+            }
+            let told = observer.piece(mode, &Piece::new(now.after(from), h, h, &c));
+            from = if last { span } else { from + h };
+            if told.is_break() {
+                return (told, from);
+            }
+            pieces += 1;
+            if pieces >= self.options.most_steps {
+                break;
+            }
+            length = 2.0 * h;
+        }
+        (ControlFlow::Continue(()), from)
     }
 }
 
-/// Tells `observer` of the solution in pieces of degree eight, as long as they are as good as exact.
-fn interpolated<A: Automaton>(
-    mode: A::Mode,
-    now: Time,
-    span: f64,
-    at: impl Fn(f64) -> A::State,
-    observer: &mut impl Observer<A>,
-) -> ControlFlow<()> {
-    let (mut from, mut length) = (0.0, span);
-    let late = |s: f64| now.seconds().abs() + s;
-    while from < span {
-        let last = from + length >= span;
-        let h = if last { span - from } else { length };
-        let c = fitted(|u| at(from + h * u));
-        let fits = [0.221_324_6, 0.635_914_1, 0.97].iter().all(|&u| {
-            let (exact, fit) = (at(from + h * u), horner(&c, u));
-            (0..exact.len()).all(|i| {
-                let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
-                // No nearer than the rounding of time allows, late in an arc that swings or in a run, nor than the smallest numbers can say.
-                let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
-                let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * late(from + h) / h;
-                (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
-            })
-        });
-        if !fits && h > SHORTEST * span {
-            length = 0.5 * h;
-            continue;
-        }
-        observer.piece(mode, &Piece::new(now.after(from), h, h, &c))?;
-        from = if last { span } else { from + h };
-        length = 2.0 * h;
-    }
-    ControlFlow::Continue(())
+/// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as the exact state `at` it.
+fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
+    [0.221_324_6, 0.635_914_1, 0.97].iter().all(|&u| {
+        let (exact, fit) = (at(u), horner(c, u));
+        (0..exact.len()).all(|i| {
+            let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
+            // No nearer than the rounding of time allows, late in an arc that swings or in a run, nor than the smallest numbers can say.
+            let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
+            let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * late / h;
+            (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
+        })
+    })
 }
 
 /// The powers of u of the interpolant of degree eight on `0..=1`.

@@ -4,16 +4,18 @@ use std::cell::LazyCell;
 
 use crate::automaton::Automaton;
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
+use crate::ending::Stop;
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::poly::{quadratic_fall, quadratic_touch};
 use crate::solution::Polynomial;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
+use crate::time::{LAST, Time, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{Close, less_constant, only_touched, unlevelled};
+use super::solved::First;
 use super::{Advance, ArcEnd, Span};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -39,6 +41,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
         };
         let first = self.first_on_solution(mode, &c[0], now, remaining, at, search, observer)?;
+        if let Some((cut, stop)) = self.cut_before(first.as_ref()) {
+            let told = observer.piece(mode, &Piece::new(now, cut, 1.0, c));
+            let stop = if told.is_break() { Stop::Observer } else { stop };
+            return Ok(ArcEnd::Stop { stop, time: now.after(cut), state: at(cut) });
+        }
         let close = match &first {
             Some(first) => self.close_on_solution(first, now, at, remaining),
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
@@ -83,7 +90,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ))
     }
 
-    /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it.
+    /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it; no
+    /// further than the run's limits allow, which is then noted.
     pub(super) fn fall_in_windows(
         &mut self,
         edge: A::Edge,
@@ -93,18 +101,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         limit: f64,
         start: Start,
     ) -> Result<Searched, Undefined> {
-        let longest = self.options.longest_step;
+        let (longest, limit) = (self.options.longest_step, limit.min(LAST));
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
         let (mut start, mut level) = (start, self.level(edge, true));
-        let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
-        let mut guard = |s: f64| {
-            *count += 1;
-            automaton.guard(edge, now.after(s).seconds(), &at(s))
-        };
+        let automaton = self.automaton;
         let mut evidence = Evidence::Excluded;
         loop {
             let to = if from + window < limit { from + window } else { limit };
+            let count = &mut self.memory.stats.guards;
+            let mut guard = |s: f64| {
+                *count += 1;
+                automaton.guard(edge, now.after(s).seconds(), &at(s))
+            };
             let searched = first_fall(|s| guard(from + s) - level, to - from, start)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
@@ -113,13 +122,26 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
                 return Ok(Searched { fall, evidence });
             }
-            if to >= limit || !to.is_finite() {
+            if to >= limit {
+                return Ok(Searched { fall: None, evidence });
+            }
+            self.memory.stats.windows += 1;
+            if self.options.exceeded::<A::Edge>(&self.memory.stats).is_some() {
+                self.memory.cut_at = Some(self.memory.cut_at.map_or(to, |earlier| earlier.min(to)));
                 return Ok(Searched { fall: None, evidence });
             }
             from = to;
-            window = (2.0 * window).min(longest);
+            // However short it is to be, it must move time on.
+            window = (2.0 * window).min(longest).max(2.0 * resolution(from));
             (start, level) = (Start::Resumed, 0.0);
         }
+    }
+
+    /// How far the search of an exact arc went, where a limit of the run cut it before any crossing.
+    #[inline]
+    pub(super) fn cut_before(&mut self, first: Option<&First<A>>) -> Option<(f64, Stop<A::Edge>)> {
+        let cut = self.memory.cut_at.take().filter(|&cut| first.is_none_or(|first| cut < first.time()))?;
+        Some((cut, self.options.exceeded(&self.memory.stats)?))
     }
 }
 

@@ -15,10 +15,11 @@ use std::ops::ControlFlow;
 use crate::automaton::Automaton;
 use crate::control::Controller;
 use crate::cross::Start;
+use crate::ending::{Stats, Stop};
 use crate::error::Error;
 use crate::observe::Observer;
 use crate::series::Tape;
-use crate::simulation::{Options, Stats, Stop};
+use crate::simulation::Options;
 use crate::solution::Solution;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -82,6 +83,8 @@ pub(crate) struct Memory<E> {
     /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
     walls: [Option<(E, f64)>; MOST_IDLE],
     wall_count: usize,
+    /// How far the search of this exact arc went before a limit of the run cut it.
+    cut_at: Option<f64>,
     slack: f64,
     last_duration: f64,
     longest_duration: f64,
@@ -103,6 +106,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             idle_count: 0,
             walls: [None; MOST_IDLE],
             wall_count: 0,
+            cut_at: None,
             slack: 0.0,
             last_duration: 0.0,
             longest_duration: 0.0,

@@ -2,11 +2,11 @@
 
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
 use crate::poly::MAX_DEGREE;
 use crate::series::{MOST_COEFFICIENTS, NextKink, RECIPROCALS, Series};
-use crate::simulation::Stop;
 use crate::solution::Flow;
 use crate::state::State;
 use crate::step::Stepper;

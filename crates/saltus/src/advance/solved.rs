@@ -23,6 +23,11 @@ pub(super) struct First<A: Automaton> {
 }
 
 impl<A: Automaton> First<A> {
+    /// When it is, after the start of the arc.
+    pub(super) fn time(&self) -> f64 {
+        self.crossing.inside
+    }
+
     /// Whether a formula told where it is, so that nobody has looked at the guard on the solution there.
     pub(super) fn is_told(&self) -> bool {
         self.state.is_some()

@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use crate::automaton::Automaton;
 use crate::control::first_step;
 use crate::cross::Evidence;
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
-use crate::simulation::Stop;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{Time, grace, resolution};
+use crate::time::{LAST, Time, grace, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
@@ -346,16 +346,11 @@ struct Closer<D> {
     ahead: f64,
 }
 
-/// The end of an endless span, in seconds: later ones leave the range of numbers where a stepper
-/// multiplies them (`tests/far.rs` has a ball at rest for ever).
-const LAST: f64 = 1e300;
-
 /// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
 /// stands and any other is infinite, which is an error.
 #[inline]
-pub(super) fn remaining(span: &Span) -> f64 {
-    let remaining = span.end.since(span.now);
-    if remaining < f64::INFINITY { remaining } else { LAST - span.now.seconds() }
+pub(super) fn remaining(clock: &Span) -> f64 {
+    clock.end.since(clock.now).min(LAST - clock.now.seconds())
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.

@@ -16,6 +16,7 @@ use search::Search;
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Crossing {
     /// The last time still inside the domain.
     pub inside: f64,
@@ -110,6 +111,7 @@ impl Evidence {
 
 /// The outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Searched {
     /// The first fall, if there is one.
     pub fall: Option<Crossing>,

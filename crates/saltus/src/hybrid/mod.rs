@@ -1,19 +1,23 @@
 //! An automaton put together from closures.
 
+mod edge;
 mod model;
 mod names;
 
+pub use edge::Edge;
+
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::OnceLock;
 
-use crate::automaton::{About, Entry};
+use self::names::kept;
+use crate::automaton::Entry;
 use crate::clocks::Clock;
 use crate::series::{Jet, Series};
 use crate::solution::Polynomial;
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;
-type Guard<'a, S> = Box<dyn Fn(f64, &S) -> f64 + Send + Sync + 'a>;
 type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) + Send + Sync + 'a>;
 type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 
@@ -38,6 +42,9 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 ///
 /// Where speed matters, implement [`Automaton`](crate::Automaton) instead: the closures are called through pointers.
+///
+/// A name may be made as a program runs: an owned one is kept until the program ends, once however often it is given.
+/// [`name`](Self::name) finds it again.
 ///
 /// A name that is misspelt (a mode that an edge leads to or from, an edge that [`entry`](Self::entry) or [`affine`](Self::affine) is about)
 /// is found when a run starts, which then fails with an error that names it and suggests the nearest.
@@ -68,19 +75,11 @@ struct Mode<'a, S> {
     series: Option<Expand<'a, S>>,
     exact: Option<Exact<'a, S>>,
     beyond: Option<(&'static str, Flow<'a, S>)>,
-    edges: Vec<EdgeOf<'a, S>>,
+    /// Each with the mode it leads to.
+    edges: Vec<(&'static str, Edge<'a, S>)>,
     /// Those of the edges that have guards, and those that clocks take.
     guarded: Vec<Link>,
     clocks: Vec<(Clock, Link)>,
-}
-
-struct EdgeOf<'a, S> {
-    to: &'static str,
-    /// None of an edge that a clock takes.
-    guard: Option<Guard<'a, S>>,
-    reset: Flow<'a, S>,
-    about: About,
-    inverse: Option<(Guard<'a, S>, Flow<'a, S>)>,
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
@@ -106,20 +105,6 @@ impl fmt::Debug for Link {
     }
 }
 
-impl<'a, S> Mode<'a, S> {
-    /// Adds an edge with a guard.
-    fn guarded_by(&mut self, edge: EdgeOf<'a, S>) {
-        self.guarded.push(Link { from: self.name, to: edge.to, place: self.edges.len() });
-        self.edges.push(edge);
-    }
-}
-
-impl<'a, S> EdgeOf<'a, S> {
-    fn new(to: &'static str, guard: Option<Guard<'a, S>>, reset: Flow<'a, S>) -> Self {
-        Self { to, guard, reset, about: About::new(), inverse: None }
-    }
-}
-
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
         Self { modes: Vec::new(), misses: Vec::new(), twice: None, flaw: OnceLock::new() }
@@ -128,7 +113,7 @@ impl<S> Default for Hybrid<'_, S> {
 
 impl<S> fmt::Debug for Hybrid<'_, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let edges = |mode: &Mode<'_, S>| mode.edges.iter().map(|edge| edge.to).collect::<Vec<_>>();
+        let edges = |mode: &Mode<'_, S>| mode.edges.iter().map(|(to, _)| *to).collect::<Vec<_>>();
         f.debug_map().entries(self.modes.iter().map(|mode| (mode.name, edges(mode)))).finish()
     }
 }
@@ -142,7 +127,8 @@ impl<'a, S: State> Hybrid<'a, S> {
 
     /// Declares a mode and its flow f of x' = f(t, x). From an automaton that declares one twice no run starts.
     #[must_use]
-    pub fn mode(mut self, name: &'static str, flow: impl Fn(f64, &S) -> S + Send + Sync + 'a) -> Self {
+    pub fn mode(mut self, name: impl Into<Cow<'static, str>>, flow: impl Fn(f64, &S) -> S + Send + Sync + 'a) -> Self {
+        let name = kept(name);
         let before = self.entry_of(name).flow.replace(Box::new(flow));
         self.twice = self.twice.or(before.map(|_| ("mode", name)));
         self
@@ -167,11 +153,12 @@ impl<'a, S: State> Hybrid<'a, S> {
     #[must_use]
     pub fn series<const N: usize>(
         mut self,
-        name: &'static str,
+        name: impl Into<Cow<'static, str>>,
         flow: impl for<'j> Fn(Jet<'j>, [Jet<'j>; N]) -> [Jet<'j>; N] + Send + Sync + 'a,
     ) -> Self {
         #[allow(clippy::redundant_closure)] // the flow is inlined here; a reference to it would be called at every pass
         let series = Box::new(move |series: &mut Series<'_, S>| series.flow(|t, x| flow(t, x)));
+        let name = kept(name);
         let before = self.entry_of(name).series.replace(series);
         self.twice = self.twice.or(before.map(|_| ("series", name)));
         self
@@ -190,7 +177,12 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
-    pub fn exact(mut self, name: &'static str, solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a) -> Self {
+    pub fn exact(
+        mut self,
+        name: impl Into<Cow<'static, str>>,
+        solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a,
+    ) -> Self {
+        let name = kept(name);
         let before = self.entry_of(name).exact.replace(Box::new(solution));
         self.twice = self.twice.or(before.map(|_| ("exact", name)));
         self
@@ -198,17 +190,30 @@ impl<'a, S: State> Hybrid<'a, S> {
 
     /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t, x⁻) into `to`.
     ///
-    /// Edges that cross at one time are taken in the order in which they are declared.
+    /// Edges that cross at one time are taken in the order in which they are declared. A reset that may fail: [`Edge::fallible`].
     #[must_use]
     pub fn edge(
-        mut self,
-        from: &'static str,
-        to: &'static str,
+        self,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        let edge = EdgeOf::new(to, Some(Box::new(guard)), Box::new(reset));
-        self.entry_of(from).guarded_by(edge);
+        self.edge_with(from, to, Edge::new(guard, reset))
+    }
+
+    /// Declares an edge of which more is to be said than its guard and its reset: see [`Edge`].
+    #[must_use]
+    pub fn edge_with(
+        mut self,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
+        edge: Edge<'a, S>,
+    ) -> Self {
+        let (from, to) = (kept(from), kept(to));
+        let mode = self.entry_of(from);
+        mode.guarded.push(Link { from, to, place: mode.edges.len() });
+        mode.edges.push((to, edge));
         self
     }
 
@@ -226,14 +231,15 @@ impl<'a, S: State> Hybrid<'a, S> {
     #[must_use]
     pub fn clock(
         mut self,
-        from: &'static str,
-        to: &'static str,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
         clock: Clock,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
+        let (from, to) = (kept(from), kept(to));
         let mode = self.entry_of(from);
         let place = mode.edges.len();
-        mode.edges.push(EdgeOf::new(to, None, Box::new(reset)));
+        mode.edges.push((to, Edge::clocked(reset)));
         mode.clocks.push((clock, Link { from, to, place }));
         self
     }
@@ -249,56 +255,41 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
-    pub fn terminal(mut self, from: &'static str, guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a) -> Self {
-        let edge = EdgeOf::new(from, Some(Box::new(guard)), Box::new(|_, x| *x));
-        self.entry_of(from).guarded_by(EdgeOf { about: About::new().terminal(), ..edge });
-        self
+    pub fn terminal(
+        self,
+        from: impl Into<Cow<'static, str>>,
+        guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
+    ) -> Self {
+        let from = kept(from);
+        self.edge_with(from, from, Edge::new(guard, |_t, x: &S| *x).terminal())
     }
 
-    /// What to do if a guard declared so far from `from` to `to` is already negative as `from` is entered; see [`Entry`].
-    /// A [`terminal`](Self::terminal) edge leads from its mode to itself.
+    /// [`Edge::entry`] of every edge with a guard declared so far from `from` to `to`. A [`terminal`](Self::terminal) edge leads from its mode to itself.
     #[must_use]
-    pub fn entry(mut self, from: &'static str, to: &'static str, entry: Entry) -> Self {
-        self.between("entry", from, to, |edge| edge.about.entry = entry);
+    pub fn entry(mut self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>, entry: Entry) -> Self {
+        self.between("entry", kept(from), kept(to), |edge| edge.about.entry = entry);
         self
     }
 
-    /// Promises that the guards declared so far from `from` to `to` are affine in the state; see [`About::affine`].
+    /// [`Edge::affine`] of every edge declared so far from `from` to `to`.
     #[must_use]
-    pub fn affine(mut self, from: &'static str, to: &'static str) -> Self {
-        self.between("affine", from, to, |edge| edge.about.affine = true);
+    pub fn affine(mut self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>) -> Self {
+        self.between("affine", kept(from), kept(to), |edge| edge.about.affine = true);
         self
     }
 
-    /// Gives the inverse of the edge declared last from `from` to `to`, so that a run can go [backwards](crate::Reversed) through it:
-    /// the `image` margin, positive in `to` and zero just after the jump, and x⁻ from x⁺. See [`Invertible`](crate::Invertible).
-    ///
-    /// A run backwards is refused where it could meet an edge without an inverse. An edge that is never met backwards may be given
-    /// the margin 1.
-    ///
-    /// ```
-    /// use saltus::nalgebra::{Vector2, vector};
-    /// use saltus::{Hybrid, Reversed, Simulation};
-    ///
-    /// let ball = Hybrid::new()
-    ///     .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81])
-    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.7 * x[1]])
-    ///     .inverse("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -x[1] / 0.7]);
-    /// let there = Simulation::of(&ball).run("flight", vector![1.0, 0.0], 0.0..1.5)?;
-    /// let back = Simulation::of(&Reversed::of(&ball)).run("flight", there.state, Reversed::span(1.5, 0.0))?;
-    /// assert!((back.state - vector![1.0, 0.0]).norm() < 1e-9);
-    /// # Ok::<(), saltus::Error>(())
-    /// ```
+    /// [`Edge::inverse`] of the edge declared last from `from` to `to`.
     #[must_use]
     pub fn inverse(
         mut self,
-        from: &'static str,
-        to: &'static str,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
         image: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         undo: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        match self.entry_of(from).edges.iter_mut().rfind(|edge| edge.to == to) {
-            Some(edge) => edge.inverse = Some((Box::new(image), Box::new(undo))),
+        let (from, to) = (kept(from), kept(to));
+        match self.entry_of(from).edges.iter_mut().rfind(|edge| edge.0 == to) {
+            Some((_, edge)) => edge.inverse = Some((Box::new(image), Box::new(undo))),
             None => self.misses.push(("inverse", from, to)),
         }
         self
@@ -310,13 +301,32 @@ impl<'a, S: State> Hybrid<'a, S> {
     #[must_use]
     pub fn beyond(
         mut self,
-        from: &'static str,
-        to: &'static str,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
+        let (from, to) = (kept(from), kept(to));
         let before = self.entry_of(from).beyond.replace((to, Box::new(reset)));
         self.twice = self.twice.or(before.map(|_| ("beyond", from)));
         self
+    }
+
+    /// The mode of this name, to start a run in; nothing if it is not declared.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let floors = (0..3).fold(Hybrid::new(), |lift, floor| {
+    ///     let (here, next) = (format!("floor {floor}"), format!("floor {}", (floor + 1) % 3));
+    ///     lift.mode(here.clone(), |_t, _x: &f64| 1.0).edge(here, next, |_t, x| 1.0 - x, |_t, _x| 0.0)
+    /// });
+    /// let start = floors.name("floor 1").unwrap();
+    /// let run = Simulation::of(&floors).run(start, 0.0, 0.0..4.5)?;
+    /// assert_eq!((run.mode, floors.name("cellar")), ("floor 2", None));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn name(&self, name: &str) -> Option<&'static str> {
+        self.find(name).filter(|mode| self.declares(mode.name)).map(|mode| mode.name)
     }
 
     fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
@@ -334,10 +344,10 @@ impl<'a, S: State> Hybrid<'a, S> {
         method: &'static str,
         from: &'static str,
         to: &'static str,
-        mut change: impl FnMut(&mut EdgeOf<'a, S>),
+        mut change: impl FnMut(&mut Edge<'a, S>),
     ) {
         let mut any = false;
-        for edge in self.entry_of(from).edges.iter_mut().filter(|edge| edge.to == to) {
+        for (_, edge) in self.entry_of(from).edges.iter_mut().filter(|edge| edge.0 == to) {
             change(edge);
             any = true;
         }
@@ -347,9 +357,9 @@ impl<'a, S: State> Hybrid<'a, S> {
     }
 
     /// Every edge of `mode`, also those of clocks.
-    fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m EdgeOf<'a, S>)> {
+    fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m Edge<'a, S>)> {
         let from = mode.name;
-        mode.edges.iter().enumerate().map(move |(place, edge)| (Link { from, to: edge.to, place }, edge))
+        mode.edges.iter().enumerate().map(move |(place, (to, edge))| (Link { from, to, place }, edge))
     }
 
     #[inline]
@@ -358,7 +368,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         same.or_else(|| self.modes.iter().find(|mode| mode.name == name))
     }
 
-    fn edge_of(&self, link: Link) -> Option<&EdgeOf<'a, S>> {
-        self.find(link.from)?.edges.get(link.place)
+    fn edge_of(&self, link: Link) -> Option<&Edge<'a, S>> {
+        self.find(link.from)?.edges.get(link.place).map(|(_, edge)| edge)
     }
 }

@@ -41,7 +41,7 @@ impl<S: State> Automaton for Hybrid<'_, S> {
 
     fn reset(&self, _: &'static str, link: Link, t: f64, x: &S) -> Result<(&'static str, S), Refusal> {
         let edge = self.edge_of(link).ok_or_else(|| Refusal::new("there is no such edge"))?;
-        Ok((link.to, (edge.reset)(t, x)))
+        Ok((link.to, (edge.reset)(t, x)?))
     }
 
     fn about(&self, edge: Link) -> About {

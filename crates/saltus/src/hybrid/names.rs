@@ -1,5 +1,9 @@
 //! Whether the names of an automaton of closures are those of its modes and edges, and which was meant.
 
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
 use super::Hybrid;
 use crate::state::State;
 
@@ -33,9 +37,9 @@ impl<S: State> Hybrid<'_, S> {
                 let what = if mode.edges.is_empty() { "is named" } else { "has an edge" };
                 return Some(format!("mode {name:?} {what} but is not declared: {}", self.declare(name)));
             }
-            if let Some((link, edge)) = Self::links(mode).find(|(_, edge)| !self.declares(edge.to)) {
-                let to = self.declare(edge.to);
-                return Some(format!("edge {link:?} leads to mode {:?}, which is not declared: {to}", edge.to));
+            if let Some((link, _)) = Self::links(mode).find(|(link, _)| !self.declares(link.to)) {
+                let to = self.declare(link.to);
+                return Some(format!("edge {link:?} leads to mode {:?}, which is not declared: {to}", link.to));
             }
             if let Some((to, _)) = mode.beyond.as_ref().filter(|(to, _)| !self.declares(to)) {
                 let declare = self.declare(to);
@@ -75,4 +79,21 @@ fn distance(one: &str, other: &str) -> usize {
         last = Some(c);
     }
     rows[1][other.len()]
+}
+
+/// A name for as long as the program runs: of owned ones each is kept once.
+pub(super) fn kept(name: impl Into<Cow<'static, str>>) -> &'static str {
+    static OWNED: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    match name.into() {
+        Cow::Borrowed(name) => name,
+        Cow::Owned(name) => {
+            let mut names = OWNED.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(name) = names.get(name.as_str()) {
+                return name;
+            }
+            let name: &'static str = name.leak();
+            names.insert(name);
+            name
+        }
+    }
 }

@@ -69,7 +69,7 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 /// take part in the control of the step size: the tolerance holds for them too, and steps may differ from those of a run without them.
 ///
 /// ```
-/// # use saltus::nalgebra::{Vector2, vector};
+/// # use saltus::nalgebra::{self, Vector2, vector};
 /// # use saltus::{Automaton, Edges, Linearize, Number, Refusal};
 /// # struct Ball { gravity: f64, cor: f64 }
 /// # impl Linearize for Ball {

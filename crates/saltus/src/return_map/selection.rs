@@ -15,7 +15,7 @@ const HELD: f64 = 1e-6;
 /// Of a ball that rises from the floor only the velocity is left:
 ///
 /// ```
-/// # use saltus::nalgebra::{Vector2, vector};
+/// # use saltus::nalgebra::{self, Vector2, vector};
 /// # use saltus::{Automaton, Edges, Linearize, Number, Refusal};
 /// # struct Ball;
 /// # impl Linearize for Ball {

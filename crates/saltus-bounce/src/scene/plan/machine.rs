@@ -206,9 +206,10 @@ where
         let run = match how.frames {
             None => {
                 let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
-                let Ending { stop, stats, time, mode, state, .. } = self.drive(&simulation, until, &mut trajectory)?;
+                let Ending { stop, stats, time, mode, state, limits, .. } =
+                    self.drive(&simulation, until, &mut trajectory)?;
                 trajectory.finish(time);
-                Run { trajectory, stop, stats, mode, state }
+                Run { trajectory, stop, stats, mode, state, limits }
             }
             Some(rate) => {
                 saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, how.most_jumps)?

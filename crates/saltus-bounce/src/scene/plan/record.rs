@@ -180,6 +180,11 @@ pub enum End {
         /// When.
         limit: f64,
     },
+    /// The limit on steps was reached.
+    Steps {
+        /// The limit.
+        most: u64,
+    },
     /// The limit on evaluations of flows and guards was reached.
     Evaluations {
         /// The limit.
@@ -193,7 +198,8 @@ impl End {
     pub(super) fn of<E>(stop: &Stop<E>) -> Self {
         match *stop {
             Stop::Jumps { most } => Self::Jumps { most },
-            Stop::Zeno { limit } => Self::Zeno { limit },
+            Stop::Zeno { limit } | Stop::Resolution { limit } => Self::Zeno { limit },
+            Stop::Steps { most } => Self::Steps { most },
             Stop::Evaluations { most } => Self::Evaluations { most },
             Stop::Cascade { .. } => Self::Cascade,
             _ => Self::Time,
@@ -213,6 +219,7 @@ impl End {
             Self::Time => "time",
             Self::Jumps { .. } => "jumps",
             Self::Zeno { .. } => "zeno",
+            Self::Steps { .. } => "steps",
             Self::Evaluations { .. } => "evaluations",
             Self::Cascade => "cascade",
         }
@@ -228,6 +235,12 @@ impl fmt::Display for End {
                 f,
                 "infinitely many impacts come to a limit at {limit:.6} s, and what lies beyond is not modelled for several balls: end the run before"
             ),
+            Self::Steps { most } => {
+                write!(
+                    f,
+                    "the limit of {most} steps was reached: end the run earlier, or loosen `tolerance` under [run]"
+                )
+            }
             Self::Evaluations { most } => write!(
                 f,
                 "the limit of {most} evaluations was reached: end the run earlier, or loosen `tolerance` under [run]"

@@ -1,0 +1,322 @@
+//! How a run ended, and what it cost.
+
+use std::fmt;
+
+use crate::automaton::Automaton;
+use crate::copies::shown;
+use crate::error::{Error, ErrorKind, Place};
+use crate::simulation::Options;
+use crate::time::Time;
+use crate::trajectory::Trajectory;
+
+/// Why a run ended. Written with `{}`, it is a sentence that says what to do.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let drain = Hybrid::new().mode("drain", |_t, _x: &f64| -1.0).terminal("drain", |_t, x| *x);
+/// let run = Simulation::of(&drain).run("drain", 2.0, 0.0..3.0)?;
+/// assert!(matches!(run.stop, Stop::Terminal { edge } if edge.from == "drain"));
+/// let run = Simulation::of(&drain).most_steps(0).run("drain", 2.0, 0.0..3.0)?;
+/// assert_eq!(run.stop.to_string(), "the limit of 0 steps was reached: raise Simulation::most_steps to go on");
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Stop<E> {
+    /// The end of the span was reached.
+    Time,
+    /// The span has no end, and no guard falls any more: the last mode lasts for ever.
+    Forever,
+    /// Jumps accumulate at `limit`, and the model does not say what lies beyond.
+    Zeno {
+        /// The accumulation time, in seconds.
+        limit: f64,
+    },
+    /// Jumps come closer together at `limit` than rounding can tell apart, without the contraction that would certify that they accumulate there,
+    /// and the model does not say what lies beyond.
+    Resolution {
+        /// When, in seconds.
+        limit: f64,
+    },
+    /// A terminal edge was taken.
+    Terminal {
+        /// The edge.
+        edge: E,
+    },
+    /// The observer asked for the end.
+    Observer,
+    /// The limit on jumps was reached.
+    Jumps {
+        /// The limit.
+        most: usize,
+    },
+    /// The limit on steps was reached.
+    Steps {
+        /// The limit.
+        most: u64,
+    },
+    /// The limit on evaluations of flows and guards was reached.
+    Evaluations {
+        /// The limit.
+        most: u64,
+    },
+    /// The limit on the bytes of a recorded trajectory was reached.
+    Bytes {
+        /// The limit.
+        most: usize,
+    },
+    /// Too many jumps at one and the same time: the resets send the state round in a circle.
+    Cascade {
+        /// The edge taken last.
+        edge: E,
+    },
+}
+
+impl<E> Stop<E> {
+    /// Whether it is an end that was asked for: that of the span, a terminal edge, the observer's. Else
+    /// the run is not where it was to go.
+    #[must_use]
+    pub const fn is_asked(&self) -> bool {
+        matches!(self, Self::Time | Self::Forever | Self::Terminal { .. } | Self::Observer)
+    }
+
+    /// Whether it was by a limit that these options have raised.
+    pub(crate) fn is_lifted(&self, options: &Options) -> bool {
+        match *self {
+            Self::Jumps { most } => options.most_jumps > most,
+            Self::Steps { most } => options.most_steps > most,
+            Self::Evaluations { most } => options.most_evaluations > most,
+            Self::Bytes { most } => options.most_bytes > most,
+            _ => false,
+        }
+    }
+}
+
+impl<E: fmt::Debug> fmt::Display for Stop<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time => write!(f, "the end of the span was reached"),
+            Self::Forever => write!(f, "nothing happens any more: the last mode lasts for ever"),
+            Self::Zeno { limit } => {
+                write!(
+                    f,
+                    "jumps accumulate at t = {limit}: say what lies there, to go on, by Automaton::beyond or Hybrid::beyond, in each mode of the jumps (and for derivatives by Linearize::beyond_over)"
+                )
+            }
+            Self::Resolution { limit } => write!(
+                f,
+                "jumps come closer together at t = {limit} than rounding can tell apart: count time and lengths from nearer by (a floor at zero), or say what lies beyond by Automaton::beyond or Hybrid::beyond"
+            ),
+            Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
+            Self::Observer => write!(f, "the observer ended the run"),
+            Self::Jumps { most } => {
+                write!(f, "the limit of {most} jumps was reached: raise Simulation::most_jumps to go on")
+            }
+            Self::Steps { most } => {
+                write!(f, "the limit of {most} steps was reached: raise Simulation::most_steps to go on")
+            }
+            Self::Evaluations { most } => {
+                write!(
+                    f,
+                    "the limit of {most} evaluations of flows and guards was reached: raise Simulation::most_evaluations to go on"
+                )
+            }
+            Self::Bytes { most } => {
+                write!(
+                    f,
+                    "the limit of {most} bytes of a recorded trajectory was reached: raise Simulation::most_bytes, or observe the run with Simulation::drive, which keeps nothing"
+                )
+            }
+            Self::Cascade { edge } => {
+                write!(
+                    f,
+                    "too many jumps at one time, the last by edge {edge:?}: let a reset lead away from the guards it meets; where the flows of two modes push against each other, give them a mode that slides between (Filippov)"
+                )
+            }
+        }
+    }
+}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Stats {
+    /// Jumps made.
+    pub jumps: usize,
+    /// Steps accepted.
+    pub steps: u64,
+    /// Stretches of exact arcs that were searched one at a time, beyond the first of each search.
+    pub windows: u64,
+    /// Steps rejected.
+    pub rejected: u64,
+    /// Arcs advanced by an exact solution.
+    pub exact: u64,
+    /// Evaluations of flows; of one given over jets, each order of a series is one.
+    pub flows: u64,
+    /// Evaluations of guards.
+    pub guards: u64,
+    /// Jacobians, each by differences of flows counted above.
+    pub jacobians: u64,
+}
+
+impl Stats {
+    /// Evaluations of flows and guards together.
+    #[must_use]
+    #[inline]
+    pub const fn evaluations(&self) -> u64 {
+        self.flows + self.guards
+    }
+}
+
+/// The limits of accumulating jumps that a run went beyond, as [`Automaton::beyond`] said.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation};
+/// let ball = Hybrid::new()
+///     .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.8])
+///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]])
+///     .mode("rest", |_t, _x| [0.0, 0.0])
+///     .beyond("flight", "rest", |_t, _x| [0.0, 0.0]);
+/// let run = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..4.0)?;
+/// assert_eq!(run.limits.count, 1);
+/// assert!((run.limits.last.unwrap() - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-12);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Limits {
+    /// How many.
+    pub count: usize,
+    /// When the last one was reached, in seconds.
+    pub last: Option<f64>,
+}
+
+/// A recorded run.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
+/// assert_eq!((run.stop, run.mode), (Stop::Time, "decay"));
+/// assert_eq!(Some(run.state), run.trajectory.at(1.0));
+/// assert!(run.stats.flows > 6 && run.trajectory.doubts().is_empty());
+/// # Ok::<(), saltus::Error>(())
+/// ```
+pub struct Run<A: Automaton> {
+    /// The hybrid arc.
+    pub trajectory: Trajectory<A>,
+    /// Why it ended.
+    pub stop: Stop<A::Edge>,
+    /// What it cost.
+    pub stats: Stats,
+    /// The mode at the end.
+    pub mode: A::Mode,
+    /// The state at the end.
+    pub state: A::State,
+    /// Which limits of jumps that accumulate it went beyond.
+    pub limits: Limits,
+}
+
+impl<A: Automaton> Run<A> {
+    /// The run, if it came to an end that was asked for: that of the span, or at a terminal edge. What
+    /// ended before, by a limit or where jumps accumulate, has the state of another time.
+    ///
+    /// ```
+    /// use saltus::{ErrorKind, Hybrid, Simulation};
+    /// let ball = Hybrid::new()
+    ///     .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.8])
+    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]]);
+    /// let run = |end| Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..end)?.complete();
+    /// assert!(run(1.0).is_ok());
+    /// let failed = run(20.0).unwrap_err();
+    /// assert_eq!(failed.error.kind(), ErrorKind::Unfinished);
+    /// assert!(failed.error.to_string().starts_with("the run ended before it was to: jumps accumulate at t = 1.35"));
+    /// ```
+    ///
+    /// # Errors
+    /// [`Failed`], of [`ErrorKind::Unfinished`], with the trajectory.
+    pub fn complete(self) -> Result<Self, Box<Failed<A>>> {
+        if self.stop.is_asked() {
+            return Ok(self);
+        }
+        let Self { trajectory, stop, stats, mode, state, .. } = self;
+        let place = Place::new(trajectory.end().seconds(), mode, None::<A::Edge>, &state);
+        let error = Error::new(ErrorKind::Unfinished, place).noting(Some(stop.to_string()));
+        Err(Box::new(Failed { error, trajectory, stats }))
+    }
+}
+
+/// How a driven run ended.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation, Stop};
+/// let tank = Hybrid::new()
+///     .mode("fill", |_t, _x: &f64| 1.0)
+///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
+/// let end = Simulation::of(&tank).drive("fill", 0.0, 0.0..5.0, &mut ())?;
+/// assert_eq!((end.stop, end.time.seconds(), end.jumps, end.mode), (Stop::Time, 5.0, 2, "fill"));
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[non_exhaustive]
+pub struct Ending<A: Automaton> {
+    /// Why it ended.
+    pub stop: Stop<A::Edge>,
+    /// What it cost.
+    pub stats: Stats,
+    /// When it ended.
+    pub time: Time,
+    /// How many jumps were made.
+    pub jumps: usize,
+    /// The mode at the end.
+    pub mode: A::Mode,
+    /// The state at the end.
+    pub state: A::State,
+    /// Which limits of jumps that accumulate it went beyond.
+    pub limits: Limits,
+}
+
+/// A run that failed, and what it had until then.
+///
+/// ```
+/// use saltus::{ErrorKind, Hybrid, Simulation};
+/// // x' = x² from 1 is infinite at t = 1.
+/// let growth = Hybrid::new().mode("grow", |_t, x: &f64| x * x);
+/// let failed = Simulation::of(&growth).run("grow", 1.0, 0.0..2.0).unwrap_err();
+/// assert_eq!(failed.error.kind(), ErrorKind::Flow);
+/// assert!((failed.trajectory.at(0.5).unwrap() - 2.0).abs() < 1e-6);
+/// ```
+pub struct Failed<A: Automaton> {
+    /// What went wrong.
+    pub error: Error,
+    /// The trajectory up to the failure.
+    pub trajectory: Trajectory<A>,
+    /// What it cost.
+    pub stats: Stats,
+}
+
+shown!(Run { stop, mode, state, limits, stats, trajectory });
+shown!(Ending { stop, time, jumps, mode, state, limits, stats });
+
+impl<A: Automaton> From<Box<Failed<A>>> for Error {
+    fn from(failed: Box<Failed<A>>) -> Self {
+        failed.error
+    }
+}
+
+impl<A: Automaton> fmt::Display for Failed<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl<A: Automaton> fmt::Debug for Failed<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.error, f)
+    }
+}
+
+impl<A: Automaton> std::error::Error for Failed<A> {}
