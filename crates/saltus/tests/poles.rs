@@ -9,7 +9,7 @@ use saltus::cross::Evidence;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
 
 /// The times of the jumps where `guard` of time falls, and of the doubts that its continuity leaves.
-fn falls(guard: impl Fn(f64) -> f64, start: f64, span: f64) -> (Vec<f64>, Vec<f64>) {
+fn falls(guard: impl Fn(f64) -> f64 + Send + Sync, start: f64, span: f64) -> (Vec<f64>, Vec<f64>) {
     let clock = Hybrid::new()
         .mode("run", |_t, _x: &f64| 1.0)
         .edge("run", "run", move |t, _x| guard(t), |_t, x| *x)
