@@ -152,7 +152,9 @@ impl<A: Automaton> Observer<A> for Certificate<A> {
         match inspection.evidence {
             Evidence::Excluded => self.row(inspection.edge).excluded += 1,
             Evidence::Isolated => self.row(inspection.edge).isolated += 1,
-            Evidence::Rounding { .. } | Evidence::Unresolved { .. } => self.doubts.add(inspection),
+            Evidence::Rounding { .. } | Evidence::Unresolved { .. } | Evidence::Discontinuous { .. } => {
+                self.doubts.add(inspection);
+            }
         }
     }
 }

@@ -92,7 +92,9 @@ impl<A: Automaton> Inspection<A> {
 /// From when to when a doubt lasts.
 const fn when(evidence: Evidence) -> Option<(f64, f64)> {
     match evidence {
-        Evidence::Rounding { from, to } | Evidence::Unresolved { from, to } => Some((from, to)),
+        Evidence::Rounding { from, to } | Evidence::Unresolved { from, to } | Evidence::Discontinuous { from, to } => {
+            Some((from, to))
+        }
         Evidence::Excluded | Evidence::Isolated => None,
     }
 }
@@ -102,6 +104,7 @@ const fn between(evidence: Evidence, from: f64, to: f64) -> Evidence {
     match evidence {
         Evidence::Rounding { .. } => Evidence::Rounding { from, to },
         Evidence::Unresolved { .. } => Evidence::Unresolved { from, to },
+        Evidence::Discontinuous { .. } => Evidence::Discontinuous { from, to },
         known => known,
     }
 }
@@ -130,6 +133,10 @@ impl<A: Automaton> fmt::Display for Inspection<A> {
             Evidence::Unresolved { .. } => {
                 "its guard varies too fast to be followed, and a crossing may have been missed. \
                  Shorten Simulation::longest_step, or give the guard a slower form"
+            }
+            Evidence::Discontinuous { .. } => {
+                "its guard changes sign without coming near zero: a pole is no crossing, a leap is taken for one. \
+                 Write the guard so that it is continuous"
             }
         })
     }

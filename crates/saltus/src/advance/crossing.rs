@@ -3,8 +3,7 @@
 use crate::automaton::Automaton;
 use crate::copies::copied;
 use crate::cross::{
-    Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step,
-    settle,
+    Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::{Inspection, Observer};
@@ -57,7 +56,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
                 (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
                 (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
-                _ => first_fall_on_step(&mut above, limit, start, bend),
+                _ => first_fall_on_arc(&mut above, limit, start, bend, resolution(now.seconds().abs() + limit)),
             };
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, evidence } =

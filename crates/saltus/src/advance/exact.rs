@@ -3,7 +3,7 @@
 use std::cell::LazyCell;
 
 use crate::automaton::Automaton;
-use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall, narrowed, settle};
+use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
 use crate::ending::Stop;
 use crate::error::Error;
 use crate::observe::Observer;
@@ -114,7 +114,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 *count += 1;
                 automaton.guard(edge, now.after(s).seconds(), &at(s))
             };
-            let searched = first_fall(|s| guard(from + s) - level, to - from, start)
+            let tick = resolution(now.seconds().abs() + to);
+            let searched = first_fall_on_arc(&mut |s| guard(from + s) - level, to - from, start, 0.0, tick)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));

@@ -74,13 +74,21 @@ pub enum Evidence {
         /// Where it ends.
         to: f64,
     },
+    /// Between these times, some thousand roundings apart, the guard changes its sign without coming near zero. At a pole, where it is larger the nearer it
+    /// is looked at, that is no crossing; a leap is taken for one.
+    Discontinuous {
+        /// Shortly before.
+        from: f64,
+        /// Shortly after.
+        to: f64,
+    },
 }
 
 impl Evidence {
     /// Whether a crossing may have been missed.
     #[must_use]
     pub const fn is_doubtful(&self) -> bool {
-        matches!(self, Self::Rounding { .. } | Self::Unresolved { .. })
+        matches!(self, Self::Rounding { .. } | Self::Unresolved { .. } | Self::Discontinuous { .. })
     }
 
     /// The weaker of two.
@@ -90,10 +98,12 @@ impl Evidence {
             Self::Isolated => 1,
             Self::Rounding { .. } => 2,
             Self::Unresolved { .. } => 3,
+            Self::Discontinuous { .. } => 4,
         };
         match (self, other) {
             (Self::Rounding { from, .. }, Self::Rounding { to, .. }) => Self::Rounding { from, to },
             (Self::Unresolved { from, .. }, Self::Unresolved { to, .. }) => Self::Unresolved { from, to },
+            (Self::Discontinuous { from, .. }, Self::Discontinuous { to, .. }) => Self::Discontinuous { from, to },
             _ if rank(&other) > rank(&self) => other,
             _ => self,
         }
@@ -104,6 +114,7 @@ impl Evidence {
         match self {
             Self::Rounding { from, to } => Self::Rounding { from: from + s, to: to + s },
             Self::Unresolved { from, to } => Self::Unresolved { from: from + s, to: to + s },
+            Self::Discontinuous { from, to } => Self::Discontinuous { from: from + s, to: to + s },
             other => other,
         }
     }
@@ -155,17 +166,18 @@ pub struct Undefined(pub f64);
 /// # Errors
 /// [`Undefined`] if the guard is not a number somewhere before its first fall.
 pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) -> Result<Searched, Undefined> {
-    Search::new(&mut guard, span, 0.0).first_fall(start, None)
+    Search::new(&mut guard, span, 0.0, 0.0).first_fall(start, None)
 }
 
-/// The same for a guard on the dense output of a step, which bends by `bend` over it.
-pub(crate) fn first_fall_on_step(
+/// The same for a guard along an arc, where times are `tick` apart; on the dense output of a step it bends by `bend`.
+pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
     start: Start,
     bend: f64,
+    tick: f64,
 ) -> Result<Searched, Undefined> {
-    Search::new(guard, span, bend).first_fall(start, None)
+    Search::new(guard, span, bend, tick).first_fall(start, None)
 }
 
 /// The same for a guard on a step that is known to be the polynomial `p(s / span)` to within `margin`; where that decides, `guard` is not asked.
@@ -181,11 +193,11 @@ pub(crate) fn first_fall_of_polynomial(
         // Away from the wall only the change counts, and it carries no rounding of the value at the wall.
         let change = p.less_start();
         let margin = 8.0 * f64::EPSILON * change.scale();
-        Search::new(guard, span, bend).first_fall(start, Some((change, margin)))
+        Search::new(guard, span, bend, 0.0).first_fall(start, Some((change, margin)))
     } else if p.shape(margin) == Shape::Above {
         Ok(Searched::solved(None))
     } else {
-        Search::new(guard, span, bend).first_fall(start, Some((*p, margin)))
+        Search::new(guard, span, bend, 0.0).first_fall(start, Some((*p, margin)))
     }
 }
 

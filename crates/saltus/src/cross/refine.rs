@@ -1,6 +1,6 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
-use super::search::{AT_START, Search};
+use super::search::{AT_START, ROUNDING, Search};
 use super::{Crossing, Undefined};
 
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
@@ -47,7 +47,49 @@ pub(crate) fn narrowed(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64
     (a, b)
 }
 
+/// How a guard comes from one side of zero to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passage {
+    /// Through zero: the nearer, the smaller it is.
+    Root,
+    /// Through infinity: the nearer, the larger it is.
+    Pole,
+    /// At once, from one value to another.
+    Leap,
+}
+
+/// A guard is looked at so many times farther from its change of sign than where that is seen: a root of up to the fourth order has grown at least fourfold
+/// there, and so has shrunk what comes from a pole of the order 1/5 and higher.
+const FARTHER: f64 = 1024.0;
+/// What a guard grows or shrinks by, by then.
+const CLEARLY: f64 = 4.0;
+
 impl Search<'_> {
+    /// How far from its change of sign between `a` and `b` a guard is looked at, to see how it comes to that.
+    pub(super) fn farther(&self, a: f64, b: f64) -> f64 {
+        FARTHER * (b - a).max(self.tick)
+    }
+
+    /// How the guard changes its sign between the neighbouring times `a` and `b`.
+    pub(super) fn passage(&mut self, a: f64, b: f64) -> Result<Passage, Undefined> {
+        let near = self.value(a)?.abs() + self.value(b)?.abs();
+        if near == f64::INFINITY {
+            return Ok(Passage::Pole);
+        }
+        if near <= ROUNDING * self.largest() {
+            return Ok(Passage::Root);
+        }
+        let by = self.farther(a, b);
+        let far = (self.guard)((a - by).max(0.0)).abs() + (self.guard)(b + by).abs();
+        Ok(if far > CLEARLY * near {
+            Passage::Root
+        } else if CLEARLY * far < near {
+            Passage::Pole
+        } else {
+            Passage::Leap
+        })
+    }
+
     /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than
     /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
     pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {

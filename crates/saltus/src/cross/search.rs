@@ -4,6 +4,7 @@ use crate::poly::{Bernstein, Shape};
 
 use super::departure::Departure;
 use super::looks::{Look, order};
+use super::refine::Passage;
 use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
 
 /// Halvings after which signs at the ends decide.
@@ -13,7 +14,7 @@ pub(super) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
 /// An interval that holds no more numbers than this is looked at number by number.
 const FEW: f64 = 64.0;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
-const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
+pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
 /// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
 /// higher powers carry the error of the step and the rounding of its stages.
 pub(crate) const ROUGH: f64 = 1e-6;
@@ -27,6 +28,8 @@ const SURELY: f64 = 1024.0;
 pub(super) struct Search<'a> {
     pub(super) guard: &'a mut dyn FnMut(f64) -> f64,
     pub(super) span: f64,
+    /// The spacing of the guard's own time, which may be coarser than that of numbers within the interval.
+    pub(super) tick: f64,
     /// Whether the root at the start is spent.
     pub(super) spent: bool,
     /// The guard's value at a spent start.
@@ -93,11 +96,12 @@ pub(super) enum Part {
 }
 
 impl<'a> Search<'a> {
-    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it.
-    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64) -> Self {
+    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it, and sees times that are `tick` apart.
+    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64, tick: f64) -> Self {
         Self {
             guard,
             span,
+            tick,
             spent: false,
             base: 0.0,
             departure: None,
@@ -123,12 +127,34 @@ impl<'a> Search<'a> {
         let side = self.side_at(start)?;
         let margin = known.map_or(f64::INFINITY, |(_, margin)| margin);
         let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
-        let fall = match self.part(&all, side)? {
-            Part::None(_) => None,
-            Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
-            Part::Hidden(near) => Some(Crossing::after(self.inside_near(near)?)),
-            Part::Fall { near: Some(near), .. } => settle(&mut self.guard, near),
-            Part::Fall { a, b, near: None } => Some(self.refined(a, b)?),
+        let mut part = self.part(&all, side)?;
+        let fall = loop {
+            break match part {
+                Part::None(_) => None,
+                Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
+                Part::Hidden(near) => Some(Crossing::after(self.inside_near(near)?)),
+                Part::Fall { near: Some(near), .. } => settle(&mut self.guard, near),
+                Part::Fall { a, b, near: None } => {
+                    let crossing = self.refined(a, b)?;
+                    let Crossing { inside, outside, .. } = crossing;
+                    let passage = self.passage(inside, outside)?;
+                    if passage != Passage::Root {
+                        let by = self.farther(inside, outside);
+                        self.weaken(Evidence::Discontinuous { from: (inside - by).max(0.0), to: outside + by });
+                    }
+                    if passage == Passage::Pole {
+                        if outside >= self.span {
+                            break None;
+                        }
+                        self.flat = None;
+                        let rest =
+                            Stretch { a: outside, b: self.span, depth: DEEPEST, margin: f64::INFINITY, known: None };
+                        part = self.part(&rest, Side::Outside)?;
+                        continue;
+                    }
+                    Some(crossing)
+                }
+            };
         };
         if fall.is_some() {
             self.weaken(Evidence::Isolated);
@@ -159,6 +185,11 @@ impl<'a> Search<'a> {
             }
         }
         Side::Wall
+    }
+
+    /// The largest magnitude of the guard met so far.
+    pub(super) fn largest(&self) -> f64 {
+        self.largest
     }
 
     pub(super) fn weaken(&mut self, evidence: Evidence) {

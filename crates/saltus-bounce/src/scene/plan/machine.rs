@@ -418,6 +418,7 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
             let times = doubt.doubt().unwrap_or_default();
             let why = match doubt.evidence {
                 Evidence::Rounding { .. } => "rounding hides whether it came to that",
+                Evidence::Discontinuous { .. } => "what decides it is not continuous",
                 _ => "the search for it was given up",
             };
             format!("{name} in mode {mode}, {:.9} s to {:.9} s: {why}", times.start, times.end)
