@@ -349,8 +349,8 @@ struct Closer<D> {
 /// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
 /// stands and any other is infinite, which is an error.
 #[inline]
-pub(super) fn remaining(clock: &Span) -> f64 {
-    clock.end.since(clock.now).min(LAST - clock.now.seconds())
+pub(super) fn remaining(span: &Span) -> f64 {
+    span.end.since(span.now).min(LAST - span.now.seconds())
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
