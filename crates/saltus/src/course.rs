@@ -96,6 +96,7 @@ enum Next<A: Automaton> {
     ))
 )]
 pub struct Checkpoint<A: Automaton> {
+    #[cfg_attr(not(feature = "serde"), allow(dead_code))] // what is written and read
     format: Format,
     mode: A::Mode,
     state: A::State,

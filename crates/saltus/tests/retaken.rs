@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::step::Stepper;
-use saltus::{Dop853, Entry, Hybrid, Rodas5P, Simulation, Stop, Tsit5};
+use saltus::{Dop853, Entry, ErrorKind, Hybrid, Polynomial, Rodas5P, Simulation, Stop, Tsit5};
 
 type Counter<'a> = Hybrid<'a, f64>;
 
@@ -36,6 +36,30 @@ proptest! {
         let run = Simulation::of(&wave).run("run", 0.0, 0.0..end).unwrap();
         prop_assert_eq!(run.stop, Stop::Time);
         prop_assert_eq!(run.trajectory.jumps().len() as f64, turns(end) - turns(0.0));
+    }
+
+    /// A ball whose reset forgets to turn it round is refused at the impact; where the edge waits, it falls on and is counted once.
+    #[test]
+    fn a_reset_that_does_not_turn_the_motion_is_refused(
+        kept in 0.01..1.5_f64, height in -3.0..3.0_f64, affine: bool, solved: bool, elsewhere in -10.0..10.0_f64,
+    ) {
+        let height = 10.0_f64.powf(height);
+        let ball = |entry| {
+            let ball = Hybrid::new()
+                .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+                .edge("flight", "flight", move |_t, x| x[0] - elsewhere, move |_t, x| [x[0], kept * x[1]])
+                .entry("flight", "flight", entry);
+            let ball = if affine { ball.affine("flight", "flight") } else { ball };
+            if solved { ball.exact("flight", |_t, x| Polynomial::from([*x, [x[1], -9.81], [-4.905, 0.0]])) } else { ball }
+        };
+        let start = [elsewhere + height, 0.0];
+        let impact = (2.0 * height / 9.81).sqrt();
+        let refused = Simulation::of(&ball(Entry::Refuse)).run("flight", start, 0.0..3.0 * impact).unwrap_err().error;
+        prop_assert_eq!(refused.kind(), ErrorKind::Entry);
+        prop_assert!((refused.t() - impact).abs() < 1e-6 * impact, "{refused}");
+        let waiting = ball(Entry::Wait);
+        let run = Simulation::of(&waiting).run("flight", start, 0.0..3.0 * impact).unwrap();
+        prop_assert_eq!((run.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
     }
 
     /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other: each once, the earlier one first.

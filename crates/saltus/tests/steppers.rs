@@ -6,7 +6,7 @@
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::step::{Dop853, Rodas5P, Stepper, Trial, Tsit5};
-use saltus::{Coords, Hybrid, Run, Simulation, State, Stop};
+use saltus::{Coords, Entry, Hybrid, Run, Simulation, State, Stop};
 
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
 fn run<'b, S: State>(
@@ -262,7 +262,8 @@ fn a_dense_output_may_be_a_straight_line() {
     let through = Hybrid::new()
         .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
         .edge("flight", "flight", |_t, x| x[0], |_t, _x| [0.0, -0.1])
-        .affine("flight", "flight");
+        .affine("flight", "flight")
+        .entry("flight", "flight", Entry::Wait);
     let end = Simulation::of(&through).stepper(Heun).tolerance(1e-4).longest_step(1e-3).most_jumps(3);
     let end = end.run("flight", [1.0, 0.0], 0.0..0.6).unwrap();
     assert_eq!((end.stop, end.trajectory.jumps().len()), (Stop::Time, 1));

@@ -127,6 +127,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         sum * (f64::EPSILON / NUDGE)
     }
 
+    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
+    pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const STEPS: f64 = 1024.0;
+        let tolerance = self.options.tolerance;
+        let mut sum = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
+        for k in 0..x.len() {
+            self.memory.stats.guards += 1;
+            let by = |i: usize| if i == k { tolerance.allowed(x.get(i), x.get(i)) } else { 0.0 };
+            let change = (self.automaton.guard(edge, t, &x.with(|i| x.get(i) + by(i))) - g).abs();
+            sum += if change.is_finite() { change } else { 0.0 };
+        }
+        STEPS * sum
+    }
+
     /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
     fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const SOME: f64 = 1024.0;

@@ -12,11 +12,11 @@ pub(crate) use series::Held;
 
 use std::ops::ControlFlow;
 
-use crate::automaton::Automaton;
+use crate::automaton::{Automaton, Entry};
 use crate::control::Controller;
 use crate::cross::Start;
 use crate::ending::{Stats, Stop};
-use crate::error::Error;
+use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::series::Tape;
 use crate::simulation::Options;
@@ -63,6 +63,9 @@ struct Spent<E> {
 
 /// How many edges that were taken at one time, and go on falling, are remembered.
 const MOST_IDLE: usize = 16;
+
+/// Why a guard below zero at the end of an arc is one at its entry.
+const FELL_ON: &str = "its guard goes on falling after its own reset";
 
 /// An arc this small a part of the longest one is short.
 const SHORT: f64 = 1e-4;
@@ -276,12 +279,47 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 Solution::Steps => self.stepped(mode, *x, *clock, true, observer),
             }
         };
-        match end? {
+        let end = end?;
+        self.stayed_inside(mode, x, now, &end)?;
+        match end {
             ArcEnd::Stop { stop: Stop::Time, state, .. } => {
                 Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state })
             }
             end => Ok(end),
         }
+    }
+
+    /// Whether the edge whose jump led to this arc's start has let the state into the mode: a guard that never rose from its spent root, and is below zero at
+    /// the arc's end, fell on from the start, which is a negative guard at entry.
+    #[inline]
+    fn stayed_inside(&mut self, mode: A::Mode, x: &A::State, began: Time, end: &ArcEnd<A>) -> Result<(), Error> {
+        let (taken, time, state) = match end {
+            ArcEnd::Crossing { edge, time, before } => (Some(*edge), *time, before),
+            ArcEnd::Stop { time, state, .. } => (None, *time, state),
+        };
+        match self.memory.spent {
+            Some(Spent { edge, .. }) if Some(edge) != taken && self.automaton.edges(mode).iter().any(|e| e == edge) => {
+                self.fell_on(mode, edge, (began.seconds(), x), (time.seconds(), state))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// An error where the guard of `edge` is below zero at the end of an arc by more than rounding and the tolerance leave open, and its edge refuses that.
+    fn fell_on(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        (began, x): (f64, &A::State),
+        (t, state): (f64, &A::State),
+    ) -> Result<(), Error> {
+        self.memory.stats.guards += 1;
+        let g = self.automaton.guard(edge, t, state);
+        let refuses = matches!(self.automaton.about(edge).entry, Entry::Refuse);
+        if g >= 0.0 || !refuses || -g <= self.within_tolerance(edge, t, state, g) {
+            return Ok(());
+        }
+        Err(Error::new(ErrorKind::Entry, Place::new(began, mode, Some(edge), x)).noting(Some(FELL_ON.to_owned())))
     }
 
     /// How the search for `edge` starts on the first piece of an arc.
