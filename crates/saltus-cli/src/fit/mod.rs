@@ -182,5 +182,11 @@ fn fit(args: &args::Fit) -> Fit {
     if let Some(gravity) = args.gravity {
         fit = fit.gravity(gravity);
     }
+    if let Some(drag) = args.drag {
+        fit = fit.drag(drag);
+    }
+    if let Some(sigma) = args.sigma_zero {
+        fit = fit.sigma_zero(sigma);
+    }
     fit
 }

@@ -1,5 +1,6 @@
 //! The models of motion: what the heights and times of a bouncing ball should be.
 
+mod altered;
 mod contacts;
 mod drag;
 mod dual;
@@ -12,6 +13,7 @@ mod places;
 mod problem;
 mod trajectory;
 
+pub(crate) use altered::{raised, released_higher, without_air};
 pub(crate) use contacts::Contacts;
 pub(crate) use drag::Air;
 pub(crate) use dual::Dual;
