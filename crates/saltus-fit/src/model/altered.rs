@@ -6,9 +6,11 @@ use crate::evidence::{Evidence, TrialEvidence};
 /// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many rounds: each leaves a tenth of the error at most.
 const ROUNDS: usize = 12;
 
-/// With heights read higher by so much, m.
+/// With heights read higher by so much, m; lower by half the least of them at most, since the ball did leave the floor.
 pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     let mut altered = evidence.clone();
+    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
+    let by = by.max(-0.5 * read.fold(f64::INFINITY, f64::min));
     for trial in &mut altered.trials {
         trial.heights.iter_mut().for_each(|h| h.1 += by);
         trial.release_height.iter_mut().for_each(|h| h.0 += by);

@@ -54,11 +54,11 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     };
     let mut shares = Vec::new();
     let zero_m = if has(fits.table, Readings::Heights) { stated.zero() } else { 0.0 };
-    if zero_m > 0.0
-        && let Some(shift) = shift(&raised(fits.evidence, zero_m))
-    {
-        let share = NORMAL * shift.abs();
-        shares.push(([share; 2], Widening::Zero { zero_m, share }));
+    if zero_m > 0.0 {
+        // Low heights bend the COR over the zero: both ends are fitted.
+        let ends = [-NORMAL * zero_m, NORMAL * zero_m].map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0));
+        let (low, high) = (-ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
+        shares.push(([low, high], Widening::Zero { zero_m, share: low.max(high) }));
     }
     let sigma_m = fits.sigma_height.value;
     if let (Some(_), Some(shift)) = (&fits.joint, shift(&released_higher(fits.evidence, sigma_m))) {
