@@ -161,9 +161,10 @@ pub(crate) struct Fit {
     /// the speed of impact.
     #[arg(long, value_name = "MODEL", value_parser = clap::builder::PossibleValuesParser::new(CorModel::ALL.map(CorModel::name)))]
     pub(crate) model: Option<String>,
-    /// The diameter of the ball, such as `4cm`: the zero of the heights can be off by no more, and the interval allows for that; without it, 6.7cm.
-    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "cm"))]
-    pub(crate) ball: Option<f64>,
+    /// The ball: its name, which tells its size and its drag, or its diameter, such as `4cm`. Without it the interval allows for a zero of the heights
+    /// anywhere on a tennis ball, and for the drag of a table-tennis ball.
+    #[arg(long, value_name = "NAME|LENGTH", value_parser = ball)]
+    pub(crate) ball: Option<Ball>,
     /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them, with '=': `--losses=huber`.
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
@@ -373,6 +374,31 @@ fn at_least_zero(
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     let small = small(quantity, usual);
     move |text| if text.trim().parse() == Ok(0.0) { Ok(0.0) } else { small(text) }
+}
+
+/// What is stated of the ball.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Ball {
+    Kind(saltus_fit::Ball),
+    Diameter(f64),
+}
+
+fn ball(text: &str) -> Result<Ball, String> {
+    let name = match text.trim().to_lowercase().replace([' ', '_'], "-") {
+        name if ["pingpong", "ping-pong"].contains(&name.as_str()) => "table-tennis".to_owned(),
+        name if name == "soccer" => "football".to_owned(),
+        name => name,
+    };
+    if let Some(kind) = saltus_fit::Ball::ALL.into_iter().find(|kind| *kind == name.as_str()) {
+        return Ok(Ball::Kind(kind));
+    }
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        let known = saltus_fit::Ball::ALL.map(saltus_fit::Ball::name).join(", ");
+        return Err(format!(
+            "'{text}' is no ball that is known: use one of {known}, or give a diameter, such as '4 cm', and --drag"
+        ));
+    }
+    small(Quantity::Length, "cm")(text).map(Ball::Diameter)
 }
 
 /// An acceleration; a bare number is in m/s².

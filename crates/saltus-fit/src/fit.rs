@@ -4,8 +4,8 @@ use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::finding::FindingKind;
-use crate::model::{Contacts, Heights, STANDARD_GRAVITY, without_air};
-use crate::quantity::{CorModel, Loss, Source, Sourced};
+use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
+use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
 use crate::read::{Reading, Table};
 use crate::report::{Extras, Group, Report};
 use crate::solve::fits::{Fits, Known};
@@ -13,11 +13,6 @@ use crate::solve::one::OneKind;
 use crate::solve::series::{self, Series};
 use crate::solve::{bootstrap, kind, outliers, tolerance};
 use crate::verdict::{self, Stated};
-
-/// The COR without the air is found when it moves by less than this: a thousandth of the best error there is.
-const SETTLED: f64 = 1e-8;
-/// What drag does to the readings hardly depends on the COR: a round leaves less than a fifth of the error for k h below 0.3, so 30 are plenty.
-const ROUNDS: usize = 30;
 
 /// What is known beside the table, and the fit itself.
 ///
@@ -87,8 +82,23 @@ impl Fit {
         self
     }
 
+    /// The kind of ball: it states the diameter and the drag.
+    ///
+    /// ```
+    /// use saltus_fit::{Ball, Fit, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?;
+    /// let cor = Fit::new().kind(Ball::Squash).run(&table)?.cor().copied().expect("a COR");
+    /// assert!((cor.value - 0.808).abs() < 0.001);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn kind(self, ball: Ball) -> Self {
+        self.ball(ball.diameter()).drag(ball.drag())
+    }
+
     /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion is
-    /// fitted with it, and nothing is allowed for beside it. Without it that of an ordinary ball, 0 to 0.022, is allowed for in the interval.
+    /// fitted with it, and nothing is allowed for beside it. Without it any up to that of a
+    /// table-tennis ball is allowed for in the interval, as far as the readings do not rule it out.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -210,7 +220,10 @@ impl Fit {
         let known = self.known(table);
         let table = &*table
             .at_gravity(known.gravity.value, known.sigma_time.map_or(<Contacts as OneKind>::ASSUMED, |s| s.value));
-        let evidence = self.without_air(table, self.evidence(table, &known)?, &known)?;
+        let mut evidence = self.evidence(table, &known)?;
+        if let Some(drag) = self.drag.filter(|drag| *drag > 0.0) {
+            evidence = verdict::in_a_vacuum(table, evidence, (&known, drag))?;
+        }
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()
             && let Some(series) = series::fit(table, !self.no_repair, self.drag)?
@@ -255,22 +268,6 @@ impl Fit {
             evidence.trials.iter_mut().for_each(|t| t.added_up = true);
         }
         Ok(evidence)
-    }
-
-    /// The readings as they would be in a vacuum, where the drag is stated: what it does depends on the COR, which is found in so many rounds.
-    fn without_air(&self, table: &Table, evidence: Evidence, known: &Known) -> Result<Evidence, FitError> {
-        let mut altered = evidence.clone();
-        let Some(drag) = self.drag.filter(|drag| *drag > 0.0) else { return Ok(altered) };
-        let mut before = f64::NAN;
-        for _ in 0..ROUNDS {
-            let Some(cor) = verdict::judged(&Fits::of(table, &altered, known, false)?) else { break };
-            if (cor.value - before).abs() < SETTLED {
-                break;
-            }
-            before = cor.value;
-            altered = without_air(&evidence, (known.gravity.value, drag), cor.value.min(1.0));
-        }
-        Ok(altered)
     }
 
     /// What is stated of what the readings cannot show.

@@ -8,8 +8,8 @@ use saltus_fit::{Cor, Fit, Table};
 const G: f64 = 9.81;
 /// A tennis ball, read anywhere on it.
 const ZERO: f64 = 0.067 / 3.464_101_6;
-/// The most drag of an ordinary ball, 1/m.
-const DRAG: f64 = 0.022;
+/// The drag of a table-tennis ball, 1/m.
+const DRAG: f64 = 0.135;
 
 /// The apexes of a ball with a COR and drag k: v² = (g/k)(1 − e^(−2kh)) falling, h = ln(1 + k v²/g)/2k rising.
 fn apexes(e: f64, k: f64, count: usize) -> Vec<f64> {

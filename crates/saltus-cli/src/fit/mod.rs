@@ -167,9 +167,11 @@ fn fit(args: &args::Fit) -> Fit {
     if let Some(model) = CorModel::ALL.into_iter().find(|m| args.model.as_deref() == Some(m.name())) {
         fit = fit.model(model);
     }
-    if let Some(ball) = args.ball {
-        fit = fit.ball(ball);
-    }
+    fit = match args.ball {
+        Some(args::Ball::Kind(kind)) => fit.kind(kind),
+        Some(args::Ball::Diameter(metres)) => fit.ball(metres),
+        None => fit,
+    };
     if let Some(rounds) = args.bootstrap {
         fit = fit.bootstrap(rounds as usize, args.seed);
     }

@@ -1,10 +1,26 @@
 //! Readings as they would have been: with another zero of the height scale, another height of release, or without the air.
 
 use super::drag::Air;
+use super::flight::FOLLOWED;
 use crate::evidence::{Evidence, TrialEvidence};
 
 /// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many rounds: each leaves a tenth of the error at most.
 const ROUNDS: usize = 12;
+
+/// So many readings tell what a change of all does to the COR; all the others would only cost time.
+const TELLING: usize = 1000;
+
+/// A part of the readings that tells what a change does to the COR: trials evenly spaced, each from its beginning.
+pub(crate) fn telling(evidence: &Evidence) -> Evidence {
+    let readings: usize = evidence.trials.iter().map(|t| t.heights.len().max(t.moments.len()).min(TELLING)).sum();
+    let trials = evidence.trials.iter().step_by(readings.div_ceil(TELLING).max(1)).cloned();
+    let mut few = Evidence { trials: trials.collect(), ..Evidence::default() };
+    for trial in &mut few.trials {
+        trial.heights.truncate(TELLING);
+        trial.moments.truncate(TELLING);
+    }
+    few
+}
 
 /// With heights read higher by so much, m; lower by half the least of them at most, since the ball did leave the floor.
 pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
@@ -44,7 +60,7 @@ fn heights(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
     let Some(&(first, height, _)) = trial.heights.first() else { return };
     let (mut at, mut both) = (first, [height; 2]);
     for reading in &mut trial.heights {
-        while at < reading.0 {
+        while at < reading.0.min(FOLLOWED) {
             both = [0, 1].map(|n| airs[n].hop(e * airs[n].speed(both[n]).value).height.value);
             at += 1;
         }
@@ -76,7 +92,7 @@ fn times(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
     });
     let [Some(mut with), Some(mut without)] = starts else { return };
     let mut by = Vec::with_capacity(last + 1);
-    for _ in 0..=last {
+    for _ in 0..=last.min(FOLLOWED) {
         let mut apexes = [0.0; 2];
         let before = with.0 - without.0;
         for (n, (time, speed)) in [&mut with, &mut without].into_iter().enumerate() {

@@ -80,8 +80,8 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
         Widening::Zero { zero_m, share } => format!(
-            "the zero of the heights is known to {} only (where on the ball were they read?), which may move the COR by {share:.3}: read the ball at \
-             rest on the floor, and state what is left (--sigma-zero)",
+            "a zero of the heights off by {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
+             state what is left (--sigma-zero)",
             length(*zero_m)
         ),
         Widening::Release { sigma_m, share } => format!(
@@ -89,8 +89,8 @@ pub(super) fn widening(widening: &Widening) -> String {
             length(*sigma_m)
         ),
         Widening::Air { most_per_m, share } => format!(
-            "the drag of an ordinary ball (up to k = {most_per_m} /m), which the readings do not show, would move the COR by {share:+.3}: \
-             state what drag the ball has (--drag)"
+            "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
+             tennis) or its drag (--drag)"
         ),
         Widening::Misfit { rms, noise, share } => format!(
             "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \
