@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use saltus_fit::{Cor, Fit, Table};
+use saltus_fit::{Cor, Fit, Table, Verdict};
 
 const G: f64 = 9.81;
 /// A tennis ball, read anywhere on it.
@@ -50,6 +50,26 @@ proptest! {
         prop_assert!(((stated.high - stated.value) / stated.standard_error.unwrap() - 1.96).abs() < 0.01);
         let unknown = cor(&read, Fit::new());
         prop_assert!(unknown.high - unknown.low > 1.5 * (stated.high - stated.low), "{unknown:?} {stated:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Three heights with a rebound missing between: a trusted interval holds the COR, and without a gap nothing is added where the readings tell.
+    #[test]
+    fn a_rebound_may_be_missing(e in 0.3f64..0.9, place in 1usize..3) {
+        let whole = apexes(e, 0.0, 4);
+        let read: Vec<f64> = (0..4).filter(|n| *n != place).map(|n| whole[n]).collect();
+        let fit = Fit::new().sigma_height(0.01).sigma_zero(0.0).drag(0.0);
+        let report = fit.run(&Table::from_heights(&read).unwrap()).unwrap();
+        let found = report.cor().unwrap();
+        let holds = found.low <= e + 1e-4 && e - 1e-4 <= found.high;
+        prop_assert!(report.verdict() != Verdict::Trusted || holds, "{e}: {report}");
+        if e > 0.55 {
+            let sound = *fit.run(&Table::from_heights(&whole).unwrap()).unwrap().cor().unwrap();
+            prop_assert!(sound.high - sound.low < 4.1 * sound.standard_error.unwrap(), "{e}: {sound:?}");
+        }
     }
 }
 

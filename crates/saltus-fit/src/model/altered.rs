@@ -34,6 +34,15 @@ pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     altered
 }
 
+/// With one rebound missing before that of this number in every trial: the later ones count one more.
+pub(crate) fn missed(evidence: &Evidence, before: usize) -> Evidence {
+    let mut altered = evidence.clone();
+    for trial in &mut altered.trials {
+        trial.heights.iter_mut().filter(|h| h.0 >= before).for_each(|h| h.0 += 1);
+    }
+    altered
+}
+
 /// With the height of release alone higher by so much, m, where its error is not stated.
 pub(crate) fn released_higher(evidence: &Evidence, by: f64) -> Evidence {
     let mut altered = evidence.clone();

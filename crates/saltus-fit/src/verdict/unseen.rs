@@ -7,7 +7,7 @@ use super::whole;
 use crate::error::FitError;
 use crate::evidence::{Evidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
-use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, raised, released_higher, telling, without_air};
+use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, missed, raised, released_higher, telling, without_air};
 use crate::quantity::{Readings, Source};
 use crate::read::Table;
 use crate::solve::fits::{Fits, Known};
@@ -23,6 +23,9 @@ const NAMED: f64 = 0.1;
 const SETTLED: f64 = 1e-7;
 /// What drag does to the readings hardly depends on the COR: a round leaves less than a fifth of the error for k h below 0.3, so these are plenty.
 const ROUNDS: usize = 30;
+
+/// A rebound that is missing is looked for among so many: more leave readings enough to tell by the comparison of models.
+const TRIED: usize = 8;
 
 /// What is stated of what the readings cannot show.
 #[derive(Clone, Copy, Debug, Default)]
@@ -104,6 +107,32 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     judgement.cor = Some(Cor { low: (cor.value - below).max(0.0), high: cor.value + above, ..cor });
     for (_, why) in shares.into_iter().filter(|([low, high], _)| *low > NAMED * below || *high > NAMED * above) {
         judgement.widen(why);
+    }
+    one_missing(judgement, fits, known);
+}
+
+/// Heights that fit as well if a rebound is missing are not known to be without a gap: the interval takes in the COR that they then have.
+///
+/// Two heights fit everything, and say nothing of it; from four rebounds on the comparison of models looks for the gap.
+fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
+    let last = fits.evidence.trials.iter().filter_map(|t| t.heights.last()).map(|h| h.0).max().unwrap_or(0);
+    let checked = fits.evidence.trials.iter().any(|t| t.heights.len() > 2);
+    if !checked || fits.times.is_some() || last > TRIED {
+        return;
+    }
+    let same = Known { sigma_height: Some(fits.sigma_height), ..*known };
+    let fit = |evidence: &Evidence| {
+        let fits = Fits::of(fits.table, evidence, &same, false).ok()?;
+        Some((judged(&fits)?.value, misfit(&fits)?))
+    };
+    let Some((_, (least, freedom))) = fit(fits.evidence) else { return };
+    let reach = if fits.sigma_height.source == Source::Scatter { student(freedom) } else { NORMAL };
+    for before in 1..=last {
+        if let Some((cor, (chi, _))) = fit(&missed(fits.evidence, before))
+            && chi <= least + reach * reach
+        {
+            judgement.reach(cor, cor, Widening::Models);
+        }
     }
 }
 
