@@ -74,8 +74,11 @@ pub(crate) enum Command {
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
     /// The tables, whose trials are fitted together; `-` for standard input.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "values", value_name = "FILE")]
     pub(crate) tables: Vec<PathBuf>,
+    /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from the release on, or times of contacts.
+    #[arg(long, value_name = "NUMBERS UNIT", conflicts_with = "tables", allow_hyphen_values = true)]
+    pub(crate) values: Option<String>,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -94,7 +97,7 @@ pub(crate) struct Fit {
     /// Write the scene anew where it exists.
     #[arg(long, requires = "scene")]
     pub(crate) force: bool,
-    /// How to write the report; docs/fitting.md describes its JSON.
+    /// How to write the report, or why there is none; docs/fitting.md describes the JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
     /// Write the report to a file; `-` for standard output.
