@@ -74,8 +74,11 @@ pub(crate) enum Command {
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
     /// The tables, whose trials are fitted together; `-` for standard input.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "values", value_name = "FILE")]
     pub(crate) tables: Vec<PathBuf>,
+    /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from the release on, or times of contacts.
+    #[arg(long, value_name = "NUMBERS UNIT", conflicts_with = "tables", allow_hyphen_values = true)]
+    pub(crate) values: Option<String>,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -94,7 +97,7 @@ pub(crate) struct Fit {
     /// Write the scene anew where it exists.
     #[arg(long, requires = "scene")]
     pub(crate) force: bool,
-    /// How to write the report; docs/fitting.md describes its JSON.
+    /// How to write the report, or why there is none; docs/fitting.md describes the JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
     /// Write the report to a file; `-` for standard output.
@@ -106,9 +109,17 @@ pub(crate) struct Fit {
     /// The standard error of a time reading, such as `10ms`.
     #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
     pub(crate) sigma_time: Option<f64>,
-    /// Gravity, such as `9.81m/s^2`; used only where heights meet times.
-    #[arg(long, value_name = "ACCELERATION", value_parser = positive(Quantity::Acceleration))]
+    /// Gravity, such as `9.81m/s^2`, m/s² where no unit is given; used only where heights meet times.
+    #[arg(long, value_name = "ACCELERATION", value_parser = gravity)]
     pub(crate) gravity: Option<f64>,
+    /// The drag coefficient k of v' = -g -+ k v² in 1/m: 0 for none, 0.016 of a squash ball, 0.13 of a table-tennis ball; without it, the interval
+    /// allows for that of ordinary balls.
+    #[arg(long, value_name = "NUMBER", value_parser = drag)]
+    pub(crate) drag: Option<f64>,
+    /// By how far the zero of the heights may be off, such as `2mm` (a standard error), or 0 where the ball at rest on the floor reads 0; without it,
+    /// the interval allows for a ball that was read anywhere on it.
+    #[arg(long, value_name = "LENGTH", value_parser = at_least_zero(Quantity::Length, "mm"))]
+    pub(crate) sigma_zero: Option<f64>,
     /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where every column names another, this one holds, with a
     /// warning.
     #[arg(long, value_name = "UNIT", value_parser = height_unit)]
@@ -153,9 +164,10 @@ pub(crate) struct Fit {
     /// the speed of impact.
     #[arg(long, value_name = "MODEL", value_parser = clap::builder::PossibleValuesParser::new(CorModel::ALL.map(CorModel::name)))]
     pub(crate) model: Option<String>,
-    /// The diameter of the ball, such as `4cm`: the zero of the height scale can be off by no more.
-    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "cm"))]
-    pub(crate) ball: Option<f64>,
+    /// The ball: its name, which tells its size and its drag, or its diameter, such as `4cm`. Without it the interval allows for a zero of the heights
+    /// anywhere on a tennis ball, and for the drag of a table-tennis ball.
+    #[arg(long, value_name = "NAME|LENGTH", value_parser = ball)]
+    pub(crate) ball: Option<Ball>,
     /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them, with '=': `--losses=huber`.
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
@@ -355,6 +367,60 @@ fn small(
             Err(format!("'{text}' has no unit: give a unit of {quantity} ({known}), such as '{text} {unit}'"))
         }
         _ => positive(text),
+    }
+}
+
+/// The same, or zero, which needs no unit.
+fn at_least_zero(
+    quantity: Quantity,
+    usual: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    let small = small(quantity, usual);
+    move |text| if text.trim().parse() == Ok(0.0) { Ok(0.0) } else { small(text) }
+}
+
+/// What is stated of the ball.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Ball {
+    Kind(saltus_fit::Ball),
+    Diameter(f64),
+}
+
+fn ball(text: &str) -> Result<Ball, String> {
+    let name = match text.trim().to_lowercase().replace([' ', '_'], "-") {
+        name if ["pingpong", "ping-pong"].contains(&name.as_str()) => "table-tennis".to_owned(),
+        name if name == "soccer" => "football".to_owned(),
+        name => name,
+    };
+    if let Some(kind) = saltus_fit::Ball::ALL.into_iter().find(|kind| *kind == name.as_str()) {
+        return Ok(Ball::Kind(kind));
+    }
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        let known = saltus_fit::Ball::ALL.map(saltus_fit::Ball::name).join(", ");
+        return Err(format!(
+            "'{text}' is no ball that is known: use one of {known}, or give a diameter, such as '4 cm', and --drag"
+        ));
+    }
+    small(Quantity::Length, "cm")(text).map(Ball::Diameter)
+}
+
+/// An acceleration; a bare number is in m/s².
+fn gravity(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(_) => positive(Quantity::Acceleration)(&format!("{} {}", text.trim(), Quantity::Acceleration.si())),
+        Err(_) => positive(Quantity::Acceleration)(text),
+    }
+}
+
+/// A drag coefficient in 1/m, with or without that unit.
+fn drag(text: &str) -> Result<f64, String> {
+    let number = text.trim();
+    let bare = number.strip_suffix(" 1/m").or(number.strip_suffix("/m")).unwrap_or(number).trim_end();
+    match bare.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => {
+            Err(format!("'{text}' is no drag coefficient: write a number in 1/m, such as 0.016 of a squash ball, or 0"))
+        }
     }
 }
 

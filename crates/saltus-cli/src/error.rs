@@ -5,16 +5,27 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
+use serde::Serialize;
+use serde_json::{Value, json};
+
 /// A failure, in words for the user; exit status 2.
 #[derive(Debug)]
 pub(crate) struct Error {
     message: String,
     broken_pipe: bool,
+    /// What a program reads instead of the message, where it is known.
+    data: Option<Value>,
 }
 
 impl Error {
     pub(crate) fn new(message: impl fmt::Display) -> Self {
-        Self { message: message.to_string(), broken_pipe: false }
+        Self { message: message.to_string(), broken_pipe: false, data: None }
+    }
+
+    /// One that has its kind, place and advice as data too.
+    #[allow(clippy::needless_pass_by_value)] // used as a function
+    pub(crate) fn data(error: impl fmt::Display + Serialize) -> Self {
+        Self { data: serde_json::to_value(&error).ok(), ..Self::new(error) }
     }
 
     /// Writing to standard output failed; that nobody reads on is no failure.
@@ -23,6 +34,7 @@ impl Error {
         Self {
             message: format!("cannot write to standard output: {error}"),
             broken_pipe: error.kind() == io::ErrorKind::BrokenPipe,
+            data: None,
         }
     }
 
@@ -30,10 +42,15 @@ impl Error {
         Self::new(format!("cannot write '{}': {error}", path.display()))
     }
 
-    /// Says it on standard error.
-    pub(crate) fn report(&self) -> ExitCode {
+    /// Says it on standard error; `json`: as an object on standard output, where the report would have been.
+    pub(crate) fn report(&self, json: bool) -> ExitCode {
         if self.broken_pipe {
             return ExitCode::SUCCESS;
+        }
+        if json {
+            let error = self.data.clone().unwrap_or_else(|| json!({ "kind": "command", "message": self.message }));
+            return crate::output::stdout(format!("{:#}\n", json!({ "schema": 1, "error": error })).as_bytes())
+                .map_or(ExitCode::FAILURE, |_| ExitCode::from(2));
         }
         anstream::eprintln!("\u{1b}[1;31merror:\u{1b}[0m {}", self.message);
         ExitCode::from(2)

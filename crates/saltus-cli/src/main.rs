@@ -29,10 +29,9 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    match run(&args::Args::parse_from(asked())) {
-        Ok(code) => code,
-        Err(error) => error.report(),
-    }
+    let args = args::Args::parse_from(asked());
+    let json = matches!(&args.command, args::Command::Fit(fit) if fit.format == args::ReportFormat::Json);
+    run(&args).unwrap_or_else(|error| error.report(json))
 }
 
 /// The arguments; `saltus help --help`, which looks for a command of that name, is `saltus help`.

@@ -110,3 +110,34 @@ fn groups_are_chosen_by_their_columns() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("wilson") && text(&output.stdout).contains("penn"));
 }
+
+#[test]
+fn numbers_on_the_line_are_a_table() {
+    let folder = TempDir::new().unwrap();
+    let output = saltus(folder.path(), &["fit", "--values", "100 64 41 26 cm", "--gravity", "9.8"]);
+    let said = text(&output.stdout);
+    assert!(
+        said.starts_with("values: TRUSTED") && said.contains("COR  0.800") && said.contains("g = 9.8 m/s² (stated)"),
+        "{said}"
+    );
+    let none = saltus(folder.path(), &["fit", "--values", "100 64 41"]);
+    assert!(none.status.code() == Some(2) && text(&none.stderr).contains("ends in no unit"), "{}", text(&none.stderr));
+}
+
+#[test]
+fn errors_are_data_where_the_report_is() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("drop.csv"), "bounce,height_cm\n0,100\n1,thirty\n").unwrap();
+    for (arguments, kind, line, advice) in [
+        (&["drop.csv"][..], "fault", Some(3), true),
+        (&["none.csv"], "fault", None, false),
+        (&["--values", "100 64 41"], "command", None, false),
+    ] {
+        let output = saltus(folder.path(), &[&["fit", "--format", "json"], arguments].concat());
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = &json["error"];
+        assert!(error["kind"] == kind && error["line"].as_u64() == line && output.status.code() == Some(2), "{json}");
+        assert!(error["message"].is_string() && !advice || error["advice"].is_string(), "{json}");
+        assert!(!text(&output.stderr).contains("error:"), "{}", text(&output.stderr));
+    }
+}

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
 /// A table that could not be read: what is wrong, in which line and column, and what to do about it.
 ///
 /// Its `Display` form shows the line itself with a caret below the cell:
@@ -30,7 +32,8 @@ pub struct TableError {
 }
 
 /// What an error asks for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 enum Kind {
     /// A file or a cell to be corrected.
     #[default]
@@ -123,6 +126,23 @@ impl TableError {
     }
 }
 
+/// `kind` (`fault`, `question`, `nothing`), `message`, `file`, `line`, `column`, of a workbook `sheet` and `cell`, and `advice`; null where there is none.
+impl Serialize for TableError {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let cell = self.place.as_ref().and_then(|place| Some((place, place.cell.as_ref()?)));
+        let mut fields = serializer.serialize_struct("TableError", 8)?;
+        fields.serialize_field("kind", &self.kind)?;
+        fields.serialize_field("message", &self.message)?;
+        fields.serialize_field("file", &self.name)?;
+        fields.serialize_field("line", &self.line())?;
+        fields.serialize_field("column", &self.column())?;
+        fields.serialize_field("sheet", &cell.map(|(_, (sheet, _))| sheet))?;
+        fields.serialize_field("cell", &cell.map(|(place, (_, index))| place.address(*index)))?;
+        fields.serialize_field("advice", &self.help)?;
+        fields.end()
+    }
+}
+
 /// The longest part of a line that is shown; a longer line is cut around the caret.
 const SHOWN: usize = 90;
 
@@ -180,6 +200,20 @@ pub enum FitError {
         /// What the solver said.
         reason: String,
     },
+}
+
+/// `kind` (`option`, `solver`) and `message`.
+impl Serialize for FitError {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let kind = match self {
+            Self::Option { .. } => "option",
+            Self::Solver { .. } => "solver",
+        };
+        let mut fields = serializer.serialize_struct("FitError", 2)?;
+        fields.serialize_field("kind", kind)?;
+        fields.serialize_field("message", &self.to_string())?;
+        fields.end()
+    }
 }
 
 impl fmt::Display for FitError {

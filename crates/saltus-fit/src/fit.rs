@@ -5,14 +5,14 @@ use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::finding::FindingKind;
 use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
-use crate::quantity::{CorModel, Loss, Source, Sourced};
+use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
 use crate::read::{Reading, Table};
 use crate::report::{Extras, Group, Report};
 use crate::solve::fits::{Fits, Known};
 use crate::solve::one::OneKind;
 use crate::solve::series::{self, Series};
 use crate::solve::{bootstrap, kind, outliers, tolerance};
-use crate::verdict;
+use crate::verdict::{self, Stated};
 
 /// What is known beside the table, and the fit itself.
 ///
@@ -43,6 +43,7 @@ pub struct Fit {
     bootstrap: Option<(usize, u64)>,
     ball: Option<f64>,
     drag: Option<f64>,
+    sigma_zero: Option<f64>,
     model: Option<CorModel>,
 }
 
@@ -81,12 +82,43 @@ impl Fit {
         self
     }
 
-    /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion of a
-    /// recording is fitted with it. Without it, it is fitted where the samples show it; else that of an ordinary ball, 0 to 0.022, is allowed for in
-    /// the interval. Heights and times without a recording are fitted as in a vacuum, whatever is stated here.
+    /// The kind of ball: it states the diameter and the drag.
+    ///
+    /// ```
+    /// use saltus_fit::{Ball, Fit, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?;
+    /// let cor = Fit::new().kind(Ball::Squash).run(&table)?.cor().copied().expect("a COR");
+    /// assert!((cor.value - 0.808).abs() < 0.001);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn kind(self, ball: Ball) -> Self {
+        self.ball(ball.diameter()).drag(ball.drag())
+    }
+
+    /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion is
+    /// fitted with it, and nothing is allowed for beside it. Without it any up to that of a
+    /// table-tennis ball is allowed for in the interval, as far as the readings do not rule it out.
+    ///
+    /// ```
+    /// use saltus_fit::{Fit, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?;
+    /// let cor = |fit: Fit| *fit.sigma_height(0.005).run(&table).unwrap().cor().unwrap();
+    /// let (unknown, none, squash) = (cor(Fit::new()), cor(Fit::new().drag(0.0)), cor(Fit::new().drag(0.016)));
+    /// assert!(unknown.high > none.high && squash.value > none.value + 0.005);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn drag(mut self, per_metre: f64) -> Self {
         self.drag = Some(per_metre);
+        self
+    }
+
+    /// By how far the zero of the height scale may be off, in metres (a standard error): 0 where heights are those of the bottom of the ball
+    /// above the floor, and that was checked with the ball at rest. Without it, that of a ball that was read anywhere on it: its diameter over √12.
+    #[must_use]
+    pub fn sigma_zero(mut self, metres: f64) -> Self {
+        self.sigma_zero = Some(metres);
         self
     }
 
@@ -188,7 +220,10 @@ impl Fit {
         let known = self.known(table);
         let table = &*table
             .at_gravity(known.gravity.value, known.sigma_time.map_or(<Contacts as OneKind>::ASSUMED, |s| s.value));
-        let evidence = self.evidence(table, &known)?;
+        let mut evidence = self.evidence(table, &known)?;
+        if let Some(drag) = self.drag.filter(|drag| *drag > 0.0) {
+            evidence = verdict::in_a_vacuum(table, evidence, (&known, drag))?;
+        }
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()
             && let Some(series) = series::fit(table, !self.no_repair, self.drag)?
@@ -197,7 +232,7 @@ impl Fit {
         }
         let mut comparison = compare::all(&fits, &self.wanted())?;
         let extras = self.extras(&fits, progress)?;
-        let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model);
+        let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model, (&known, self.stated()));
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
@@ -233,6 +268,11 @@ impl Fit {
             evidence.trials.iter_mut().for_each(|t| t.added_up = true);
         }
         Ok(evidence)
+    }
+
+    /// What is stated of what the readings cannot show.
+    fn stated(&self) -> Stated {
+        Stated { ball: self.ball, sigma_zero: self.sigma_zero, drag: self.drag }
     }
 
     /// What the caller wants of the comparison with other models.
@@ -282,7 +322,7 @@ impl Fit {
             }
         }
         // None at all is as good as any.
-        for (name, value) in [("drag", self.drag)] {
+        for (name, value) in [("drag", self.drag), ("the error of the zero", self.sigma_zero)] {
             if let Some(value) = value.filter(|v| !v.is_finite() || *v < 0.0) {
                 return Err(FitError::Option { name, value });
             }

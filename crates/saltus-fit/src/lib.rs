@@ -37,7 +37,7 @@ pub use compare::explain::{Agreement, Conflict, Generous, Hypothesis, ImpliedGra
 pub use error::{FitError, TableError};
 pub use finding::{Air, At, Basis, By, Cause, Finding, FindingKind, Gives, Missing, Need, Severity, Untried, Widening};
 pub use fit::Fit;
-pub use quantity::{CorModel, Explanation, Loss, Measured, Method, Readings, Source, Sourced};
+pub use quantity::{Ball, CorModel, Explanation, Loss, Measured, Method, Readings, Source, Sourced};
 pub use read::{Doubt, Event, LeftAside, Part, ReadOptions, Reading, Table, Trial, Why};
 pub use report::{Arc, Difference, Group, Mark, Measure, Motion, Point, Report, Residual};
 pub use solve::bootstrap::Bootstrap;

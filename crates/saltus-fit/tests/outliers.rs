@@ -146,6 +146,28 @@ fn one_odd_drop_is_left_out_and_three_are_not() {
     assert!(cor.low < 0.74 && cor.high > 0.74 && cor.high - cor.low > 0.05, "{three}");
 }
 
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config::with_cases(100))]
+
+    /// Trials that are equal to the last digit scatter by its rounding: no reading within a few roundings is left out, and two drops that differ are two
+    /// drops, whose COR is in the mean.
+    #[test]
+    fn equal_readings_are_as_good_as_their_rounding(e in 0.6f64..0.85, off in 0.02f64..0.06, equal in 6usize..10, two in 2usize..4) {
+        let step = |h: f64| (100.0 * h).round();
+        let trial = |e: f64| format!("100,{},{}\n", step(e * e), step(e.powi(4)));
+        let table = |odd: &str, count: usize| {
+            let rows = (0..equal).map(|_| trial(e)).chain((0..count).map(|_| odd.to_owned()));
+            parse(&rows.enumerate().fold("trial,h0 (cm),h1 (cm),h2 (cm)\n".to_owned(), |text, (n, row)| text + &format!("{n},{row}")))
+        };
+        // One centimetre off is a reading of a ruler.
+        let near = Fit::new().run(&table(&format!("100,{},{}\n", step(e * e) + 1.0, step(e.powi(4)) - 1.0), 2)).unwrap();
+        proptest::prop_assert!(near.repairs().is_empty(), "{near}");
+        let differ = Fit::new().run(&table(&trial(e + off), two)).unwrap();
+        let mean = (equal as f64 * e + two as f64 * (e + off)) / (equal + two) as f64;
+        proptest::prop_assert!(differ.repairs().is_empty() && (differ.cor().unwrap().value - mean).abs() < 0.006, "{mean} {differ}");
+    }
+}
+
 /// Numbers that are no bounces at all are not trusted, but for a few that agree by chance.
 #[test]
 fn noise_is_not_trusted() {

@@ -1,6 +1,7 @@
 //! `saltus fit`: a table in, a report and pictures out.
 
 mod pictures;
+mod values;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
     let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));
     progress.clear();
-    let report = report.map_err(Error::new)?;
+    let report = report.map_err(Error::data)?;
     let text = match args.format {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
@@ -86,10 +87,13 @@ fn one_to_standard_output(args: &args::Fit) -> Result<(), Error> {
 fn read(args: &args::Fit) -> Result<Table, Error> {
     let options = options(args);
     silence_workbooks();
-    if args.tables == [Path::new("-")] {
+    if let Some(line) = &args.values {
+        let text = values::table(line).map_err(Error::new)?;
+        Table::parse("values", text.as_bytes(), &options).map_err(Error::data)
+    } else if args.tables == [Path::new("-")] {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).map_err(Error::new)?;
-        Table::parse("standard input", &bytes, &options).map_err(Error::new)
+        Table::parse("standard input", &bytes, &options).map_err(Error::data)
     } else if args.tables.iter().any(|table| table == Path::new("-")) {
         Err(Error::new("standard input, '-', cannot be read together with other tables"))
     } else {
@@ -100,7 +104,7 @@ fn read(args: &args::Fit) -> Result<Table, Error> {
 /// The trials of files, together.
 pub(crate) fn tables(paths: &[PathBuf], options: &ReadOptions) -> Result<Table, Error> {
     silence_workbooks();
-    Table::read_all(paths, options).map_err(Error::new)
+    Table::read_all(paths, options).map_err(Error::data)
 }
 
 /// The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
@@ -167,9 +171,11 @@ fn fit(args: &args::Fit) -> Fit {
     if let Some(model) = CorModel::ALL.into_iter().find(|m| args.model.as_deref() == Some(m.name())) {
         fit = fit.model(model);
     }
-    if let Some(ball) = args.ball {
-        fit = fit.ball(ball);
-    }
+    fit = match args.ball {
+        Some(args::Ball::Kind(kind)) => fit.kind(kind),
+        Some(args::Ball::Diameter(metres)) => fit.ball(metres),
+        None => fit,
+    };
     if let Some(rounds) = args.bootstrap {
         fit = fit.bootstrap(rounds as usize, args.seed);
     }
@@ -181,6 +187,12 @@ fn fit(args: &args::Fit) -> Fit {
     }
     if let Some(gravity) = args.gravity {
         fit = fit.gravity(gravity);
+    }
+    if let Some(drag) = args.drag {
+        fit = fit.drag(drag);
+    }
+    if let Some(sigma) = args.sigma_zero {
+        fit = fit.sigma_zero(sigma);
     }
     fit
 }

@@ -231,6 +231,20 @@ pub enum Widening {
     },
     /// The COR of every impact.
     EveryImpact,
+    /// The zero of the height scale, which no height shows.
+    Zero {
+        /// Its standard error, m.
+        zero_m: f64,
+        /// By how much the COR may be off.
+        share: f64,
+    },
+    /// The height of release, which was taken as set.
+    Release {
+        /// Its standard error, m.
+        sigma_m: f64,
+        /// By how much the COR may be off.
+        share: f64,
+    },
     /// The drag of an ordinary ball, which the readings do not show.
     Air {
         /// The most drag that is allowed for, 1/m.

@@ -285,6 +285,10 @@ pub enum FindingKind {
         pixels: bool,
     },
     GainsSpeed,
+    /// The COR is that without the air, whose drag was stated.
+    DragHeld {
+        drag_per_m: f64,
+    },
     /// A film that keeps more of its speed than any ball.
     KeepsAll,
     /// Films of one bounce each ask for more drag than an ordinary ball has.

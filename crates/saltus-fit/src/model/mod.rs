@@ -1,5 +1,6 @@
 //! The models of motion: what the heights and times of a bouncing ball should be.
 
+mod altered;
 mod contacts;
 mod drag;
 mod dual;
@@ -12,6 +13,7 @@ mod places;
 mod problem;
 mod trajectory;
 
+pub(crate) use altered::{missed, raised, released_higher, telling, without_air};
 pub(crate) use contacts::Contacts;
 pub(crate) use drag::Air;
 pub(crate) use dual::Dual;
@@ -19,7 +21,7 @@ pub(crate) use flight::{FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, READINGS
 pub(crate) use heights::Heights;
 pub(crate) use lasting::{BEFORE, LASTING};
 pub(crate) use law::CorLaw;
-pub(crate) use physics::{LOSSLESS, ORDINARY_DRAG, PHYSICAL_DRAG, STANDARD_GRAVITY, VAGUE};
+pub(crate) use physics::{LIGHT_DRAG, LOSSLESS, ORDINARY_DRAG, PHYSICAL_DRAG, STANDARD_GRAVITY, VAGUE};
 pub(crate) use places::{FLOOR, GRAVITY, SPEED, TIME};
 pub(crate) use problem::{Bounds, Model};
 pub(crate) use trajectory::{LEAST_DRAG, Law, Sample, Trajectory};

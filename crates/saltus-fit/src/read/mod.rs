@@ -24,6 +24,7 @@ mod stray;
 mod text;
 mod units;
 mod vocabulary;
+mod words;
 mod workbook;
 
 use std::io::Read;

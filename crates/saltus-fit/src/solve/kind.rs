@@ -40,7 +40,7 @@ pub(crate) struct Kind<M> {
 }
 
 /// The standard deviation of rounding to the decimal that all these numbers are given to. A scatter that happens to be smaller claims too much.
-fn rounding(values: &[f64]) -> f64 {
+pub(crate) fn rounding(values: &[f64]) -> f64 {
     let steps = [1.0, 0.1, 0.01, 0.001, 1e-4];
     let whole = |step: &f64| values.iter().all(|v| (v / step - (v / step).round()).abs() < 1e-6);
     steps.into_iter().find(whole).map_or(0.0, |step| step / 12f64.sqrt())

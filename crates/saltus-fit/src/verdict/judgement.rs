@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::finding::{Finding, FindingKind, Severity, Widening};
+use crate::model::VAGUE;
 use crate::solve::estimate::Estimate;
 use crate::statistics::NORMAL;
 use crate::word::words;
@@ -25,7 +26,7 @@ words! {
 pub struct Cor {
     /// The COR, without unit.
     pub value: f64,
-    /// Its standard error; none where only a limit is known.
+    /// Its standard error by what the readings show; none where only a limit is known. What they cannot show is in the interval alone.
     pub standard_error: Option<f64>,
     /// The lower end of the 95 % interval.
     pub low: f64,
@@ -74,6 +75,13 @@ impl Judgement {
         if low < cor.low || high > cor.high {
             (cor.low, cor.high) = (cor.low.min(low).max(0.0), cor.high.max(high));
             self.widen(why);
+        }
+    }
+
+    /// Doubts a COR whose interval says hardly anything.
+    pub(crate) fn doubt_if_vague(&mut self) {
+        if let Some(Cor { low, high, .. }) = self.cor.filter(|cor| cor.high - cor.low > VAGUE) {
+            self.doubt(FindingKind::Vague { low, high });
         }
     }
 

@@ -3,6 +3,7 @@
 mod judgement;
 mod series;
 mod single;
+mod unseen;
 mod weigh;
 mod whole;
 
@@ -12,11 +13,12 @@ use crate::finding::{Finding, FindingKind};
 use crate::quantity::{CorModel, Readings};
 use crate::solve::choice::ModelChoice;
 use crate::solve::estimate::Estimate;
-use crate::solve::fits::Fits;
+use crate::solve::fits::{Fits, Known};
 use crate::solve::series::Series;
 
 pub(crate) use judgement::Judgement;
 pub use judgement::{Cor, Verdict};
+pub(crate) use unseen::{Stated, in_a_vacuum};
 
 /// What was said of the table when it was read, and what was done to put its readings in order.
 fn begun(fits: &Fits<'_>) -> Judgement {
@@ -30,7 +32,12 @@ fn begun(fits: &Fits<'_>) -> Judgement {
 }
 
 /// Judges heights and times, and the models beside one COR; `wanted` is the model that was asked for.
-pub(crate) fn of_readings(fits: &Fits<'_>, comparison: &mut Comparison, wanted: Option<CorModel>) -> Judgement {
+pub(crate) fn of_readings(
+    fits: &Fits<'_>,
+    comparison: &mut Comparison,
+    wanted: Option<CorModel>,
+    (known, stated): (&Known, Stated),
+) -> Judgement {
     let mut judgement = begun(fits);
     let agreement = comparison.agreement.as_ref();
     if let (Some(joint), true) = (&fits.joint, agreement.is_some_and(Agreement::rejected))
@@ -39,6 +46,11 @@ pub(crate) fn of_readings(fits: &Fits<'_>, comparison: &mut Comparison, wanted: 
         judgement.note(FindingKind::ExplanationsThinned { every: joint.thinned() });
     }
     whole::judge(&mut judgement, fits, agreement);
+    if !agreement.is_some_and(Agreement::rejected) {
+        unseen::allow(&mut judgement, fits, (known, stated));
+        judgement.doubt_if_vague();
+    }
+    unseen::drag_held(&mut judgement, stated.drag.unwrap_or(0.0));
     let compared = &mut comparison.compared;
     judgement.findings.append(&mut compared.notes);
     let doubted = weigh::models(&mut judgement, &compared.models);

@@ -2,7 +2,7 @@
 
 use super::judgement::{Cor, Judgement};
 use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
-use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG, VAGUE};
+use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG};
 use crate::quantity::{Measured, Method, Sourced};
 use crate::solve::choice::{CLEAR, ModelChoice, of_recording};
 use crate::solve::estimate::Estimate;
@@ -249,9 +249,7 @@ fn physical(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
         let gains = e.value - NORMAL * e.standard_error > 1.0;
         judgement.doubt(if gains { FindingKind::GainsSpeed } else { FindingKind::KeepsAll });
     }
-    if let Some(Cor { low, high, .. }) = judgement.cor.filter(|cor| cor.high - cor.low > VAGUE) {
-        judgement.doubt(FindingKind::Vague { low, high });
-    }
+    judgement.doubt_if_vague();
     let free = || tracks.iter().filter_map(|track| track.free_drag);
     if pooled.choice.1 {
         let drag_per_m = free().map(|drag| drag.value).fold(0.0, f64::max);

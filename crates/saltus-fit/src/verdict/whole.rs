@@ -5,7 +5,6 @@ use super::single::single;
 use crate::compare::explain::Agreement;
 use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind};
-use crate::model::VAGUE;
 use crate::quantity::{Method, Readings, Source, Sourced};
 use crate::read::Event;
 use crate::solve::fits::Fits;
@@ -39,9 +38,6 @@ pub(crate) fn judge(judgement: &mut Judgement, fits: &Fits<'_>, agreement: Optio
     match (chosen, fits.mean(Method::FirstFlight)) {
         (Some(cor), _) => {
             judgement.cor = cor;
-            if let Some(Cor { low, high, .. }) = cor.filter(|cor| cor.high - cor.low > VAGUE) {
-                judgement.doubt(FindingKind::Vague { low, high });
-            }
             match cor {
                 Some(_) => judgement.note(FindingKind::RestsOn { basis: basis(fits) }),
                 None => judgement.refuse(FindingKind::Undetermined),

@@ -62,7 +62,7 @@ impl Kind {
 pub(crate) enum Fault {
     /// Nothing.
     Sound,
-    /// Nothing, and the errors are stated.
+    /// Nothing, and all is stated: the errors of reading, that the zero is right, that there is no air.
     Stated,
     /// Readings scatter three to six times more.
     Noisy,
@@ -156,14 +156,15 @@ impl Ruler {
 
     /// What is known beside the table: nothing, or all of it.
     fn stated(&self, fault: Fault, fit: Fit) -> Fit {
-        if fault == Fault::Stated { fit.sigma_height(self.sigma) } else { fit }
+        if fault == Fault::Stated { fit.sigma_height(self.sigma).sigma_zero(0.0).drag(0.0) } else { fit }
     }
 }
 
 fn heights(ball: Ball, fault: Fault, noise: &mut Noise) -> Planted {
     let ruler = Ruler::of(fault, noise);
     let trials = if noise.uniform() < 0.4 { 3 } else { 1 };
-    let bounces = 2 + (5.0 * noise.uniform()) as usize;
+    // Of two heights nothing tells that one between them is missing: a table that can show it has three.
+    let bounces = if fault == Fault::Lost { 3 } else { 2 } + (5.0 * noise.uniform()) as usize;
     let flights = ball.flights(0.0, bounces);
     let mut text = "trial,bounce,height_cm\n".to_owned();
     for trial in 0..trials {
@@ -221,7 +222,7 @@ fn times(ball: Ball, fault: Fault, noise: &mut Noise, intervals: bool) -> Plante
             text += &format!("{trial},{},{time:.4}\n", place + 1);
         }
     }
-    let fit = if fault == Fault::Stated { Fit::new().sigma_time(sigma) } else { Fit::new() };
+    let fit = if fault == Fault::Stated { Fit::new().sigma_time(sigma).drag(0.0) } else { Fit::new() };
     Planted { text, options: ReadOptions::default(), fit, truth: ball.cors(bounces) }
 }
 

@@ -9,7 +9,7 @@ mod verdict;
 
 use std::fmt::{self, Display, Formatter};
 
-use super::numbers::duration;
+use super::numbers::{duration, length};
 use crate::finding::{Finding, FindingKind, Widening};
 
 pub(super) use names::{about, loss_words, method_about, method_short, settles, short, supposes};
@@ -79,9 +79,18 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::BothModels => "it takes in both models".to_owned(),
         Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
+        Widening::Zero { zero_m, share } => format!(
+            "a zero of the heights off by {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
+             state what is left (--sigma-zero)",
+            length(*zero_m)
+        ),
+        Widening::Release { sigma_m, share } => format!(
+            "the height of release is known to {} only, which may move the COR by {share:.3}: its own row may state its error",
+            length(*sigma_m)
+        ),
         Widening::Air { most_per_m, share } => format!(
-            "the drag of an ordinary ball (up to k = {most_per_m} /m), which the readings do not show, would make the COR higher by {share:.3}: \
-             state what drag the ball has"
+            "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
+             tennis) or its drag (--drag)"
         ),
         Widening::Misfit { rms, noise, share } => format!(
             "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \

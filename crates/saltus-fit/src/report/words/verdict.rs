@@ -234,6 +234,7 @@ fn recordings(kind: &FindingKind) -> Option<String> {
                  and heights do"
             )
         }
+        FindingKind::DragHeld { drag_per_m } => format!("the readings are taken without the air, whose drag is stated: k = {drag_per_m:.3} /m"),
         FindingKind::KeepsAll => {
             "the ball keeps more of its speed than any ball does: what was tracked is no free flight, or the picture is bent".to_owned()
         }

@@ -1,0 +1,145 @@
+//! Readings as they would have been: with another zero of the height scale, another height of release, or without the air.
+
+use super::drag::Air;
+use super::flight::FOLLOWED;
+use crate::evidence::{Evidence, TrialEvidence};
+
+/// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many rounds: each leaves a tenth of the error at most.
+const ROUNDS: usize = 12;
+
+/// So many readings tell what a change of all does to the COR; all the others would only cost time.
+const TELLING: usize = 1000;
+
+/// A part of the readings that tells what a change does to the COR: trials evenly spaced, each from its beginning.
+pub(crate) fn telling(evidence: &Evidence) -> Evidence {
+    let readings: usize = evidence.trials.iter().map(|t| t.heights.len().max(t.moments.len()).min(TELLING)).sum();
+    let trials = evidence.trials.iter().step_by(readings.div_ceil(TELLING).max(1)).cloned();
+    let mut few = Evidence { trials: trials.collect(), ..Evidence::default() };
+    for trial in &mut few.trials {
+        trial.heights.truncate(TELLING);
+        trial.moments.truncate(TELLING);
+    }
+    few
+}
+
+/// With heights read higher by so much, m; lower by half the least of them at most, since the ball did leave the floor.
+pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
+    let mut altered = evidence.clone();
+    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
+    let by = by.max(-0.5 * read.fold(f64::INFINITY, f64::min));
+    for trial in &mut altered.trials {
+        trial.heights.iter_mut().for_each(|h| h.1 += by);
+        trial.release_height.iter_mut().for_each(|h| h.0 += by);
+    }
+    altered
+}
+
+/// With one rebound missing before that of this number in every trial: the later ones count one more.
+pub(crate) fn missed(evidence: &Evidence, before: usize) -> Evidence {
+    let mut altered = evidence.clone();
+    for trial in &mut altered.trials {
+        trial.heights.iter_mut().filter(|h| h.0 >= before).for_each(|h| h.0 += 1);
+    }
+    altered
+}
+
+/// With the height of release alone higher by so much, m, where its error is not stated.
+pub(crate) fn released_higher(evidence: &Evidence, by: f64) -> Evidence {
+    let mut altered = evidence.clone();
+    for trial in &mut altered.trials {
+        trial.release_height.iter_mut().filter(|h| h.1.is_none()).for_each(|h| h.0 += by);
+    }
+    altered
+}
+
+/// Without the air: less by what drag `k`, 1/m, makes of a motion with the COR `e`.
+///
+/// The motion starts at the first height of a trial, or with its first flight, and is followed with drag and without.
+pub(crate) fn without_air(evidence: &Evidence, (gravity, drag): (f64, f64), e: f64) -> Evidence {
+    let mut altered = evidence.clone();
+    let airs = [drag, 0.0].map(|drag| Air { gravity, drag });
+    for trial in &mut altered.trials {
+        heights(trial, airs, e);
+        times(trial, airs, e);
+    }
+    altered
+}
+
+fn heights(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
+    let Some(&(first, height, _)) = trial.heights.first() else { return };
+    let (mut at, mut both) = (first, [height; 2]);
+    for reading in &mut trial.heights {
+        while at < reading.0.min(FOLLOWED) {
+            both = [0, 1].map(|n| airs[n].hop(e * airs[n].speed(both[n]).value).height.value);
+            at += 1;
+        }
+        // A ball that lies still is slowed by nothing.
+        reading.1 = (reading.1 - (both[0] - both[1])).max(0.5 * reading.1);
+    }
+}
+
+fn times(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
+    let released = trial.release_height.filter(|_| trial.release_time.is_some()).map(|h| h.0);
+    let first = trial.intervals().next();
+    let Some(last) = trial.moments.last().map(|m| m.0) else { return };
+    // The time of the first contact, and the speed with which the ball leaves it.
+    let starts = airs.map(|air| match (released, first) {
+        (Some(height), _) => {
+            let arrival = air.speed(height).value;
+            Some((air.fallen(arrival).0.value, e * arrival))
+        }
+        (None, Some((number, lasts))) => {
+            let mut speed = 0.5 * air.gravity * lasts;
+            for _ in 0..ROUNDS {
+                let hop = air.hop(speed);
+                speed *= lasts / (hop.rise.value + hop.fall.value);
+            }
+            // An interval is numbered by the contact that ends it; the motion is followed from the first contact only.
+            (number == 1).then_some((0.0, speed))
+        }
+        (None, None) => None,
+    });
+    let [Some(mut with), Some(mut without)] = starts else { return };
+    let mut by = Vec::with_capacity(last + 1);
+    for _ in 0..=last.min(FOLLOWED) {
+        let mut apexes = [0.0; 2];
+        let before = with.0 - without.0;
+        for (n, (time, speed)) in [&mut with, &mut without].into_iter().enumerate() {
+            let hop = airs[n].hop(*speed);
+            apexes[n] = *time + hop.rise.value;
+            (*time, *speed) = (apexes[n] + hop.fall.value, e * hop.arrival.value);
+        }
+        by.push((before, apexes[0] - apexes[1]));
+    }
+    for moment in &mut trial.moments {
+        if let Some(&(contact, apex)) = by.get(moment.0) {
+            moment.2 -= if moment.1 { apex } else { contact };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion with drag, taken without it, is that of the same COR in a vacuum: to first order in what is taken off, and here exactly.
+    #[test]
+    fn the_air_is_taken_off() {
+        let (e, air) = (0.8, Air { gravity: 9.81, drag: 0.05 });
+        let mut trial = TrialEvidence::default();
+        let (mut height, mut time) = (1.0, 0.3);
+        for n in 0..6 {
+            trial.heights.push((n, height, None));
+            let hop = air.hop(e * air.speed(height).value);
+            trial.moments.push((n, false, time, None));
+            (height, time) = (hop.height.value, time + hop.rise.value + hop.fall.value);
+        }
+        let evidence = Evidence { trials: vec![trial], ..Evidence::default() };
+        let altered = without_air(&evidence, (9.81, 0.05), e);
+        for (n, (number, height, _)) in altered.trials[0].heights.iter().enumerate() {
+            assert!(*number == n && (height - 0.64f64.powi(n as i32)).abs() < 1e-12, "{n}: {height}");
+        }
+        let ratios: Vec<f64> = altered.trials[0].ratios().map(|r| r.3).collect();
+        assert!(ratios.len() == 4 && ratios.iter().all(|r| (r - e).abs() < 1e-9), "{ratios:?}");
+    }
+}

@@ -1,0 +1,189 @@
+//! Cells as numbers in SI units, each with its error.
+
+use super::{Builder, Found, GRAVITY};
+use crate::error::TableError;
+use crate::read::aside::{LeftAside, Part, Why};
+use crate::read::cell::{Cell, Fault, clock};
+use crate::read::columns::Kind;
+use crate::read::grid::shown;
+use crate::read::heading::{At, What};
+use crate::read::units::Dimension;
+
+impl Builder<'_> {
+    pub(super) fn line(&self, row: usize, column: usize) -> u64 {
+        self.region.view.line(row, column)
+    }
+
+    /// The number in a cell in SI units, with its error; `None` if it is empty.
+    pub(super) fn number(&self, row: usize, column: usize) -> Result<Found, TableError> {
+        let (view, own) = (self.region.view, &self.columns.columns[column]);
+        let cell = view.cell(row, column);
+        let timed = own.unit.is_some_and(|u| u.dimension == Dimension::Time);
+        if let Some(seconds) = clock(cell).filter(|_| timed) {
+            return Ok(Some((seconds, self.sigma(row, column)?)));
+        }
+        let wrong = |message: String, help: &str| Err(view.error(row, column, message).help(help));
+        let text = shown(cell);
+        let measured = match view.read(row, column) {
+            Cell::Empty => return Ok(None),
+            Cell::Number(measured) => measured,
+            Cell::Lost | Cell::Wrong(Fault::NotFinite) => {
+                return wrong(format!("'{text}' is not a finite number"), "take the row out");
+            }
+            Cell::Words => {
+                let help = if text.contains(' ') {
+                    "write a plain number; the unit belongs in the header or behind the number, and a remark behind a '#'"
+                } else {
+                    "write a plain number; the unit belongs in the header"
+                };
+                return wrong(format!("'{text}' is not a number"), help);
+            }
+            Cell::Wrong(fault) => {
+                let (what, help) = faulty(fault);
+                return wrong(format!("'{text}' {what}"), help);
+            }
+        };
+        let unit = match (measured.unit, own.unit) {
+            (Some(unit), Some(named)) if unit.dimension != named.dimension => {
+                return wrong(
+                    format!("the unit of '{text}' is not one of {}", named.dimension.noun()),
+                    "correct the cell",
+                );
+            }
+            (Some(unit), None) if own.value().and_then(|v| v.what.dimension()).is_some_and(|d| d != unit.dimension) => {
+                return wrong(format!("the unit of '{text}' is not the quantity of its column"), "correct the cell");
+            }
+            (Some(unit), named) => {
+                let mixed = named.is_some_and(|named| named.unscaled() != unit.unscaled());
+                if mixed && !(unit.unscaled() && named.is_none()) {
+                    return wrong(
+                        format!("'{text}' is in another kind of unit than its column"),
+                        "write all numbers in one unit",
+                    );
+                }
+                unit
+            }
+            (None, Some(named)) => named,
+            (None, None) => {
+                return wrong(format!("'{text}' has no unit"), "write it behind the number, or in the header");
+            }
+        };
+        let sigma = match measured.error {
+            Some(error) => Some(unit.si(error)),
+            None => self.sigma(row, column)?,
+        };
+        let mut value = unit.si(measured.value);
+        if own.holds(What::Height) {
+            let zero = own.unit.map_or(own.zero, |named| named.si(own.zero));
+            // The difference in the column's own unit is exact where the sum of conversions is not.
+            value = if measured.unit.is_none() { unit.si(measured.value - own.zero) } else { value - zero };
+            value *= own.sign;
+        }
+        self.ranged(row, column, value, sigma)
+    }
+
+    /// A range has its middle for a reading, and half its width for an error.
+    pub(super) fn ranged(
+        &self,
+        row: usize,
+        column: usize,
+        value: f64,
+        sigma: Option<f64>,
+    ) -> Result<Found, TableError> {
+        let Some(high) = self.columns.one(&Kind::High(column)) else { return Ok(Some((value, sigma))) };
+        let Some((top, _)) = self.number(row, high)? else { return Ok(Some((value, sigma))) };
+        let half = 0.5 * (top - value);
+        if half < 0.0 {
+            return Err(self
+                .region
+                .view
+                .error(row, high, "this upper end is below the lower")
+                .help("correct the cell"));
+        }
+        Ok(Some((value + half, sigma.or(Some(half).filter(|half| *half > 0.0)))))
+    }
+
+    /// The error that a column states for a reading.
+    pub(super) fn sigma(&self, row: usize, column: usize) -> Result<Option<f64>, TableError> {
+        let own = &self.columns.columns[column];
+        let spread = || own.heading.spread.and_then(|spread| own.unit.map(|unit| unit.si(spread)));
+        let Some(index) = self.columns.one(&Kind::Error(column)) else { return Ok(spread()) };
+        match self.region.view.read(row, index) {
+            Cell::Empty | Cell::Words => Ok(spread()),
+            _ => {
+                let sigma = self.number(row, index)?.map(|(value, _)| value);
+                // The release is set, and has none.
+                if sigma == Some(0.0) && own.value().is_some_and(|v| v.at == At::Release) {
+                    return Ok(None);
+                }
+                match sigma {
+                    Some(sigma) if sigma <= 0.0 => Err(self
+                        .region
+                        .view
+                        .error(row, index, "an error must be above zero")
+                        .help("leave the cell empty if it is not known")),
+                    sigma => Ok(sigma),
+                }
+            }
+        }
+    }
+
+    pub(super) fn required(&self, row: usize, column: usize) -> Result<(f64, Option<f64>), TableError> {
+        self.number(row, column)?.ok_or_else(|| self.empty(row, column))
+    }
+
+    pub(super) fn empty(&self, row: usize, column: usize) -> TableError {
+        let view = self.region.view;
+        match shown(view.cell(row, column)) {
+            cell if cell.is_empty() => {
+                view.error(row, column, "the cell is empty").help("fill it, or take the row out")
+            }
+            cell => {
+                view.error(row, column, format!("'{cell}' is no reading")).help("write one here, or take the row out")
+            }
+        }
+    }
+
+    /// A height above the floor; a speed as the height that gives it.
+    pub(super) fn height(&self, row: usize, column: usize) -> Result<Found, TableError> {
+        let found = self.number(row, column)?;
+        if self.columns.columns[column].holds(What::Speed) {
+            return Ok(found.map(|(speed, sigma)| {
+                (0.5 * speed * speed / GRAVITY, sigma.map(|sigma| sigma * speed.abs() / GRAVITY))
+            }));
+        }
+        if found.is_some_and(|(height, _)| height < 0.0) {
+            return Err(self.region.view.error(row, column, "a height below the floor").help(
+                "heights count upwards from the floor: give what the scale reads there, such as --zero 2.5, \
+                     and --y-down if it counts downwards",
+            ));
+        }
+        Ok(found)
+    }
+
+    /// A time; zero after a time above it is one that was not heard.
+    pub(super) fn time(&mut self, trial: usize, row: usize, column: usize) -> Result<Found, TableError> {
+        let found = self.number(row, column)?;
+        let before = self.trials[trial].readings.iter().filter_map(|r| r.time).fold(0.0, f64::max);
+        if found.is_some_and(|(time, _)| time == 0.0) && before > 0.0 {
+            let line = self.line(row, column);
+            let name = shown(&self.columns.columns[column].heading.text);
+            self.aside.push(LeftAside::new(Part::Cell, name, Why::NotHeard).at(line));
+            return Ok(None);
+        }
+        Ok(found)
+    }
+}
+
+fn faulty(fault: Fault) -> (&'static str, &'static str) {
+    match fault {
+        Fault::Comma => (
+            "has a comma in a table separated by commas",
+            "write a decimal point, or separate the cells by semicolons; write no separators of thousands",
+        ),
+        Fault::Thousands => ("is not a number", "write no separators of thousands"),
+        Fault::NotFinite => ("is not a finite number", "take the row out"),
+        Fault::Turned => ("says itself that it is no reading", "take it out, or the remark"),
+        Fault::Bound => ("is a bound and no reading", "give what was read, or leave the cell empty"),
+    }
+}

@@ -1,0 +1,365 @@
+//! From rows to trials.
+
+mod cells;
+mod rows;
+
+use std::collections::HashMap;
+
+use super::aside::LeftAside;
+use super::cell::Cell;
+use super::columns::{Columns, Kind};
+use super::grid::{lines, shown};
+use super::heading::{At, What};
+use super::layout::{Layout, Track, layout, tracks};
+use super::order::{in_order, renumbered, summed};
+use super::region::Region;
+use super::rows::{Row, Rows};
+use super::samples;
+use super::stray;
+use super::units::{Scale, Unit};
+use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
+use crate::error::TableError;
+
+/// Gravity by which speeds become heights: any would do, since only their ratios count, m/s².
+const GRAVITY: f64 = 9.81;
+
+/// Everything a row needs to become readings.
+struct Builder<'a> {
+    region: &'a Region<'a>,
+    columns: &'a mut Columns,
+    layout: Layout,
+    /// The columns that tell trials apart, and those that tell what was tried.
+    keys: Vec<usize>,
+    settings: Vec<usize>,
+    trials: Vec<Trial>,
+    index: HashMap<String, usize>,
+    /// Cells that stood in the row before, where a merged cell leaves the next ones empty.
+    merged: HashMap<usize, String>,
+    /// The lines of rows of a series without a position.
+    missing: Vec<u64>,
+    aside: Vec<LeftAside>,
+    /// Trials whose times are those of the flights.
+    flights: Vec<usize>,
+}
+
+/// A reading of a cell: its number in SI units, and its error.
+type Found = Option<(f64, Option<f64>)>;
+
+/// Reads a region into trials.
+pub(super) fn table(
+    region: &Region<'_>,
+    columns: &mut Columns,
+    mut rows: Rows,
+    options: &ReadOptions,
+    metadata: Metadata,
+) -> Result<Table, TableError> {
+    let skipped = filtered(region, &mut rows, options)?;
+    if rows.rows.is_empty() {
+        if skipped > 0 {
+            let wanted: Vec<String> = options.filters.iter().map(|(n, v)| format!("{n} = {v}")).collect();
+            return Err(region
+                .error(format!("no row has {}", wanted.join(" and ")))
+                .help("check the value; without a filter every row is read"));
+        }
+        return Err(region
+            .error("the table has a header and no rows")
+            .nothing()
+            .help("add the readings below the header"));
+    }
+    floor(region, columns, &rows, options)?;
+    let tracks = tracks(columns);
+    let layout = layout(region, columns, &rows, &tracks)?;
+    let mut table = Table { metadata, ..Table::default() };
+    table.metadata.pixels |= columns.unscaled;
+    unscaled(region, columns, layout, options, &mut table.metadata)?;
+    if skipped > 0 {
+        table.notes.push(format!("{} rows kept and {skipped} left out by the filter", rows.rows.len()));
+    }
+    table.rows = rows.rows.len();
+    let mut builder = Builder {
+        region,
+        layout,
+        keys: Vec::new(),
+        settings: Vec::new(),
+        columns,
+        trials: Vec::new(),
+        index: HashMap::new(),
+        merged: HashMap::new(),
+        missing: Vec::new(),
+        aside: rows.aside.clone(),
+        flights: Vec::new(),
+    };
+    builder.keyed();
+    let flights = builder.descending(&rows, &tracks)?;
+    for (n, row) in rows.rows.iter().enumerate() {
+        for track in &tracks {
+            builder.row(n, row, track, flights)?;
+        }
+    }
+    builder.finish(options, &tracks, flights, table)
+}
+
+/// Keeps the rows that every filter asks for, and counts the others.
+fn filtered(region: &Region<'_>, rows: &mut Rows, options: &ReadOptions) -> Result<usize, TableError> {
+    let find = |(name, value): &(String, String)| {
+        let index = region.header.iter().position(|cell| cell.eq_ignore_ascii_case(name.trim()));
+        index.map(|index| (index, value.trim().to_owned())).ok_or_else(|| {
+            region
+                .error(format!("there is no column '{name}' to filter by"))
+                .help(format!("the table has {}", region.header.join(", ")))
+        })
+    };
+    let filters: Vec<(usize, String)> = options.filters.iter().map(find).collect::<Result<_, _>>()?;
+    let before = rows.rows.len();
+    rows.rows.retain(|row| filters.iter().all(|(index, value)| same(region.cell(row.at, *index), value)));
+    Ok(before - rows.rows.len())
+}
+
+/// Equal as text, or as numbers.
+fn same(cell: &str, value: &str) -> bool {
+    cell.eq_ignore_ascii_case(value)
+        || matches!((cell.parse::<f64>(), value.parse::<f64>()), (Ok(a), Ok(b)) if (a - b).abs() < f64::EPSILON)
+}
+
+/// A row that tells where the floor is gives every scale of heights its zero, and its direction.
+fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &ReadOptions) -> Result<(), TableError> {
+    let Some((row, column)) = rows.floor else { return Ok(()) };
+    let number = |row: usize| match region.view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let (Some(zero), Some(first)) = (number(row), rows.rows.iter().find_map(|r| number(r.at))) else {
+        return Err(region.view.error(row, column, "the floor is no number").help("write what the scale reads there"));
+    };
+    let down = options.down.unwrap_or(zero > first);
+    for c in columns.columns.iter_mut().filter(|c| c.holds(What::Height)) {
+        c.zero = options.zero.unwrap_or(zero);
+        c.sign = if down { -1.0 } else { 1.0 };
+    }
+    columns.notes.push(format!(
+        "the scale reads {} at the floor and counts {}",
+        region.cell(row, column),
+        if down { "downwards" } else { "upwards" }
+    ));
+    Ok(())
+}
+
+/// Heights without a scale: places on a picture need a zero, and a pixel is the error of reading one.
+fn unscaled(
+    region: &Region<'_>,
+    columns: &Columns,
+    layout: Layout,
+    options: &ReadOptions,
+    metadata: &mut Metadata,
+) -> Result<(), TableError> {
+    if !columns.unscaled || matches!(layout, Layout::Samples { .. }) {
+        return Ok(());
+    }
+    let pixels = |unit: Option<Unit>| unit.is_some_and(|u| u.scale == Scale::Pixels);
+    let place =
+        columns.values().find(|(_, c, v)| pixels(c.unit) && v.position && c.zero == 0.0 && options.zero.is_none());
+    if let Some((index, column, _)) = place {
+        let name = shown(&column.heading.text);
+        return Err(region
+            .header_error(index, format!("'{name}' holds places in pixels: at which is the floor?"))
+            .question()
+            .help("give what the scale reads at the floor, such as --zero 812, and --y-down if it counts downwards; or a row 'floor'"));
+    }
+    if columns.values().any(|(_, c, _)| pixels(c.unit)) {
+        metadata.sigma_height = metadata.sigma_height.or(Some(1.0));
+    }
+    Ok(())
+}
+
+impl Builder<'_> {
+    /// Finds the columns whose cells tell trials apart.
+    fn keyed(&mut self) {
+        let columns = &self.columns.columns;
+        let release = |n: &usize| {
+            columns[*n].value().is_some_and(|v| v.at == At::Release && v.trial.is_empty() && v.group.is_empty())
+        };
+        let all = 0..columns.len();
+        // Beside other bounces of the same row the release is one of them.
+        let drops = !matches!(self.layout, Layout::Wide);
+        self.settings = all
+            .clone()
+            .filter(|n| columns[*n].kind == Kind::Setting || drops && release(n) && self.columns.values().count() > 1)
+            .collect();
+        self.keys = all.filter(|n| columns[*n].kind == Kind::Trial || self.settings.contains(n)).collect();
+        let sure = self.columns.number().is_none_or(|(_, sure)| sure);
+        if !sure
+            && matches!(self.layout, Layout::Pairs | Layout::Wide)
+            && let Some((n, _)) = self.columns.number()
+        {
+            self.keys.insert(0, n);
+        }
+    }
+
+    /// Whether a column of times holds those of flights: within each trial they fall, as the times of contacts cannot.
+    fn descending(&mut self, rows: &Rows, tracks: &[Track]) -> Result<bool, TableError> {
+        if !matches!(self.layout, Layout::Numbered | Layout::Listed | Layout::Wide) {
+            return Ok(false);
+        }
+        let (mut count, mut falls) = (0, true);
+        for track in tracks {
+            let mut runs: HashMap<String, Vec<(usize, f64)>> = HashMap::new();
+            for (n, row) in rows.rows.iter().enumerate() {
+                let nth = track.nth.iter().filter_map(|&c| match self.columns.columns[c].value()?.at {
+                    At::Nth(bounce) if self.columns.columns[c].holds(What::Time) => Some((bounce, c)),
+                    _ => None,
+                });
+                let rowed = track.time.map(|c| (row.bounce.unwrap_or(n), c));
+                let key = if self.layout == Layout::Wide { n.to_string() } else { self.key(row) };
+                for (bounce, column) in nth.chain(rowed) {
+                    if let Some((time, _)) = self.number(row.at, column)?.filter(|(time, _)| *time > 0.0) {
+                        runs.entry(key.clone()).or_default().push((bounce, time));
+                    }
+                }
+            }
+            for run in runs.values_mut() {
+                run.sort_by_key(|(bounce, _)| *bounce);
+                count = count.max(run.len());
+                falls &= run.windows(2).all(|pair| pair[1].1 < pair[0].1);
+            }
+        }
+        // Two times may be given in either order.
+        let found = count > 2 && falls;
+        if found {
+            self.columns.notes.push("the times fall from bounce to bounce: taken as times between contacts".to_owned());
+        }
+        Ok(found)
+    }
+
+    /// What tells the trial of a row from others.
+    fn key(&self, row: &Row) -> String {
+        let mut key = row.name.clone();
+        for &index in &self.keys {
+            key.push('\u{1f}');
+            key.push_str(self.text(row.at, index));
+        }
+        key
+    }
+
+    /// The text of a cell, or of the merged cell that it is part of.
+    fn text(&self, row: usize, column: usize) -> &str {
+        match self.region.cell(row, column) {
+            "" => self.merged.get(&column).map_or("", String::as_str),
+            cell => cell,
+        }
+    }
+
+    /// What remains to be done once all rows are read.
+    fn finish(
+        self,
+        options: &ReadOptions,
+        tracks: &[Track],
+        flights: bool,
+        mut table: Table,
+    ) -> Result<Table, TableError> {
+        let what = describe(self.layout, self.columns, tracks, flights);
+        let Self { region, columns, layout, trials, missing, aside, flights, .. } = self;
+        table.notes.insert(0, format!("read as {what}"));
+        table.notes.append(&mut columns.notes);
+        table.warnings.append(&mut columns.warnings);
+        table.left_aside.extend(region.aside.iter().cloned().chain(columns.aside.drain(..)).chain(aside));
+        let column = columns.values().find(|(_, _, v)| v.what == What::Time).map_or(0, |(n, _, _)| n);
+        let key = columns.number().map_or(column, |(n, _)| n);
+        table.metadata.intervals |= !flights.is_empty();
+        let summed_up = trials.into_iter().enumerate().map(|(n, t)| (flights.contains(&n), t));
+        let (timed, plain): (Vec<_>, Vec<_>) = summed_up.partition(|(flown, _)| *flown);
+        for (_, trial) in timed {
+            let runs = renumbered(region, vec![trial], key, &mut table.repairs)?;
+            for run in runs {
+                table.trials.push(summed(region, run)?);
+            }
+        }
+        let plain: Vec<Trial> = plain.into_iter().map(|(_, trial)| trial).collect();
+        table.trials.extend(match layout {
+            Layout::Numbered => renumbered(region, plain, key, &mut table.repairs)?,
+            _ => plain,
+        });
+        if let Layout::Samples { .. } = layout {
+            if !missing.is_empty() {
+                table.repairs.push(format!("{}: no position here, left out", lines(&missing)));
+            }
+            samples::series(region, column, columns.unscaled, options, &mut table)?;
+        }
+        for trial in &mut table.trials {
+            in_order(region, column, trial, matches!(layout, Layout::Listed))?;
+        }
+        percent(region, columns, &mut table)?;
+        stray::warn(region, columns, &table.trials, &mut table.warnings);
+        Ok(table)
+    }
+}
+
+/// Heights in hundredths of the release: it is itself a hundred of them.
+fn percent(region: &Region<'_>, columns: &Columns, table: &mut Table) -> Result<(), TableError> {
+    let Some((index, column, _)) = columns.values().find(|(_, c, _)| c.unit.is_some_and(|u| u.scale == Scale::Percent))
+    else {
+        return Ok(());
+    };
+    for trial in &mut table.trials {
+        let bounces: Vec<usize> = trial.readings.iter().map(|r| r.bounce).collect();
+        match bounces.as_slice() {
+            [0, ..] => {}
+            [1] => trial
+                .readings
+                .insert(0, Reading { height: Some(1.0), ..Reading::new(Event::Release, 0, trial.readings[0].line) }),
+            _ => {
+                let name = shown(&column.heading.text);
+                return Err(region
+                    .header_error(
+                        index,
+                        format!("'{name}' holds hundredths: of the first height, or of the one before?"),
+                    )
+                    .question()
+                    .help("give the row of the release, 100 %, or the heights themselves"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One line on what was recognised.
+fn describe(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) -> String {
+    let name = |index: usize| columns.columns[index].heading.text.as_str();
+    let first = &tracks[0];
+    let several = if tracks.len() > 1 { format!(", in {} columns side by side", tracks.len()) } else { String::new() };
+    let (height, time) = (first.height.or(first.after).or(first.speed), first.time);
+    let what = match layout {
+        Layout::Events { .. } => "events (release, contact, apex)".to_owned(),
+        Layout::Numbered | Layout::Listed => {
+            let order = if layout == Layout::Numbered {
+                "by number of bounces, 0 being the release"
+            } else {
+                "in order, the first being the release"
+            };
+            match (time, first.interval, height) {
+                (Some(t), _, Some(h)) if !flights => {
+                    format!("contact times '{}' and the heights reached after them '{}'", name(t), name(h))
+                }
+                (Some(t), _, None) if !flights => format!("contact times '{}'", name(t)),
+                (t, i, None) => format!("times between contacts '{}'", t.or(i).map_or("", name)),
+                (t, i, Some(h)) => match t.or(i) {
+                    Some(i) => format!("heights '{}' and times between contacts '{}'", name(h), name(i)),
+                    None => format!("heights '{}' {order}", name(h)),
+                },
+            }
+        }
+        Layout::Pairs => {
+            match (first.release.or(first.before), height.or(first.lost).or(first.interval).or(first.total)) {
+                (Some(a), Some(b)) => format!("drops, one a row: '{}' and '{}'", name(a), name(b)),
+                _ => "drops, one a row".to_owned(),
+            }
+        }
+        Layout::Wide => "one trial a row, one bounce a column".to_owned(),
+        Layout::Samples { frames: false } => {
+            format!("a series of heights '{}' in time '{}'", height.map_or("", name), time.map_or("", name))
+        }
+        Layout::Samples { frames: true } => format!("a series of heights '{}', a frame apart", height.map_or("", name)),
+    };
+    let speeds = columns.values().any(|(_, _, v)| v.what == What::Speed);
+    let as_heights = if speeds { "; a speed v stands for the height v²/2g" } else { "" };
+    format!("{what}{several}{as_heights}")
+}

@@ -1,0 +1,388 @@
+//! Rows of each layout as readings of their trials.
+
+use super::Builder;
+use crate::error::TableError;
+use crate::read::aside::{LeftAside, Part, Why};
+use crate::read::cell::Cell;
+use crate::read::columns::Kind;
+use crate::read::grid::shown;
+use crate::read::heading::{At, Heading, What};
+use crate::read::layout::{Layout, Track};
+use crate::read::region::Region;
+use crate::read::rows::Row;
+use crate::read::vocabulary::Atom;
+use crate::read::{Event, Reading, Timed, Trial};
+
+impl Builder<'_> {
+    pub(super) fn row(&mut self, n: usize, row: &Row, track: &Track, flights: bool) -> Result<(), TableError> {
+        if matches!(self.layout, Layout::Numbered | Layout::Events { .. } | Layout::Samples { .. }) {
+            for index in self.keys.clone() {
+                let cell = self.region.cell(row.at, index).to_owned();
+                if !cell.is_empty() {
+                    self.merged.insert(index, cell);
+                }
+            }
+        }
+        match self.layout {
+            Layout::Wide => self.wide(row, track, flights),
+            Layout::Pairs => self.pair(row, track),
+            Layout::Samples { frames } => self.sample(n, row, track, frames),
+            Layout::Events { event } => self.event(row, track, event),
+            Layout::Numbered => self.numbered(row.bounce.unwrap_or(n), row, track, flights),
+            Layout::Listed => {
+                let several = !self.keys.is_empty() || !row.name.is_empty();
+                let trial = self.trial(row, track)?;
+                let count =
+                    self.trials[trial].readings.iter().filter(|r| r.event != Event::Release || r.bounce > 0).count();
+                let released = self.trials[trial].readings.iter().any(|r| r.event == Event::Release);
+                let next = if track.release.is_some() { count + 1 } else { count + usize::from(released) };
+                let place = if several { next } else { n + usize::from(track.release.is_some()) };
+                self.numbered(place, row, track, flights)
+            }
+        }
+    }
+
+    /// The trial a row belongs to, made at its first row.
+    pub(super) fn trial(&mut self, row: &Row, track: &Track) -> Result<usize, TableError> {
+        let key = format!("{}\u{1e}{}", self.key(row), track.label());
+        if let Some(&found) = self.index.get(&key) {
+            return Ok(found);
+        }
+        let found = self.push(row, track, "")?;
+        self.index.insert(key, found);
+        Ok(found)
+    }
+
+    pub(super) fn listed(&self, row: &Row, columns: &[usize]) -> Vec<String> {
+        columns.iter().map(|&n| format!("{} {}", self.columns.columns[n].heading.text, self.text(row.at, n))).collect()
+    }
+
+    /// A new trial, with its release if a column tells the height of it.
+    pub(super) fn push(&mut self, row: &Row, track: &Track, more: &str) -> Result<usize, TableError> {
+        let track_label = track.label();
+        let own = self
+            .columns
+            .columns
+            .iter()
+            .find(|c| c.value().is_some_and(|v| v.trial == track.trial && !v.trial.is_empty()));
+        // A column that is one trial is called as it is written.
+        let written = own.map_or(track_label.as_str(), |c| {
+            if track.group.is_empty() { c.heading.text.as_str() } else { track_label.as_str() }
+        });
+        let mut label = self.listed(row, &self.keys);
+        let parts = [row.name.as_str(), written, more];
+        label.extend(parts.iter().filter(|p| !p.is_empty()).map(|p| (*p).to_owned()));
+        let mut setting = self.listed(row, &self.settings);
+        let groups = self.settings.iter().filter(|&&n| {
+            let column = &self.columns.columns[n];
+            // A temperature is a condition of the drop, and no other ball.
+            column.kind == Kind::Setting && column.heading.unit.is_none()
+        });
+        let mut group: Vec<String> = groups.map(|&n| self.text(row.at, n).to_owned()).collect();
+        for name in [&row.group, &track.group].into_iter().filter(|name| !name.is_empty()) {
+            setting.push(name.clone());
+            group.push(name.clone());
+        }
+        let mut readings = Vec::new();
+        if let Some((index, (height, sigma))) = track
+            .release
+            .map(|n| Ok((n, self.height(row.at, n)?)))
+            .transpose()?
+            .and_then(|(n, found)| Some((n, found?)))
+        {
+            let line = self.line(row.at, index);
+            readings.push(Reading {
+                height: Some(height),
+                sigma_height: sigma,
+                ..Reading::new(Event::Release, 0, line)
+            });
+        }
+        group.retain(|part| !part.is_empty());
+        self.trials.push(Trial {
+            label: label.join(", "),
+            setting: setting.join(", "),
+            group: group.join(", "),
+            readings,
+            timed: None,
+        });
+        Ok(self.trials.len() - 1)
+    }
+
+    pub(super) fn apex(&mut self, trial: usize, bounce: usize, found: (f64, Option<f64>), line: u64) {
+        let event = if bounce == 0 { Event::Release } else { Event::Apex };
+        let reading = Reading { height: Some(found.0), sigma_height: found.1, ..Reading::new(event, bounce, line) };
+        self.trials[trial].readings.push(reading);
+    }
+
+    pub(super) fn contact(&mut self, trial: usize, bounce: usize, found: (f64, Option<f64>), line: u64) {
+        let reading =
+            Reading { time: Some(found.0), sigma_time: found.1, ..Reading::new(Event::Contact, bounce, line) };
+        self.trials[trial].readings.push(reading);
+    }
+
+    /// The readings of a numbered row.
+    pub(super) fn numbered(
+        &mut self,
+        bounce: usize,
+        row: &Row,
+        track: &Track,
+        flights: bool,
+    ) -> Result<(), TableError> {
+        let height = track.height.or(track.speed).or(track.after);
+        let used = [height, track.time, track.interval];
+        let Some(first) = used.iter().flatten().next().copied() else { return Ok(()) };
+        if used.iter().flatten().all(|&c| self.region.cell(row.at, c).is_empty()) {
+            return Ok(());
+        }
+        let trial = self.trial(row, track)?;
+        let line = self.line(row.at, first);
+        let time = match track.time {
+            Some(column) => self.time(trial, row.at, column)?,
+            None => None,
+        };
+        let (time, mut interval) = if flights { (None, time) } else { (time, None) };
+        if let Some(column) = track.interval {
+            interval = self.number(row.at, column)?;
+            if interval.is_some_and(|(time, _)| time < 0.0) {
+                return Err(self
+                    .region
+                    .view
+                    .error(row.at, column, "a time between contacts cannot be negative")
+                    .help("check the cell"));
+            }
+        }
+        let high = height.map(|column| self.height(row.at, column)).transpose()?.flatten();
+        if height.is_some() && (track.time.is_some() && !flights) && bounce == 0 {
+            // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds to.
+            let (sigma_time, sigma_height) = (time.and_then(|t| t.1), high.and_then(|h| h.1));
+            let (time, height) = (time.map(|t| t.0), high.map(|h| h.0));
+            self.trials[trial].readings.push(Reading {
+                time,
+                height,
+                sigma_time,
+                sigma_height,
+                ..Reading::new(Event::Release, 0, line)
+            });
+            return Ok(());
+        }
+        if let Some(found) = time {
+            self.contact(trial, bounce, found, line);
+        }
+        if let Some(found) = interval.filter(|(time, _)| *time > 0.0) {
+            if bounce == 0 && high.is_some() {
+                let column = track.interval.or(track.time).unwrap_or(first);
+                return Err(self
+                    .region
+                    .view
+                    .error(row.at, column, "is this the time of the fall, or of a flight? Bounce 0 is the release")
+                    .question()
+                    .help("leave the cell of the release empty; flight n is the one after contact n"));
+            }
+            if !self.flights.contains(&trial) {
+                self.flights.push(trial);
+            }
+            self.contact(trial, bounce, found, line);
+        }
+        if let Some(found) = high {
+            self.apex(trial, bounce, found, line);
+        }
+        Ok(())
+    }
+
+    /// Bounces side by side, a row being a trial.
+    pub(super) fn wide(&mut self, row: &Row, track: &Track, flights: bool) -> Result<(), TableError> {
+        let more = if self.keys.is_empty() && row.name.is_empty() {
+            format!("line {}", self.line(row.at, 0))
+        } else {
+            String::new()
+        };
+        let trial = self.push(row, track, &more)?;
+        let bounce_of = |column: usize| match self.columns.columns[column].value().map(|v| (v.what, v.at)) {
+            Some((what, At::Nth(n))) => Some((what, n)),
+            _ => None,
+        };
+        let mut nth: Vec<(usize, What, usize)> =
+            track.nth.iter().filter_map(|&c| bounce_of(c).map(|(w, n)| (n, w, c))).collect();
+        nth.sort_by_key(|(n, _, _)| *n);
+        let first = nth.iter().filter(|(_, what, _)| *what == What::Time).map(|(n, _, _)| *n).min();
+        for (n, what, column) in nth {
+            let line = self.line(row.at, column);
+            match what {
+                What::Time | What::Interval | What::Total => {
+                    let Some(found) = self.time(trial, row.at, column)? else { continue };
+                    if flights || what == What::Interval {
+                        if !self.flights.contains(&trial) {
+                            self.flights.push(trial);
+                        }
+                        self.contact(trial, n, found, line);
+                    } else {
+                        self.contact(trial, if first == Some(0) { n + 1 } else { n }, found, line);
+                    }
+                }
+                _ => {
+                    let Some(found) = self.height(row.at, column)? else { continue };
+                    self.apex(trial, n, found, line);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A drop and its rebound.
+    pub(super) fn pair(&mut self, row: &Row, track: &Track) -> Result<(), TableError> {
+        let rebound = track.height.or(track.after).or(track.lost).or(track.interval).or(track.total);
+        let before = track.release.or(track.before);
+        let Some((before, rebound)) = before.zip(rebound) else {
+            return match rebound.or(before) {
+                Some(column) if rebound.is_some() => Err(self
+                    .region
+                    .header_error(
+                        column,
+                        format!(
+                            "beside '{}' the height of release is wanted",
+                            shown(&self.columns.columns[column].heading.text)
+                        ),
+                    )
+                    .help("give it in a column such as 'drop height (cm)'")),
+                _ => Ok(()),
+            };
+        };
+        let line = self.line(row.at, rebound);
+        if matches!(self.region.view.read(row.at, rebound), Cell::Empty) {
+            let name = self.columns.columns[rebound].heading.text.clone();
+            self.aside.push(LeftAside::new(Part::Cell, shown(&name), Why::Empty).at(line));
+            return Ok(());
+        }
+        let trial = self.push(row, track, &format!("line {line}"))?;
+        let (drop, sigma) = self.height(row.at, before)?.ok_or_else(|| self.empty(row.at, before))?;
+        if track.release.is_none() {
+            self.apex(trial, 0, (drop, sigma), line);
+        }
+        if Some(rebound) == track.interval || Some(rebound) == track.total {
+            let (time, sigma) = self.required(row.at, rebound)?;
+            let until_rest = Some(rebound) == track.total;
+            self.trials[trial].timed = Some(Timed { until_rest, time, sigma, line });
+            return Ok(());
+        }
+        let (mut height, sigma) = if Some(rebound) == track.lost {
+            self.required(row.at, rebound)?
+        } else {
+            self.height(row.at, rebound)?.ok_or_else(|| self.empty(row.at, rebound))?
+        };
+        if Some(rebound) == track.lost {
+            height = drop - height;
+            if height < 0.0 {
+                return Err(self
+                    .region
+                    .view
+                    .error(row.at, rebound, "more was lost than there was")
+                    .help("correct the cell"));
+            }
+        }
+        self.apex(trial, 1, (height, sigma), line);
+        Ok(())
+    }
+
+    pub(super) fn sample(&mut self, n: usize, row: &Row, track: &Track, frames: bool) -> Result<(), TableError> {
+        let Some(height) = track.height else { return Ok(()) };
+        let line = self.line(row.at, height);
+        // Where the ball was not found, programs write words for "not a number".
+        let measured = |column: usize| match self.region.view.read(row.at, column) {
+            Cell::Lost => Ok(None),
+            _ => self.number(row.at, column),
+        };
+        #[allow(clippy::cast_precision_loss)] // no film has 2^53 frames
+        let time = match track.time {
+            Some(column) if !frames => measured(column)?.map(|t| t.0),
+            _ => self.frame().map(|frame| n as f64 * frame),
+        };
+        let found = measured(height)?;
+        let (Some(time), Some((height, sigma_height))) = (time, found) else {
+            self.missing.push(line);
+            return Ok(());
+        };
+        let trial = self.trial(row, track)?;
+        let n = self.trials[trial].readings.len();
+        let reading =
+            Reading { time: Some(time), height: Some(height), sigma_height, ..Reading::new(Event::Sample, n, line) };
+        self.trials[trial].readings.push(reading);
+        Ok(())
+    }
+
+    /// The time between rows that are frames.
+    pub(super) fn frame(&self) -> Option<f64> {
+        self.region.frame
+    }
+
+    pub(super) fn event(&mut self, row: &Row, track: &Track, event: usize) -> Result<(), TableError> {
+        let (view, region) = (self.region.view, self.region);
+        let what = event_of(region, row.at, event)?;
+        let trial = self.trial(row, track)?;
+        let line = self.line(row.at, event);
+        let bounce = self.next_bounce(trial, what);
+        let time = track.time.map(|c| self.number(row.at, c)).transpose()?.flatten();
+        let high = track.height.or(track.speed).map(|c| self.height(row.at, c)).transpose()?.flatten();
+        if let (Event::Contact, Some(index), Some((height, _))) = (what, track.height, high)
+            && height != 0.0
+        {
+            return Err(view
+                .error(row.at, index, "a contact is at the height of the floor, zero")
+                .help("leave the cell empty; if this is the height after the contact, give it a row 'apex'"));
+        }
+        let high = high.filter(|_| what != Event::Contact);
+        let missing = match what {
+            Event::Contact => time.is_none().then_some(("a contact needs a time", track.time)),
+            _ => (time.is_none() && high.is_none())
+                .then_some(("this row has neither a time nor a height", track.height.or(track.time))),
+        };
+        if let Some((problem, index)) = missing {
+            return Err(view.error(row.at, index.unwrap_or(event), problem).help("fill the cell, or take the row out"));
+        }
+        self.trials[trial].readings.push(Reading {
+            time: time.map(|t| t.0),
+            height: high.map(|h| h.0),
+            sigma_time: time.and_then(|t| t.1),
+            sigma_height: high.and_then(|h| h.1),
+            ..Reading::new(what, bounce, line)
+        });
+        Ok(())
+    }
+
+    /// The number of the next event of a trial, its rows being in the order of the events.
+    pub(super) fn next_bounce(&self, trial: usize, event: Event) -> usize {
+        let readings = &self.trials[trial].readings;
+        let contacts = readings.last().map_or(0, |last| last.bounce);
+        match (event, readings.last().map(|last| last.event)) {
+            (Event::Release, _) => 0,
+            (Event::Contact, _) => contacts + 1,
+            // An apex right after an apex or a release: there was a contact between, only nobody noted it.
+            (_, Some(Event::Apex | Event::Release)) => contacts + 1,
+            _ => contacts,
+        }
+    }
+}
+
+fn event_of(region: &Region<'_>, row: usize, index: usize) -> Result<Event, TableError> {
+    let cell = region.cell(row, index);
+    Ok(match cell.to_lowercase().as_str() {
+        "release" | "released" | "drop" | "dropped" | "start" => Event::Release,
+        "contact" | "impact" | "bounce" | "floor" | "hit" | "touch" | "touchdown" | "ground" => Event::Contact,
+        "apex" | "peak" | "top" | "rebound" | "max" | "maximum" => Event::Apex,
+        "" => return Err(region.view.error(row, index, "the event is empty").help("write release, contact or apex")),
+        _ => {
+            let heading = Heading::parse(cell);
+            let release = heading.has(Atom::Release) && heading.unknown.is_empty();
+            let contact = heading.has(Atom::Impact) && !heading.has(Atom::After) && heading.unknown.is_empty();
+            if release {
+                return Ok(Event::Release);
+            }
+            if contact {
+                return Ok(Event::Contact);
+            }
+            return Err(region
+                .view
+                .error(row, index, format!("the event '{}' is not known", shown(cell)))
+                .help("write release (or drop), contact (or impact, bounce), or apex (or peak)"));
+        }
+    })
+}

@@ -1,0 +1,172 @@
+//! Columns whose headings are not understood: what is left aside, and what is an error.
+
+use super::{Column, Columns, Kind};
+use crate::error::TableError;
+use crate::read::aside::{LeftAside, Part, Why};
+use crate::read::cell::{Cell, read};
+use crate::read::grid::shown;
+use crate::read::heading::{Heading, Meaning};
+use crate::read::region::Region;
+use crate::read::units::Dimension;
+use crate::read::vocabulary::{Atom, folded, nearest};
+
+impl Columns {
+    /// Columns without a name: of row names, of a plain count, or of something that is left aside.
+    pub(super) fn unnamed(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        let named = region.header.len();
+        let widest = region.rows.iter().map(|&row| region.view.width(row)).max().unwrap_or(0);
+        for row in region.rows.iter().filter(|&&row| region.view.width(row) > named) {
+            let extra = (named..region.view.width(*row)).find(|&c| region.view.is_number(*row, c));
+            if let Some(extra) = extra.filter(|_| region.view.grid.comma() || region.given) {
+                let names = if named == 1 { "1 column".to_owned() } else { format!("{named} columns") };
+                let help = if region.view.grid.comma() {
+                    "give every column a name in the header; if the comma is a decimal comma, separate cells by semicolons"
+                } else {
+                    "give every column a name in the header"
+                };
+                let message = format!("this row has {} cells, but the header names {names}", region.view.width(*row));
+                return Err(region.view.error(*row, extra, message).help(help));
+            }
+        }
+        if region.chosen || region.given || !region.label.is_empty() {
+            return Ok(());
+        }
+        let first = self.columns.iter().position(|c| c.value().is_some()).unwrap_or(0);
+        let keyed = self
+            .columns
+            .iter()
+            .any(|c| matches!(c.kind, Kind::Number { .. } | Kind::Event | Kind::Trial | Kind::Frame));
+        while self.columns.len() < widest {
+            self.push(Heading::parse(""));
+        }
+        for index in 0..self.columns.len() {
+            if !self.columns[index].heading.text.is_empty() {
+                continue;
+            }
+            let cells = || region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+            if cells().next().is_none() {
+                continue;
+            }
+            let counted = cells().all(|cell| cell.parse::<usize>().is_ok());
+            self.columns[index].kind = match () {
+                () if index < first && !keyed && counted => Kind::Number { sure: false },
+                () if index < first && !counted => Kind::Label,
+                () => {
+                    let name = cells().next().map(shown).unwrap_or_default();
+                    self.aside.push(LeftAside::new(Part::Column, name, Why::Unnamed));
+                    Kind::Aside
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Columns whose words are not understood: left aside, unless their cells may tell balls or surfaces apart.
+    pub(super) fn not_understood(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        for index in 0..self.columns.len() {
+            let heading = &self.columns[index].heading;
+            let Some(word) = heading.unknown.first().cloned() else { continue };
+            if region.given {
+                return Err(self.unknown(region, index, &word));
+            }
+            let cells: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, index)).collect();
+            let words = cells.iter().filter(|cell| !cell.is_empty()).all(|cell| read(cell, false) == Cell::Words);
+            let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
+            let differ = cells.iter().any(|cell| *cell != cells[0]);
+            let values = self.columns.iter().filter(|c| c.value().is_some() && c.heading.unknown.is_empty()).count();
+            if words
+                && filled > 1
+                && filled == cells.len()
+                && differ
+                && values > 0
+                && self.columns[index].value().is_none()
+            {
+                let name = shown(&self.columns[index].heading.text);
+                return Err(region
+                    .header_error(
+                        index,
+                        format!(
+                            "does '{name}' tell balls or surfaces apart? The word '{}' is not understood",
+                            shown(&word)
+                        ),
+                    )
+                    .question()
+                    .help(format!(
+                        "give --group '{name}' if it does, and each has a COR of its own; --group - if not"
+                    )));
+            }
+            self.leave(index, Why::NotUnderstood);
+        }
+        if self.values().next().is_none() && !region.chosen {
+            return Err(self.nothing(region));
+        }
+        Ok(())
+    }
+
+    /// No column is of use: why not, at the one that comes nearest.
+    pub(super) fn nothing(&self, region: &Region<'_>) -> TableError {
+        let near = |c: &Column| !c.heading.unknown.is_empty() && !matches!(c.heading.meaning, Meaning::Empty);
+        let index = self.columns.iter().position(|c| near(c) && c.heading.value().is_some());
+        let index = index.or(self.columns.iter().position(|c| !c.heading.unknown.is_empty()));
+        if let Some((index, word)) = index.and_then(|n| Some((n, self.columns[n].heading.unknown.first()?.clone()))) {
+            return self.unknown(region, index, &word);
+        }
+        let measured = |c: &Column| match () {
+            () if c.heading.unit.is_none_or(|unit| unit.dimension != Dimension::Other) => None,
+            () if c.heading.has(Atom::Height) => Some(Dimension::Length),
+            () if c.heading.has(Atom::Time) => Some(Dimension::Time),
+            () => None,
+        };
+        if let Some((index, dimension)) = (0..self.columns.len()).find_map(|n| Some((n, measured(&self.columns[n])?))) {
+            return self.mismatch(region, index, dimension);
+        }
+        region.error("no column holds heights or times").nothing().help("name one, such as 'height_cm' or 'time_s'")
+    }
+
+    /// The unit of a column is of something else than what it holds.
+    pub(in crate::read) fn mismatch(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> TableError {
+        let name = shown(&self.columns[index].heading.text);
+        let spelt =
+            name.rsplit(['(', '[', '_', ' ', '/']).next().unwrap_or(&name).trim_end_matches([')', ']']).to_owned();
+        region
+            .header_error(index, format!("'{spelt}' in '{name}' is not a unit of {}", dimension.noun()))
+            .help(format!("use one of {}", dimension.known()))
+    }
+
+    pub(super) fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
+        let heading = &self.columns[index].heading;
+        let name = shown(&heading.text);
+        if heading.text.trim().parse::<f64>().is_ok() {
+            return region
+                .header_error(index, format!("'{name}' is no name of a column: the first line has to name them"))
+                .help("write such as 'bounce,height_cm' above the numbers, or give it by --header; readings stand below one another");
+        }
+        let last = heading.unit.is_none() && heading.text.trim_end_matches([')', ']']).ends_with(word);
+        if let Some(dimension) = heading.value().and_then(|v| v.what.dimension()).filter(|_| last) {
+            return region
+                .header_error(
+                    index,
+                    format!("'{}' in '{name}' is not a unit of {} that is known", shown(word), dimension.noun()),
+                )
+                .question()
+                .help(format!("known are {}; or choose it with --column '{name}' and a unit", dimension.known()));
+        }
+        let folded = folded(word);
+        let hint = match nearest(&folded).map(|known| heading.text.to_lowercase().replace(&word.to_lowercase(), known))
+        {
+            Some(meant) => format!("did you mean '{meant}'? "),
+            None => String::new(),
+        };
+        let column = if heading.value().is_some() {
+            format!("the column '{name}' is not known: the word '{}' in it is not understood", shown(word))
+        } else {
+            format!("the column '{name}' is not known")
+        };
+        let error = region.header_error(index, column);
+        let error = if heading.value().is_some() { error.question() } else { error.nothing() };
+        error.help(format!(
+            "{hint}use it with --column '{name}', or give names by --header, '-' for a column to leave aside; known are event, bounce, time_s, \
+             height_cm, interval_s, time_error_s, height_error_cm, h0_cm, trial, ball, note and the like"
+        ))
+    }
+}

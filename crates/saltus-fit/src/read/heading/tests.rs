@@ -1,0 +1,113 @@
+use super::*;
+
+fn value(text: &str) -> Value {
+    let heading = Heading::parse(text);
+    assert!(heading.unknown.is_empty(), "{text}: {heading:?}");
+    heading.value().unwrap_or_else(|| panic!("{text}: {heading:?}")).clone()
+}
+
+#[test]
+fn heights_and_times_and_at_which_event() {
+    use At::{After, Before, Nth, Release, Row};
+    use What::{Height, Interval, Speed, Time, Total};
+    for (text, what, at) in [
+        ("Drop height (cm)", Height, Release),
+        ("Rebound height (cm)", Height, Row),
+        ("h0 (cm)", Height, Release),
+        ("h_1 [m]", Height, Nth(1)),
+        ("h₂ / cm", Height, Nth(2)),
+        ("height after 2nd bounce (cm)", Height, Nth(2)),
+        ("Height of the first bounce in cm", Height, Nth(1)),
+        ("1. Rückprall", Height, Nth(1)),
+        ("Fallhöhe (cm)", Height, Release),
+        ("hauteur du rebond (cm)", Height, Row),
+        ("Bounce 1 (cm)", Height, Nth(1)),
+        ("Bounce 1 (s)", Time, Nth(1)),
+        ("t1 (s)", Time, Nth(1)),
+        ("time between bounces (s)", Interval, Row),
+        ("Air time (s)", Interval, Row),
+        ("Lap Time", Interval, Row),
+        ("time until it stops (s)", Total, Row),
+        ("Total", Total, Row),
+        ("v before (m/s)", Speed, Before),
+        ("speed after impact (m/s)", Speed, After),
+        ("Impact velocity (m/s)", Speed, Before),
+        ("Rebound speed (m/s)", Speed, After),
+        ("the ball's height above the floor (cm)", Height, Row),
+        ("time since release (s)", Time, Row),
+    ] {
+        let found = value(text);
+        if text == "1. Rückprall" {
+            assert_eq!(found.at, at, "{text}");
+            continue;
+        }
+        assert_eq!((found.what, found.at, found.role), (what, at, Role::Reading), "{text}: {found:?}");
+    }
+}
+
+#[test]
+fn words_that_turn_the_meaning() {
+    for (text, why) in [
+        ("theoretical height (cm)", Why::Predicted),
+        ("Expected rebound (cm)", Why::Predicted),
+        ("target height (cm)", Why::Goal),
+        ("h1/h0", Why::Derived),
+        ("height ratio", Why::Derived),
+        ("Δh (cm)", Why::Derived),
+        ("e", Why::Derived),
+        ("v_{y}", Why::Other),
+        ("vᵧ (m/s)", Why::Other),
+        ("x (m)", Why::Other),
+        ("Mass (g)", Why::Other),
+        ("Comment", Why::Note),
+    ] {
+        assert_eq!(Heading::parse(text).meaning, Meaning::Aside(why), "{text}");
+    }
+    for (text, role) in [
+        ("height lost (cm)", Role::Lost),
+        ("mean (cm)", Role::Mean),
+        ("sd (cm)", Role::Error),
+        ("Incertitude (cm)", Role::Error),
+        ("max rebound (cm)", Role::Max),
+        ("height_error_cm", Role::Error),
+        ("SD", Role::Error),
+    ] {
+        assert_eq!(value(text).role, role, "{text}");
+    }
+}
+
+#[test]
+fn keys_trials_and_balls() {
+    for (text, meaning) in [
+        ("bounce", Meaning::Number { sure: true }),
+        ("Bounce no.", Meaning::Number { sure: true }),
+        ("n", Meaning::Number { sure: false }),
+        ("#", Meaning::Number { sure: false }),
+        ("Trial", Meaning::Trial),
+        ("Run no.", Meaning::Trial),
+        ("Ball", Meaning::Setting),
+        ("Type of ball", Meaning::Setting),
+        ("Surface", Meaning::Setting),
+        ("event", Meaning::Event),
+        ("Frame", Meaning::Frame),
+        ("", Meaning::Empty),
+    ] {
+        assert_eq!(Heading::parse(text).meaning, meaning, "{text}");
+    }
+    for (text, trial, group) in [
+        ("Trial 2 (cm)", "Trial 2", ""),
+        ("run A (cm)", "run A", ""),
+        ("Ball A y (m)", "", "Ball A"),
+        ("Golf ball (cm)", "", "Golf ball"),
+        ("Wood (cm)", "", "Wood"),
+        ("Trial 1 bounce 2 (cm)", "Trial 1", ""),
+        ("Run 2: Position (m)", "Run 2", ""),
+    ] {
+        let found = value(text);
+        assert_eq!((found.trial.as_str(), found.group.as_str()), (trial, group), "{text}: {found:?}");
+    }
+    let unknown = |text: &str| Heading::parse(text).unknown;
+    assert_eq!(unknown("Anna (cm)"), ["Anna"]);
+    assert_eq!(unknown("hieght_cm"), ["hieght"]);
+    assert_eq!(Heading::parse("height (± 0.5 cm)").spread, Some(0.5));
+}

@@ -1,0 +1,182 @@
+//! The words of a heading, its letters and digits apart, and the numbers among them.
+
+use super::vocabulary::{Atom, folded, meanings};
+
+/// A word of a heading.
+pub(super) struct Word {
+    /// As it stands.
+    pub(super) text: String,
+    pub(super) kind: Kind,
+}
+
+pub(super) enum Kind {
+    Known(&'static [Atom]),
+    Number(usize),
+    Ordinal(usize),
+    Letter,
+    Unknown,
+}
+
+impl Word {
+    pub(super) fn is(&self, atom: Atom) -> bool {
+        matches!(self.kind, Kind::Known(atoms) if atoms.contains(&atom))
+    }
+}
+
+/// Nobody counts further.
+const COUNTED: usize = 1_000_000;
+
+/// The words of a heading, letters and digits apart.
+pub(super) fn split(text: &str) -> Vec<Word> {
+    let mut words: Vec<Word> = Vec::new();
+    for piece in pieces(text) {
+        let folded = folded(&piece);
+        let kind = if let Some(atoms) = meanings(&folded) {
+            Kind::Known(atoms)
+        } else if let Some(n) = ordinal(&folded) {
+            Kind::Ordinal(n)
+        } else if let Ok(n) = folded.parse::<usize>() {
+            if n <= COUNTED { Kind::Number(n) } else { Kind::Unknown }
+        } else if folded.chars().count() == 1 {
+            Kind::Letter
+        } else if let Some((letters, digits)) = joined(&folded) {
+            let n = digits.parse().ok().filter(|n| *n <= COUNTED);
+            match (meanings(letters), n) {
+                (Some(atoms), Some(n)) => {
+                    words.push(Word { text: letters.to_owned(), kind: Kind::Known(atoms) });
+                    words.push(Word { text: digits.to_owned(), kind: Kind::Number(n) });
+                    continue;
+                }
+                _ => Kind::Unknown,
+            }
+        } else {
+            Kind::Unknown
+        };
+        let text = if matches!(kind, Kind::Known(_)) && folded == "in" { folded } else { piece };
+        words.push(Word { text, kind });
+    }
+    lettered(&mut words);
+    // A number before a word is its place in an order, if none follows: '1. Rebound'.
+    for n in 1..words.len() {
+        let alone = words.get(n + 1).is_none_or(|w| !matches!(w.kind, Kind::Number(_) | Kind::Letter));
+        if let Kind::Number(place) = words[n - 1].kind
+            && n == 1
+            && matches!(words[n].kind, Kind::Known(_))
+            && alone
+        {
+            words[0].kind = Kind::Ordinal(place);
+        }
+    }
+    words
+}
+
+/// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`; another one is not understood.
+pub(super) fn lettered(words: &mut [Word]) {
+    for n in 0..words.len() {
+        let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
+        let named =
+            n > 0 && [Atom::Trial, Atom::Repeat, Atom::Group, Atom::Label].iter().any(|atom| words[n - 1].is(*atom));
+        if one && named {
+            words[n].kind = Kind::Letter;
+        } else if matches!(words[n].kind, Kind::Letter) {
+            words[n].kind = Kind::Unknown;
+        }
+    }
+}
+
+/// The runs of letters and digits of a text, its signs as words.
+pub(super) fn pieces(text: &str) -> Vec<String> {
+    let mut spelt = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '√' => spelt.push_str(" root "),
+            '²' | '³' => spelt.push_str(" squared "),
+            'Δ' | '∆' => spelt.push_str(" delta "),
+            'σ' | '±' => spelt.push_str(" error "),
+            'Ø' | 'ø' => spelt.push_str(" mean "),
+            '#' | '№' => spelt.push_str(" number "),
+            '%' => spelt.push_str(" percent "),
+            '{' | '}' | '\u{a0}' => spelt.push(' '),
+            c => spelt.push(c),
+        }
+    }
+    // Whose it is: "the ball's height".
+    let spelt = spelt.replace("'s ", " ").replace("’s ", " ");
+    let parts = spelt.split('/').filter(|part| !part.trim().is_empty()).count();
+    let mut found: Vec<String> = spelt
+        .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
+        .filter(|piece| !piece.is_empty())
+        .map(str::to_owned)
+        .collect();
+    if parts > 1 {
+        found.push("ratio".to_owned());
+    }
+    found
+}
+
+/// `h1` as `h` and `1`.
+pub(super) fn joined(word: &str) -> Option<(&str, &str)> {
+    let at = word.find(|c: char| c.is_ascii_digit())?;
+    let (letters, digits) = word.split_at(at);
+    (!letters.is_empty() && digits.chars().all(|c| c.is_ascii_digit())).then_some((letters, digits))
+}
+
+/// The number that a word such as `2nd` or `1er` puts a bounce or a trial in.
+pub(super) fn ordinal(word: &str) -> Option<usize> {
+    let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
+    let (digits, end) = word.split_at(at);
+    let ends = ["st", "nd", "rd", "th", "er", "re", "ere", "e", "eme", "a", "o", "º", "ª", "°", "ter", "te"];
+    ends.contains(&end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
+}
+
+/// The numbers and names in a heading, each with what it counts.
+#[derive(Default)]
+pub(super) struct Numbers {
+    pub(super) bounce: Vec<usize>,
+    pub(super) trial: String,
+    pub(super) group: String,
+}
+
+pub(super) fn numbers(words: &[Word]) -> Numbers {
+    let mut found = Numbers::default();
+    let of_trial = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && !w.is(Atom::Filler);
+    let of_group = |w: &Word| w.is(Atom::Group) || w.is(Atom::Label);
+    let counts = |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler] | [Atom::Number]));
+    let mut group: Vec<&str> = Vec::new();
+    let mut labelled = false;
+    for (n, word) in words.iter().enumerate() {
+        let before = words[..n].iter().rev().find(|w| counts(w));
+        match word.kind {
+            Kind::Number(_) | Kind::Letter if before.is_some_and(of_trial) => {
+                let name = before.map_or("", |w| w.text.as_str());
+                found.trial = format!("{name} {}", word.text);
+            }
+            Kind::Number(_) | Kind::Letter if before.is_some_and(of_group) => {
+                group.push(&word.text);
+                labelled = true;
+            }
+            Kind::Number(count) => found.bounce.push(count),
+            Kind::Ordinal(count) => {
+                let next = words[n + 1..].iter().find(|w| counts(w));
+                if next.is_some_and(of_trial) {
+                    found.trial = format!("{} {count}", next.map_or("", |w| w.text.as_str()));
+                } else if next.is_some_and(of_group) {
+                    group.push(&word.text);
+                    labelled = true;
+                } else {
+                    found.bounce.push(count);
+                }
+            }
+            Kind::Known([Atom::Ordinal(count)]) => found.bounce.push(*count),
+            _ if of_group(word) => {
+                labelled |= word.is(Atom::Label);
+                group.push(&word.text);
+            }
+            _ => {}
+        }
+    }
+    if labelled {
+        found.group = group.join(" ");
+    }
+    found
+}

@@ -1,0 +1,215 @@
+//! What a table cannot show and the interval must allow for: the zero of its heights, the height of release, the air.
+//!
+//! Each is a change of the readings, and its share of the error is how far the COR moves when they are fitted anew.
+
+use super::judgement::{Cor, Judgement};
+use super::whole;
+use crate::error::FitError;
+use crate::evidence::{Evidence, has};
+use crate::finding::{Finding, FindingKind, Severity, Widening};
+use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, missed, raised, released_higher, telling, without_air};
+use crate::quantity::{Readings, Source};
+use crate::read::Table;
+use crate::solve::fits::{Fits, Known};
+use crate::statistics::{NORMAL, student};
+
+/// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule without naming where on it.
+const USUAL_BALL: f64 = 0.067;
+
+/// A share of less than this part of the interval is not named: without it the interval would be shorter by half a per cent.
+const NAMED: f64 = 0.1;
+
+/// The COR without the air is found when it moves by less than this, a thousandth of the best error there is.
+const SETTLED: f64 = 1e-7;
+/// What drag does to the readings hardly depends on the COR: a round leaves less than a fifth of the error for k h below 0.3, so these are plenty.
+const ROUNDS: usize = 30;
+
+/// A rebound that is missing is looked for among so many: more leave readings enough to tell by the comparison of models.
+const TRIED: usize = 8;
+
+/// What is stated of what the readings cannot show.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Stated {
+    /// The size of the ball, m.
+    pub(crate) ball: Option<f64>,
+    /// The standard error of the zero of the height scale, m.
+    pub(crate) sigma_zero: Option<f64>,
+    /// Drag, 1/m: the readings come without the air where it is stated.
+    pub(crate) drag: Option<f64>,
+}
+
+impl Stated {
+    /// A ball is read at its bottom, its top or anywhere between: a rectangle as wide as the ball, whose standard deviation is its width over √12
+    /// (Guide to the expression of uncertainty in measurement, 4.3.7).
+    pub(crate) fn zero(self) -> f64 {
+        self.sigma_zero.unwrap_or(self.ball.unwrap_or(USUAL_BALL) / 12f64.sqrt())
+    }
+}
+
+/// The COR that the readings amount to; none where they do not settle on one.
+fn judged(fits: &Fits<'_>) -> Option<Cor> {
+    let mut judgement = Judgement::default();
+    whole::judge(&mut judgement, fits, None);
+    let refused = judgement.findings.iter().any(|f: &Finding| f.severity == Severity::Refusal);
+    judgement.cor.filter(|_| !refused)
+}
+
+/// The readings as they would be in a vacuum: what drag does to them depends on the COR, which is found with it, round by round.
+pub(crate) fn in_a_vacuum(
+    table: &Table,
+    evidence: Evidence,
+    (known, drag): (&Known, f64),
+) -> Result<Evidence, FitError> {
+    let few = telling(&evidence);
+    let (mut altered, mut before) = (few.clone(), f64::NAN);
+    for _ in 0..ROUNDS {
+        let Some(cor) = judged(&Fits::of(table, &altered, known, false)?) else { return Ok(evidence) };
+        if (cor.value - before).abs() < SETTLED {
+            break;
+        }
+        before = cor.value.min(1.0);
+        altered = without_air(&few, (known.gravity.value, drag), before);
+    }
+    Ok(without_air(&evidence, (known.gravity.value, drag), before))
+}
+
+/// Widens the interval by what the readings cannot show.
+pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated): (&Known, Stated)) {
+    let Some(cor) = judgement.cor.filter(|cor| cor.standard_error.is_some()) else { return };
+    let few = telling(fits.evidence);
+    let Ok(fits) = &Fits::of(fits.table, &few, known, false) else { return };
+    let Some(before) = judged(fits) else { return };
+    let shift = |altered: &Evidence| {
+        let fits = Fits::of(fits.table, altered, known, false).ok()?;
+        Some(judged(&fits)?.value - before.value).filter(|shift| shift.is_finite())
+    };
+    let mut shares = Vec::new();
+    let zero_m = if has(fits.table, Readings::Heights) { stated.zero() } else { 0.0 };
+    if zero_m > 0.0 {
+        // Low heights bend the COR over the zero: both ends are fitted.
+        let ends = [-NORMAL * zero_m, NORMAL * zero_m].map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0));
+        let (low, high) = (-ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
+        shares.push(([low, high], Widening::Zero { zero_m, share: low.max(high) }));
+    }
+    let sigma_m = fits.sigma_height.value;
+    if let (Some(_), Some(shift)) = (&fits.joint, shift(&released_higher(fits.evidence, sigma_m))) {
+        let share = NORMAL * shift.abs();
+        shares.push(([share; 2], Widening::Release { sigma_m, share }));
+    }
+    if stated.drag.is_none()
+        && before.value < 1.0
+        && let Some((most_per_m, share)) = air(fits, known, before.value)
+    {
+        shares.push(([(-share).max(0.0), share.max(0.0)], Widening::Air { most_per_m, share }));
+    }
+    let side = |n: usize, own: f64| shares.iter().fold(own, |all, (share, _)| all.hypot(share[n]));
+    let (below, above) = (side(0, cor.value - cor.low), side(1, cor.high - cor.value));
+    judgement.cor = Some(Cor { low: (cor.value - below).max(0.0), high: cor.value + above, ..cor });
+    for (_, why) in shares.into_iter().filter(|([low, high], _)| *low > NAMED * below || *high > NAMED * above) {
+        judgement.widen(why);
+    }
+    one_missing(judgement, fits, known);
+}
+
+/// Heights that fit as well if a rebound is missing are not known to be without a gap: the interval takes in the COR that they then have.
+///
+/// Two heights fit everything, and say nothing of it; from four rebounds on the comparison of models looks for the gap.
+fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
+    let last = fits.evidence.trials.iter().filter_map(|t| t.heights.last()).map(|h| h.0).max().unwrap_or(0);
+    let checked = fits.evidence.trials.iter().any(|t| t.heights.len() > 2);
+    if !checked || fits.times.is_some() || last > TRIED {
+        return;
+    }
+    let same = Known { sigma_height: Some(fits.sigma_height), ..*known };
+    let fit = |evidence: &Evidence| {
+        let fits = Fits::of(fits.table, evidence, &same, false).ok()?;
+        Some((judged(&fits)?.value, misfit(&fits)?))
+    };
+    let Some((_, (least, freedom))) = fit(fits.evidence) else { return };
+    let reach = if fits.sigma_height.source == Source::Scatter { student(freedom) } else { NORMAL };
+    for before in 1..=last {
+        if let Some((cor, (chi, _))) = fit(&missed(fits.evidence, before))
+            && chi <= least + reach * reach
+        {
+            judgement.reach(cor, cor, Widening::Models);
+        }
+    }
+}
+
+/// The most drag that the readings allow, and how far it moves the COR.
+///
+/// That is the drag of the lightest ball, or less where the chi-square, a parabola over the drag, rules it out; that of ordinary balls is always allowed.
+fn air(fits: &Fits<'_>, known: &Known, e: f64) -> Option<(f64, f64)> {
+    // In units of one and the same error of reading.
+    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let at = |drag: f64| {
+        let altered = in_a_vacuum(fits.table, fits.evidence.clone(), (&same, drag)).ok()?;
+        let fits = Fits::of(fits.table, &altered, &same, false).ok()?;
+        Some((judged(&fits)?.value, misfit(&fits))).filter(|(cor, _)| cor.is_finite())
+    };
+    let (still, ordinary, light) = (at(0.0)?, at(ORDINARY_DRAG)?, at(LIGHT_DRAG));
+    let scattered = [fits.sigma_height, fits.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
+    let most = match (still.1, ordinary.1, light.and_then(|light| light.1)) {
+        (Some((zero, freedom)), Some((few, _)), Some((many, _))) => {
+            let reach = if scattered { student(freedom) } else { NORMAL };
+            let unit = reach * reach * (zero / freedom.max(1) as f64).max(1.0);
+            allowed((few - zero) / unit, (many - zero) / unit)
+        }
+        _ if light.is_some() => LIGHT_DRAG,
+        _ => ORDINARY_DRAG,
+    };
+    // Nothing keeps more than all of its speed.
+    Some((most, (at(most)?.0 - still.0).min(1.0 - e)))
+}
+
+/// The drag, from that of ordinary balls to that of the lightest, up to which a chi-square stays within one of its least; it rises by so much from no drag
+/// to these two, in units of what is allowed.
+fn allowed(ordinary: f64, light: f64) -> f64 {
+    // b k + c k² through both.
+    let c = (light / LIGHT_DRAG - ordinary / ORDINARY_DRAG) / (LIGHT_DRAG - ORDINARY_DRAG);
+    let b = ordinary / ORDINARY_DRAG - c * ORDINARY_DRAG;
+    let best = (-0.5 * b / c).max(0.0);
+    // Within one of the value at the best that is no less than none: c k² + b k = c best² + b best + 1.
+    let least = best * (c * best + b) + 1.0;
+    let root = -0.5 * b / c + (0.25 * b * b / (c * c) + least / c).sqrt();
+    if c > 0.0 && root.is_finite() { root.clamp(ORDINARY_DRAG, LIGHT_DRAG) } else { LIGHT_DRAG }
+}
+
+/// The chi-square of the fit that the COR rests on, and its degrees of freedom; none where bounces scatter, which no reading error measures.
+fn misfit(fits: &Fits<'_>) -> Option<(f64, usize)> {
+    if let Some(joint) = &fits.joint {
+        return Some((joint.fitted.chi_square, joint.fitted.freedom));
+    }
+    match (&fits.times, &fits.heights) {
+        (Some(times), _) if times.scatter.is_some() => None,
+        (Some(times), _) => Some((times.fitted.chi_square, times.fitted.freedom)),
+        (None, Some(heights)) => Some((heights.fitted.chi_square, heights.fitted.freedom)),
+        (None, None) => None,
+    }
+}
+
+/// Notes that the COR is that without the air.
+pub(crate) fn drag_held(judgement: &mut Judgement, drag_per_m: f64) {
+    if drag_per_m > 0.0 {
+        judgement.note(FindingKind::DragHeld { drag_per_m });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drag_is_allowed_up_to_where_the_chi_square_rules_it_out() {
+        // (k − best)² / s², less its value at no drag.
+        let rise = |best: f64, s: f64| move |k: f64| (k - best).powi(2) / (s * s) - (best / s).powi(2);
+        for (best, s, most) in
+            [(0.02, 0.03, 0.05), (0.05, 0.5, LIGHT_DRAG), (-0.05, 0.1, 0.0618), (-0.2, 0.05, ORDINARY_DRAG)]
+        {
+            let rise = rise(best, s);
+            let found = allowed(rise(ORDINARY_DRAG), rise(LIGHT_DRAG));
+            assert!((found - most).abs() < 1e-4, "{best} {s}: {found}");
+        }
+        assert!((allowed(0.0, 0.0) - LIGHT_DRAG).abs() < 1e-12);
+    }
+}
