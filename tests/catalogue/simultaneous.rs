@@ -238,7 +238,7 @@ fn noncommuting_resets(case: &mut Report) {
         let b = |clock: Hybrid<'static, [f64; 2]>| {
             clock.edge("run", "run", |_t, x| 2.0 - 2.0 * x[1], |_t, x| [2.0 * x[0], x[1]])
         };
-        let automaton = if a_first { b(a(clock)) } else { a(b(clock)) };
+        let automaton = if a_first { b(a(clock)) } else { a(b(clock)) }.entry("run", "run", Entry::Wait);
         let run = Simulation::of(&automaton).run("run", [1.0, 0.0], 0.0..2.0).unwrap();
         case.ran(&run.stats);
         case.check("n_resets", run.trajectory.jumps().len() as f64);

@@ -155,7 +155,7 @@ impl<A: Automaton> Checkpoint<A> {
             jumps: 0,
             instant: start,
             cascade: 0,
-            contraction: Contraction::new(),
+            contraction: Contraction::new(&state),
             recent: Recent::new(),
             ticks: Ticks::new(),
             limits: Limits::default(),
@@ -401,8 +401,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        at.contraction.forget();
-        (at.recent, at.cascade) = (Recent::new(), 0);
+        (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), 0);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }

@@ -34,21 +34,16 @@ const STATES: usize = 2 * LONGEST_CYCLE + 1;
 pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
     /// The states x⁺ after the last jumps at each of the last instants.
-    after: Vec<S>,
+    after: [S; STATES],
     /// The longest way that x⁺ went in a cycle of 1, 2, ... jumps since jumps began to accumulate.
     longest: [f64; LONGEST_CYCLE],
     count: usize,
 }
 
 impl<S: State> Contraction<S> {
-    pub(crate) const fn new() -> Self {
-        Self { durations: [0.0; MEMORY], after: Vec::new(), longest: [0.0; LONGEST_CYCLE], count: 0 }
-    }
-
-    /// Starts anew, keeping the memory.
-    pub(crate) fn forget(&mut self) {
-        self.after.clear();
-        (self.longest, self.count) = ([0.0; LONGEST_CYCLE], 0);
+    /// Before any jump; from a state of the same shape as those to come.
+    pub(crate) const fn new(start: &S) -> Self {
+        Self { durations: [0.0; MEMORY], after: [*start; STATES], longest: [0.0; LONGEST_CYCLE], count: 0 }
     }
 
     /// Adds the time since the last jump and the state `after` this one; of jumps at one time the
@@ -57,13 +52,9 @@ impl<S: State> Contraction<S> {
     pub(crate) fn push(&mut self, duration: f64, after: &S) {
         if duration > 0.0 {
             self.durations[self.count % MEMORY] = duration;
-            if self.after.len() < STATES {
-                self.after.push(*after);
-            } else {
-                self.after[self.count % STATES] = *after;
-            }
+            self.after[self.count % STATES] = *after;
             self.count += 1;
-            for cycle in 1..=LONGEST_CYCLE.min(self.after.len() - 1) {
+            for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
                 self.longest[cycle - 1] = self.longest[cycle - 1].max(way(self.state(0), self.state(cycle)));
             }
         } else if self.count > 0 {
@@ -109,7 +100,7 @@ impl<S: State> Contraction<S> {
     fn certified(&self, resolution: f64, most: f64) -> Option<f64> {
         let known = self.count.min(MEMORY);
         let bound = |cycle| {
-            if known < cycle + 4 || self.after.len() <= 2 * cycle {
+            if known < cycle + 4 || known <= 2 * cycle {
                 return None;
             }
             let ratios = (0..4.max(cycle)).filter(|i| i + cycle < known).map(|i| self.last(i) / self.last(i + cycle));
@@ -151,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_geometric_series_is_summed() {
-        let mut contraction = Contraction::new();
+        let mut contraction = Contraction::new(&0.0);
         let mut d = 1.0;
         let mut sum = 0.0;
         while contraction.remaining(LATE, false).is_none() {
@@ -166,7 +157,7 @@ mod tests {
     fn jumps_that_stay_as_large_are_not_zeno() {
         for growth in [1.0, 1.01, 0.999_999] {
             for turn in [1.0, -1.0] {
-                let mut contraction = Contraction::new();
+                let mut contraction = Contraction::new(&0.0);
                 let (mut d, mut by, mut x) = (1.0, 1.0, 0.0);
                 for n in 0..400 {
                     x += by;
@@ -180,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_harmonic_series_is_not_zeno() {
-        let mut contraction = Contraction::new();
+        let mut contraction = Contraction::new(&0.0);
         for n in 1..100_000 {
             contraction.push(1e-3 / f64::from(n), &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
@@ -189,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_cascade_is_not_zeno() {
-        let mut contraction = Contraction::new();
+        let mut contraction = Contraction::new(&0.0);
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
             contraction.push(duration, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
@@ -199,7 +190,7 @@ mod tests {
     #[test]
     fn jumps_that_are_all_but_at_one_time_are_not_zeno() {
         // Swings of one length but for rounding, and two collisions a rounding apart.
-        let mut contraction = Contraction::new();
+        let mut contraction = Contraction::new(&0.0);
         for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
             contraction.push(duration, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
@@ -208,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_cycle_of_two_contracts_as_a_whole() {
-        let mut contraction = Contraction::new();
+        let mut contraction = Contraction::new(&0.0);
         let mut d = 1.0;
         let mut sum = 0.0;
         for _ in 0..60 {

@@ -130,8 +130,9 @@ impl Search<'_> {
             }
             (side, seen) = (next, true);
         }
-        // A guard that leaves the wall slowly is nothing but rounding at first, which hides nothing.
-        if let Some((from, to)) = hidden.filter(|_| came_from != Side::Wall) {
+        // A guard that leaves the wall slowly is nothing but rounding of its values at first, which hides nothing.
+        let leaves = came_from == Side::Wall && !self.is_rougher_than_rounding(rounding);
+        if let Some((from, to)) = hidden.filter(|_| !leaves) {
             self.weaken(Evidence::Rounding { from, to });
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };

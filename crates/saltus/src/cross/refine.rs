@@ -83,7 +83,8 @@ impl Search<'_> {
         let far = (self.guard)((a - by).max(0.0)).abs() + (self.guard)(b + by).abs();
         Ok(if far > CLEARLY * near {
             Passage::Root
-        } else if CLEARLY * far < near {
+        } else if CLEARLY * far < near && self.largest() < CLEARLY * near {
+            // Nowhere near its largest, what shrinks so fast is rounding.
             Passage::Pole
         } else {
             Passage::Leap

@@ -18,6 +18,8 @@ pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
 /// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
 /// higher powers carry the error of the step and the rounding of its stages.
 pub(crate) const ROUGH: f64 = 1e-6;
+/// Roundings of a guard's largest value that its values near zero may be off by, where it cancels: what is rougher is no rounding.
+const CANCELLED: f64 = 1024.0;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
@@ -146,7 +148,7 @@ impl<'a> Search<'a> {
                         if outside >= self.span {
                             break None;
                         }
-                        self.flat = None;
+                        (self.flat, self.largest) = (None, 0.0);
                         let rest =
                             Stretch { a: outside, b: self.span, depth: DEEPEST, margin: f64::INFINITY, known: None };
                         part = self.part(&rest, Side::Outside)?;
@@ -187,7 +189,7 @@ impl<'a> Search<'a> {
         Side::Wall
     }
 
-    /// The largest magnitude of the guard met so far.
+    /// The largest magnitude of the guard met.
     pub(super) fn largest(&self) -> f64 {
         self.largest
     }
@@ -240,6 +242,9 @@ impl<'a> Search<'a> {
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
+        }
+        if leaving && self.spent && known.is_none() && q.end() > 0.0 {
+            self.doubt_noise(&q, b, sampled)?;
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
         let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
@@ -314,6 +319,26 @@ impl<'a> Search<'a> {
             }
         }
         self.halved(stretch, margin, side)
+    }
+
+    /// A guard that comes up from its spent root as the square of time, the curve `q` with that root divided out, and is rough until then by more than
+    /// rounding, its `margin`: two more crossings may hide there.
+    fn doubt_noise(&mut self, q: &Bernstein, b: f64, margin: f64) -> Result<(), Undefined> {
+        let (slope, bend) = (q.start().abs(), q.end());
+        // A parabola through the root is nowhere before that farther from it than slope² / 4 bend.
+        let hidden = slope * slope < 4.0 * margin * bend;
+        if hidden && self.is_rougher_than_rounding(margin) {
+            let to = b * (slope / bend + (margin / bend).sqrt());
+            if self.is_rough(0.0, to)? {
+                self.weaken(Evidence::Rounding { from: 0.0, to });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether values off by so much are off by more than a guard's cancellation explains.
+    pub(super) fn is_rougher_than_rounding(&self, off: f64) -> bool {
+        off > CANCELLED * f64::EPSILON * self.largest
     }
 
     /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
