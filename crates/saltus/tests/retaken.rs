@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::step::Stepper;
-use saltus::{Dop853, Entry, ErrorKind, Hybrid, Polynomial, Rodas5P, Simulation, Stop, Tsit5};
+use saltus::{Coords, Dop853, Entry, ErrorKind, Hybrid, Polynomial, Rodas5P, Simulation, State, Stop, Tsit5};
 
 type Counter<'a> = Hybrid<'a, f64>;
 
@@ -19,6 +19,30 @@ fn taken(counter: &Counter, stepper: impl Stepper) -> Vec<usize> {
     let run = Simulation::of(counter).stepper(stepper).run("run", 0.0, 0.0..1.0).unwrap();
     assert_eq!(run.stop, Stop::Time);
     run.trajectory.jumps().iter().filter_map(saltus::Jump::edge).map(|edge| edge.place).collect()
+}
+
+/// A guard is asked in the modes that have its edge only: elsewhere the state is another one.
+#[test]
+fn a_guard_is_not_asked_in_another_mode() {
+    type Either = Coords<2>;
+    let fall = |_t: f64, x: &Either| {
+        assert_eq!(x.len(), 2, "asked of {x:?}");
+        x.get(0)
+    };
+    let hold = |_t: f64, x: &Either| {
+        assert_eq!(x.len(), 1, "asked of {x:?}");
+        x.get(0)
+    };
+    for held in [1e-3, 1e-6, 1e-9, 1e-15] {
+        let ball = Hybrid::new()
+            .mode("flight", |_t, x: &Either| [x.get(1), -9.81].into())
+            .mode("held", |_t, _x| [-1.0].into())
+            .edge("flight", "held", fall, move |_t, _x| [held].into())
+            .edge("held", "flight", hold, |_t, _x| [0.0, 4.0].into());
+        let run = Simulation::of(&ball).run("flight", [1.0, 0.0].into(), 0.0..5.0).unwrap();
+        assert_eq!(run.stop, Stop::Time);
+        assert_eq!(run.trajectory.jumps().len(), 12, "held for {held} s");
+    }
 }
 
 proptest! {

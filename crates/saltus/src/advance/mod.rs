@@ -207,10 +207,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         duration: Option<f64>,
     ) {
         if duration.is_some() && self.memory.idle_count > 0 {
-            self.forget_risen(t, before);
+            self.forget_risen(mode, t, before);
         }
         if let Some(last) = self.memory.spent.filter(|last| last.edge != edge)
-            && duration.is_none_or(|s| self.memory.is_short(s) && self.automaton.guard(last.edge, t, before) < 0.0)
+            && duration.is_none_or(|s| self.memory.is_short(s) && self.is_below(mode, last.edge, t, before))
         {
             let g = self.automaton.guard(last.edge, began, x);
             let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g) } else { 0.0 };
@@ -230,19 +230,25 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.last = Some(edge);
     }
 
-    /// Forgets the edges whose guards have risen since they were taken.
-    #[cold]
-    fn forget_risen(&mut self, t: f64, x: &A::State) {
-        let Memory { idle, idle_count, stats, .. } = &mut *self.memory;
-        let mut kept = 0;
-        for k in 0..*idle_count {
-            stats.guards += 1;
-            if idle[k].is_some_and(|(spent, _)| self.automaton.guard(spent.edge, t, x) < 0.0) {
-                idle[kept] = idle[k];
-                kept += 1;
-            }
+    /// Whether the guard of an edge that this mode has, and another mode may not, is below zero at `x`.
+    fn is_below(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> bool {
+        if !self.automaton.edges(mode).iter().any(|other| other == edge) {
+            return false;
         }
-        *idle_count = kept;
+        self.memory.stats.guards += 1;
+        self.automaton.guard(edge, t, x) < 0.0
+    }
+
+    /// Forgets the edges that the mode does not have, and those whose guards have risen since they were taken.
+    #[cold]
+    fn forget_risen(&mut self, mode: A::Mode, t: f64, x: &A::State) {
+        let count = self.memory.idle_count;
+        for k in 0..count {
+            self.memory.idle[k] = self.memory.idle[k].filter(|(spent, _)| self.is_below(mode, spent.edge, t, x));
+        }
+        if self.memory.idle[..count].iter().all(Option::is_none) {
+            self.memory.idle_count = 0;
+        }
     }
 
     /// From `x` in `mode` to the first crossing or the end of the span.
@@ -298,7 +304,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             ArcEnd::Stop { time, state, .. } => (None, *time, state),
         };
         match self.memory.spent {
-            Some(Spent { edge, .. }) if Some(edge) != taken && self.automaton.edges(mode).iter().any(|e| e == edge) => {
+            Some(Spent { edge, .. }) if Some(edge) != taken => {
                 self.fell_on(mode, edge, (began.seconds(), x), (time.seconds(), state))
             }
             _ => Ok(()),
@@ -313,10 +319,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (began, x): (f64, &A::State),
         (t, state): (f64, &A::State),
     ) -> Result<(), Error> {
-        self.memory.stats.guards += 1;
+        if !self.is_below(mode, edge, t, state) || !matches!(self.automaton.about(edge).entry, Entry::Refuse) {
+            return Ok(());
+        }
         let g = self.automaton.guard(edge, t, state);
-        let refuses = matches!(self.automaton.about(edge).entry, Entry::Refuse);
-        if g >= 0.0 || !refuses || -g <= self.within_tolerance(edge, t, state, g) {
+        if -g <= self.within_tolerance(edge, t, state, g) {
             return Ok(());
         }
         Err(Error::new(ErrorKind::Entry, Place::new(began, mode, Some(edge), x)).noting(Some(FELL_ON.to_owned())))
