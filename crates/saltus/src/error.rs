@@ -202,7 +202,7 @@ impl fmt::Display for Error {
             ErrorKind::Refused => write!(f, "the reset of edge {by} refused: {said}")?,
             ErrorKind::Entry if note.is_some() => write!(
                 f,
-                "the guard of edge {by} goes on falling after its own reset, out of the mode: let the reset turn the motion round or lead to another mode, or let About::entry or Hybrid::entry say Wait, for an edge that counts passages"
+                "the guard of edge {by} {said}: let the reset turn the motion round or lead to another mode, or let About::entry or Hybrid::entry say Wait, for an edge that counts passages"
             )?,
             ErrorKind::Entry => write!(
                 f,

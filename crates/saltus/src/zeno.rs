@@ -35,7 +35,7 @@ pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
     /// The states x⁺ after the last jumps at each of the last instants.
     after: [S; STATES],
-    /// The longest way that x⁺ went in a cycle of 1, 2, ... jumps since jumps began to accumulate.
+    /// The square of the longest way that x⁺ went in a cycle of 1, 2, ... jumps.
     longest: [f64; LONGEST_CYCLE],
     count: usize,
 }
@@ -55,7 +55,7 @@ impl<S: State> Contraction<S> {
             self.after[self.count % STATES] = *after;
             self.count += 1;
             for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
-                self.longest[cycle - 1] = self.longest[cycle - 1].max(way(self.state(0), self.state(cycle)));
+                self.longest[cycle - 1] = self.longest[cycle - 1].max(square_way(self.state(0), self.state(cycle)));
             }
         } else if self.count > 0 {
             self.after[(self.count - 1) % STATES] = *after;
@@ -75,8 +75,9 @@ impl<S: State> Contraction<S> {
     /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
     /// that what remains of its way is less than the longest cycle's.
     fn displacements_contract(&self, cycle: usize) -> bool {
-        let (now, before) = (way(self.state(0), self.state(cycle)), way(self.state(cycle), self.state(2 * cycle)));
-        now == 0.0 || now < before && now * now <= self.longest[cycle - 1] * (before - now)
+        let way = |from: usize| square_way(self.state(from), self.state(from + cycle)).sqrt();
+        let (now, before, longest) = (way(0), way(cycle), self.longest[cycle - 1].sqrt());
+        now == 0.0 || now < before && now * now <= longest * (before - now)
     }
 
     /// The time from the last jump to the limit, if the durations contract and the next one is shorter than the resolution of the time `elapsed`.
@@ -118,10 +119,10 @@ impl<S: State> Contraction<S> {
     }
 }
 
-/// |x - y|, where a coordinate that differs by no more than its rounding does not differ; endless
+/// |x - y|², where a coordinate that differs by no more than its rounding does not differ; endless
 /// where the two have unlike dimensions.
 #[inline]
-fn way<S: State>(x: &S, y: &S) -> f64 {
+fn square_way<S: State>(x: &S, y: &S) -> f64 {
     if x.len() != y.len() {
         return f64::INFINITY;
     }
@@ -130,7 +131,7 @@ fn way<S: State>(x: &S, y: &S) -> f64 {
         let by = (y - x).abs();
         if by <= STILL * x.abs().max(y.abs()) { 0.0 } else { by * by }
     };
-    (0..x.len()).map(square).sum::<f64>().sqrt()
+    (0..x.len()).map(square).sum()
 }
 
 #[cfg(test)]

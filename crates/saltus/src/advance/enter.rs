@@ -117,28 +117,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
     pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
         const NUDGE: f64 = 1.0 / (1 << 20) as f64;
-        let mut sum = 0.0;
-        for k in 0..x.len() {
-            self.memory.stats.guards += 1;
-            let nudged = x.with(|i| if i == k { x.get(i) + NUDGE * x.get(i).abs().max(least) } else { x.get(i) });
-            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
-            sum += if change.is_finite() { change } else { 0.0 };
-        }
-        sum * (f64::EPSILON / NUDGE)
+        self.moved(edge, t, x, g, |x| NUDGE * x.abs().max(least)) * (f64::EPSILON / NUDGE)
     }
 
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const STEPS: f64 = 1024.0;
+        let rounding = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
         let tolerance = self.options.tolerance;
-        let mut sum = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
+        STEPS * (rounding + self.moved(edge, t, x, g, |x| tolerance.allowed(x, x)))
+    }
+
+    /// How far the guard, `g` at `x`, moves with each coordinate that is moved `by` so much, all together.
+    fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
+        let mut sum = 0.0;
         for k in 0..x.len() {
             self.memory.stats.guards += 1;
-            let by = |i: usize| if i == k { tolerance.allowed(x.get(i), x.get(i)) } else { 0.0 };
-            let change = (self.automaton.guard(edge, t, &x.with(|i| x.get(i) + by(i))) - g).abs();
+            let nudged = x.with(|i| if i == k { x.get(i) + by(x.get(i)) } else { x.get(i) });
+            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
             sum += if change.is_finite() { change } else { 0.0 };
         }
-        STEPS * sum
+        sum
     }
 
     /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.

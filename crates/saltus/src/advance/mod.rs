@@ -65,7 +65,7 @@ struct Spent<E> {
 const MOST_IDLE: usize = 16;
 
 /// Why a guard below zero at the end of an arc is one at its entry.
-const FELL_ON: &str = "its guard goes on falling after its own reset";
+const FELL_ON: &str = "goes on falling after its own reset, out of the mode";
 
 /// An arc this small a part of the longest one is short.
 const SHORT: f64 = 1e-4;

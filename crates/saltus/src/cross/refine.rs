@@ -1,7 +1,7 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
 use super::search::{AT_START, ROUNDING, Search};
-use super::{Crossing, Undefined};
+use super::{Crossing, Evidence, Undefined};
 
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
@@ -65,30 +65,27 @@ const FARTHER: f64 = 1024.0;
 const CLEARLY: f64 = 4.0;
 
 impl Search<'_> {
-    /// How far from its change of sign between `a` and `b` a guard is looked at, to see how it comes to that.
-    pub(super) fn farther(&self, a: f64, b: f64) -> f64 {
-        FARTHER * (b - a).max(self.tick)
-    }
-
-    /// How the guard changes its sign between the neighbouring times `a` and `b`.
-    pub(super) fn passage(&mut self, a: f64, b: f64) -> Result<Passage, Undefined> {
-        let near = self.value(a)?.abs() + self.value(b)?.abs();
-        if near == f64::INFINITY {
-            return Ok(Passage::Pole);
-        }
-        if near <= ROUNDING * self.largest() {
+    /// How the guard changes its sign at a crossing between neighbouring times; what is no root is noted.
+    pub(super) fn passage(&mut self, &Crossing { inside, outside, .. }: &Crossing) -> Result<Passage, Undefined> {
+        let near = self.value(inside)?.abs() + self.value(outside)?.abs();
+        if near.is_finite() && near <= ROUNDING * self.largest {
             return Ok(Passage::Root);
         }
-        let by = self.farther(a, b);
-        let far = (self.guard)((a - by).max(0.0)).abs() + (self.guard)(b + by).abs();
-        Ok(if far > CLEARLY * near {
-            Passage::Root
-        } else if CLEARLY * far < near && self.largest() < CLEARLY * near {
+        let by = FARTHER * (outside - inside).max(self.tick);
+        let (before, after) = ((inside - by).max(0.0), outside + by);
+        let far = (self.guard)(before).abs() + (self.guard)(after).abs();
+        let passage = if near == f64::INFINITY || CLEARLY * far < near && self.largest < CLEARLY * near {
             // Nowhere near its largest, what shrinks so fast is rounding.
             Passage::Pole
+        } else if far > CLEARLY * near {
+            Passage::Root
         } else {
             Passage::Leap
-        })
+        };
+        if passage != Passage::Root {
+            self.weaken(Evidence::Discontinuous { from: before, to: after });
+        }
+        Ok(passage)
     }
 
     /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than

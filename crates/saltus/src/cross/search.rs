@@ -47,7 +47,7 @@ pub(super) struct Search<'a> {
     pub(super) rise: Option<f64>,
     evaluations: u32,
     /// The largest magnitude of the guard met so far.
-    largest: f64,
+    pub(super) largest: f64,
     /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on one.
     pub(super) flat: Option<f64>,
     evidence: Evidence,
@@ -131,32 +131,20 @@ impl<'a> Search<'a> {
         let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
         let mut part = self.part(&all, side)?;
         let fall = loop {
-            break match part {
-                Part::None(_) => None,
-                Part::AtStart => Some(Crossing::at_start(self.span * AT_START)),
-                Part::Hidden(near) => Some(Crossing::after(self.inside_near(near)?)),
-                Part::Fall { near: Some(near), .. } => settle(&mut self.guard, near),
-                Part::Fall { a, b, near: None } => {
-                    let crossing = self.refined(a, b)?;
-                    let Crossing { inside, outside, .. } = crossing;
-                    let passage = self.passage(inside, outside)?;
-                    if passage != Passage::Root {
-                        let by = self.farther(inside, outside);
-                        self.weaken(Evidence::Discontinuous { from: (inside - by).max(0.0), to: outside + by });
-                    }
-                    if passage == Passage::Pole {
-                        if outside >= self.span {
-                            break None;
-                        }
-                        (self.flat, self.largest) = (None, 0.0);
-                        let rest =
-                            Stretch { a: outside, b: self.span, depth: DEEPEST, margin: f64::INFINITY, known: None };
-                        part = self.part(&rest, Side::Outside)?;
-                        continue;
-                    }
-                    Some(crossing)
-                }
+            let (a, b) = match part {
+                Part::None(_) => break None,
+                Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
+                Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
+                Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
+                Part::Fall { a, b, near: None } => (a, b),
             };
+            let crossing = self.refined(a, b)?;
+            if self.passage(&crossing)? != Passage::Pole {
+                break Some(crossing);
+            }
+            (self.flat, self.largest) = (None, 0.0);
+            let behind = Stretch { a: crossing.outside, margin: f64::INFINITY, known: None, ..all };
+            part = self.part(&behind, Side::Outside)?;
         };
         if fall.is_some() {
             self.weaken(Evidence::Isolated);
@@ -187,11 +175,6 @@ impl<'a> Search<'a> {
             }
         }
         Side::Wall
-    }
-
-    /// The largest magnitude of the guard met.
-    pub(super) fn largest(&self) -> f64 {
-        self.largest
     }
 
     pub(super) fn weaken(&mut self, evidence: Evidence) {
@@ -242,8 +225,6 @@ impl<'a> Search<'a> {
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
-        }
-        if leaving && self.spent && known.is_none() && q.end() > 0.0 {
             self.doubt_noise(&q, b, sampled)?;
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
@@ -326,7 +307,7 @@ impl<'a> Search<'a> {
     fn doubt_noise(&mut self, q: &Bernstein, b: f64, margin: f64) -> Result<(), Undefined> {
         let (slope, bend) = (q.start().abs(), q.end());
         // A parabola through the root is nowhere before that farther from it than slope² / 4 bend.
-        let hidden = slope * slope < 4.0 * margin * bend;
+        let hidden = bend > 0.0 && slope * slope < 4.0 * margin * bend;
         if hidden && self.is_rougher_than_rounding(margin) {
             let to = b * (slope / bend + (margin / bend).sqrt());
             if self.is_rough(0.0, to)? {
