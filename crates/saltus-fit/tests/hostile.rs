@@ -4,11 +4,13 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
+mod random;
 mod written;
 
 use std::path::Path;
 
 use proptest::prelude::*;
+use random::Random;
 use saltus_fit::{ReadOptions, Table};
 use written::{cells, workbook, xlsx, zip};
 
@@ -61,18 +63,6 @@ fn seeds() -> Vec<Vec<u8>> {
         }
     }
     seeds
-}
-
-/// A generator of numbers that look random and are the same in every run (S. Vigna's `splitmix64`).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n.max(1) as u64) as usize
-    }
 }
 
 #[test]
