@@ -139,7 +139,8 @@ impl Quantity {
     }
 
     /// The indefinite article that goes before its name.
-    pub(crate) const fn article(self) -> &'static str {
+    #[must_use]
+    pub const fn article(self) -> &'static str {
         match self {
             Self::Acceleration | Self::Angle | Self::AngularSpeed | Self::PerLength | Self::PerSpeed => "an",
             _ => "a",

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args as ClapArgs, CommandFactory, Parser, Subcommand, ValueEnum};
 use saltus_bounce::Cor;
-use saltus_bounce::scene::Kind;
-use saltus_bounce::scene::accuracy::Target;
 use saltus_bounce::units::Quantity;
 use saltus_fit::{CorModel, Loss};
+use saltus_scene::Kind;
+use saltus_scene::accuracy::Target;
 
 use crate::error::Error;
 

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use saltus_bounce::scene::plan::{Explanation, ModePlan};
+use saltus_scene::plan::{Explanation, ModePlan};
 use serde::Serialize;
 
 use crate::args;

@@ -1,6 +1,6 @@
 //! Names of balls and the outline of what they bounce on.
 
-use saltus_bounce::scene::{Floor, Scene, Shape};
+use saltus_scene::{Floor, Scene, Shape};
 
 /// More steps than can be told apart.
 const MOST: u32 = 2000;

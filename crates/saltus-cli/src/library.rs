@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use std::{fs, io};
 
 use clap::Args as ClapArgs;
-use saltus_bounce::scene::Template;
 use saltus_fit::{Fit, ReadOptions};
+use saltus_scene::Template;
 use serde_json::{Map, Value as Json, json};
 
 use crate::error::Error;

@@ -55,7 +55,7 @@ fn run(args: &args::Args) -> Result<ExitCode, error::Error> {
         args::Command::Solve(solve) => solve::run(solve, args.quiet),
         args::Command::Sweep(sweep) => sweep::run(sweep, args.quiet),
         args::Command::Completions { shell } => output::stdout(&args::completions(*shell)),
-        args::Command::Schema => output::stdout(saltus_bounce::scene::schema().as_bytes()),
+        args::Command::Schema => output::stdout(saltus_scene::schema().as_bytes()),
         args::Command::Man => output::stdout(&args::man()?),
     }
 }

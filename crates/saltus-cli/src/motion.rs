@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{Event, Impact, Model, Moment, Record, With};
+use saltus_scene::Scene;
+use saltus_scene::plan::{Event, Impact, Model, Moment, Record, With};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -186,7 +186,7 @@ impl Motion<'_> {
                 model: self.model.name(),
                 balls: record.balls(),
                 gravity: scene.gravity.value(),
-                cor: scene.law(0, 0).and_then(saltus_bounce::scene::Law::constant).map(saltus_bounce::Cor::value),
+                cor: scene.law(0, 0).and_then(saltus_scene::Law::constant).map(saltus_bounce::Cor::value),
                 height: scene.balls[0].lowest().z,
                 velocity: scene.balls[0].velocity.z,
             },

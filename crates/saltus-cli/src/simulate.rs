@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use saltus_bounce::effects::Gravity;
-use saltus_bounce::scene::plan::{End, Plan, Record};
-use saltus_bounce::scene::{Law, ReadError, Run, Scene};
+use saltus_scene::plan::{End, Plan, Record};
+use saltus_scene::{Law, ReadError, Run, Scene};
 
 use crate::accuracy;
 use crate::args::{self, MotionFormat};

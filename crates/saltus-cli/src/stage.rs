@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use saltus::nalgebra::Vector3;
-use saltus_bounce::scene::plan::{Impact, Record, Segment, Sides, With};
-use saltus_bounce::scene::{Floor, Scene, Shape};
 use saltus_motion::{Contact, Frames, Motion, Piece, Snap, Stretch, Track};
+use saltus_scene::plan::{Impact, Record, Segment, Sides, With};
+use saltus_scene::{Floor, Scene, Shape};
 
 use crate::error::Error;
 use crate::ground::{corners, name};

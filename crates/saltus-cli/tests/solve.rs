@@ -6,8 +6,8 @@ mod tool;
 
 use std::fs;
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::Record;
+use saltus_scene::Scene;
+use saltus_scene::plan::Record;
 use tempfile::TempDir;
 
 const G: f64 = 9.806_65;

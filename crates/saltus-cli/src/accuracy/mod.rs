@@ -10,8 +10,8 @@ mod words;
 use std::path::Path;
 use std::process::ExitCode;
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::accuracy::{Accuracy, Target, Way};
+use saltus_scene::Scene;
+use saltus_scene::accuracy::{Accuracy, Target, Way};
 
 use crate::args;
 use crate::error::Error;

@@ -1,9 +1,9 @@
 //! Velocity, energy, phase portrait, apex ladder, force over deformation.
 
 use saltus_bounce::effects::Buoyancy;
-use saltus_bounce::scene::plan::{Moment, Record, Segment};
-use saltus_bounce::scene::{Scene, Shape};
 use saltus_plot::{Chart, Measure, Stroke};
+use saltus_scene::plan::{Moment, Record, Segment};
+use saltus_scene::{Scene, Shape};
 
 use super::title;
 use crate::error::Error;

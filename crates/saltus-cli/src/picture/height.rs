@@ -1,8 +1,8 @@
 //! Height against time.
 
-use saltus_bounce::scene::plan::{Record, With};
-use saltus_bounce::scene::{Floor, Motion, Scene, Shape};
 use saltus_plot::{Arc, Background, HeightTime};
+use saltus_scene::plan::{Record, With};
+use saltus_scene::{Floor, Motion, Scene, Shape};
 
 pub(super) fn picture(scene: &Scene, record: &Record) -> HeightTime {
     let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(scene, record));
@@ -14,7 +14,7 @@ pub(super) fn picture(scene: &Scene, record: &Record) -> HeightTime {
             _ => crate::ground::name(scene, ball),
         };
         let arcs = record.segments(ball).into_iter().map(|segment| {
-            let heights = segment.coefficients.iter().map(saltus_bounce::scene::plan::Moment::height).collect();
+            let heights = segment.coefficients.iter().map(saltus_scene::plan::Moment::height).collect();
             Arc::new(segment.start, segment.span, heights)
         });
         picture = picture.motion(&label, arcs);

@@ -4,9 +4,9 @@ mod chart;
 mod height;
 mod space;
 
-use saltus_bounce::scene::plan::Record;
-use saltus_bounce::scene::{Kind, Scene};
 use saltus_plot::Background;
+use saltus_scene::plan::Record;
+use saltus_scene::{Kind, Scene};
 
 use crate::error::Error;
 
@@ -73,11 +73,11 @@ fn said(cor: f64) -> String {
 /// What is said under the title.
 fn caption(scene: &Scene, record: &Record) -> String {
     let mut parts = Vec::new();
-    let cor = scene.law(0, 0).and_then(saltus_bounce::scene::Law::constant);
+    let cor = scene.law(0, 0).and_then(saltus_scene::Law::constant);
     if let Some(cor) = cor {
         parts.push(format!("COR {}", said(cor.value())));
     }
-    let between = scene.collision.as_ref().and_then(saltus_bounce::scene::Law::constant);
+    let between = scene.collision.as_ref().and_then(saltus_scene::Law::constant);
     if let Some(between) = between.filter(|_| between != cor) {
         parts.push(format!("COR {} between balls", said(between.value())));
     }

@@ -1,8 +1,8 @@
 //! The path in space, and the ball at equal times.
 
-use saltus_bounce::scene::plan::{Moment, Record, Segment};
-use saltus_bounce::scene::{Floor, Scene, Shape};
 use saltus_plot::{Chart, Disc, Measure, Stroke};
+use saltus_scene::plan::{Moment, Record, Segment};
+use saltus_scene::{Floor, Scene, Shape};
 
 use super::title;
 use crate::error::Error;

@@ -1,6 +1,6 @@
 //! Numbers of a scene file that may be changed.
 
-use saltus_bounce::scene::Scene;
+use saltus_scene::Scene;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
 use crate::quantity::{self, digits};

@@ -9,8 +9,8 @@ use std::process::ExitCode;
 
 pub(crate) use args::Solve;
 use freedom::Freedom;
-use saltus_bounce::scene::plan::Record;
-use saltus_bounce::scene::{Run, Scene};
+use saltus_scene::plan::Record;
+use saltus_scene::{Run, Scene};
 use search::{Found, Problem, starts};
 use toml_edit::DocumentMut;
 use wish::{Clock, What, Wish};

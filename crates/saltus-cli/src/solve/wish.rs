@@ -1,7 +1,7 @@
 //! A wish: what is to happen in a scene, and how a run is measured against it.
 
-use saltus_bounce::scene::plan::Record;
 use saltus_bounce::units::Quantity;
+use saltus_scene::plan::Record;
 
 /// How frames stand for times.
 #[derive(Clone, Copy, Debug)]

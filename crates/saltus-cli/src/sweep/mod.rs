@@ -12,7 +12,7 @@ use args::RowFormat;
 pub(crate) use args::Sweep;
 use rayon::ThreadPoolBuilder;
 use row::{Nothing, Rows};
-use saltus_bounce::scene::{Run, Template};
+use saltus_scene::{Run, Template};
 use serde_json::{Value as Json, json};
 use table::Table;
 

@@ -1,8 +1,8 @@
 //! A run as a row: what of it a table of many runs wants.
 
 use clap::ValueEnum;
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{Moment, Outcome};
+use saltus_scene::Scene;
+use saltus_scene::plan::{Moment, Outcome};
 
 use super::args::RowFormat;
 use crate::quantity::number;

@@ -3,7 +3,7 @@
 mod values;
 
 use clap::Args as ClapArgs;
-use saltus_bounce::scene::{Run, Scene, SceneError, Template};
+use saltus_scene::{Run, Scene, SceneError, Template};
 use values::Draws;
 pub(crate) use values::{Value, Variation};
 

@@ -6,19 +6,19 @@ use serde::Deserialize;
 
 use super::error::Fault;
 use super::value::{At, HertzStiffness, Mass, Measure, Number, Pairs, PerSpeed, Real, Short, Speed, Time};
-use crate::friction::Friction;
-use crate::materials::Preset;
-use crate::restitution::{Cor, Knots, Linear, Plastic, Restitution, Viscoelastic};
+use saltus_bounce::friction::Friction;
+use saltus_bounce::materials::Preset;
+use saltus_bounce::restitution::{Cor, Knots, Linear, Plastic, Restitution, Viscoelastic};
 
 /// The law of restitution of a scene.
 ///
 /// ```
 /// use saltus_bounce::Restitution;
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let scene = Scene::parse("drop.toml", b"restitution = [0.5, 0.6]\n[ball]\nheight = '1 m'\n")?;
 /// let [low, high] = scene.law(0, 0).unwrap().range(2.0).map(|cor| cor.value());
 /// assert_eq!((low, high, scene.law(0, 0).unwrap().rebound(2.0)), (0.5, 0.6, 1.1));
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -226,7 +226,7 @@ impl RestitutionTable {
                 };
                 let knots: Result<Vec<_>, _> =
                     at.get().iter().map(|(v, e)| Ok((v.real(), Cor::new(e.real())?))).collect();
-                let knots = knots.map_err(|error: crate::CorError| at.fault(error))?;
+                let knots = knots.map_err(|error: saltus_bounce::CorError| at.fault(error))?;
                 Law::Knots(Knots::new(&knots).map_err(|error| {
                     at.fault(error.to_string().replacen(
                         ": ",

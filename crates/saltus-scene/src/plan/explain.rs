@@ -3,10 +3,10 @@
 use std::fmt;
 
 use super::Model;
-use crate::effects::{Effect as _, LinearDrag, Motion, QuadraticDrag};
-use crate::friction::Friction;
-use crate::scene::error::short;
-use crate::scene::{Ball, Contact, Decay, Linear, Quadratic, Scene};
+use crate::error::short;
+use crate::{Ball, Contact, Decay, Linear, Quadratic, Scene};
+use saltus_bounce::effects::{Effect as _, LinearDrag, Motion, QuadraticDrag};
+use saltus_bounce::friction::Friction;
 
 /// Something that acts on a ball, or on how it bounces, and that a scene may name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,7 +169,8 @@ impl Scene {
                 format!("wind, ({}) m/s", numbers.join(", "))
             }
             Effect::Buoyancy => {
-                let net = effects.buoyancy(ball, self.gravity).map_or(0.0, crate::effects::Buoyancy::net_gravity);
+                let net =
+                    effects.buoyancy(ball, self.gravity).map_or(0.0, saltus_bounce::effects::Buoyancy::net_gravity);
                 format!("buoyancy, which leaves {} m/s² of gravity", short(net))
             }
             Effect::Friction => {

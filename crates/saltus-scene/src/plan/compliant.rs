@@ -7,10 +7,10 @@ use super::explain::Advance;
 use super::machine::{Happening, Machine, Reader, Ready};
 use super::record::{Impact, Moment, Press, With};
 use super::{PlanError, failed};
-use crate::Compliant;
-use crate::compliant::{Moment as Edge, Stage};
-use crate::contact::ContactLaw;
-use crate::scene::Contact;
+use crate::Contact;
+use saltus_bounce::Compliant;
+use saltus_bounce::compliant::{Moment as Edge, Stage};
+use saltus_bounce::contact::ContactLaw;
 
 /// What the model needs to know. SI units.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +114,7 @@ impl<L: ContactLaw + Send + Sync + 'static> Reader<Compliant<L>> for Deformed {
         }
     }
     fn contacts(&self, model: &Compliant<L>, run: &Trajectory<Compliant<L>>) -> Option<Vec<Impact>> {
-        let impact = |contact: crate::compliant::Contact| Impact {
+        let impact = |contact: saltus_bounce::compliant::Contact| Impact {
             t: contact.touch,
             ball: 0,
             with: With::Floor(self.owner),

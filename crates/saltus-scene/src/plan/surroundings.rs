@@ -4,8 +4,8 @@ use nalgebra::{SVector, Vector2};
 
 use super::PlanError;
 use super::curve::Curve;
-use crate::scene::{Ball, Floor, Motion, Scene, Shape};
-use crate::walls::{Face, Lift, Plane, Stairs, Table, Walls};
+use crate::{Ball, Floor, Motion, Scene, Shape};
+use saltus_bounce::walls::{Face, Lift, Plane, Stairs, Table, Walls};
 
 /// What may bound where a ball is, in N coordinates.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ impl<const N: usize> Surroundings<N> {
 
     fn add(&mut self, owner: usize, floor: &Floor, ball: &Ball, scene: &Scene) -> Result<(), PlanError> {
         let radius = ball.radius.unwrap_or(0.0);
-        let refused = |error: crate::ParameterError| PlanError::floor(owner, &error.to_string());
+        let refused = |error: saltus_bounce::ParameterError| PlanError::floor(owner, &error.to_string());
         // A plane that the centre keeps a radius away from, in terms of the lowest point.
         let plane = |normal: [f64; 3], offset: f64| {
             let mut n = SVector::<f64, N>::zeros();
@@ -248,7 +248,7 @@ struct Schedule {
 }
 
 impl Schedule {
-    fn new(mean: f64, points: &[[f64; 2]]) -> Result<Self, crate::ParameterError> {
+    fn new(mean: f64, points: &[[f64; 2]]) -> Result<Self, saltus_bounce::ParameterError> {
         let first = points.first().map_or(0.0, |point| point[1]);
         let mut stretches = vec![(f64::NEG_INFINITY, Lift::new(mean + first, 0.0, &[])?)];
         for (n, [t, height]) in points.iter().enumerate() {

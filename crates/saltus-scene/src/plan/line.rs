@@ -7,9 +7,9 @@ use super::explain::Advance;
 use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::{MOST_BALLS, PlanError, failed};
-use crate::Line;
-use crate::line::{Contact, Lying, Row};
-use crate::scene::{Law, Scene};
+use crate::{Law, Scene};
+use saltus_bounce::Line;
+use saltus_bounce::line::{Contact, Lying, Row};
 
 /// How far rounding may leave touching balls apart, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;

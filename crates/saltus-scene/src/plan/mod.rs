@@ -44,17 +44,17 @@ const CONTACT_TOLERANCE: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Model {
-    /// [`Ball`](crate::Ball): up and down on a level floor.
+    /// [`Ball`](saltus_bounce::Ball): up and down on a level floor.
     Ball,
-    /// [`Flyer`](crate::Flyer): one ball among floors and walls.
+    /// [`Flyer`](saltus_bounce::Flyer): one ball among floors and walls.
     Flyer,
-    /// [`Compliant`](crate::Compliant): up and down on a floor that gives.
+    /// [`Compliant`](saltus_bounce::Compliant): up and down on a floor that gives.
     Compliant,
-    /// [`Line`](crate::Line): several balls on a line.
+    /// [`Line`](saltus_bounce::Line): several balls on a line.
     Line,
-    /// [`Cloud`](crate::Cloud): several smooth balls in the plane or in space, of which none comes to rest.
+    /// [`Cloud`](saltus_bounce::Cloud): several smooth balls in the plane or in space, of which none comes to rest.
     Cloud,
-    /// [`Flock`](crate::Flock): several balls among floors and walls.
+    /// [`Flock`](saltus_bounce::Flock): several balls among floors and walls.
     Flock,
 }
 
@@ -89,8 +89,8 @@ impl fmt::Display for Model {
 /// A scene that can be run.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
-/// use saltus_bounce::scene::plan::{Advance, Model};
+/// use saltus_scene::Scene;
+/// use saltus_scene::plan::{Advance, Model};
 /// let scene = Scene::parse("drop.toml", b"restitution = 0.8\nball = { height = '1 m' }\n")?;
 /// let plan = scene.plan()?;
 /// let explanation = plan.explain();
@@ -390,19 +390,19 @@ fn label(scene: &Scene, owner: usize) -> String {
 
 /// A law refuses a number: the reader has let it through, but the combination is out of its range.
 #[allow(clippy::needless_pass_by_value)] // used as a function
-fn failed(error: crate::ParameterError) -> PlanError {
+fn failed(error: saltus_bounce::ParameterError) -> PlanError {
     PlanError::new("the scene", &error.to_string())
 }
 
 /// Why a scene cannot be run, where in it that is said, and what to do.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let toml = b"restitution = 0.8\ndrag = { per_length = '0.1 1/m' }\nrun = { until = 1 }\n\
 ///     ball = [{ height = 1, radius = 0.1, mass = 1 }, { height = 2, radius = 0.1, mass = 1 }]\n";
 /// let error = Scene::parse("two.toml", toml)?.plan().unwrap_err();
 /// assert!(error.to_string().starts_with("two.toml:2:1: several balls that only move up and down are simulated without quadratic drag"));
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanError {

@@ -9,18 +9,20 @@ use super::ball::Ball;
 use super::error::Fault;
 use super::space::Space;
 use super::value::{At, Density, Measure, Number, OneOrMany, PerLength, Rate, Speed, Time, Viscosity};
-use crate::effects::{AIR_DENSITY, AIR_VISCOSITY, Buoyancy, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay};
+use saltus_bounce::effects::{
+    AIR_DENSITY, AIR_VISCOSITY, Buoyancy, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay,
+};
 
 /// What acts on the balls of a scene in flight, beside gravity: each effect only if the scene names it.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let toml = b"restitution = 0.9\ndrag = { coefficient = 0.47 }\n[ball]\nradius = '2 cm'\nmass = '2.7 g'\nheight = '1 m'\n";
 /// let scene = Scene::parse("table-tennis.toml", toml)?;
 /// let drag = scene.effects.quadratic_drag(&scene.balls[0]).unwrap();
 /// assert!((drag.per_length() - 0.134).abs() < 1e-3);
 /// assert!(scene.effects.magnus(&scene.balls[0]).is_none());
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

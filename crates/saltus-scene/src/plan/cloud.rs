@@ -7,9 +7,9 @@ use super::explain::Advance;
 use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::{MOST_IN_SPACE, PlanError, failed};
-use crate::Cloud;
-use crate::cloud::{Swarm, Touch};
-use crate::scene::{Law, Scene, Shape};
+use crate::{Law, Scene, Shape};
+use saltus_bounce::Cloud;
+use saltus_bounce::cloud::{Swarm, Touch};
 
 /// So far away that no ball gets there, and yet its square is a number.
 const NOWHERE: f64 = 1e150;

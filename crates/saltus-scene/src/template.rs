@@ -16,14 +16,14 @@ use super::{Run, Scene, read};
 /// [`Scene::parse`] is made of every scene.
 ///
 /// ```
-/// use saltus_bounce::scene::{Run, Template};
+/// use saltus_scene::{Run, Template};
 /// let template = Template::parse("drop.toml", b"restitution = 0.8\nball = { height = '1 m' }\n", &["ball.height"])?;
 /// for (height, metres) in [("'20 cm'", 0.2), ("'3 m'", 3.0)] {
 ///     assert_eq!(template.scene(&[height], Run::default())?.balls[0].lowest().z, metres);
 /// }
 /// let error = template.scene(&["'3 s'"], Run::default()).unwrap_err();
 /// assert!(error.to_string().starts_with("drop.toml as varied:1:15: 's' in '3 s' is not a unit of length but of time"));
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 pub struct Template<'a> {
     name: String,

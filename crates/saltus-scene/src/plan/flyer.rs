@@ -8,12 +8,14 @@ use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::surroundings::{Surroundings, surroundings};
 use super::{PlanError, failed, kind, label};
-use crate::effects::{AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind};
-use crate::friction::{Friction, Rebound};
-use crate::restitution::Restitution;
-use crate::scene::{Ball, Law, Scene};
-use crate::walls::{Face, Walls};
-use crate::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
+use crate::{Ball, Law, Scene};
+use saltus_bounce::effects::{
+    AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind,
+};
+use saltus_bounce::friction::{Friction, Rebound};
+use saltus_bounce::restitution::Restitution;
+use saltus_bounce::walls::{Face, Walls};
+use saltus_bounce::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
 
 /// How deep in a wall a ball may start for the rounding of its place, for each metre from the origin.
 const ROUNDING: f64 = 1e-12;
@@ -139,7 +141,7 @@ pub(super) fn start<const N: usize>(ball: &Ball) -> Moving<N> {
 }
 
 #[allow(clippy::needless_pass_by_value)] // used as a function
-pub(super) fn crowded(error: crate::ParameterError) -> PlanError {
+pub(super) fn crowded(error: saltus_bounce::ParameterError) -> PlanError {
     PlanError::new("[[floor]]", &format!("the scene has too many walls, {error}"))
 }
 

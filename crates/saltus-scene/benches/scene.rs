@@ -1,6 +1,6 @@
 //! What a scene costs over the same motion composed by hand, its plan and its run, both recorded; and what a flock costs over a cloud.
 //!
-//! `cargo bench -p saltus-bounce --bench scene`; quote ratios of one run on one machine, not times.
+//! `cargo bench -p saltus-scene --bench scene`; quote ratios of one run on one machine, not times.
 
 #![allow(clippy::unwrap_used)] // a benchmark of a run that fails should stop
 
@@ -9,9 +9,9 @@ use std::hint::black_box;
 use divan::Bencher;
 use saltus::Simulation;
 use saltus::nalgebra::vector;
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::Model;
 use saltus_bounce::{Ball, Cor, Mode};
+use saltus_scene::Scene;
+use saltus_scene::plan::Model;
 
 const UNTIL: f64 = 10.0;
 

@@ -10,7 +10,7 @@ use super::motion::{Motion, MotionTable};
 use super::restitution::{self, FrictionTable, RestitutionTable, Said};
 use super::space::Space;
 use super::value::{Angle, At, Length, Measure, OneOrMany, PerLength, Real, Short};
-use crate::friction::Friction;
+use saltus_bounce::friction::Friction;
 
 /// One floor, wall or box. Lengths in m, angles in rad.
 #[derive(Clone, Debug, PartialEq)]

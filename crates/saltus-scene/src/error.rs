@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Its `Display` form shows the line itself with a caret below the place:
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 ///
 /// let error = Scene::parse("drop.toml", b"restitution = 1.2\n[ball]\nheight = \"1 m\"\n").unwrap_err();
 /// assert_eq!((error.line(), error.column()), (1, 15));

@@ -7,10 +7,10 @@ use super::explain::Advance;
 use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::{PlanError, failed};
-use crate::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
-use crate::restitution::{Cor, Restitution};
-use crate::scene::Law;
-use crate::{Ball, Floor, Mode, Phase, SmoothFlight, Turn};
+use crate::Law;
+use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
+use saltus_bounce::restitution::{Cor, Restitution};
+use saltus_bounce::{Ball, Floor, Mode, Phase, SmoothFlight, Turn};
 
 /// How a vertical ball is held back.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,12 @@ impl Upright {
     }
 }
 
-impl<F: SmoothFlight, R: Restitution> Reader<Ball<F, R>> for Upright
+/// A flight without an apex edge that this crate plans: all smooth ones there are, and no other.
+trait Smooth: SmoothFlight {}
+impl Smooth for VacuumFlight {}
+impl Smooth for LinearDragFlight {}
+
+impl<F: Smooth, R: Restitution> Reader<Ball<F, R>> for Upright
 where
     Ball<F, R>: Automaton<Mode = Mode, Edge = Floor, State = Vector2<f64>>,
 {

@@ -2,9 +2,9 @@
 
 use nalgebra::{SVector, Vector2};
 
-use crate::scene::Shape;
-use crate::scene::error::short;
-use crate::walls::{Face, Walls};
+use crate::Shape;
+use crate::error::short;
+use saltus_bounce::walls::{Face, Walls};
 
 /// Ground y = f(x) and the radius of the ball on it.
 ///

@@ -3,7 +3,7 @@
 use saltus::step::{Either, Stepper as Step, Trial};
 use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
 
-use crate::scene::Stepper;
+use crate::Stepper;
 
 /// One of the engine's methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

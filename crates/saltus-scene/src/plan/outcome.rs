@@ -10,7 +10,7 @@ use super::record::{Apex, Cost, End, Moment, Record, Tops};
 /// What came of a run: what a table of many runs wants to know of each.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let scene = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = '1 m' }\nrun = { until = '4 s' }\n")?;
 /// let outcome = scene.plan()?.outcome()?;
 /// let fall = (2.0 / 9.80665_f64).sqrt();
@@ -43,7 +43,7 @@ pub struct Outcome {
 
 impl Outcome {
     /// What came of a run that was recorded.
-    pub(in crate::scene) fn of(record: &Record) -> Self {
+    pub(crate) fn of(record: &Record) -> Self {
         let impacts = record.impacts();
         let first = impacts.iter().find(|impact| impact.ball == 0);
         Self {

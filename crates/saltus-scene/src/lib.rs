@@ -40,13 +40,13 @@ pub use run::{Kind, Picture, Run, Stepper};
 pub use schema::schema;
 pub use template::Template;
 
-use crate::effects::Gravity;
-use crate::friction::Friction;
+use saltus_bounce::effects::Gravity;
+use saltus_bounce::friction::Friction;
 
 /// A scene: balls, what acts on them, what they bounce on. SI units; vectors are (x, y, up).
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let toml = br#"
 ///     gravity = "moon"
 ///     restitution = 0.8
@@ -57,7 +57,7 @@ use crate::friction::Friction;
 /// assert_eq!((scene.dimensions, scene.gravity.value()), (1, 1.62));
 /// assert_eq!(scene.balls[0].lowest().z, 1.5);
 /// assert_eq!(scene.law(0, 0).unwrap().constant().unwrap().value(), 0.8);
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -103,13 +103,13 @@ impl Scene {
     /// The same, where what `run` says goes before what the text says under `[run]`: so a scene that says no end can be given one.
     ///
     /// ```
-    /// use saltus_bounce::scene::{Run, Scene};
+    /// use saltus_scene::{Run, Scene};
     /// let endless = b"restitution = 1\nball = { height = '1 m' }\n";
     /// assert!(Scene::parse("drop.toml", endless).is_err());
     /// let mut run = Run::default();
     /// run.until = Some(5.0);
     /// assert_eq!(Scene::parse_with("drop.toml", endless, run)?.run.until, Some(5.0));
-    /// # Ok::<(), saltus_bounce::scene::SceneError>(())
+    /// # Ok::<(), saltus_scene::SceneError>(())
     /// ```
     ///
     /// # Errors
@@ -124,7 +124,7 @@ impl Scene {
     /// [`ReadError`]: the file cannot be read, or its content is no scene.
     ///
     /// ```
-    /// use saltus_bounce::scene::Scene;
+    /// use saltus_scene::Scene;
     /// let error = Scene::read("no/such/scene.toml").unwrap_err();
     /// assert!(error.to_string().starts_with("cannot read 'no/such/scene.toml'"));
     /// ```

@@ -8,15 +8,15 @@ use serde::Deserialize;
 use super::error::Fault;
 use super::space::Space;
 use super::value::{AngularSpeed, At, Length, Mass, Measure, Number, OneOrMany, Real, Speed};
-use crate::sphere::Sphere;
+use saltus_bounce::Sphere;
 
 /// One ball: what it is, and how it starts. Vectors are (x, y, up) in m, m/s and rad/s; what a scene does not name is zero.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let scene = Scene::parse("drop.toml", b"restitution = 0.8\n[ball]\nheight = '1 m'\nradius = '2 cm'\n")?;
 /// assert_eq!((scene.balls[0].lowest().z, scene.balls[0].centre().z), (1.0, 1.02));
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

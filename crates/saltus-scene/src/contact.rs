@@ -6,19 +6,19 @@ use serde::Deserialize;
 
 use super::error::Fault;
 use super::value::{At, Loose, Measure, Number, Pressure, Speed, Time};
-use crate::contact::{Elastic, Hertz, HuntCrossley, KelvinVoigt};
-use crate::parameter::ParameterError;
-use crate::restitution::Cor;
-use crate::units::Quantity;
+use saltus_bounce::ParameterError;
+use saltus_bounce::contact::{Elastic, Hertz, HuntCrossley, KelvinVoigt};
+use saltus_bounce::restitution::Cor;
+use saltus_bounce::units::Quantity;
 
 /// How ball and floor touch.
 ///
 /// ```
-/// use saltus_bounce::scene::{Contact, Scene};
+/// use saltus_scene::{Contact, Scene};
 /// let toml = b"contact = { law = 'hertz', stiffness = 1e9 }\n[ball]\nmass = '32.7 g'\nheight = '1 cm'\nvelocity = 0\n[run]\nuntil = 1\n";
 /// let scene = Scene::parse("steel.toml", toml)?;
 /// assert!(matches!(scene.contact, Contact::Hertz(law) if law.constant() == 1e9));
-/// # Ok::<(), saltus_bounce::scene::SceneError>(())
+/// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -9,11 +9,11 @@ use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::surroundings::Surroundings;
 use super::{MOST_IN_SPACE, PlanError, failed};
-use crate::effects::AddedMass;
-use crate::flock::{Flock, Flying, Happens, Meeting, Stances};
-use crate::scene::{Law, Scene};
-use crate::walls::Walls;
-use crate::{Event, Flyer, Sphere, Stance};
+use crate::{Law, Scene};
+use saltus_bounce::effects::AddedMass;
+use saltus_bounce::flock::{Flock, Flying, Happens, Meeting, Stances};
+use saltus_bounce::walls::Walls;
+use saltus_bounce::{Event, Flyer, Sphere, Stance};
 
 type Model = Flock<MOST_IN_SPACE, AddedMass<Blown<3, Spun>>, Surroundings<3>, Laws, Grips, Law>;
 

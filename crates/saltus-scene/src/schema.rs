@@ -10,7 +10,7 @@ const SCHEMA: &str = include_str!("scene.schema.json");
 /// An editor that knows schemas for TOML checks and completes by it when the file begins with `#:schema scene.schema.json`.
 ///
 /// ```
-/// let schema = saltus_bounce::scene::schema();
+/// let schema = saltus_scene::schema();
 /// assert!(schema.contains("\"title\": \"saltus scene\"") && schema.contains("\"height\""));
 /// ```
 #[must_use]
@@ -67,7 +67,7 @@ mod tests {
             SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<File>().to_value();
         let schema = serde_json::to_string_pretty(&root).unwrap() + "\n";
         if std::env::var_os("SALTUS_BLESS").is_some() {
-            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/scene/scene.schema.json");
+            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/scene.schema.json");
             std::fs::write(path, &schema).unwrap();
         } else {
             assert!(schema == SCHEMA.replace("\r\n", "\n"), "SALTUS_BLESS=1 writes:\n{schema}");

@@ -19,9 +19,9 @@ use super::source::Source;
 use super::space::Space;
 use super::value::{Acceleration, At, Dimension, OneOrMany, Short};
 use super::{Contact, Scene, check};
-use crate::effects::Gravity;
-use crate::friction::Friction;
-use crate::materials;
+use saltus_bounce::effects::Gravity;
+use saltus_bounce::friction::Friction;
+use saltus_bounce::materials;
 
 /// A scene: balls, what acts on them, what they bounce on.
 #[derive(Clone, Debug, Deserialize)]

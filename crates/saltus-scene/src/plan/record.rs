@@ -285,7 +285,7 @@ pub(super) trait Recorded {
 /// A recorded run of a scene.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
+/// use saltus_scene::Scene;
 /// let scene = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = '1 m' }\n")?;
 /// let record = scene.plan()?.run()?;
 /// let rest = record.rest().unwrap();

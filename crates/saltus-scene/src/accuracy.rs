@@ -6,7 +6,7 @@ use saltus::Timing;
 
 use super::plan::{Cost, Effect, Impact, Plan, PlanError, Record, RunError};
 use super::{Scene, Stepper};
-use crate::effects::Gravity;
+use saltus_bounce::effects::Gravity;
 
 /// The tolerances tried.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
@@ -202,8 +202,8 @@ impl Outcome {
 /// What accuracy costs in a scene.
 ///
 /// ```
-/// use saltus_bounce::scene::Scene;
-/// use saltus_bounce::scene::accuracy::{Accuracy, Target, Way};
+/// use saltus_scene::Scene;
+/// use saltus_scene::accuracy::{Accuracy, Target, Way};
 /// let toml = "restitution = 0.8\nball = { height = '1 m' }\ndrag = { rate = 0.1, per_length = 0.05 }\nrun = { until = 2.0 }\n";
 /// let scene = Scene::parse("drop.toml", toml.as_bytes())?;
 /// let accuracy = Accuracy::counted(&scene)?;

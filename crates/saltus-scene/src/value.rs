@@ -13,8 +13,8 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use toml::Spanned;
 
 use super::error::Fault;
-use crate::parameter::{ParameterError, not_negative, positive};
-use crate::units::Quantity;
+use saltus_bounce::ParameterError;
+use saltus_bounce::units::Quantity;
 
 /// A value and where it stands.
 #[derive(Clone, Debug, serde::Deserialize)]
@@ -42,11 +42,21 @@ impl<T: Real> At<T> {
     }
 
     pub(super) fn positive(&self, what: &'static str) -> Result<f64, Fault> {
-        positive(what, self.real()).map_err(|error| self.fault(error))
+        let value = self.real();
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.fault(format!("{value} is not {what}: give a finite number above zero")))
+        }
     }
 
     pub(super) fn not_negative(&self, what: &'static str) -> Result<f64, Fault> {
-        not_negative(what, self.real()).map_err(|error| self.fault(error))
+        let value = self.real();
+        if value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(self.fault(format!("{value} is not {what}: give a finite number, zero or more")))
+        }
     }
 
     /// What a law makes of the number.
