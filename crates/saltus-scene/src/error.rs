@@ -108,6 +108,39 @@ impl fmt::Debug for SceneError {
 
 impl std::error::Error for SceneError {}
 
+/// Why something cannot be made of a scene or of its run, and what to do.
+///
+/// ```
+/// use saltus_scene::{Sampling, Scene};
+/// let record = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = 1 }\n")?.plan()?.run()?;
+/// let error = record.table(Some(Sampling::Every(1e-9))).unwrap_err();
+/// assert!(error.to_string().ends_with("samples are more than 10000000: sample less often, or end the run earlier"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct Error(String);
+
+impl Error {
+    pub(super) fn new(says: impl fmt::Display) -> Self {
+        Self(says.to_string())
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// The sentence, which is what a `main` shows that returns the error.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Error {}
+
 /// Something wrong with a range of bytes, before it is known whose they are.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {

@@ -5,22 +5,29 @@
 
 pub mod accuracy;
 mod air;
+mod animation;
 mod ball;
 mod check;
 mod contact;
 mod error;
 mod file;
 mod floor;
+mod ground;
 mod motion;
+mod number;
 pub mod plan;
 mod read;
+mod report;
 mod restitution;
 mod run;
 mod schema;
+pub mod solve;
 mod source;
 mod space;
+pub mod sweep;
 mod template;
 mod value;
+pub mod vary;
 
 #[cfg(test)]
 mod tests;
@@ -30,11 +37,14 @@ use std::path::Path;
 use source::Source;
 
 pub use air::{Decay, Effects, Linear, Quadratic};
+pub use animation::{Departure, Squash, Stage, Staging, length};
 pub use ball::{Ball, Start};
 pub use contact::Contact;
-pub use error::SceneError;
+pub use error::{Error, SceneError};
 pub use floor::{Floor, Shape};
 pub use motion::Motion;
+pub use plan::{Plan, Record};
+pub use report::{Sampling, Table, Values};
 pub use restitution::Law;
 pub use run::{Kind, Picture, Run, Stepper};
 pub use schema::schema;

@@ -102,6 +102,50 @@ pub enum Kind {
     Ghost,
 }
 
+impl Kind {
+    /// Every one.
+    pub const ALL: [Self; 8] = [
+        Self::Height,
+        Self::Velocity,
+        Self::Energy,
+        Self::Phase,
+        Self::Path,
+        Self::Ladder,
+        Self::Hysteresis,
+        Self::Ghost,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Height => "height",
+            Self::Velocity => "velocity",
+            Self::Energy => "energy",
+            Self::Phase => "phase",
+            Self::Path => "path",
+            Self::Ladder => "ladder",
+            Self::Hysteresis => "hysteresis",
+            Self::Ghost => "ghost",
+        }
+    }
+
+    /// What it shows.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Height => "Height against time",
+            Self::Velocity => "Velocity against time",
+            Self::Energy => "Energies against time",
+            Self::Phase => "Velocity against height",
+            Self::Path => "The path in space",
+            Self::Ladder => "Apex heights, bounce by bounce",
+            Self::Hysteresis => "Force against deformation, of a contact that takes time",
+            Self::Ghost => "The ball at equal times",
+        }
+    }
+}
+
 /// How long and how precisely to run.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[cfg_attr(test, derive(JsonSchema))]

@@ -283,3 +283,21 @@ fn what_no_model_can_do_is_said_where_it_stands() {
     let error = scene.plan().unwrap_err();
     assert!(error.in_text().is_none() && error.to_string().starts_with("buoyancy: "), "{error}");
 }
+
+/// Workers take runs from each other, and a record is data.
+#[test]
+fn a_record_is_sent_shared_and_serialised() {
+    fn shared<T: Send + Sync + serde::Serialize>(value: &T) -> String {
+        serde_json::to_string_pretty(value).unwrap()
+    }
+    let scenes = [
+        "restitution = 0.5\nball = { height = 1 }\n",
+        "restitution = 0.5\nfriction = 0.2\nrun = { until = 2 }\nball = { radius = 0.1, position = [0, 1], velocity = [1, 0] }\n",
+    ];
+    for scene in scenes {
+        let record = Scene::parse("a", scene.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+        let here = shared(&record);
+        assert_eq!(here.clone() + "\n", record.json(None).unwrap());
+        assert_eq!(std::thread::spawn(move || shared(&record)).join().unwrap(), here);
+    }
+}

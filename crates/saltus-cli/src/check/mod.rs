@@ -8,12 +8,12 @@ use std::process::ExitCode;
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
 use saltus_motion::{Export, Format, Motion};
+use saltus_scene::{Stage, length};
 
 use self::read::Reading;
-use crate::args::positive;
 use crate::error::Error;
 use crate::output::stdout;
-use crate::stage::{Stage, length};
+use crate::parse::positive;
 use crate::staging::Staging;
 
 /// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
@@ -45,7 +45,7 @@ const KEYS: f64 = 1e-4;
 pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
     // A file that cannot be read is said before a scene is run.
     let readings = read::readings(&args.file)?;
-    let Stage { motion, frames, shape, .. } = Stage::of(&args.scene, &args.staging, 0, quiet)?;
+    let Stage { motion, frames, shape, .. } = args.staging.of(&args.scene, 0, quiet)?;
     let export = Export { motion: &motion, frames, tolerance: KEYS, shape };
     let [[left, right], [low, high]] = motion.reach();
     let size = (right - left).max(high - low);

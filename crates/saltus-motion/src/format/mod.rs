@@ -52,6 +52,77 @@ pub enum Format {
 }
 
 impl Format {
+    /// Every one.
+    pub const ALL: [Self; 11] = [
+        Self::Csv,
+        Self::CsvFrames,
+        Self::Json,
+        Self::Blender,
+        Self::Maya,
+        Self::Glb,
+        Self::Usd,
+        Self::UsdSplines,
+        Self::Lottie,
+        Self::Svg,
+        Self::Chart,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::CsvFrames => "csv-frames",
+            Self::Json => "json",
+            Self::Blender => "blender",
+            Self::Maya => "maya",
+            Self::Glb => "glb",
+            Self::Usd => "usd",
+            Self::UsdSplines => "usd-splines",
+            Self::Lottie => "lottie",
+            Self::Svg => "svg",
+            Self::Chart => "chart",
+        }
+    }
+
+    /// What files of it end in, each format in its own.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::CsvFrames => "frames.csv",
+            Self::Json => "json",
+            Self::Blender => "blender.py",
+            Self::Maya => "maya.py",
+            Self::Glb => "glb",
+            Self::Usd => "usda",
+            Self::UsdSplines => "splines.usda",
+            Self::Lottie => "lottie.json",
+            Self::Svg => "svg",
+            Self::Chart => "chart.svg",
+        }
+    }
+
+    /// What it is.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Csv => "Keys as a table",
+            Self::CsvFrames => "A place for every frame as a table",
+            Self::Json => "Keys and frames, for programs",
+            Self::Blender => "A Python script for Blender 4 and 5",
+            Self::Maya => "A Python script for Maya",
+            Self::Glb => "Binary glTF: frames first, exact cubics second",
+            Self::Usd => "USD as text, a place for every frame",
+            Self::UsdSplines => "USD as text with splines, for USD 25.5 and later",
+            Self::Lottie => "Lottie",
+            Self::Svg => "A moving SVG",
+            Self::Chart => {
+                "The timing chart, an SVG that stands still: a tick for every frame, contacts and tops marked"
+            }
+        }
+    }
+
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {

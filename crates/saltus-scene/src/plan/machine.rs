@@ -14,7 +14,7 @@ use super::RunError;
 use super::explain::{Advance, ModePlan};
 use super::method::Method;
 use super::outcome::{Outcome, Watch};
-use super::record::{Cost, End, Event, Impact, Moment, Record, Recorded, Segment, Sides, With};
+use super::record::{Cost, End, Event, Impact, Moment, Recorded, Segment, Sides, With};
 
 /// How to run a machine.
 #[derive(Clone, Copy, Debug)]
@@ -128,9 +128,25 @@ pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
     }
 }
 
+/// A model that may be sent between threads and shared, with all its runs.
+pub(super) trait Shared:
+    Automaton<Mode: Send + Sync, State: Send + Sync, Edge: Send + Sync> + Send + Sync + 'static
+{
+}
+impl<A> Shared for A where A: Automaton<Mode: Send + Sync, State: Send + Sync, Edge: Send + Sync> + Send + Sync + 'static
+{}
+
+/// A run that was recorded, up to where it is shown.
+pub(super) struct Recording {
+    pub(super) run: Box<dyn Recorded>,
+    pub(super) until: f64,
+    pub(super) end: End,
+    pub(super) rest: Option<f64>,
+}
+
 /// Anything that runs.
 pub(super) trait Machine: Send + Sync {
-    fn run(&self, how: &How) -> Result<Record, RunError>;
+    fn run(&self, how: &How) -> Result<Recording, RunError>;
     fn outcome(&self, how: &How) -> Result<Outcome, RunError>;
     fn modes(&self, method: Method) -> Vec<ModePlan>;
     fn coordinates(&self) -> usize;
@@ -147,9 +163,7 @@ pub(super) struct Ready<A: Automaton, R> {
 impl<A: Automaton, R: Reader<A>> Ready<A, R> {
     pub(super) fn boxed(automaton: A, reader: R, mode: A::Mode, state: A::State) -> Box<dyn Machine>
     where
-        A: Send + Sync + 'static,
-        A::Mode: Send + Sync,
-        A::State: Send + Sync,
+        A: Shared,
     {
         Box::new(Self { automaton: Arc::new(automaton), reader: Arc::new(reader), mode, state })
     }
@@ -194,13 +208,8 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
     }
 }
 
-impl<A, R: Reader<A>> Machine for Ready<A, R>
-where
-    A: Automaton + Send + Sync + 'static,
-    A::Mode: Send + Sync,
-    A::State: Send + Sync,
-{
-    fn run(&self, how: &How) -> Result<Record, RunError> {
+impl<A: Shared, R: Reader<A>> Machine for Ready<A, R> {
+    fn run(&self, how: &How) -> Result<Recording, RunError> {
         let simulation = self.simulation(how);
         let until = self.until(how, &simulation)?;
         let run = match how.frames {
@@ -220,7 +229,7 @@ where
         let rest = (end == End::Time && self.reader.rests(run.mode, &run.state)).then_some(last);
         let until = how.shown(end, run.trajectory.end().seconds(), last, rest)?;
         let read = Read { automaton: Arc::clone(&self.automaton), reader: Arc::clone(&self.reader), run };
-        Ok(Record { run: Box::new(read), until, end, rest })
+        Ok(Recording { run: Box::new(read), until, end, rest })
     }
 
     fn outcome(&self, how: &How) -> Result<Outcome, RunError> {
@@ -345,7 +354,7 @@ impl<A: Automaton, R: Reader<A>> Read<A, R> {
     }
 }
 
-impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
+impl<A: Shared, R: Reader<A>> Recorded for Read<A, R> {
     fn balls(&self) -> usize {
         self.reader.balls()
     }

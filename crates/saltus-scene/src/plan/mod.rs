@@ -18,6 +18,7 @@ mod record;
 mod surroundings;
 
 use std::fmt;
+use std::sync::Arc;
 
 pub use explain::{Advance, Effect, Explanation, ModePlan};
 pub use outcome::Outcome;
@@ -26,7 +27,7 @@ pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment,
 use super::accuracy::Way;
 use super::source::Source;
 use super::{Contact, Floor, Law, Scene, SceneError, Shape, Stepper};
-use machine::{How, Machine};
+use machine::{How, Machine, Recording};
 use method::Method;
 
 /// After how many jumps a run ends that says nothing of it.
@@ -102,6 +103,7 @@ impl fmt::Display for Model {
 /// ```
 pub struct Plan {
     machine: Box<dyn Machine>,
+    scene: Arc<Scene>,
     how: How,
     explanation: Explanation,
 }
@@ -167,7 +169,8 @@ impl Plan {
     /// # Errors
     /// [`RunError`] if the engine fails, or if nothing ends the run.
     pub fn run(&self) -> Result<Record, RunError> {
-        self.machine.run(&self.how)
+        let Recording { run, until, end, rest } = self.machine.run(&self.how)?;
+        Ok(Record { run, scene: Arc::clone(&self.scene), model: self.explanation.model, until, end, rest })
     }
 
     /// Runs from the scene's start, and keeps what came of it only: many times faster than [`run`](Self::run) where a formula solves the motion.
@@ -222,7 +225,7 @@ impl Scene {
             frames: None,
             absolute,
         };
-        Plan { machine, how, explanation }
+        Plan { machine, scene: Arc::new(self.clone()), how, explanation }
     }
 }
 

@@ -2,9 +2,13 @@
 
 use std::fmt;
 use std::ops::{Add, Mul};
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 use saltus::Stop;
+
+use super::Model;
+use crate::Scene;
 
 /// A ball at a moment. Vectors are (x, y, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -270,7 +274,7 @@ impl From<saltus::Stats> for Cost {
 }
 
 /// A recorded run of one model, whichever it is.
-pub(super) trait Recorded {
+pub(super) trait Recorded: Send + Sync {
     fn balls(&self) -> usize;
     fn at(&self, ball: usize, t: f64) -> Option<(&'static str, Moment)>;
     fn before(&self, ball: usize, t: f64) -> Option<Moment>;
@@ -282,7 +286,7 @@ pub(super) trait Recorded {
     fn doubts(&self) -> Vec<String>;
 }
 
-/// A recorded run of a scene.
+/// A recorded run of a scene. It may be sent between threads and shared; serialised it is the JSON of docs/simulating.md.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -297,6 +301,8 @@ pub(super) trait Recorded {
 /// ```
 pub struct Record {
     pub(super) run: Box<dyn Recorded>,
+    pub(super) scene: Arc<Scene>,
+    pub(super) model: Model,
     pub(super) until: f64,
     pub(super) end: End,
     pub(super) rest: Option<f64>,
@@ -311,6 +317,18 @@ impl fmt::Debug for Record {
 }
 
 impl Record {
+    /// The scene that was run.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The model that it was run by.
+    #[must_use]
+    pub const fn model(&self) -> Model {
+        self.model
+    }
+
     /// How many balls there are.
     #[must_use]
     pub fn balls(&self) -> usize {

@@ -1,6 +1,6 @@
 //! Finding the numbers with which wishes come true.
 
-use saltus::nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 /// What is to be found: numbers between limits, and how far off they leave each wish.
 pub(super) struct Problem<'a> {

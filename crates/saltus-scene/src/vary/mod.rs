@@ -1,48 +1,54 @@
-//! One scene with other values: which keys vary, which runs there are, and the scene of each.
+//! One scene with other values: which keys vary, which runs there are, and the values of each.
 
 mod values;
 
-use clap::Args as ClapArgs;
-use saltus_scene::{Run, Scene, SceneError, Template};
 use values::Draws;
-pub(crate) use values::{Value, Variation};
+pub use values::{Value, Variation};
 
-use crate::error::Error;
-
-/// What may stand behind --vary.
-pub(crate) const VARIATIONS: &str = "Variations, for example:
-  --vary restitution=0.5:0.9:41        41 numbers from 0.5 to 0.9
-  --vary ball.height=1m:10m:100        a hundred heights
-  --vary drag.per_length=1e-3:1:31:log 31 numbers, each by the same factor above the last
-  --vary gravity=earth,moon,mars       a list
-  --vary floor.0.friction=0,0.2,0.4    of the first of several floors
-Several make a grid, in which the first changes slowest; with --random N each of N runs draws from all.";
+use crate::{Error, SceneError};
 
 /// More runs than anyone waits for.
 const MOST_RUNS: u64 = 1_000_000_000_000;
 
-/// What varies, and how.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Vary {
-    /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
-    #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
-    pub(crate) variations: Vec<Variation>,
-    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all; COUNT does not matter then.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
-    pub(crate) random: Option<u64>,
+/// What varies, and how: every value with every other, the last variation fastest, or values drawn at random.
+///
+/// ```
+/// use saltus_scene::vary::Vary;
+/// let vary = Vary::new(&["restitution=0.5:0.9:5", "ball.height=1m,2m"])?;
+/// assert_eq!((vary.runs()?, vary.says(3)), (10, "restitution = 0.6, ball.height = 2.0 m".to_owned()));
+/// # Ok::<(), saltus_scene::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Vary {
+    /// A key and its values each.
+    pub variations: Vec<Variation>,
+    /// So many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all.
+    pub random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "random")]
-    pub(crate) seed: u64,
+    pub seed: u64,
 }
 
 impl Vary {
+    /// Every value with every other.
+    ///
+    /// # Errors
+    /// [`Error`] if a text is not of the form `KEY=FROM:TO:COUNT`, `KEY=FROM:TO:COUNT:log` or `KEY=A,B,C`.
+    pub fn new(texts: &[&str]) -> Result<Self, Error> {
+        let variations = texts.iter().map(|text| text.parse().map_err(Error::new)).collect::<Result<_, _>>()?;
+        Ok(Self { variations, random: None, seed: 1 })
+    }
+
     /// The variations as they were written.
-    pub(crate) fn texts(&self) -> Vec<&str> {
+    #[must_use]
+    pub fn texts(&self) -> Vec<&str> {
         self.variations.iter().map(|variation| variation.text.as_str()).collect()
     }
 
     /// The keys that vary, each once.
-    pub(crate) fn keys(&self) -> Result<Vec<&str>, Error> {
+    ///
+    /// # Errors
+    /// [`Error`] for a key that varies twice.
+    pub fn keys(&self) -> Result<Vec<&str>, Error> {
         let keys: Vec<&str> = self.variations.iter().map(|variation| variation.key.as_str()).collect();
         match keys.iter().enumerate().find(|(n, key)| keys[..*n].contains(key)) {
             Some((_, twice)) => Err(Error::new(format!("`{twice}` varies twice: keep one --vary of it"))),
@@ -51,7 +57,10 @@ impl Vary {
     }
 
     /// How many runs there are.
-    pub(crate) fn runs(&self) -> Result<u64, Error> {
+    ///
+    /// # Errors
+    /// [`Error`] for a range without a count in a grid, or for more than 10¹² runs.
+    pub fn runs(&self) -> Result<u64, Error> {
         if let Some(count) = self.random {
             return Ok(count);
         }
@@ -71,7 +80,8 @@ impl Vary {
     }
 
     /// The values of a run, counted from 0, one for each variation.
-    pub(crate) fn values(&self, run: u64) -> Vec<Value> {
+    #[must_use]
+    pub fn values(&self, run: u64) -> Vec<Value> {
         if self.random.is_some() {
             let mut draws = Draws::of(self.seed, run);
             return self.variations.iter().map(|variation| draws.next(variation)).collect();
@@ -89,7 +99,8 @@ impl Vary {
     }
 
     /// The values of a run for a person.
-    pub(crate) fn says(&self, run: u64) -> String {
+    #[must_use]
+    pub fn says(&self, run: u64) -> String {
         let values = self.values(run);
         let pairs = self
             .variations
@@ -100,14 +111,9 @@ impl Vary {
     }
 }
 
-/// The scene of a run.
-pub(crate) fn scene(template: &Template<'_>, values: &[Value], end: Run) -> Result<Scene, SceneError> {
-    let values: Vec<&str> = values.iter().map(|value| value.toml.as_str()).collect();
-    template.scene(&values, end)
-}
-
 /// What is wrong with a scene, in one line.
-pub(crate) fn refused(error: &SceneError) -> String {
+#[must_use]
+pub fn refused(error: &SceneError) -> String {
     let says: Vec<&str> = [Some(error.message()), error.help()].into_iter().flatten().collect();
     says.join(": ").replace('\n', " ")
 }

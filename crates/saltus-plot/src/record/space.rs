@@ -1,18 +1,17 @@
 //! The path in space, and the ball at equal times.
 
-use saltus_plot::{Chart, Disc, Measure, Stroke};
+use crate::{Chart, Disc, Measure, PlotError, Stroke};
 use saltus_scene::plan::{Moment, Record, Segment};
 use saltus_scene::{Floor, Scene, Shape};
 
 use super::title;
-use crate::error::Error;
-use crate::ground::{corners, name};
 
 /// How many frames a picture of equal times has, at most.
 const FRAMES: u32 = 40;
 
 /// How far the balls get, sideways along any of `axes` and up, with their radii.
-fn reach(scene: &Scene, record: &Record, axes: &[usize]) -> [[f64; 2]; 2] {
+fn reach(record: &Record, axes: &[usize]) -> [[f64; 2]; 2] {
+    let scene = record.scene();
     let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for (n, ball) in scene.balls.iter().enumerate() {
         let r = ball.radius.unwrap_or(0.0);
@@ -31,9 +30,10 @@ fn reach(scene: &Scene, record: &Record, axes: &[usize]) -> [[f64; 2]; 2] {
 }
 
 /// The paths of the centres; in space up over x and up over y.
-pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
+pub(super) fn path(record: &Record) -> Result<Chart, PlotError> {
+    let scene = record.scene();
     if scene.dimensions == 1 {
-        return Err(Error::new(
+        return Err(PlotError::Missing(
             "a ball that only moves up and down has no path: draw another kind, or give the scene a sideways velocity",
         ));
     }
@@ -43,7 +43,7 @@ pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
     for ball in 0..record.balls() {
         let r = scene.balls[ball].radius.unwrap_or(0.0);
         for &(axis, k) in axes {
-            let label = if record.balls() > 1 { format!("{} {axis}", name(scene, ball)) } else { axis.to_owned() };
+            let label = if record.balls() > 1 { format!("{} {axis}", scene.ball_name(ball)) } else { axis.to_owned() };
             let strokes = record.segments(ball).into_iter().map(|segment| {
                 let across = segment.coefficients.iter().map(|c| c.position[k]).collect();
                 arc(&segment, across, r)
@@ -54,7 +54,7 @@ pub(super) fn path(scene: &Scene, record: &Record) -> Result<Chart, Error> {
         }
     }
     let sideways: Vec<usize> = axes.iter().map(|&(_, k)| k).collect();
-    Ok(chart.ground(outline(scene, reach(scene, record, &sideways))))
+    Ok(chart.ground(outline(scene, reach(record, &sideways))))
 }
 
 /// The way of a ball's centre in a segment, exact as the segment is: what is across it, and up.
@@ -65,8 +65,9 @@ fn arc(segment: &Segment, across: Vec<f64>, radius: f64) -> Stroke {
 }
 
 /// The balls at equal times and the arcs of their centres, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
-pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
-    let reach = reach(scene, record, &[0]);
+pub(super) fn ghost(record: &Record) -> Chart {
+    let scene = record.scene();
+    let reach = reach(record, &[0]);
     let size = (reach[0][1] - reach[0][0]).max(reach[1][1] - reach[1][0]);
     let aside = scene.dimensions == 1;
     let mut chart = Chart::new(
@@ -91,7 +92,7 @@ pub(super) fn ghost(scene: &Scene, record: &Record) -> Chart {
             };
             arc(&segment, across, r)
         });
-        let label = if record.balls() > 1 { name(scene, ball) } else { String::new() };
+        let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
         chart = chart.line(&label, strokes);
         for frame in 0..=FRAMES {
             let t = record.until() * f64::from(frame) / f64::from(FRAMES);
@@ -117,7 +118,7 @@ fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
     let [[left, right], _] = reach;
     match floor.shape {
         Shape::Stairs { .. } => {
-            let mut corners = corners(floor, reach);
+            let mut corners = floor.corners(reach);
             corners.retain(|corner| corner[0] >= left);
             Stroke::polygon(&corners)
         }
@@ -138,6 +139,6 @@ fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
             };
             Stroke::polygon(&(0..=count).map(at).collect::<Vec<_>>())
         }
-        _ => Stroke::polygon(&corners(floor, reach)),
+        _ => Stroke::polygon(&floor.corners(reach)),
     }
 }

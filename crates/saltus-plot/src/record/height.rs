@@ -1,17 +1,18 @@
 //! Height against time.
 
-use saltus_plot::{Arc, Background, HeightTime};
+use crate::{Arc, Background, HeightTime};
 use saltus_scene::plan::{Record, With};
-use saltus_scene::{Floor, Motion, Scene, Shape};
+use saltus_scene::{Floor, Motion, Shape};
 
-pub(super) fn picture(scene: &Scene, record: &Record) -> HeightTime {
-    let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(scene, record));
+pub(super) fn picture(record: &Record) -> HeightTime {
+    let scene = record.scene();
+    let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(record));
     let floor = scene.floors.iter().find_map(|floor| moving(floor, record.until()));
     for ball in 0..record.balls() {
         let label = match (record.balls(), &floor) {
             (1, None) => String::new(),
             (1, Some(_)) => "ball".to_owned(),
-            _ => crate::ground::name(scene, ball),
+            _ => scene.ball_name(ball),
         };
         let arcs = record.segments(ball).into_iter().map(|segment| {
             let heights = segment.coefficients.iter().map(saltus_scene::plan::Moment::height).collect();

@@ -1,28 +1,39 @@
-//! What is drawn of a run: the record in, the picture's data out.
+//! Pictures of the runs of scenes: a record in, SVG out. Needs the feature `scene`.
+//!
+//! ```
+//! use saltus_plot::record;
+//! use saltus_scene::{Kind, Scene};
+//! let scene = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = '1 m', name = 'marble' }\n")?;
+//! let run = scene.plan()?.run()?;
+//! assert!(record::svg(&run, Kind::Height)?.contains("A marble dropped from 1 m"));
+//! assert!(record::svg(&run, Kind::Path).unwrap_err().to_string().contains("only moves up and down"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod chart;
 mod height;
 mod space;
 
-use saltus_plot::Background;
+use crate::{Background, PlotError};
 use saltus_scene::plan::Record;
 use saltus_scene::{Kind, Scene};
 
-use crate::error::Error;
-
 /// The picture of a run as SVG.
-pub(crate) fn svg(scene: &Scene, record: &Record, kind: Kind) -> Result<String, Error> {
+///
+/// # Errors
+/// [`PlotError::Missing`] where the run has nothing that the kind shows, or another where it cannot be drawn.
+pub fn svg(record: &Record, kind: Kind) -> Result<String, PlotError> {
     let chart = match kind {
-        Kind::Height => return height::picture(scene, record).svg().map_err(Error::new),
-        Kind::Velocity => chart::velocity(scene, record),
-        Kind::Energy => chart::energy(scene, record),
-        Kind::Phase => chart::phase(scene, record),
-        Kind::Ladder => chart::ladder(scene, record)?,
-        Kind::Hysteresis => chart::hysteresis(scene, record)?,
-        Kind::Path => space::path(scene, record)?,
-        Kind::Ghost => space::ghost(scene, record),
+        Kind::Height => return height::picture(record).svg(),
+        Kind::Velocity => chart::velocity(record),
+        Kind::Energy => chart::energy(record),
+        Kind::Phase => chart::phase(record),
+        Kind::Ladder => chart::ladder(record)?,
+        Kind::Hysteresis => chart::hysteresis(record)?,
+        Kind::Path => space::path(record)?,
+        Kind::Ghost => space::ghost(record),
     };
-    chart.caption(&caption(scene, record)).background(Background::Adaptive).svg().map_err(Error::new)
+    chart.caption(&caption(record)).background(Background::Adaptive).svg()
 }
 
 /// The title that the scene gives, or one made from it.
@@ -71,7 +82,8 @@ fn said(cor: f64) -> String {
 }
 
 /// What is said under the title.
-fn caption(scene: &Scene, record: &Record) -> String {
+fn caption(record: &Record) -> String {
+    let scene = record.scene();
     let mut parts = Vec::new();
     let cor = scene.law(0, 0).and_then(saltus_scene::Law::constant);
     if let Some(cor) = cor {

@@ -1,29 +1,12 @@
-//! What can be asked on the command line.
+//! What can be asked of a fit.
 
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, CommandFactory, Parser, Subcommand, ValueEnum};
-use saltus_bounce::Cor;
+use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
 use saltus_fit::{CorModel, Loss};
-use saltus_scene::Kind;
-use saltus_scene::accuracy::Target;
 
-use crate::error::Error;
-
-/// Bouncing balls: from a table to a coefficient of restitution, from a coefficient to a motion.
-///
-/// Data goes to standard output, talk to standard error. Exit status: 0 done; 1 with --strict, when a verdict is doubtful or refused;
-/// 2 bad input or failure.
-#[derive(Debug, Parser)]
-#[command(name = "saltus", version, propagate_version = true, arg_required_else_help = true)]
-pub(crate) struct Args {
-    /// Say nothing on standard error but errors.
-    #[arg(long, short, global = true, display_order = 900)]
-    pub(crate) quiet: bool,
-    #[command(subcommand)]
-    pub(crate) command: Command,
-}
+use crate::parse::{ReportFormat, positive, rate};
 
 /// Headers of tables that are understood.
 const LAYOUTS: &str = "Layouts of tables, for example:
@@ -38,33 +21,6 @@ The report says what was recognised.
 
 Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30' in the table, from the scatter, or are assumed (1 cm, \
 10 ms); the report says which.";
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    Fit(Box<Fit>),
-    Simulate(Simulate),
-    Explain(Explain),
-    Accuracy(Accuracy),
-    Export(crate::export::Export),
-    Library(crate::library::Library),
-    Check(crate::check::Check),
-    Solve(crate::solve::Solve),
-    Sweep(crate::sweep::Sweep),
-    /// Write a shell's completions to standard output.
-    ///
-    /// For bash: saltus completions bash > ~/.local/share/bash-completion/completions/saltus
-    Completions {
-        /// The shell.
-        shell: clap_complete::Shell,
-    },
-    /// Write the manual page to standard output, as roff.
-    Man,
-    /// Write the JSON Schema of scene files to standard output.
-    ///
-    /// Editors complete and check scenes by it: saltus schema > scene.schema.json, and `#:schema scene.schema.json` as the first line of the
-    /// scene.
-    Schema,
-}
 
 /// Estimate the coefficient of restitution (COR) from a table of bounces.
 ///
@@ -188,171 +144,6 @@ pub(crate) struct Fit {
     pub(crate) strict: bool,
 }
 
-/// Simulate a scene, or a ball that bounces on a level floor.
-///
-/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is: gravity and a constant coefficient of
-/// restitution, every flight an exact parabola. Without --until the run ends when the ball has come to rest.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Simulate {
-    /// The scene; `-` for standard input.
-    #[arg(conflicts_with_all = ["drop", "cor", "velocity", "gravity"])]
-    pub(crate) scene: Option<PathBuf>,
-    /// The height it starts from, such as `1m` or `100cm`.
-    #[arg(long, value_name = "LENGTH", value_parser = quantity(Quantity::Length), allow_hyphen_values = true)]
-    pub(crate) drop: Option<f64>,
-    /// The coefficient of restitution, from 0 to 1.
-    #[arg(long, value_name = "NUMBER", value_parser = cor, allow_hyphen_values = true)]
-    pub(crate) cor: Option<Cor>,
-    /// The upward velocity it starts with, such as `-2m/s`.
-    #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
-    pub(crate) velocity: f64,
-    /// Gravity, which acts downwards.
-    #[arg(long, value_name = "ACCELERATION", value_parser = quantity(Quantity::Acceleration), default_value = "9.81m/s^2", allow_hyphen_values = true)]
-    pub(crate) gravity: f64,
-    /// When to stop, such as `4s`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
-    pub(crate) until: Option<f64>,
-    /// After how many jumps to stop; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) most_jumps: Option<u32>,
-    /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
-    pub(crate) every: Option<f64>,
-    /// Sample the motion at this many frames per second.
-    #[arg(long, value_name = "NUMBER", value_parser = rate)]
-    pub(crate) fps: Option<f64>,
-    /// How to write the motion; without it, after the extension of the output file, or else as text.
-    #[arg(long, value_enum)]
-    pub(crate) format: Option<MotionFormat>,
-    /// Write the motion to a file; `-` for standard output.
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to standard output, and nothing else goes there.
-    #[arg(long, value_name = "FILE.svg")]
-    pub(crate) plot: Option<PathBuf>,
-    /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact, such as `1mm`, `0.1ms`, or `1mm,1ms`.
-    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
-    pub(crate) target: Option<Target>,
-    /// What is drawn; without it what the scene says, or else height.
-    #[arg(long, value_enum)]
-    pub(crate) kind: Option<PictureKind>,
-}
-
-/// Say how a scene would be run, and why.
-///
-/// Which effects act and which are left out, how many coordinates are carried, how each mode is advanced (an exact arc, a closed form, an explicit or
-/// a stiff stepper), and which edges are watched.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Explain {
-    /// The scene; `-` for standard input.
-    pub(crate) scene: PathBuf,
-    /// Run the scene with each effect toggled: what that changes in the first impacts and apexes, and what it costs.
-    #[arg(long)]
-    pub(crate) cost: bool,
-    /// When to stop these runs, such as `4s`; otherwise when the scene says.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
-    pub(crate) until: Option<f64>,
-    /// How to write it; docs/simulating.md describes its JSON.
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) format: ReportFormat,
-}
-
-/// Show what accuracy costs in a scene.
-///
-/// Says which setting to take: the cheapest that meets the target, how exact it is, what it costs. To know, it runs the scene by each stepper to ten tolerances, and
-/// frame by frame at 24 to 240 frames per second, and compares every run with a reference: by formulas where they solve the scene, or else a run to a tolerance two
-/// orders tighter, whose own error is estimated.
-#[derive(Debug, ClapArgs)]
-pub(crate) struct Accuracy {
-    /// The scene; `-` for standard input.
-    pub(crate) scene: PathBuf,
-    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or both; `1mm,1ms` unless given.
-    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
-    pub(crate) target: Option<Target>,
-    /// Show every setting that was tried, not only those that cost least for what they give; JSON has them all.
-    #[arg(long)]
-    pub(crate) all: bool,
-    /// Draw time against error as SVG.
-    #[arg(long, value_name = "FILE.svg")]
-    pub(crate) plot: Option<PathBuf>,
-    /// When to stop, such as `4s`; otherwise when the scene says.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
-    pub(crate) until: Option<f64>,
-    /// How to write it; docs/accuracy.md describes its JSON.
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) format: ReportFormat,
-}
-
-/// What is drawn of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PictureKind {
-    /// Height against time.
-    Height,
-    /// Velocity against time.
-    Velocity,
-    /// Energies against time.
-    Energy,
-    /// Velocity against height.
-    Phase,
-    /// The path in space.
-    Path,
-    /// Apex heights, bounce by bounce.
-    Ladder,
-    /// Force against deformation, of a contact that takes time.
-    Hysteresis,
-    /// The ball at equal times.
-    Ghost,
-}
-
-impl PictureKind {
-    /// The same as scenes name it.
-    pub(crate) const fn kind(self) -> Kind {
-        match self {
-            Self::Height => Kind::Height,
-            Self::Velocity => Kind::Velocity,
-            Self::Energy => Kind::Energy,
-            Self::Phase => Kind::Phase,
-            Self::Path => Kind::Path,
-            Self::Ladder => Kind::Ladder,
-            Self::Hysteresis => Kind::Hysteresis,
-            Self::Ghost => Kind::Ghost,
-        }
-    }
-}
-
-/// How a report is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ReportFormat {
-    /// For people.
-    #[default]
-    Text,
-    /// For programs: a contract.
-    Json,
-}
-
-/// How a motion is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MotionFormat {
-    /// The jumps, for people.
-    Text,
-    /// The motion, for a spreadsheet: both sides of each jump, and samples if asked for.
-    Csv,
-    /// The jumps with both sides, for programs.
-    Json,
-}
-
-fn quantity(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| quantity.parse(text).map_err(|error| error.to_string())
-}
-
-pub(crate) fn positive(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| match quantity.parse(text) {
-        Ok(value) if value > 0.0 => Ok(value),
-        Ok(_) => Err(format!("'{text}' is not above zero")),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
 /// What is above zero and small: a bare number that is not is hardly in the SI unit, and the unit that it may be in is offered.
 fn small(
     quantity: Quantity,
@@ -451,38 +242,8 @@ fn scale(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length, a time, or both with a comma between.
-fn target(text: &str) -> Result<Target, String> {
-    let mut target = Target { length: None, time: None };
-    for part in text.split(',') {
-        let (length, time) = (positive(Quantity::Length)(part.trim()), positive(Quantity::Time)(part.trim()));
-        match (length, time) {
-            (Ok(length), _) if target.length.is_none() => target.length = Some(length),
-            (_, Ok(time)) if target.time.is_none() => target.time = Some(time),
-            _ => {
-                return Err(format!(
-                    "'{text}' is no accuracy: give a length, a time, or both, above zero, such as 1mm,1ms"
-                ));
-            }
-        }
-    }
-    Ok(target)
-}
-
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| format!("'{text}' is not a number"))
-}
-
-fn cor(text: &str) -> Result<Cor, String> {
-    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    Cor::new(value).map_err(|error| error.to_string())
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err(format!("'{text}' is not a frame rate: give a number above zero, such as 30")),
-    }
 }
 
 fn filter(text: &str) -> Result<(String, String), String> {
@@ -490,24 +251,4 @@ fn filter(text: &str) -> Result<(String, String), String> {
         Some((column, value)) if !column.trim().is_empty() => Ok((column.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("'{text}' is not of the form column=value")),
     }
-}
-
-/// The completions of a shell.
-pub(crate) fn completions(shell: clap_complete::Shell) -> Vec<u8> {
-    let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Args::command(), "saltus", &mut script);
-    script
-}
-
-/// The manual page, the commands' own pages after the first.
-pub(crate) fn man() -> Result<Vec<u8>, Error> {
-    let mut page = Vec::new();
-    let mut command = Args::command();
-    command.build();
-    let render = |command: clap::Command, page: &mut Vec<u8>| clap_mangen::Man::new(command).render(page);
-    render(command.clone(), &mut page).map_err(Error::stdout)?;
-    for sub in command.get_subcommands().filter(|sub| !sub.is_hide_set() && sub.get_name() != "help") {
-        render(sub.clone(), &mut page).map_err(Error::stdout)?;
-    }
-    Ok(page)
 }

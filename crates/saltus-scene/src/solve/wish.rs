@@ -1,19 +1,23 @@
 //! A wish: what is to happen in a scene, and how a run is measured against it.
 
 use saltus_bounce::units::Quantity;
-use saltus_scene::plan::Record;
+
+use crate::Error;
+use crate::plan::Record;
 
 /// How frames stand for times.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Clock {
-    pub(crate) fps: f64,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// Frames per second.
+    pub fps: f64,
     /// The number of the frame at which the motion starts.
-    pub(crate) first: i32,
+    pub first: i32,
 }
 
 /// What is wished for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum What {
+#[non_exhaustive]
+pub enum What {
     /// When contact `n` begins, counted from 1.
     Touch(usize),
     /// Where it is, sideways.
@@ -30,27 +34,39 @@ pub(super) enum What {
 
 impl What {
     /// Whether it is a length; else it is a time.
-    pub(super) const fn is_length(self) -> bool {
+    #[must_use]
+    pub const fn is_length(self) -> bool {
         matches!(self, Self::Place(_) | Self::Height(_))
     }
 }
 
 /// A wish, and how far off matters.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Wish {
-    pub(super) text: String,
-    pub(super) what: What,
-    /// In s or m.
-    pub(super) asked: f64,
-    /// In s or m.
-    pub(super) within: f64,
+#[non_exhaustive]
+pub struct Wish {
+    /// As it was written.
+    pub text: String,
+    /// What of a run it is of.
+    pub what: What,
+    /// What is asked for, in s or m.
+    pub asked: f64,
+    /// How far off matters, in s or m.
+    pub within: f64,
 }
 
 /// The most contacts that can be asked for.
 const MOST: usize = 1000;
 
 impl Wish {
-    pub(super) fn parse(text: &str, clock: Clock) -> Result<Self, String> {
+    /// Reads a wish such as `touch 1 at frame 24`, `apex 2 at 60cm within 1cm`, `hop 1 for 12 frames` or `rest at 3s`.
+    ///
+    /// # Errors
+    /// [`Error`] that says what a wish looks like.
+    pub fn parse(text: &str, clock: Clock) -> Result<Self, Error> {
+        Self::read(text, clock).map_err(Error::new)
+    }
+
+    fn read(text: &str, clock: Clock) -> Result<Self, String> {
         let fail = |says: &str| Err(format!("'{text}': {says}"));
         let words: Vec<&str> = text.split_whitespace().collect();
         let Some((&kind, mut rest)) = words.split_first() else {

@@ -6,15 +6,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use saltus_bounce::units::Quantity;
 
-use crate::quantity::{self, number};
+use crate::number::{self, number};
 
 /// A key of the scene, and the values it takes.
 #[derive(Clone, Debug)]
-pub(crate) struct Variation {
+pub struct Variation {
     /// Its path in the file.
-    pub(crate) key: String,
+    pub key: String,
     /// As it was written.
-    pub(crate) text: String,
+    pub text: String,
     values: Values,
 }
 
@@ -26,12 +26,13 @@ enum Values {
 
 /// A value of a run.
 #[derive(Clone, Debug)]
-pub(crate) struct Value {
+pub struct Value {
     /// As the scene file would have it.
-    pub(crate) toml: String,
+    pub toml: String,
     /// As the table has it: a number, or a word.
-    pub(crate) cell: String,
-    pub(crate) word: bool,
+    pub cell: String,
+    /// Whether it is a word.
+    pub word: bool,
 }
 
 impl Value {
@@ -45,8 +46,18 @@ impl Value {
         Self { toml, cell: number(value), word: false }
     }
 
+    /// Four digits and the unit, `1.5m` or `30mps`, or the word: short enough for the name of a file.
+    #[must_use]
+    pub fn short(&self) -> String {
+        match number::split(self.bare()) {
+            Some((number, unit)) => format!("{}{}", number::digits(number, 4), unit.replace('/', "p")),
+            None => self.bare().to_owned(),
+        }
+    }
+
     /// Without quotes.
-    pub(crate) fn bare(&self) -> &str {
+    #[must_use]
+    pub fn bare(&self) -> &str {
         self.toml.trim_matches('"')
     }
 
@@ -136,7 +147,7 @@ fn list(text: &str) -> Result<Values, String> {
 
 /// A number, and the unit behind it if there is one.
 fn parsed(text: &str) -> Option<(f64, Option<&str>)> {
-    let (value, unit) = quantity::split(text)?;
+    let (value, unit) = number::split(text)?;
     Some((value, (!unit.is_empty()).then_some(unit)))
 }
 
@@ -148,7 +159,8 @@ fn ratio(unit: &str, other: &str) -> Result<f64, String> {
 
 impl Variation {
     /// How many values it takes; `None` for a range without a count.
-    pub(crate) fn count(&self) -> Option<u64> {
+    #[must_use]
+    pub fn count(&self) -> Option<u64> {
         match &self.values {
             Values::Range { count, .. } => *count,
             Values::List { list, .. } => Some(list.len() as u64),
@@ -156,7 +168,8 @@ impl Variation {
     }
 
     /// The name of its column.
-    pub(crate) fn header(&self) -> String {
+    #[must_use]
+    pub fn header(&self) -> String {
         let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
         match unit {
             None => self.key.clone(),
@@ -170,7 +183,8 @@ impl Variation {
 
     /// Value `n` of as many as it takes.
     #[allow(clippy::cast_precision_loss)] // counts are below 10^12
-    pub(crate) fn value(&self, n: u64) -> Value {
+    #[must_use]
+    pub fn value(&self, n: u64) -> Value {
         match &self.values {
             Values::List { list, .. } => list[n as usize].clone(),
             Values::Range { from, to, count, logarithmic, unit } => {

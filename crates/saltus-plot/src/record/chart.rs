@@ -1,13 +1,11 @@
 //! Velocity, energy, phase portrait, apex ladder, force over deformation.
 
+use crate::{Chart, Measure, PlotError, Stroke};
 use saltus_bounce::effects::Buoyancy;
-use saltus_plot::{Chart, Measure, Stroke};
+use saltus_scene::Shape;
 use saltus_scene::plan::{Moment, Record, Segment};
-use saltus_scene::{Scene, Shape};
 
 use super::title;
-use crate::error::Error;
-use crate::ground::name;
 
 /// One coordinate of a segment's motion, by powers of the time since its start.
 fn part(segment: &Segment, of: impl Fn(&Moment) -> f64) -> Vec<f64> {
@@ -27,7 +25,8 @@ fn jumps(record: &Record, ball: usize, point: impl Fn(f64, &Moment) -> [f64; 2])
     own.map(|(t, sides)| [point(t, &sides.before), point(t, &sides.after)]).collect()
 }
 
-pub(super) fn velocity(scene: &Scene, record: &Record) -> Chart {
+pub(super) fn velocity(record: &Record) -> Chart {
+    let scene = record.scene();
     // Of several balls one velocity is drawn: upwards, unless none of them moves that way.
     let level = |ball: usize| record.segments(ball).iter().all(|segment| segment.at(0.0).velocity.z == 0.0);
     let sideways = record.balls() > 1 && (0..record.balls()).all(level);
@@ -45,7 +44,7 @@ pub(super) fn velocity(scene: &Scene, record: &Record) -> Chart {
             let label = match (record.balls(), axes.len()) {
                 (1, 1) => String::new(),
                 (1, _) => axis.to_owned(),
-                _ => name(scene, ball),
+                _ => scene.ball_name(ball),
             };
             let strokes = segments.iter().map(|segment| over_time(segment, part(segment, |m| m.velocity[k])));
             chart = chart.line(&label, strokes).jumps(jumps(record, ball, |t, m| [t, m.velocity[k]]));
@@ -70,7 +69,8 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// Potential and kinetic energy of all balls, and their sum; per mass where there is none.
-pub(super) fn energy(scene: &Scene, record: &Record) -> Chart {
+pub(super) fn energy(record: &Record) -> Chart {
+    let scene = record.scene();
     let known = scene.balls.iter().all(|ball| ball.mass.is_some());
     let measure = if known { Measure::Energy } else { Measure::SpecificEnergy };
     let mut kinds: [Vec<Stroke>; 3] = [Vec::new(), Vec::new(), Vec::new()];
@@ -110,11 +110,12 @@ pub(super) fn energy(scene: &Scene, record: &Record) -> Chart {
 }
 
 /// Velocity over height; an arrow on each of the first arcs.
-pub(super) fn phase(scene: &Scene, record: &Record) -> Chart {
+pub(super) fn phase(record: &Record) -> Chart {
+    let scene = record.scene();
     const ARROWS: usize = 6;
     let mut chart = Chart::new(&title(scene), ("Height", Measure::Length), ("Velocity", Measure::Speed));
     for ball in 0..record.balls() {
-        let label = if record.balls() > 1 { name(scene, ball) } else { String::new() };
+        let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
         let segments = record.segments(ball);
         let point = |m: &Moment| [m.height(), m.velocity.z];
         let long = segments.iter().filter(|segment| segment.flight && segment.span > 0.02 * record.until());
@@ -133,7 +134,8 @@ pub(super) fn phase(scene: &Scene, record: &Record) -> Chart {
 }
 
 /// Apex heights above the floor, bounce by bounce; a start at rest is bounce 0.
-pub(super) fn ladder(scene: &Scene, record: &Record) -> Result<Chart, Error> {
+pub(super) fn ladder(record: &Record) -> Result<Chart, PlotError> {
+    let scene = record.scene();
     /// Apexes below this part of the first are of no bounce that is seen.
     const LEAST: f64 = 1e-6;
     let level = scene.floors.iter().find_map(|floor| match floor.shape {
@@ -155,11 +157,11 @@ pub(super) fn ladder(scene: &Scene, record: &Record) -> Result<Chart, Error> {
         let points: Vec<[f64; 2]> =
             numbers.zip(heights).take_while(|&(_, h)| h > LEAST * most).map(|(n, h)| [n, h]).collect();
         count = count.max(points.len());
-        let label = if record.balls() > 1 { name(scene, ball) } else { String::new() };
+        let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
         chart = chart.line(&label, Stroke::polygon(&points)).marks(points);
     }
     if count < 2 {
-        return Err(Error::new(
+        return Err(PlotError::Missing(
             "an apex ladder needs two apexes above the floor at least, and this run has fewer: let it run longer, or draw another kind",
         ));
     }
@@ -167,7 +169,8 @@ pub(super) fn ladder(scene: &Scene, record: &Record) -> Result<Chart, Error> {
 }
 
 /// Force over deformation of the first contacts.
-pub(super) fn hysteresis(scene: &Scene, record: &Record) -> Result<Chart, Error> {
+pub(super) fn hysteresis(record: &Record) -> Result<Chart, PlotError> {
+    let scene = record.scene();
     const CONTACTS: usize = 3;
     const POINTS: usize = 60;
     let mut chart = Chart::new(&title(scene), ("Deformation", Measure::Length), ("Force", Measure::Force));
@@ -181,7 +184,7 @@ pub(super) fn hysteresis(scene: &Scene, record: &Record) -> Result<Chart, Error>
         chart = chart.line(&format!("contact {}", contact + 1), Stroke::polygon(&points));
     }
     if drawn == 0 {
-        return Err(Error::new(
+        return Err(PlotError::Missing(
             "force over deformation needs a contact that takes time: give the scene a [contact] with a law such as \"hertz\", or draw another kind",
         ));
     }

@@ -1,11 +1,15 @@
-//! What can be asked of a scene to come.
+//! `saltus solve`: wishes in, a scene out.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use clap::Args as ClapArgs;
 use saltus_motion::Rate;
+use saltus_scene::solve::{Clock, Wish, solve};
 
-use super::wish::{Clock, Wish};
+use crate::error::Error;
+use crate::output::{check_new, say, write};
+use crate::scenes::{note, read};
 
 /// What wishes look like.
 const WISHES: &str = "Wishes, for example:
@@ -54,12 +58,21 @@ pub(crate) struct Solve {
     pub(crate) force: bool,
 }
 
-impl Solve {
-    pub(super) fn wished(&self) -> Result<Vec<Wish>, String> {
-        self.wishes.iter().map(|text| Wish::parse(text, self.clock())).collect()
+pub(crate) fn run(args: &Solve, quiet: bool) -> Result<ExitCode, Error> {
+    let clock = Clock { fps: args.fps.per_second(), first: args.first_frame };
+    let wishes = args.wishes.iter().map(|text| Wish::parse(text, clock));
+    let wishes = wishes.collect::<Result<Vec<_>, _>>().map_err(Error::new)?;
+    check_new(args.output.as_deref(), args.force)?;
+    let begin = args.scene.as_deref().map(read).transpose()?;
+    let begin = begin.as_ref().map(|(name, text)| (name.as_str(), text.as_slice()));
+    let free: Vec<&str> = args.free.iter().map(String::as_str).collect();
+    let solved = solve(begin, &free, &wishes).map_err(Error::new)?;
+    if let Some(note) = note(solved.begun()) {
+        say(quiet, &note);
     }
-
-    pub(super) fn clock(&self) -> Clock {
-        Clock { fps: self.fps.per_second(), first: self.first_frame }
+    write(args.output.as_deref(), solved.toml().map_err(Error::new)?.as_bytes())?;
+    for line in solved.says(clock) {
+        say(quiet, &line);
     }
+    Ok(ExitCode::SUCCESS)
 }

@@ -1,24 +1,18 @@
-//! `saltus solve`: wishes in, a scene out.
+//! The scene that does what is wished for: numbers of a scene file are found with which wishes come true.
 
-mod args;
 mod freedom;
 mod search;
 mod wish;
 
-use std::process::ExitCode;
-
-pub(crate) use args::Solve;
 use freedom::Freedom;
-use saltus_scene::plan::Record;
-use saltus_scene::{Run, Scene};
+use saltus_bounce::effects::Gravity;
 use search::{Found, Problem, starts};
 use toml_edit::DocumentMut;
-use wish::{Clock, What, Wish};
+pub use wish::{Clock, What, Wish};
 
-use crate::error::Error;
-use crate::output::{check_new, say, write};
-use crate::quantity::digits;
-use crate::simulate::{ending, note, read};
+use crate::number::digits;
+use crate::plan::Record;
+use crate::{Error, Run, Scene};
 
 /// What is begun with where no scene is given.
 const DROP: &str = "gravity = \"earth\"\nrestitution = 0.7\n\n[ball]\nheight = \"1 m\"\nvelocity = \"0 m/s\"\n";
@@ -28,47 +22,139 @@ const TIMES_AS_LONG: f64 = 20.0;
 /// Jumps that are no contacts, such as apexes, for each that is one.
 const OTHER_JUMPS: usize = 4;
 
-pub(crate) fn run(args: &Solve, quiet: bool) -> Result<ExitCode, Error> {
-    let wishes = args.wished().map_err(Error::new)?;
-    check_new(args.output.as_deref(), args.force)?;
-    let (name, text) = match &args.scene {
-        Some(path) => read(path)?,
-        None => ("a drop".to_owned(), DROP.as_bytes().to_vec()),
-    };
-    let begun = Scene::parse(&name, &text).map_err(Error::new)?;
-    if let Some(note) = note(&begun) {
-        say(quiet, &note);
-    }
-    let text = String::from_utf8(text).map_err(Error::new)?;
+/// A scene in which wishes come true, as nearly as they can.
+#[derive(Debug)]
+pub struct Solved {
+    draft: Draft,
+    wishes: Vec<Wish>,
+    found: Found,
+    begun: Scene,
+    /// Whether no scene was given to begin with.
+    dropped: bool,
+}
+
+/// Finds the numbers of a scene with which `wishes` come true.
+///
+/// `begin` is the name and the text of the scene to begin with: without one the ball falls from 1 m by the Earth's gravity and keeps 0.7 of its
+/// speed at each contact. `free` are the numbers that may change: `height`, `throw`, `forward`, `gravity`, `cor`, or a key of the scene such as
+/// `drag.per_length`.
+///
+/// # Errors
+/// [`Error`]: the scene is none, a freedom is no number of it, or the wishes contradict each other.
+///
+/// ```
+/// use saltus_scene::Scene;
+/// use saltus_scene::solve::{Clock, Wish, solve};
+/// let wishes = [Wish::parse("touch 1 at frame 24", Clock { fps: 24.0, first: 0 })?];
+/// let solved = solve(None, &["throw"], &wishes)?;
+/// // v = gT/2 - h/T for T = 1 s and h = 1 m.
+/// assert!((solved.numbers()[0].1 - (0.5 * 9.80665 - 1.0)).abs() < 1e-7);
+/// assert!((Scene::parse("solved", solved.toml()?.as_bytes())?.plan()?.run()?.impacts()[0].t - 1.0).abs() < 1e-7);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve(begin: Option<(&str, &[u8])>, free: &[&str], wishes: &[Wish]) -> Result<Solved, Error> {
+    let (name, text) = begin.unwrap_or(("a drop", DROP.as_bytes()));
+    let begun = Scene::parse(name, text).map_err(Error::new)?;
+    let text = std::str::from_utf8(text).map_err(Error::new)?;
     let mut file: DocumentMut = text.parse().map_err(Error::new)?;
     let mut freedoms: Vec<Freedom> = Vec::new();
-    for name in &args.free {
-        let name = name.trim();
+    for name in free.iter().map(|name| name.trim()) {
         if freedoms.iter().any(|freedom| freedom.name == name) {
             return Err(Error::new(format!("`{name}` is free twice: name it once")));
         }
         freedoms.push(Freedom::named(name, &mut file, &begun).map_err(Error::new)?);
     }
-    let draft = Draft { file, freedoms, run: long_enough(&wishes) };
+    let draft = Draft { file, freedoms, run: long_enough(wishes) };
     // What is wrong with the scene to begin with is said, not searched around.
     let start: Vec<f64> = draft.freedoms.iter().map(|freedom| freedom.start).collect();
     let first = draft.written(&start).map_err(Error::new)?;
-    let first = Scene::parse_with(&name, first.as_bytes(), draft.run).map_err(Error::new)?;
+    let first = Scene::parse_with(name, first.as_bytes(), draft.run).map_err(Error::new)?;
     first.plan().map_err(Error::new)?;
 
     let all: Vec<&Wish> = wishes.iter().collect();
-    let Some(found) = draft.best(&all) else { return Err(Error::new(never(&draft, &wishes))) };
+    let Some(found) = draft.best(&all) else { return Err(Error::new(never(&draft, wishes))) };
     if !found.meets() && wishes.len() <= draft.freedoms.len() {
-        return Err(Error::new(contradiction(&draft, &wishes, &found)));
+        return Err(Error::new(contradiction(&draft, wishes, &found)));
     }
-    write(args.output.as_deref(), draft.whole(&found.numbers).map_err(Error::new)?.as_bytes())?;
-    for line in report(&draft, &wishes, &found, args) {
-        say(quiet, &line);
+    Ok(Solved { draft, wishes: wishes.to_vec(), found, begun, dropped: begin.is_none() })
+}
+
+impl Solved {
+    /// The scene that was begun with.
+    #[must_use]
+    pub const fn begun(&self) -> &Scene {
+        &self.begun
     }
-    Ok(ExitCode::SUCCESS)
+
+    /// The scene file with the numbers that were found, and with an end where the motion has none of its own.
+    ///
+    /// # Errors
+    /// [`Error`] where a number cannot be written into the file.
+    pub fn toml(&self) -> Result<String, Error> {
+        self.draft.whole(&self.found.numbers).map_err(Error::new)
+    }
+
+    /// The freedoms by name, and the number found for each, in the unit that the scene has for it.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<(&str, f64)> {
+        let names = self.draft.freedoms.iter().map(|freedom| freedom.name.as_str());
+        names.zip(self.found.numbers.iter().copied()).collect()
+    }
+
+    /// What each wish came to, in s or m.
+    #[must_use]
+    pub fn came(&self) -> Vec<f64> {
+        self.wishes.iter().zip(&self.found.off).map(|(wish, off)| wish.asked + off * wish.within).collect()
+    }
+
+    /// Whether every wish is met as well as numbers can.
+    #[must_use]
+    pub fn meets(&self) -> bool {
+        self.found.meets()
+    }
+
+    /// What was found, in lines for a person who counts frames by `clock`.
+    #[must_use]
+    pub fn says(&self, clock: Clock) -> Vec<String> {
+        let Self { draft, wishes, found, .. } = self;
+        let mut lines = vec![draft.says(&found.numbers)];
+        for (wish, value) in wishes.iter().zip(self.came()) {
+            lines.push(format!("  {}", came(wish, value, clock)));
+        }
+        if self.dropped {
+            let held = [("height", "1 m"), ("throw", "0 m/s"), ("gravity", "the Earth's"), ("cor", "0.7")];
+            let held: Vec<String> = held
+                .iter()
+                .filter(|(name, _)| draft.freedoms.iter().all(|freedom| freedom.name != *name))
+                .map(|(name, value)| format!("{name} {value}"))
+                .collect();
+            if !held.is_empty() {
+                lines.push(format!("not said, and so taken: {}; --scene begins with another", held.join(", ")));
+            }
+        }
+        if let Some((_, &gravity)) =
+            draft.freedoms.iter().zip(&found.numbers).find(|(freedom, _)| freedom.name == "gravity")
+        {
+            let times = gravity / Gravity::EARTH.value();
+            lines.push(format!("gravity is {} times the Earth's", digits(times, 3)));
+        }
+        if !found.meets() {
+            lines.push(format!(
+            "{} wishes and {} to change: not all can be met, and how far off they are is as even as can be; 'within' behind a wish says how much it matters",
+            wishes.len(),
+            draft.freedoms.len()
+        ));
+        } else if wishes.len() < draft.freedoms.len() {
+            lines.push(
+                "many scenes do that, and this is one near where it began: wish for more, or free less".to_owned(),
+            );
+        }
+        lines
+    }
 }
 
 /// A scene file, and what of it may change.
+#[derive(Debug)]
 struct Draft {
     file: DocumentMut,
     freedoms: Vec<Freedom>,
@@ -136,7 +222,9 @@ fn long_enough(wishes: &[Wish]) -> Run {
     let contacts: Option<Vec<usize>> = wishes.iter().map(Wish::contacts).collect();
     let most = contacts.and_then(|contacts| contacts.into_iter().max());
     let jumps = most.and_then(|most| u32::try_from((1 + OTHER_JUMPS) * (most + 2)).ok());
-    ending(Some(LONG.max(TIMES_AS_LONG * last)), jumps)
+    let mut run = Run::default();
+    (run.until, run.most_jumps) = (Some(LONG.max(TIMES_AS_LONG * last)), jumps);
+    run
 }
 
 /// What a wish came to.
@@ -160,41 +248,6 @@ fn came(wish: &Wish, value: f64, clock: Clock) -> String {
         (_, _, false) => "earlier",
     };
     format!("{}: {shown}, {} {unit} {way} than asked", wish.text, digits(missed.abs(), 3))
-}
-
-fn report(draft: &Draft, wishes: &[Wish], found: &Found, args: &Solve) -> Vec<String> {
-    let clock = args.clock();
-    let mut lines = vec![draft.says(&found.numbers)];
-    for (wish, off) in wishes.iter().zip(&found.off) {
-        lines.push(format!("  {}", came(wish, wish.asked + off * wish.within, clock)));
-    }
-    if args.scene.is_none() {
-        let held = [("height", "1 m"), ("throw", "0 m/s"), ("gravity", "the Earth's"), ("cor", "0.7")];
-        let held: Vec<String> = held
-            .iter()
-            .filter(|(name, _)| draft.freedoms.iter().all(|freedom| freedom.name != *name))
-            .map(|(name, value)| format!("{name} {value}"))
-            .collect();
-        if !held.is_empty() {
-            lines.push(format!("not said, and so taken: {}; --scene begins with another", held.join(", ")));
-        }
-    }
-    if let Some((_, &gravity)) =
-        draft.freedoms.iter().zip(&found.numbers).find(|(freedom, _)| freedom.name == "gravity")
-    {
-        let times = gravity / saltus_bounce::effects::Gravity::EARTH.value();
-        lines.push(format!("gravity is {} times the Earth's", digits(times, 3)));
-    }
-    if !found.meets() {
-        lines.push(format!(
-            "{} wishes and {} to change: not all can be met, and how far off they are is as even as can be; 'within' behind a wish says how much it matters",
-            wishes.len(),
-            draft.freedoms.len()
-        ));
-    } else if wishes.len() < draft.freedoms.len() {
-        lines.push("many scenes do that, and this is one near where it began: wish for more, or free less".to_owned());
-    }
-    lines
 }
 
 /// Why nothing that was tried came to all wishes.

@@ -1,9 +1,9 @@
 //! Numbers of a scene file that may be changed.
 
-use saltus_scene::Scene;
 use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
-use crate::quantity::{self, digits};
+use crate::Scene;
+use crate::number::{self, digits};
 
 /// A number of the scene that may be changed.
 #[derive(Clone, Debug)]
@@ -109,7 +109,7 @@ fn written(file: &DocumentMut, path: &[String]) -> Option<(f64, String)> {
     if let Some(number) = value.as_float().or_else(|| value.as_integer().map(|n| n as f64)) {
         return Some((number, String::new()));
     }
-    let (number, unit) = quantity::split(value.as_str()?)?;
+    let (number, unit) = number::split(value.as_str()?)?;
     Some((number, unit.to_owned()))
 }
 
