@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
 
 use crate::plan::{Impact, Record, Segment, Sides, With};
-use crate::{Error, Floor, Scene, Shape};
+use crate::{Error, Scene};
 
 /// Frames for which a squash is seen where a contact is an instant and no hold is asked for: the contact, the squash, and off again.
 const HELD: u32 = 2;
@@ -62,10 +62,12 @@ pub enum Departure {
         /// Counted from 1.
         hop: u32,
     },
-    /// Hops shorter than a frame are left out, which are this high at most.
+    /// Hops shorter than a frame are left out.
     Cut {
-        /// In m.
+        /// How high they are in m, at most.
         height: f64,
+        /// How far heights are from the run for it, in m, at most: the ball lies where it would hop, or a floor would carry it.
+        off: f64,
     },
     /// Contacts are on whole frames and gravity is kept: tops move.
     SnappedByGravity {
@@ -116,7 +118,7 @@ impl fmt::Display for Departure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Loop { hop } => write!(f, "hop {hop} alone, as a loop"),
-            Self::Cut { height } => write!(f, "hops of up to {} left out", length(*height)),
+            Self::Cut { height, .. } => write!(f, "hops of up to {} left out", length(*height)),
             Self::SnappedByGravity { tops } => {
                 write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))
             }
@@ -167,6 +169,22 @@ impl Stage {
         Export { motion, frames: *frames, tolerance, shape: *shape }.file(format).map_err(Error::new)
     }
 
+    /// How far the heights of a file are from those of the run, in m, at most: what the file is off by, and what the hops left out are. Where contacts
+    /// are moved in time, by snapping, by holding or to a loop, it is how far they are from the motion as it is shown.
+    #[must_use]
+    pub fn height_error(&self, file: &File) -> f64 {
+        let moved = |departure: &Departure| {
+            use Departure::{Held, Loop, SnappedByGravity, SnappedByHeights};
+            matches!(departure, Loop { .. } | SnappedByGravity { .. } | SnappedByHeights { .. } | Held { .. })
+        };
+        let cut = self.departures.iter().map(|departure| match departure {
+            Departure::Cut { off, .. } => *off,
+            _ => 0.0,
+        });
+        let moved = self.departures.iter().any(moved);
+        file.miss.height + if moved { 0.0 } else { cut.fold(0.0, f64::max) }
+    }
+
     /// How exact a file is, and how it departs from the run, in a line.
     #[must_use]
     pub fn says(&self, file: &File) -> String {
@@ -185,7 +203,10 @@ impl Stage {
                     &format!("; {} keys added to its turning, so that none is half a turn from the next", seen.added);
             }
         }
-        let (off, miss) = (motion.off_frame(*frames), length(file.miss.height));
+        if frames.on_twos {
+            says += "; each drawing stands for two frames, and is exact at the first";
+        }
+        let (off, miss) = (motion.off_frame(*frames), length(self.height_error(file)));
         format!("{} keys; farthest contact from a frame: {off:.2} frames; worst height error: {miss}{says}", file.keys)
     }
 }
@@ -227,7 +248,7 @@ impl Staging {
         } else {
             let height = hops_below(&whole, frames.step());
             if height > 0.0 && whole.tracks != free.tracks {
-                departures.push(Departure::Cut { height });
+                departures.push(Departure::Cut { height, off: heights_apart(&whole, &free) });
             }
         }
         let by = |by: Snap| free.snapped(by, frames).map(|snapped| (by, snapped));
@@ -317,6 +338,22 @@ fn hops_below(motion: &Motion, span: f64) -> f64 {
     short.map(high).fold(0.0, f64::max)
 }
 
+/// How far the heights of two motions on the same times are apart, at most, looked at in points of every piece of the first.
+fn heights_apart(a: &Motion, b: &Motion) -> f64 {
+    /// Points of a piece; between them a parabola is higher by at most a 4 × 16² th of its height.
+    const POINTS: u32 = 16;
+    let mut apart = 0.0_f64;
+    for (a, b) in a.tracks.iter().zip(&b.tracks) {
+        for piece in a.stretches.iter().flat_map(|stretch| &stretch.pieces) {
+            for k in 0..=POINTS {
+                let s = piece.span * f64::from(k) / f64::from(POINTS);
+                apart = apart.max((piece.at(s)[2] - b.at(piece.start + s)[2]).abs());
+            }
+        }
+    }
+    apart
+}
+
 /// A length that a person can picture.
 #[must_use]
 pub fn length(metres: f64) -> String {
@@ -389,7 +426,7 @@ fn motion(scene: &Scene, record: &Record) -> Result<(Motion, Option<f64>), Error
     }
     let (reach, tracks) = reach(tracks).map_err(Error::new)?;
     let title = scene.picture.title.clone().unwrap_or_else(|| "A bouncing ball".to_owned());
-    let ground = scene.floors.iter().filter_map(|floor| outline(floor, reach)).collect();
+    let ground = outlines(scene, reach);
     Ok((Motion::new(&title, tracks, ground).map_err(Error::new)?, size))
 }
 
@@ -429,7 +466,7 @@ fn contact<'a>(scene: &Scene, impacts: impl Iterator<Item = &'a Impact>, jump: O
     let change = jump.map_or(Vector3::z(), |sides| sides.after.velocity - sides.before.velocity);
     let at = jump.map_or(0.0, |sides| sides.before.position.x);
     let normal = match hardest.map(|impact| impact.with) {
-        Some(With::Floor(floor)) => scene.floors.get(floor).map_or(Vector3::z(), |floor| normal(floor, change, at)),
+        Some(With::Floor(floor)) => scene.floors.get(floor).map_or(Vector3::z(), |floor| floor.normal(change, at)),
         Some(With::Ball(_)) => change.normalize(),
         _ => Vector3::z(),
     };
@@ -440,46 +477,11 @@ fn contact<'a>(scene: &Scene, impacts: impl Iterator<Item = &'a Impact>, jump: O
     }
 }
 
-/// The normal of a floor or wall that changed a velocity by `change`; of a curve, below x.
-fn normal(floor: &Floor, change: Vector3<f64>, x: f64) -> Vector3<f64> {
-    let steep = |slope: f64| Vector3::new(-slope, 0.0, 1.0).normalize();
-    let (across, along, up) = (Vector3::x(), Vector3::y(), Vector3::z());
-    let sides = match floor.shape {
-        Shape::Incline { angle, .. } => vec![steep(angle.tan())],
-        Shape::Stairs { .. } => vec![up, across],
-        Shape::Wall { across_y, .. } => {
-            let axis = if across_y { along } else { across };
-            vec![axis, -axis]
-        }
-        Shape::Box { .. } => vec![up, across, -across, along, -along, -up],
-        Shape::Parabola { curvature, centre, .. } => vec![steep(curvature * (x - centre))],
-        Shape::Sine { amplitude, wavelength, phase, .. } => {
-            let k = std::f64::consts::TAU / wavelength;
-            vec![steep(amplitude * k * (k * x + phase).cos())]
-        }
-        _ => vec![up],
-    };
-    sides.into_iter().reduce(|best, side| if side.dot(&change) > best.dot(&change) { side } else { best }).unwrap_or(up)
-}
-
-/// What a floor or a wall is in the plane of x and up, as far as the balls get; none for one across y.
-fn outline(floor: &Floor, [[left, right], [low, high]]: [[f64; 2]; 2]) -> Option<Vec<[f64; 2]>> {
-    let more = 0.1 * (right - left).max(high - low);
-    let (left, right, high) = (left - more, right + more, high + more);
-    let curve = |at: &dyn Fn(f64) -> f64| {
-        /// Points of a curved floor.
-        const POINTS: u32 = 400;
-        let x = |k: u32| left + (right - left) * f64::from(k) / f64::from(POINTS);
-        (0..=POINTS).map(|k| [x(k), at(x(k))]).collect()
-    };
-    let outline = match floor.shape {
-        Shape::Parabola { curvature, centre, height } => {
-            curve(&|x| height + 0.5 * curvature * (x - centre) * (x - centre))
-        }
-        Shape::Sine { amplitude, wavelength, phase, height } => {
-            curve(&|x| height + amplitude * (std::f64::consts::TAU * x / wavelength + phase).sin())
-        }
-        _ => floor.corners([[left, right], [low, high]]),
-    };
-    (!outline.is_empty()).then_some(outline)
+/// Floors and walls in the plane of x and up, as far as the balls get and a little beyond.
+fn outlines(scene: &Scene, [[left, right], [low, high]]: [[f64; 2]; 2]) -> Vec<Vec<[f64; 2]>> {
+    /// How far beyond, as a part of the size of the motion.
+    const BEYOND: f64 = 0.1;
+    let more = BEYOND * (right - left).max(high - low);
+    let reach = [[left - more, right + more], [low, high + more]];
+    scene.floors.iter().map(|floor| floor.outline(reach)).filter(|outline| !outline.is_empty()).collect()
 }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::Fault;
+use super::kinds::kinds;
 use super::value::{At, Loose, Measure, Number, Pressure, Speed, Time};
 use saltus_bounce::ParameterError;
 use saltus_bounce::contact::{Elastic, Hertz, HuntCrossley, KelvinVoigt};
@@ -34,19 +35,14 @@ pub enum Contact {
     HuntCrossley(HuntCrossley),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[cfg_attr(test, derive(JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(test, schemars(inline))]
-enum Kind {
-    /// In an instant, by the law of restitution.
-    Rigid,
-    /// A linear spring and damper: `stiffness` and `damping`, or `cor` and `time`.
-    KelvinVoigt,
-    /// An elastic sphere: `stiffness`; or `ball` and `floor`; or `speed` and `time`.
-    Hertz,
-    /// Hertz with damping: `stiffness` and `damping`; or `stiffness`, `cor` and `speed`; or `cor`, `speed` and `time`.
-    HuntCrossley,
+kinds! {
+    /// The laws.
+    enum Kind of ContactTable by "law", none "a contact" {} {
+        Rigid = "rigid", "In an instant, by the law of restitution." {}
+        KelvinVoigt = "kelvin-voigt", "A linear spring and damper, by two of" { stiffness, damping, tension, cor, time }
+        Hertz = "hertz", "An elastic sphere, by some of" { stiffness, ball, floor, speed, time }
+        HuntCrossley = "hunt-crossley", "Hertz with damping, by some of" { stiffness, damping, cor, speed, time }
+    }
 }
 
 /// The elasticity of a material.
@@ -105,8 +101,8 @@ impl ContactTable {
     /// The law, of a body whose mass and radius are known if they are given.
     pub(super) fn read(&self, body: Body) -> Result<Contact, Fault> {
         let kind = *self.law.get();
+        self.only(Some(kind))?;
         if kind == Kind::Rigid {
-            self.only(&[], "law = \"rigid\"")?;
             return Ok(Contact::Rigid);
         }
         let missing = |says: &str| self.law.fault(says);
@@ -138,7 +134,6 @@ impl ContactTable {
         let outcome = at(self.cor.as_ref().map(At::span));
         match kind {
             Kind::Rigid | Kind::KelvinVoigt => {
-                self.only(&["stiffness", "damping", "tension", "cor", "time"], "law = \"kelvin-voigt\"")?;
                 let tension = self.tension.as_ref().is_some_and(|at| *at.get());
                 let law = match (stiffness, damping, cor, time) {
                     (Some(k), c, None, None) => KelvinVoigt::new(k, c.unwrap_or(0.0)).map_err(constants)?,
@@ -155,7 +150,6 @@ impl ContactTable {
                 Ok(Contact::KelvinVoigt(if tension { law.with_tension() } else { law }))
             }
             Kind::Hertz => {
-                self.only(&["stiffness", "ball", "floor", "speed", "time"], "law = \"hertz\"")?;
                 let law = match (stiffness, &self.ball, &self.floor, speed, time) {
                     (Some(k), None, None, None, None) => Hertz::new(k).map_err(constants)?,
                     (None, Some(ball), Some(floor), None, None) => {
@@ -176,7 +170,6 @@ impl ContactTable {
                 Ok(Contact::Hertz(law))
             }
             Kind::HuntCrossley => {
-                self.only(&["stiffness", "damping", "cor", "speed", "time"], "law = \"hunt-crossley\"")?;
                 let law = match (stiffness, damping, cor, speed, time) {
                     (Some(k), Some(c), None, None, None) => HuntCrossley::new(k, c).map_err(constants)?,
                     (Some(k), None, Some(e), Some(v), None) => HuntCrossley::with_cor(k, v, e).map_err(outcome)?,
@@ -192,20 +185,6 @@ impl ContactTable {
                 Ok(Contact::HuntCrossley(law))
             }
         }
-    }
-
-    fn only(&self, keys: &[&str], law: &str) -> Result<(), Fault> {
-        let given = [
-            ("stiffness", self.stiffness.as_ref().map(At::span)),
-            ("damping", self.damping.as_ref().map(At::span)),
-            ("tension", self.tension.as_ref().map(At::span)),
-            ("cor", self.cor.as_ref().map(At::span)),
-            ("speed", self.speed.as_ref().map(At::span)),
-            ("time", self.time.as_ref().map(At::span)),
-            ("ball", self.ball.as_ref().map(At::span)),
-            ("floor", self.floor.as_ref().map(At::span)),
-        ];
-        super::value::only(given, keys, law)
     }
 
     /// The place of the law's name if it takes time.

@@ -1,15 +1,18 @@
 //! The floors, walls and boxes of a scene.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 #[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::Fault;
+use super::kinds::kinds;
 use super::motion::{Motion, MotionTable};
 use super::restitution::{self, FrictionTable, RestitutionTable, Said};
 use super::space::Space;
-use super::value::{Angle, At, Length, Measure, OneOrMany, PerLength, Real, Short};
+use super::value::{Angle, At, Length, Measure, OneOrMany, Pairs, PerLength, Real, Short};
 use saltus_bounce::friction::Friction;
 
 /// One floor, wall or box. Lengths in m, angles in rad.
@@ -29,7 +32,7 @@ pub struct Floor {
 }
 
 /// The shape of a floor, and where it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
     /// Level, at this height.
@@ -95,27 +98,25 @@ pub enum Shape {
         /// In m.
         height: f64,
     },
+    /// Straight from point to point, and as straight on beyond the first and the last.
+    Polyline {
+        /// Two or more, (x, height) in m, by increasing x.
+        points: Arc<[[f64; 2]]>,
+    },
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[cfg_attr(test, derive(JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(test, schemars(inline))]
-enum Kind {
-    /// Level: `height`, `motion`.
-    Level,
-    /// A plane that rises towards x: `angle`, `height` at x = 0.
-    Incline,
-    /// Stairs down towards x: `height` of the top, `from`, `tread`, `rise`, `count`.
-    Stairs,
-    /// An upright wall: `at`, `axis`.
-    Wall,
-    /// The inside of a box about x = y = 0: `size`, `height` of its bottom, `open`.
-    Box,
-    /// height + (curvature/2) (x - centre)²: `curvature`, `centre`, `height`.
-    Parabola,
-    /// height + amplitude sin(2πx/wavelength + phase): `amplitude`, `wavelength`, `phase`, `height`.
-    Sine,
+kinds! {
+    /// The shapes.
+    enum Kind of FloorTable by "kind", none "a level floor" { height, motion } {
+        Level = "level", "Level:" { height, motion }
+        Incline = "incline", "A plane that rises towards x:" { angle, height }
+        Stairs = "stairs", "Stairs down towards x:" { height, from, tread, rise, count }
+        Wall = "wall", "An upright wall:" { at, axis }
+        Box = "box", "The inside of a box about x = y = 0:" { size, height, open }
+        Parabola = "parabola", "height + (curvature/2) (x - centre)²:" { curvature, centre, height }
+        Sine = "sine", "height + amplitude sin(2πx/wavelength + phase):" { amplitude, wavelength, phase, height }
+        Polyline = "polyline", "Straight from point to point, and on beyond the first and the last:" { points }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -171,6 +172,8 @@ pub(super) struct FloorTable {
     wavelength: Option<At<Measure<Length>>>,
     /// Of a sine: its phase at x = 0; 0 unless given.
     phase: Option<At<Measure<Angle>>>,
+    /// Of a polyline: pairs of a place along x and the height there, by increasing x.
+    points: Option<At<Pairs<Measure<Length>, Measure<Length>>>>,
     /// Of a level floor: how it moves; it stands unless given.
     motion: Option<At<MotionTable>>,
     /// Restitution on this floor, instead of the scene's.
@@ -217,14 +220,11 @@ impl FloorTable {
         let kind = self.kind();
         let height = self.height.as_ref().map_or(0.0, At::real);
         let place = self.place().unwrap_or_else(|| whole.clone());
+        self.only(self.kind.as_ref().map(|at| *at.get()))?;
         let missing = |says: &str| Fault::new(place.clone(), says);
         let shape = match kind {
-            Kind::Level => {
-                self.only(&["height", "motion"], "a level floor")?;
-                Shape::Level { height }
-            }
+            Kind::Level => Shape::Level { height },
             Kind::Incline => {
-                self.only(&["height", "angle"], "kind = \"incline\"")?;
                 let at = self
                     .angle
                     .as_ref()
@@ -236,7 +236,6 @@ impl FloorTable {
                 Shape::Incline { angle, height }
             }
             Kind::Stairs => {
-                self.only(&["height", "from", "tread", "rise", "count"], "kind = \"stairs\"")?;
                 let (Some(tread), Some(rise)) = (&self.tread, &self.rise) else {
                     return Err(missing("the stairs have no measure: give `tread = \"30 cm\"` and `rise = \"17 cm\"`"));
                 };
@@ -249,7 +248,6 @@ impl FloorTable {
                 }
             }
             Kind::Wall => {
-                self.only(&["at", "axis"], "kind = \"wall\"")?;
                 let at = self.at.as_ref().ok_or_else(|| missing("the wall has no place: give `at = \"2 m\"`"))?;
                 let across_y = self.axis.as_ref().is_some_and(|axis| *axis.get() == Axis::Y);
                 let ball = if across_y { first.y } else { first.x };
@@ -259,7 +257,6 @@ impl FloorTable {
                 Shape::Wall { across_y, at: at.real(), faces_up: ball > at.real() }
             }
             Kind::Box => {
-                self.only(&["height", "size", "open"], "kind = \"box\"")?;
                 let at = self.size.as_ref().ok_or_else(|| {
                     missing("the box has no size: give `size = [\"1 m\", \"1 m\"]`, or three lengths in space")
                 })?;
@@ -278,7 +275,6 @@ impl FloorTable {
                 Shape::Box { size: space.read(at), height, open: self.open.as_ref().is_some_and(|open| *open.get()) }
             }
             Kind::Parabola => {
-                self.only(&["height", "curvature", "centre"], "kind = \"parabola\"")?;
                 let at = self
                     .curvature
                     .as_ref()
@@ -286,7 +282,6 @@ impl FloorTable {
                 Shape::Parabola { curvature: at.real(), centre: self.centre.as_ref().map_or(0.0, At::real), height }
             }
             Kind::Sine => {
-                self.only(&["height", "amplitude", "wavelength", "phase"], "kind = \"sine\"")?;
                 let (Some(amplitude), Some(wavelength)) = (&self.amplitude, &self.wavelength) else {
                     return Err(missing(
                         "the waves have no measure: give `amplitude = \"10 cm\"` and `wavelength = \"1 m\"`",
@@ -299,6 +294,12 @@ impl FloorTable {
                     height,
                 }
             }
+            Kind::Polyline => {
+                let at = self.points.as_ref().ok_or_else(|| {
+                    missing("the polyline has no points: give `points = [[\"0 m\", \"0 m\"], [\"1 m\", \"20 cm\"]]`")
+                })?;
+                Shape::Polyline { points: polyline(at)? }
+            }
         };
         let motion = self.motion.as_ref().map(|at| at.get().read(at)).transpose()?;
         let friction = self.friction.as_ref().map_or(Ok(friction), restitution::friction)?;
@@ -306,26 +307,19 @@ impl FloorTable {
         let material = self.material.as_ref().map(|at| at.get().clone());
         Ok((Floor { name: self.name.clone(), material, shape, motion, friction }, said))
     }
+}
 
-    fn only(&self, keys: &[&str], kind: &str) -> Result<(), Fault> {
-        let given = [
-            ("height", self.height.as_ref().map(At::span)),
-            ("angle", self.angle.as_ref().map(At::span)),
-            ("from", self.from.as_ref().map(At::span)),
-            ("tread", self.tread.as_ref().map(At::span)),
-            ("rise", self.rise.as_ref().map(At::span)),
-            ("count", self.count.as_ref().map(At::span)),
-            ("at", self.at.as_ref().map(At::span)),
-            ("axis", self.axis.as_ref().map(At::span)),
-            ("size", self.size.as_ref().map(At::span)),
-            ("open", self.open.as_ref().map(At::span)),
-            ("curvature", self.curvature.as_ref().map(At::span)),
-            ("centre", self.centre.as_ref().map(At::span)),
-            ("amplitude", self.amplitude.as_ref().map(At::span)),
-            ("wavelength", self.wavelength.as_ref().map(At::span)),
-            ("phase", self.phase.as_ref().map(At::span)),
-            ("motion", self.motion.as_ref().map(At::span)),
-        ];
-        super::value::only(given, keys, kind)
+/// The points of a polyline, which go on along x.
+fn polyline(at: &At<Pairs<Measure<Length>, Measure<Length>>>) -> Result<Arc<[[f64; 2]]>, Fault> {
+    let points: Vec<[f64; 2]> = at.get().iter().map(|(x, height)| [x.real(), height.real()]).collect();
+    if points.len() < 2 {
+        return Err(at.fault("a polyline has two points or more: give [[x, height], ...], such as [[\"0 m\", \"0 m\"], [\"1 m\", \"20 cm\"]]"));
+    }
+    match points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        Some(pair) => Err(at.fault(format!(
+            "the polyline has x = {} m after {} m: sort its points by x, each place once",
+            pair[1][0], pair[0][0]
+        ))),
+        None => Ok(points.into()),
     }
 }

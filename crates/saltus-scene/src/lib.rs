@@ -12,7 +12,7 @@ mod contact;
 mod error;
 mod file;
 mod floor;
-mod ground;
+mod kinds;
 mod motion;
 mod number;
 pub mod plan;
@@ -21,6 +21,7 @@ mod report;
 mod restitution;
 mod run;
 mod schema;
+mod shape;
 pub mod solve;
 mod source;
 mod space;
@@ -140,6 +141,13 @@ impl Scene {
     /// ```
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         read::from_path(path.as_ref())
+    }
+
+    /// What a ball is called, counted from 0: its name, or its number.
+    #[must_use]
+    pub fn ball_name(&self, ball: usize) -> String {
+        let name = self.balls.get(ball).and_then(|ball| ball.name.clone());
+        name.unwrap_or_else(|| format!("ball {}", ball + 1))
     }
 
     /// The law of restitution of a ball on a floor, both counted from 0; `None` where contact takes time or there is no such pair.

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::Fault;
+use super::kinds::kinds;
 use super::value::{At, HertzStiffness, Mass, Measure, Number, Pairs, PerSpeed, Real, Short, Speed, Time};
 use saltus_bounce::friction::Friction;
 use saltus_bounce::materials::Preset;
@@ -90,20 +91,14 @@ impl Restitution for Law {
     }
 }
 
-/// How restitution depends on the speed.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[cfg_attr(test, derive(JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(test, schemars(inline))]
-enum Kind {
-    /// e = cor + slope × speed, constant below `slowest` and above `fastest`.
-    Linear,
-    /// Straight lines between measured points.
-    Knots,
-    /// A viscoelastic sphere: e falls slowly from 1 as the impact quickens.
-    Viscoelastic,
-    /// Fully plastic impacts: e falls with the fourth root of the speed.
-    Plastic,
+kinds! {
+    /// How restitution depends on the speed.
+    enum Kind of RestitutionTable by "law", none "a table without `law`" { range, pick, cor } {
+        Linear = "linear", "e = cor + slope × speed, constant below `slowest` and above `fastest`:" { cor, slope, slowest, fastest }
+        Knots = "knots", "Straight lines between measured points:" { knots }
+        Viscoelastic = "viscoelastic", "A viscoelastic sphere, e falls slowly from 1 as the impact quickens:" { cor, speed, dissipation, stiffness, mass }
+        Plastic = "plastic", "Fully plastic impacts, e falls with the fourth root of the speed:" { cor, speed, yield_speed }
+    }
 }
 
 /// Restitution as a table: a range, or a law over the speed of impact.
@@ -183,7 +178,7 @@ impl RestitutionTable {
             None => None,
         };
         let Some(kind) = &self.law else {
-            self.only(&["range", "pick", "cor"], "a table without `law`")?;
+            self.only(None)?;
             return match (&self.range, &self.cor, pick) {
                 (Some(ends), None, _) => {
                     let [Number(low), Number(high)] = *ends.get();
@@ -204,10 +199,10 @@ impl RestitutionTable {
     }
 
     fn law(&self, kind: &Kind, whole: &std::ops::Range<usize>) -> Result<Law, Fault> {
+        self.only(Some(*kind))?;
         let missing = |says: &str| Fault::new(whole.clone(), says);
         Ok(match kind {
             Kind::Linear => {
-                self.only(&["cor", "slope", "slowest", "fastest"], "law = \"linear\"")?;
                 let (Some(e), Some(slope), Some(fastest)) = (&self.cor, &self.slope, &self.fastest) else {
                     return Err(missing(
                         "the law `linear` is incomplete: give `cor` (at speed zero), `slope` and `fastest`",
@@ -218,7 +213,6 @@ impl RestitutionTable {
                 Law::Linear(law.map_err(|error| slope.fault(error))?)
             }
             Kind::Knots => {
-                self.only(&["knots"], "law = \"knots\"")?;
                 let Some(at) = &self.knots else {
                     return Err(missing(
                         "the law `knots` has no points: give `knots = [[\"1 m/s\", 0.8], [\"5 m/s\", 0.7]]`",
@@ -235,60 +229,35 @@ impl RestitutionTable {
                     ))
                 })?)
             }
-            Kind::Viscoelastic => {
-                self.only(&["cor", "speed", "dissipation", "stiffness", "mass"], "law = \"viscoelastic\"")?;
-                match (&self.cor, &self.speed, &self.dissipation, &self.stiffness, &self.mass) {
-                    (Some(e), Some(v), None, None, None) => {
-                        v.positive("a speed of impact in m/s")?;
-                        Law::Viscoelastic(Viscoelastic::through(cor(e)?, v.real()).map_err(|error| e.fault(error))?)
-                    }
-                    (None, None, Some(a), Some(k), Some(m)) => {
-                        k.positive("a Hertz stiffness in N/m^1.5")?;
-                        m.positive("a mass in kg")?;
-                        Law::Viscoelastic(a.with(|a| Viscoelastic::new(a, k.real(), m.real()))?)
-                    }
-                    _ => {
-                        return Err(missing(
-                            "the law `viscoelastic` is not determined: give either `cor` and `speed`, or `dissipation`, `stiffness` and `mass`",
-                        ));
-                    }
+            Kind::Viscoelastic => match (&self.cor, &self.speed, &self.dissipation, &self.stiffness, &self.mass) {
+                (Some(e), Some(v), None, None, None) => {
+                    v.positive("a speed of impact in m/s")?;
+                    Law::Viscoelastic(Viscoelastic::through(cor(e)?, v.real()).map_err(|error| e.fault(error))?)
                 }
-            }
-            Kind::Plastic => {
-                self.only(&["cor", "speed", "yield_speed"], "law = \"plastic\"")?;
-                match (&self.cor, &self.speed, &self.yield_speed) {
-                    (Some(e), Some(v), None) => {
-                        v.positive("a speed of impact in m/s")?;
-                        Law::Plastic(Plastic::through(cor(e)?, v.real()).map_err(|error| e.fault(error))?)
-                    }
-                    (None, None, Some(v)) => Law::Plastic(v.with(Plastic::new)?),
-                    _ => {
-                        return Err(missing(
-                            "the law `plastic` is not determined: give either `cor` and `speed`, or `yield_speed`",
-                        ));
-                    }
+                (None, None, Some(a), Some(k), Some(m)) => {
+                    k.positive("a Hertz stiffness in N/m^1.5")?;
+                    m.positive("a mass in kg")?;
+                    Law::Viscoelastic(a.with(|a| Viscoelastic::new(a, k.real(), m.real()))?)
                 }
-            }
+                _ => {
+                    return Err(missing(
+                        "the law `viscoelastic` is not determined: give either `cor` and `speed`, or `dissipation`, `stiffness` and `mass`",
+                    ));
+                }
+            },
+            Kind::Plastic => match (&self.cor, &self.speed, &self.yield_speed) {
+                (Some(e), Some(v), None) => {
+                    v.positive("a speed of impact in m/s")?;
+                    Law::Plastic(Plastic::through(cor(e)?, v.real()).map_err(|error| e.fault(error))?)
+                }
+                (None, None, Some(v)) => Law::Plastic(v.with(Plastic::new)?),
+                _ => {
+                    return Err(missing(
+                        "the law `plastic` is not determined: give either `cor` and `speed`, or `yield_speed`",
+                    ));
+                }
+            },
         })
-    }
-
-    /// Refuses keys that belong to another law.
-    fn only(&self, keys: &[&str], law: &str) -> Result<(), Fault> {
-        let given = [
-            ("range", self.range.as_ref().map(At::span)),
-            ("pick", self.pick.as_ref().map(At::span)),
-            ("cor", self.cor.as_ref().map(At::span)),
-            ("speed", self.speed.as_ref().map(At::span)),
-            ("slope", self.slope.as_ref().map(At::span)),
-            ("slowest", self.slowest.as_ref().map(At::span)),
-            ("fastest", self.fastest.as_ref().map(At::span)),
-            ("knots", self.knots.as_ref().map(At::span)),
-            ("dissipation", self.dissipation.as_ref().map(At::span)),
-            ("stiffness", self.stiffness.as_ref().map(At::span)),
-            ("mass", self.mass.as_ref().map(At::span)),
-            ("yield_speed", self.yield_speed.as_ref().map(At::span)),
-        ];
-        super::value::only(given, keys, law)
     }
 }
 

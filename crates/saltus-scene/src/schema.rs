@@ -73,4 +73,28 @@ mod tests {
             assert!(schema == SCHEMA.replace("\r\n", "\n"), "SALTUS_BLESS=1 writes:\n{schema}");
         }
     }
+
+    /// Every kind of a table has a row in docs/scenes.md that names its keys; the kinds and keys are those of the schema, which come from the one
+    /// declaration of each table.
+    #[test]
+    fn docs_have_every_kind_with_its_keys() {
+        let docs = include_str!("../../../docs/scenes.md");
+        let root: serde_json::Value = serde_json::from_str(SCHEMA).unwrap();
+        let mut found = 0;
+        for (table, key) in [("floor", "kind"), ("contact", "law"), ("restitution", "law")] {
+            let of = &root["definitions"][table]["properties"][key];
+            let kinds = of["oneOf"].as_array().or(of["anyOf"][0]["oneOf"].as_array()).unwrap();
+            for kind in kinds {
+                let (name, about) = (kind["const"].as_str().unwrap(), kind["description"].as_str().unwrap());
+                let row = |line: &&str| line.starts_with('|') && line.contains(&format!("\"{name}\""));
+                let row = docs.lines().find(row).unwrap_or_else(|| panic!("docs/scenes.md has no row of \"{name}\""));
+                for key in about.split('`').skip(1).step_by(2) {
+                    let mut words = row.split(|c: char| !c.is_ascii_lowercase() && c != '_');
+                    assert!(words.any(|word| word == key), "\"{name}\" in docs/scenes.md has no `{key}`: {row}");
+                    found += 1;
+                }
+            }
+        }
+        assert!(found > 40, "{found}");
+    }
 }

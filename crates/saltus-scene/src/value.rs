@@ -126,17 +126,17 @@ impl Real for Number {
     }
 }
 
-/// Refuses what is given but is not among `keys`, which are those that `law` takes.
+/// Refuses what is given but is not among `keys`, which are those that `kind` takes.
 pub(super) fn only<const N: usize>(
     given: [(&str, Option<Range<usize>>); N],
     keys: &[&str],
-    law: &str,
+    kind: &str,
 ) -> Result<(), Fault> {
     for (key, span) in given {
         if let Some(span) = span.filter(|_| !keys.contains(&key)) {
             let known: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
             let takes = if known.is_empty() { "no keys".to_owned() } else { known.join(", ") };
-            return Err(Fault::new(span, format!("`{key}` does not belong to {law}: that takes {takes}")));
+            return Err(Fault::new(span, format!("`{key}` does not belong to {kind}: that takes {takes}")));
         }
     }
     Ok(())

@@ -32,7 +32,7 @@ pub(super) fn picture(record: &Record) -> HeightTime {
 fn moving(floor: &Floor, until: f64) -> Option<Vec<Arc>> {
     /// More pieces than can be told apart.
     const MOST: f64 = 4000.0;
-    let (Shape::Level { height }, Some(motion)) = (floor.shape, &floor.motion) else { return None };
+    let (Shape::Level { height }, Some(motion)) = (&floor.shape, &floor.motion) else { return None };
     match motion {
         Motion::Sine { amplitude, frequency, phase } => {
             let span = (1.0 / (8.0 * frequency)).max(until / MOST);

@@ -118,7 +118,7 @@ fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
     let [[left, right], _] = reach;
     match floor.shape {
         Shape::Stairs { .. } => {
-            let mut corners = floor.corners(reach);
+            let mut corners = floor.outline(reach);
             corners.retain(|corner| corner[0] >= left);
             Stroke::polygon(&corners)
         }
@@ -127,18 +127,6 @@ fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
             let y = vec![height + 0.5 * curvature * d * d, curvature * d, 0.5 * curvature];
             vec![Stroke::new(span, vec![left, 1.0], y)]
         }
-        Shape::Sine { amplitude, wavelength, phase, height } => {
-            /// Points of a wave, or of all of them.
-            const POINTS: f64 = 24.0;
-            let step = (wavelength / POINTS).max((right - left) / 2000.0);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 2000
-            let count = ((right - left) / step).ceil() as u32;
-            let at = |k: u32| {
-                let x = left + (right - left) * f64::from(k) / f64::from(count.max(1));
-                [x, height + amplitude * (std::f64::consts::TAU * x / wavelength + phase).sin()]
-            };
-            Stroke::polygon(&(0..=count).map(at).collect::<Vec<_>>())
-        }
-        _ => Stroke::polygon(&floor.corners(reach)),
+        _ => Stroke::polygon(&floor.outline(reach)),
     }
 }

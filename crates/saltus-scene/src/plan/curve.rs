@@ -10,7 +10,7 @@ use saltus_bounce::walls::{Face, Walls};
 ///
 /// The centre over the foot u of its perpendicular is at x = u - R f'(u)/w, y = f(u) + R/w with w = √(1 + f'²): parallel curves share their
 /// tangents, so dy/dx = f'(u) and d²y/dx² = f''(u)/(1 - R f''/w³). In a hollow narrower than the ball there is no such curve, and it is refused.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Curve {
     shape: Shape,
     radius: f64,
@@ -18,11 +18,7 @@ pub(super) struct Curve {
 
 impl Curve {
     pub(super) fn of(shape: Shape, radius: f64) -> Result<Self, String> {
-        let hollow = match shape {
-            Shape::Parabola { curvature, .. } => curvature,
-            Shape::Sine { amplitude, wavelength, .. } => amplitude * (std::f64::consts::TAU / wavelength).powi(2),
-            _ => 0.0,
-        };
+        let hollow = shape.hollow();
         if radius * hollow >= 1.0 {
             let narrow = short(1.0 / hollow);
             return Err(format!(
@@ -34,18 +30,7 @@ impl Curve {
 
     /// f, f' and f''.
     fn ground(&self, x: f64) -> [f64; 3] {
-        match self.shape {
-            Shape::Parabola { curvature, centre, height } => {
-                let d = x - centre;
-                [height + 0.5 * curvature * d * d, curvature * d, curvature]
-            }
-            Shape::Sine { amplitude, wavelength, phase, height } => {
-                let k = std::f64::consts::TAU / wavelength;
-                let (sin, cos) = (k * x + phase).sin_cos();
-                [height + amplitude * sin, amplitude * k * cos, -amplitude * k * k * sin]
-            }
-            _ => [0.0; 3],
-        }
+        self.shape.curve(x).unwrap_or_default()
     }
 
     /// The foot of the perpendicular from a centre over x: the root of a rising function, by Newton within a bracket.
@@ -105,7 +90,7 @@ mod tests {
     #[test]
     fn the_parallel_curve_keeps_its_distance_and_its_derivatives() {
         let shape = Shape::Sine { amplitude: 0.1, wavelength: 1.0, phase: 0.3, height: 0.2 };
-        let curve = Curve::of(shape, 0.15).unwrap();
+        let curve = Curve::of(shape.clone(), 0.15).unwrap();
         for n in 0..50 {
             let x = f64::from(n) * 0.04;
             let [y, slope, bend] = curve.level(x);

@@ -7,7 +7,7 @@ use super::explain::Advance;
 use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
 use super::surroundings::{Surroundings, surroundings};
-use super::{PlanError, failed, kind, label};
+use super::{PlanError, failed, label};
 use crate::{Ball, Law, Scene};
 use saltus_bounce::effects::{
     AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind,
@@ -148,7 +148,7 @@ pub(super) fn crowded(error: saltus_bounce::ParameterError) -> PlanError {
 /// The walls of a ball, and the law and the friction of each face.
 fn faces<const N: usize>(scene: &Scene, ball: usize) -> Result<(Surroundings<N>, Laws, Vec<Friction>), PlanError> {
     let walls = surroundings::<N>(scene, &scene.balls[ball])?;
-    let owners: Vec<usize> = walls.all(0).map(|face| walls.owner(face)).collect();
+    let owners = walls.owners();
     let each: Vec<Law> = owners.iter().filter_map(|&owner| scene.law(ball, owner).copied()).collect();
     let frictions = owners.iter().map(|&owner| scene.floors[owner].friction).collect();
     Ok((walls, Laws { each }, frictions))
@@ -271,7 +271,7 @@ pub(super) struct Among {
 impl Among {
     pub(super) fn new(scene: &Scene, rubs: bool) -> Self {
         Self {
-            kinds: scene.floors.iter().map(kind).collect(),
+            kinds: scene.floors.iter().map(|floor| floor.shape.word()).collect(),
             labels: (0..scene.floors.len()).map(|n| label(scene, n)).collect(),
             moves: scene.floors.iter().map(|floor| floor.motion.is_some()).collect(),
             rubs,

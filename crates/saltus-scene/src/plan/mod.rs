@@ -14,6 +14,7 @@ mod line;
 mod machine;
 mod method;
 mod outcome;
+mod polyline;
 mod record;
 mod surroundings;
 
@@ -369,25 +370,13 @@ fn plain(scene: &Scene) -> bool {
     !(Effect::ALL.into_iter().any(names) || rubs || spins || moves)
 }
 
-/// What sort of floor it is, in a word.
-const fn kind(floor: &Floor) -> &'static str {
-    match floor.shape {
-        Shape::Level { .. } => "floor",
-        Shape::Incline { .. } => "incline",
-        Shape::Stairs { .. } => "stairs",
-        Shape::Wall { .. } => "wall",
-        Shape::Box { .. } => "box",
-        Shape::Parabola { .. } | Shape::Sine { .. } => "curve",
-    }
-}
-
 /// What a floor is called: its name, or its kind, with its number where there are several.
 fn label(scene: &Scene, owner: usize) -> String {
     let Some(floor) = scene.floors.get(owner) else { return "floor".to_owned() };
     match &floor.name {
         Some(name) => name.clone(),
-        None if scene.floors.len() > 1 => format!("{} {}", kind(floor), owner + 1),
-        None => kind(floor).to_owned(),
+        None if scene.floors.len() > 1 => format!("{} {}", floor.shape.word(), owner + 1),
+        None => floor.shape.word().to_owned(),
     }
 }
 

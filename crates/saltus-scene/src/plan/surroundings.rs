@@ -4,6 +4,7 @@ use nalgebra::{SVector, Vector2};
 
 use super::PlanError;
 use super::curve::Curve;
+use super::polyline::Polyline;
 use crate::{Ball, Floor, Motion, Scene, Shape};
 use saltus_bounce::walls::{Face, Lift, Plane, Stairs, Table, Walls};
 
@@ -16,24 +17,80 @@ enum Wall<const N: usize> {
     Schedule(Schedule),
 }
 
-/// All that bounds where a ball is: walls of one face each, and at most one flight of stairs, whose treads cut space into cells.
+/// What cuts space into cells along x, a piece of ground below each.
+#[derive(Clone, Debug)]
+enum Cells {
+    Stairs(Stairs),
+    Polyline(Polyline),
+}
+
+impl Cells {
+    /// The cell over which x lies.
+    fn cell(&self, x: f64) -> usize {
+        match self {
+            Self::Stairs(stairs) => stairs.cell(x),
+            Self::Polyline(polyline) => polyline.cell(x),
+        }
+    }
+}
+
+/// Runs `$do` with what the cells are made by.
+macro_rules! of_cells {
+    ($self:ident, $ground:ident, $do:expr) => {
+        match $self {
+            Self::Stairs($ground) => $do,
+            Self::Polyline($ground) => $do,
+        }
+    };
+}
+
+impl Walls<2> for Cells {
+    fn cells(&self) -> usize {
+        of_cells!(self, ground, ground.cells())
+    }
+    fn faces(&self, cell: usize) -> usize {
+        of_cells!(self, ground, ground.faces(cell))
+    }
+    #[inline]
+    fn margin(&self, face: Face, t: f64, p: &Vector2<f64>) -> f64 {
+        of_cells!(self, ground, ground.margin(face, t, p))
+    }
+    #[inline]
+    fn gradient(&self, face: Face, t: f64, p: &Vector2<f64>) -> Vector2<f64> {
+        of_cells!(self, ground, ground.gradient(face, t, p))
+    }
+    #[inline]
+    fn bend(&self, face: Face, t: f64, p: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
+        of_cells!(self, ground, ground.bend(face, t, p, v))
+    }
+    #[inline]
+    fn straight(&self, face: Face) -> bool {
+        of_cells!(self, ground, ground.straight(face))
+    }
+    fn leads(&self, face: Face, t: f64, p: &Vector2<f64>) -> Option<usize> {
+        of_cells!(self, ground, ground.leads(face, t, p))
+    }
+}
+
+/// All that bounds where a ball is: walls of one face each, and at most one ground that cuts space into cells.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings<const N: usize> {
     walls: Vec<Wall<N>>,
-    stairs: Option<Stairs>,
+    cells: Option<Cells>,
+    /// The floor of the scene that `cells` are of.
+    cut: usize,
     /// The floor of the scene that a face belongs to, counted from 0.
     owners: Vec<usize>,
 }
 
 /// What bounds `ball` in `scene`.
 pub(super) fn surroundings<const N: usize>(scene: &Scene, ball: &Ball) -> Result<Surroundings<N>, PlanError> {
-    let mut all = Surroundings { walls: Vec::new(), stairs: None, owners: Vec::new() };
+    let mut all = Surroundings { walls: Vec::new(), cells: None, cut: 0, owners: Vec::new() };
     for (owner, floor) in scene.floors.iter().enumerate() {
         all.add(owner, floor, ball, scene)?;
     }
-    if all.stairs.is_some() {
-        let stairs = scene.floors.iter().position(|floor| matches!(floor.shape, Shape::Stairs { .. }));
-        all.owners.extend(stairs);
+    if all.cells.is_some() {
+        all.owners.push(all.cut);
     }
     Ok(all)
 }
@@ -58,12 +115,31 @@ impl<const N: usize> Surroundings<N> {
 
     /// The cell in which a ball at `p` starts.
     pub(super) fn cell(&self, p: &SVector<f64, N>) -> usize {
-        self.stairs.as_ref().map_or(0, |stairs| stairs.cell(p[0]))
+        self.cells.as_ref().map_or(0, |cells| cells.cell(p[0]))
+    }
+
+    /// The floor of the scene that each face belongs to, by index, as many as any cell has.
+    pub(super) fn owners(&self) -> Vec<usize> {
+        let most = (0..Walls::cells(self)).map(|cell| self.faces(cell)).max().unwrap_or(0);
+        (0..most).map(|index| self.owner(Face { cell: 0, index })).collect()
     }
 
     /// Every face of a cell.
     pub(super) fn all(&self, cell: usize) -> impl Iterator<Item = Face> {
         (0..self.faces(cell)).map(move |index| Face { cell, index })
+    }
+
+    /// Adds the ground that cuts space into cells.
+    fn cut(&mut self, owner: usize, cells: Cells) -> Result<(), PlanError> {
+        if self.cells.is_some() {
+            let says = match cells {
+                Cells::Stairs(_) => "there are stairs or a polyline already: keep one flight of them",
+                Cells::Polyline(_) => "there are stairs or a polyline already: keep one, with all its points",
+            };
+            return Err(PlanError::floor(owner, says));
+        }
+        (self.cells, self.cut) = (Some(cells), owner);
+        Ok(())
     }
 
     fn add(&mut self, owner: usize, floor: &Floor, ball: &Ball, scene: &Scene) -> Result<(), PlanError> {
@@ -114,13 +190,15 @@ impl<const N: usize> Surroundings<N> {
                 }
             }
             Shape::Parabola { .. } | Shape::Sine { .. } => {
-                push(Wall::Curve(Curve::of(floor.shape, radius).map_err(|says| PlanError::floor(owner, &says))?));
+                let curve = Curve::of(floor.shape.clone(), radius);
+                push(Wall::Curve(curve.map_err(|says| PlanError::floor(owner, &says))?));
             }
             Shape::Stairs { top, from, tread, rise, count } => {
-                if self.stairs.is_some() {
-                    return Err(PlanError::floor(owner, "there are stairs already: keep one flight of them"));
-                }
-                self.stairs = Some(stairs([top, from, tread, rise], count, ball, scene, owner)?);
+                self.cut(owner, Cells::Stairs(stairs([top, from, tread, rise], count, ball, scene, owner)?))?;
+            }
+            Shape::Polyline { ref points } => {
+                let polyline = Polyline::new(points, radius).map_err(|says| PlanError::floor(owner, &says))?;
+                self.cut(owner, Cells::Polyline(polyline))?;
             }
         }
         Ok(())
@@ -173,7 +251,7 @@ macro_rules! of_wall {
                 $curved
             }
             None => {
-                let Some($wall) = &$self.stairs else { return $none };
+                let Some($wall) = &$self.cells else { return $none };
                 let $at = Face { cell: $face.cell, index: $face.index - $self.walls.len() };
                 $curved
             }
@@ -183,11 +261,11 @@ macro_rules! of_wall {
 
 impl<const N: usize> Walls<N> for Surroundings<N> {
     fn cells(&self) -> usize {
-        self.stairs.as_ref().map_or(1, Walls::cells)
+        self.cells.as_ref().map_or(1, Walls::cells)
     }
     #[inline]
-    fn faces(&self, _cell: usize) -> usize {
-        self.walls.len() + if self.stairs.is_some() { 3 } else { 0 }
+    fn faces(&self, cell: usize) -> usize {
+        self.walls.len() + self.cells.as_ref().map_or(0, |cells| cells.faces(cell))
     }
     #[inline]
     fn margin(&self, face: Face, t: f64, p: &SVector<f64, N>) -> f64 {
