@@ -217,9 +217,10 @@ impl Maker<'_> {
         for &format in &args.to {
             let file = stage.file(format, args.shown.tolerance).map_err(|error| error.to_string())?;
             let path = format!("{name}.{}", format.ending());
-            miss = miss.max(file.miss.height);
+            let error = stage.height_error(&file);
+            miss = miss.max(error);
             let says = stage.says(&file);
-            let of = json!({ "name": path, "keys": file.keys, "height_error_m": file.miss.height, "says": says });
+            let of = json!({ "name": path, "keys": file.keys, "height_error_m": error, "says": says });
             written.insert(format.name().to_owned(), of);
             files.push((path, file.bytes));
         }

@@ -8,7 +8,7 @@ use saltus_scene::plan::{End, Plan, Record};
 use saltus_scene::{Law, ReadError, Run, Scene};
 
 use crate::error::Error;
-use crate::output::say;
+use crate::output::{extension, say};
 
 /// The plan of a scene; what cannot be run is said with the file's name.
 pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error> {
@@ -36,7 +36,9 @@ pub(crate) fn ended(record: &Record, quiet: bool) {
         End::Jumps { most } => {
             say(
                 quiet,
-                &format!("stopped after {most} jumps, at {t:.6} s: --most-jumps allows more, --until ends by time"),
+                &format!(
+                    "stopped after {most} jumps, at {t:.6} s: `most_jumps` under [run], or --most-jumps where a command has it, allows more; --until ends by time"
+                ),
             );
         }
         end => say(quiet, &format!("stopped at {t:.6} s: {end}")),
@@ -53,7 +55,12 @@ pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
 /// The scene of a file or of standard input; what the command line says in `run` goes before what the scene says.
 pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
     let (name, toml) = read(path)?;
-    Scene::parse_with(&name, &toml, run).map_err(Error::new)
+    Scene::parse_with(&name, &toml, run).map_err(|error| match extension(path).as_deref() {
+        Some("csv" | "tsv" | "xlsx" | "xls" | "zip") => Error::new(format!(
+            "'{name}' is a table, not a scene: fit it first, by `saltus fit {name} --scene ball.toml`, and take ball.toml"
+        )),
+        _ => Error::new(error),
+    })
 }
 
 /// The text of a scene, from a file or from standard input, and its name.

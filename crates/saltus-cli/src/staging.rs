@@ -43,6 +43,9 @@ pub(crate) struct Staging {
     /// Turn left and right around.
     #[arg(long)]
     pub(crate) mirror: bool,
+    /// Set a key at the top of every flight too, to be moved by hand; the motion is the same.
+    #[arg(long)]
+    pub(crate) apexes: bool,
     /// When to stop, such as `4s`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
@@ -86,7 +89,7 @@ impl Staging {
         });
         (staging.squash, staging.stretch) = (self.squash, self.stretch.unwrap_or(0.0));
         (staging.exaggerate, staging.hold) = (self.exaggerate, self.hold);
-        (staging.looped, staging.mirror) = (self.looped, self.mirror);
+        (staging.looped, staging.mirror, staging.apexes) = (self.looped, self.mirror, self.apexes);
         staging.stage(record).map_err(Error::new)
     }
 

@@ -51,6 +51,8 @@ pub struct Staging {
     pub looped: Option<u32>,
     /// Whether left and right are turned around.
     pub mirror: bool,
+    /// Whether there is a key at the top of every flight.
+    pub apexes: bool,
 }
 
 /// How what is shown departs from the motion of the scene; lengths in m.
@@ -118,6 +120,9 @@ impl fmt::Display for Departure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Loop { hop } => write!(f, "hop {hop} alone, as a loop"),
+            Self::Cut { height, off } if height < off && length(*height) == length(0.0) => {
+                write!(f, "contacts shorter than a frame left out")
+            }
             Self::Cut { height, .. } => write!(f, "hops of up to {} left out", length(*height)),
             Self::SnappedByGravity { tops } => {
                 write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))
@@ -157,6 +162,8 @@ pub struct Stage {
     pub departures: Vec<Departure>,
     /// The radius in m that balls without one are drawn with, where there are any.
     pub drawn: Option<f64>,
+    /// Whether there is a key at the top of every flight.
+    pub apexes: bool,
 }
 
 impl Stage {
@@ -166,7 +173,9 @@ impl Stage {
     /// [`Error`] where the format cannot hold it.
     pub fn file(&self, format: Format, tolerance: f64) -> Result<File, Error> {
         let Self { motion, frames, shape, .. } = self;
-        Export { motion, frames: *frames, tolerance, shape: *shape }.file(format).map_err(Error::new)
+        Export { motion, frames: *frames, tolerance, shape: *shape, apexes: self.apexes }
+            .file(format)
+            .map_err(Error::new)
     }
 
     /// How far the heights of a file are from those of the run, in m, at most: what the file is off by, and what the hops left out are. Where contacts
@@ -227,6 +236,7 @@ impl Staging {
             hold: None,
             looped: None,
             mirror: false,
+            apexes: false,
         }
     }
 
@@ -247,8 +257,10 @@ impl Staging {
             departures.push(Departure::Loop { hop });
         } else {
             let height = hops_below(&whole, frames.step());
-            if height > 0.0 && whole.tracks != free.tracks {
-                departures.push(Departure::Cut { height, off: heights_apart(&whole, &free) });
+            let off = if whole.tracks == free.tracks { 0.0 } else { heights_apart(&whole, &free) };
+            // What is left out on a floor that moves need not rise above where it starts and ends.
+            if whole.tracks != free.tracks && height.max(off) > 0.0 {
+                departures.push(Departure::Cut { height, off });
             }
         }
         let by = |by: Snap| free.snapped(by, frames).map(|snapped| (by, snapped));
@@ -272,7 +284,7 @@ impl Staging {
             let count = (motion.end() / frames.rate.frame()).round();
             departures.push(Departure::Again { last: f64::from(frames.first) + count, first: frames.first });
         }
-        Ok(Stage { motion, frames, shape, departures, drawn })
+        Ok(Stage { motion, frames, shape, departures, drawn, apexes: self.apexes })
     }
 
     /// What is asked for by squash, stretch and hold, and how it departs from the motion.

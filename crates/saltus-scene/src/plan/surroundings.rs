@@ -131,10 +131,10 @@ impl<const N: usize> Surroundings<N> {
 
     /// Adds the ground that cuts space into cells.
     fn cut(&mut self, owner: usize, cells: Cells) -> Result<(), PlanError> {
-        if self.cells.is_some() {
-            let says = match cells {
-                Cells::Stairs(_) => "there are stairs or a polyline already: keep one flight of them",
-                Cells::Polyline(_) => "there are stairs or a polyline already: keep one, with all its points",
+        if let Some(cut) = &self.cells {
+            let says = match (cut, cells) {
+                (Cells::Stairs(_), Cells::Stairs(_)) => "there are stairs already: keep one flight of them",
+                _ => "there are stairs or a polyline already: keep one of them",
             };
             return Err(PlanError::floor(owner, says));
         }

@@ -64,6 +64,12 @@ pub fn solve(begin: Option<(&str, &[u8])>, free: &[&str], wishes: &[Wish]) -> Re
         }
         freedoms.push(Freedom::named(name, &mut file, &begun).map_err(Error::new)?);
     }
+    for (n, one) in wishes.iter().enumerate() {
+        if let Some(other) = wishes[n + 1..].iter().find(|other| other.what == one.what && other.asked != one.asked) {
+            let says = "they are of the same thing, which is one or the other: leave one out";
+            return Err(Error::new(format!("'{}' and '{}' contradict each other: {says}", one.text, other.text)));
+        }
+    }
     let draft = Draft { file, freedoms, run: long_enough(wishes) };
     // What is wrong with the scene to begin with is said, not searched around.
     let start: Vec<f64> = draft.freedoms.iter().map(|freedom| freedom.start).collect();
