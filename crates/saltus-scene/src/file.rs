@@ -101,7 +101,10 @@ impl<'de> Deserialize<'de> for GravityValue {
                 Err(E::custom(format!("no body named '{text}' is known: {help}")))
             }
             fn visit_f64<E: Error>(self, value: f64) -> Result<GravityValue, E> {
-                Ok(GravityValue(value))
+                // What is no number is refused with its place when gravity is made.
+                let number =
+                    if value.is_finite() { Acceleration::QUANTITY.check(value).map_err(E::custom)? } else { value };
+                Ok(GravityValue(number))
             }
             fn visit_i64<E: Error>(self, value: i64) -> Result<GravityValue, E> {
                 i32::try_from(value)

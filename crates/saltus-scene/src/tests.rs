@@ -301,3 +301,35 @@ fn a_record_is_sent_shared_and_serialised() {
         assert_eq!(std::thread::spawn(move || shared(&record)).join().unwrap(), here);
     }
 }
+
+/// Numbers with which nothing can be right are refused where they stand, with the range.
+#[test]
+fn quantities_have_ranges() {
+    for (toml, says) in [
+        ("restitution = 0.5\nball = { height = 1, velocity = '1e160 m/s' }\n", "2:31: '1e160 m/s' is beyond"),
+        ("restitution = 0.5\nball = { height = 1, velocity = -1e160 }\n", "a speed is at most 299792458 m/s"),
+        ("restitution = 1\nball = { height = 1 }\nrun = { until = '1e300 s' }\n", "a time is at most 1000000000000 s"),
+        ("restitution = 0.5\nball = { height = '1e200 km' }\n", "a length is at most 1000000000000 m"),
+        ("gravity = 1e31\nrestitution = 0.5\nball = { height = 1 }\n", "an acceleration is at most"),
+        ("gravity = '1e31 m/s^2'\nrestitution = 0.5\nball = { height = 1 }\n", "an acceleration is at most"),
+        (
+            "restitution = 0.5\nball = { height = 1, radius = 1e-200 }\n",
+            "is too small for a radius in m: give 1e-30 or more",
+        ),
+        (
+            "contact = { law = 'hertz', stiffness = 1e300 }\nball = { height = 1, mass = 1 }\nrun = { until = 1 }\n",
+            "at most",
+        ),
+    ] {
+        let message = message(toml);
+        assert!(message.contains(says) && !message.starts_with("accepted"), "{toml}: {message}");
+    }
+    // The ends themselves run, and end.
+    for toml in [
+        "restitution = 1\nball = { height = 1 }\nrun = { until = '1e12 s' }\n",
+        "restitution = 0.5\nball = { height = '1e12 m', velocity = 299792458 }\n",
+    ] {
+        let record = Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+        assert!(record.impacts().len() > 20);
+    }
+}

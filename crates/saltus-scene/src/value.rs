@@ -36,6 +36,9 @@ impl<T> At<T> {
     }
 }
 
+/// The smallest of what is above zero: the product of ten such numbers is not zero yet. Where it is a size, it is far below anything that bounces.
+const SMALLEST: f64 = 1e-30;
+
 impl<T: Real> At<T> {
     pub(super) fn real(&self) -> f64 {
         self.get().real()
@@ -43,8 +46,10 @@ impl<T: Real> At<T> {
 
     pub(super) fn positive(&self, what: &'static str) -> Result<f64, Fault> {
         let value = self.real();
-        if value > 0.0 {
+        if value >= SMALLEST {
             Ok(value)
+        } else if value > 0.0 {
+            Err(self.fault(format!("{value} is too small for {what}: give {SMALLEST:e} or more")))
         } else {
             Err(self.fault(format!("{value} is not {what}: give a finite number above zero")))
         }
@@ -168,10 +173,10 @@ impl<'de, D: Dimension> Deserialize<'de> for Measure<D> {
                 self.0.parse(text).map_err(E::custom)
             }
             fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
-                finite(value)
+                self.0.check(finite(value)?).map_err(E::custom)
             }
             fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
-                Ok(rounded(value))
+                self.0.check(rounded(value)).map_err(E::custom)
             }
         }
         Ok(Self(deserializer.deserialize_any(Read(D::QUANTITY))?, PhantomData))
@@ -236,7 +241,7 @@ pub(super) enum Loose {
 impl At<Loose> {
     pub(super) fn read(&self, quantity: Quantity) -> Result<f64, Fault> {
         match self.get() {
-            Loose::Number(value) => Ok(*value),
+            Loose::Number(value) => quantity.check(*value).map_err(|error| self.fault(error)),
             Loose::Text(text) => quantity.parse(text).map_err(|error| self.fault(error)),
         }
     }

@@ -4,8 +4,8 @@ use nalgebra::{Vector2, Vector3};
 use saltus::{Automaton, Jump};
 
 use super::explain::Advance;
-use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
+use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Law;
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
@@ -33,43 +33,43 @@ pub(super) struct Vertical {
     pub(super) velocity: f64,
 }
 
-pub(super) fn machine(vertical: Vertical, law: &Law) -> Result<Box<dyn Machine>, PlanError> {
+pub(super) fn runner(vertical: Vertical, law: &Law) -> Result<Box<dyn Runner>, PlanError> {
     match law.constant() {
         Some(cor) => with::<Cor>(vertical, cor),
         None => with::<Law>(vertical, *law),
     }
 }
 
-fn with<R>(vertical: Vertical, law: R) -> Result<Box<dyn Machine>, PlanError>
+fn with<R>(vertical: Vertical, law: R) -> Result<Box<dyn Runner>, PlanError>
 where
     R: Restitution + Copy + Send + Sync + 'static,
 {
     let Vertical { gravity, drag, floor: (owner, level), height, velocity } = vertical;
     let start = Vector2::new(height, velocity);
-    let reader = Upright { owner, level };
+    let view = BallView { owner, level };
     Ok(match drag {
         Drag::None => {
             let ball = Ball::of(VacuumFlight::new(gravity).map_err(failed)?, law);
-            Ready::boxed(ball, reader, Mode::Flight, start)
+            BoundModel::boxed(ball, view, Mode::Flight, start)
         }
         Drag::Linear(rate) => {
             let ball = Ball::of(LinearDragFlight::new(gravity, rate).map_err(failed)?, law);
-            Ready::boxed(ball, reader, Mode::Flight, start)
+            BoundModel::boxed(ball, view, Mode::Flight, start)
         }
         Drag::Quadratic(k) => {
             let ball = Ball::of(QuadraticDragFlight::new(gravity, k).map_err(failed)?, law);
-            Ready::boxed(ball, reader, Phase::of(&start), start)
+            BoundModel::boxed(ball, view, Phase::of(&start), start)
         }
     })
 }
 
 /// Reads a vertical ball over a floor at a height.
-struct Upright {
+struct BallView {
     owner: usize,
     level: f64,
 }
 
-impl Upright {
+impl BallView {
     fn linear(x: &Vector2<f64>) -> Moment {
         let up = |up: f64| Vector3::new(0.0, 0.0, up);
         Moment { position: up(x[0]), velocity: up(x[1]), spin: Vector3::zeros() }
@@ -79,9 +79,9 @@ impl Upright {
         Moment { position: Vector3::new(0.0, 0.0, self.level), ..Moment::ZERO }
     }
 
-    fn floor(&self) -> Happening {
-        let hit = Hit { with: With::Floor(self.owner), normal: Vector3::z(), speed: 0.0 };
-        Happening { edge: "floor", balls: [Some(0), None], hit: Some(hit) }
+    fn floor(&self) -> SceneEvent {
+        let collision = Collision { with: With::Floor(self.owner), normal: Vector3::z(), speed: 0.0 };
+        SceneEvent { edge: "floor", balls: [Some(0), None], collision: Some(collision) }
     }
 }
 
@@ -90,11 +90,11 @@ trait Smooth: SmoothFlight {}
 impl Smooth for VacuumFlight {}
 impl Smooth for LinearDragFlight {}
 
-impl<F: Smooth, R: Restitution> Reader<Ball<F, R>> for Upright
+impl<F: Smooth, R: Restitution> SceneView<Ball<F, R>> for BallView
 where
     Ball<F, R>: Automaton<Mode = Mode, Edge = Floor, State = Vector2<f64>>,
 {
-    type Stepper = super::method::Unasked;
+    type Stepper = super::method::NoStepper;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
         Self::linear(x)
@@ -114,7 +114,7 @@ where
     fn rests(&self, mode: Mode, _: &Vector2<f64>) -> bool {
         mode == Mode::Rest
     }
-    fn happening(&self, _: &Ball<F, R>, _: &Jump<Ball<F, R>>, _: Floor) -> Happening {
+    fn scene_event(&self, _: &Ball<F, R>, _: &Jump<Ball<F, R>>, _: Floor) -> SceneEvent {
         self.floor()
     }
     fn modes(&self, _: &Ball<F, R>) -> Vec<Mode> {
@@ -132,8 +132,8 @@ where
     }
 }
 
-impl<R: Restitution> Reader<Ball<QuadraticDragFlight, R>> for Upright {
-    type Stepper = super::method::Unasked;
+impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
+    type Stepper = super::method::NoStepper;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
         Self::linear(x)
@@ -157,15 +157,15 @@ impl<R: Restitution> Reader<Ball<QuadraticDragFlight, R>> for Upright {
     fn rests(&self, phase: Phase, _: &Vector2<f64>) -> bool {
         phase == Phase::Rest
     }
-    fn happening(
+    fn scene_event(
         &self,
         _: &Ball<QuadraticDragFlight, R>,
         _: &Jump<Ball<QuadraticDragFlight, R>>,
         turn: Turn,
-    ) -> Happening {
+    ) -> SceneEvent {
         match turn {
             Turn::Floor => self.floor(),
-            Turn::Apex => Happening { balls: [Some(0), None], ..Happening::of("apex") },
+            Turn::Apex => SceneEvent { balls: [Some(0), None], ..SceneEvent::of("apex") },
         }
     }
     fn modes(&self, _: &Ball<QuadraticDragFlight, R>) -> Vec<Phase> {

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use saltus::Jump;
 
 use super::explain::Advance;
-use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
+use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
 use super::{MOST_IN_SPACE, PlanError, failed};
 use crate::{Law, Scene, Shape};
 use saltus_bounce::Cloud;
@@ -70,7 +70,7 @@ pub(super) fn suffices(scene: &Scene) -> bool {
     lasting && laws().all(|law| law == first) && bounds(scene).is_ok()
 }
 
-pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
+pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     macro_rules! sized {
         ($($n:literal)*) => {
             match scene.balls.len() {
@@ -83,7 +83,7 @@ pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
 }
 
 /// In the plane the balls keep a third coordinate, in which nothing happens.
-fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
+fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let Some(between) = scene.collision else {
         return Err(PlanError::new("[collisions]", "no restitution is given between the balls"));
     };
@@ -113,17 +113,17 @@ fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
     }
     let centres = std::array::from_fn(|i| vector(balls[i].centre()));
     let velocities = std::array::from_fn(|i| vector(balls[i].velocity));
-    let reader = Flock { radii, owners: bounds.owners };
-    Ok(Ready::boxed(cloud, reader, (), Swarm { centres, velocities }))
+    let view = CloudView { radii, owners: bounds.owners };
+    Ok(BoundModel::boxed(cloud, view, (), Swarm { centres, velocities }))
 }
 
-struct Flock<const N: usize> {
+struct CloudView<const N: usize> {
     radii: [f64; N],
     owners: [[usize; 2]; 3],
 }
 
-impl<const N: usize> Reader<Cloud<3, N, Law>> for Flock<N> {
-    type Stepper = super::method::Unasked;
+impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
+    type Stepper = super::method::NoStepper;
 
     fn balls(&self) -> usize {
         N
@@ -147,19 +147,20 @@ impl<const N: usize> Reader<Cloud<3, N, Law>> for Flock<N> {
     fn rests(&self, (): (), _: &Swarm<3, N>) -> bool {
         false
     }
-    fn happening(&self, _: &Cloud<3, N, Law>, jump: &Jump<Cloud<3, N, Law>>, touch: Touch) -> Happening {
+    fn scene_event(&self, _: &Cloud<3, N, Law>, jump: &Jump<Cloud<3, N, Law>>, touch: Touch) -> SceneEvent {
         let wall = |ball: usize, axis: usize, side: f64, end: usize| {
             let mut normal = [0.0; 3];
             normal[axis] = side;
-            let hit = Hit { with: With::Floor(self.owners[axis][end]), normal: Vector3::from(normal), speed: 0.0 };
+            let collision =
+                Collision { with: With::Floor(self.owners[axis][end]), normal: Vector3::from(normal), speed: 0.0 };
             let edge = if axis == 2 && end == 0 { "floor" } else { "wall" };
-            Happening { edge, balls: [Some(ball), None], hit: Some(hit) }
+            SceneEvent { edge, balls: [Some(ball), None], collision: Some(collision) }
         };
         match touch {
             Touch::Balls(i, j) => {
                 let apart = Vector3::from(jump.before.centres[j]) - Vector3::from(jump.before.centres[i]);
-                let hit = Hit { with: With::Ball(i), normal: apart / apart.norm(), speed: 0.0 };
-                Happening { edge: "ball", balls: [Some(j), Some(i)], hit: Some(hit) }
+                let collision = Collision { with: With::Ball(i), normal: apart / apart.norm(), speed: 0.0 };
+                SceneEvent { edge: "ball", balls: [Some(j), Some(i)], collision: Some(collision) }
             }
             Touch::Low { ball, axis } => wall(ball, axis, 1.0, 0),
             Touch::High { ball, axis } => wall(ball, axis, -1.0, 1),

@@ -4,8 +4,8 @@ use nalgebra::{Vector2, Vector3};
 use saltus::{Jump, Trajectory};
 
 use super::explain::Advance;
-use super::machine::{Happening, Machine, Reader, Ready};
 use super::record::{Impact, Moment, Press, With};
+use super::runner::{BoundModel, Runner, SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Contact;
 use saltus_bounce::Compliant;
@@ -24,8 +24,8 @@ pub(super) struct Pressed {
     pub(super) velocity: f64,
 }
 
-/// The machine, and an absolute tolerance far below the deformation where contacts are stepped.
-pub(super) fn machine(pressed: Pressed, contact: Contact) -> Result<(Box<dyn Machine>, Option<f64>), PlanError> {
+/// The runner, and an absolute tolerance far below the deformation where contacts are stepped.
+pub(super) fn runner(pressed: Pressed, contact: Contact) -> Result<(Box<dyn Runner>, Option<f64>), PlanError> {
     match contact {
         Contact::KelvinVoigt(law) => with(pressed, law),
         Contact::Hertz(law) => with(pressed, law),
@@ -34,7 +34,7 @@ pub(super) fn machine(pressed: Pressed, contact: Contact) -> Result<(Box<dyn Mac
     }
 }
 
-fn with<L>(pressed: Pressed, law: L) -> Result<(Box<dyn Machine>, Option<f64>), PlanError>
+fn with<L>(pressed: Pressed, law: L) -> Result<(Box<dyn Runner>, Option<f64>), PlanError>
 where
     L: ContactLaw + Send + Sync + 'static,
 {
@@ -46,15 +46,15 @@ where
     };
     let ball = Compliant::new(mass, gravity, law).map_err(failed)?;
     let (stage, start) = ball.released(height, velocity);
-    Ok((Ready::boxed(ball, Deformed { owner, level }, stage, start), absolute))
+    Ok((BoundModel::boxed(ball, CompliantView { owner, level }, stage, start), absolute))
 }
 
-struct Deformed {
+struct CompliantView {
     owner: usize,
     level: f64,
 }
 
-impl<L: ContactLaw + Send + Sync + 'static> Reader<Compliant<L>> for Deformed {
+impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for CompliantView {
     type Stepper = super::method::Chosen;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
@@ -79,7 +79,7 @@ impl<L: ContactLaw + Send + Sync + 'static> Reader<Compliant<L>> for Deformed {
     fn rests(&self, _: Stage, _: &Vector2<f64>) -> bool {
         false // it swings about its static deformation, ever less
     }
-    fn happening(&self, _: &Compliant<L>, _: &Jump<Compliant<L>>, edge: Edge) -> Happening {
+    fn scene_event(&self, _: &Compliant<L>, _: &Jump<Compliant<L>>, edge: Edge) -> SceneEvent {
         let name = match edge {
             Edge::FirstContact => "first contact",
             Edge::GreatestDeformation => "greatest deformation",
@@ -87,7 +87,7 @@ impl<L: ContactLaw + Send + Sync + 'static> Reader<Compliant<L>> for Deformed {
             Edge::LeastDeformation => "least deformation",
             Edge::Apex => "apex",
         };
-        Happening { balls: [Some(0), None], ..Happening::of(name) }
+        SceneEvent { balls: [Some(0), None], ..SceneEvent::of(name) }
     }
     fn modes(&self, _: &Compliant<L>) -> Vec<Stage> {
         vec![Stage::Fall, Stage::Compression, Stage::Restitution, Stage::Rise, Stage::Lying]

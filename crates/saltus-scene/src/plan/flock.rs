@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use saltus::{Automaton, Jump};
 
 use super::explain::Advance;
-use super::flyer::{self, Among, Blown, Grips, Laws, Spun};
-use super::machine::{Happening, Hit, Machine, Reader, Ready};
+use super::flyer::{self, FloorsView, Grips, InWind, Laws, SpinEffects};
 use super::record::{Moment, With};
+use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
 use super::surroundings::Surroundings;
 use super::{MOST_IN_SPACE, PlanError, failed};
 use crate::{Law, Scene};
@@ -15,10 +15,10 @@ use saltus_bounce::flock::{Flock, Flying, Happens, Meeting, Stances};
 use saltus_bounce::walls::Walls;
 use saltus_bounce::{Event, Flyer, Sphere, Stance};
 
-type Model = Flock<MOST_IN_SPACE, AddedMass<Blown<3, Spun>>, Surroundings<3>, Laws, Grips, Law>;
+type Model = Flock<MOST_IN_SPACE, AddedMass<InWind<3, SpinEffects>>, Surroundings<3>, Laws, Grips, Law>;
 
 /// In the plane, and on a vertical line, the balls keep coordinates in which nothing happens.
-pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
+pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let count = scene.balls.len();
     if count > MOST_IN_SPACE {
         let says = format!("{count} balls are too many: a scene runs with up to {MOST_IN_SPACE}");
@@ -44,16 +44,16 @@ pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
     }
     let flock = Model::new(balls, between, scene.collision_friction).map_err(failed)?;
     let rubs = scene.floors.iter().any(|floor| floor.friction.coefficient() > 0.0);
-    let reader = Flocked { among: Among::new(scene, rubs), count };
-    Ok(Ready::boxed(flock, reader, stances, Flying::new(&starts).doing(stances)))
+    let view = FlockView { among: FloorsView::new(scene, rubs), count };
+    Ok(BoundModel::boxed(flock, view, stances, Flying::new(&starts).doing(stances)))
 }
 
-struct Flocked {
-    among: Among,
+struct FlockView {
+    among: FloorsView,
     count: usize,
 }
 
-impl Reader<Model> for Flocked {
+impl SceneView<Model> for FlockView {
     type Stepper = super::method::Chosen;
 
     fn balls(&self) -> usize {
@@ -76,7 +76,7 @@ impl Reader<Model> for Flocked {
         };
         (0..self.count).all(still) && !self.among.acts().1
     }
-    fn happening(&self, model: &Model, jump: &Jump<Model>, meeting: Meeting) -> Happening {
+    fn scene_event(&self, model: &Model, jump: &Jump<Model>, meeting: Meeting) -> SceneEvent {
         match model.happens(meeting, &jump.from) {
             Happens::Balls(i, j) => {
                 let [first, second] = [i, j].map(|ball| {
@@ -84,15 +84,15 @@ impl Reader<Model> for Flocked {
                     jump.before.ball(ball).position + above
                 });
                 let normal = (second - first).normalize();
-                let hit = Hit { with: With::Ball(i), normal, speed: 0.0 };
-                Happening { edge: "ball", balls: [Some(j), Some(i)], hit: Some(hit) }
+                let collision = Collision { with: With::Ball(i), normal, speed: 0.0 };
+                SceneEvent { edge: "ball", balls: [Some(j), Some(i)], collision: Some(collision) }
             }
             Happens::To(ball, event) => {
                 let walls = model.balls()[ball].1.walls();
-                self.among.happened(walls, ball, jump.t(), &jump.before.ball(ball).position, event)
+                self.among.event_of(walls, ball, jump.t(), &jump.before.ball(ball).position, event)
             }
-            Happens::Change => Happening::of("schedule"),
-            Happens::Nothing => Happening::of("nothing"),
+            Happens::Change => SceneEvent::of("schedule"),
+            Happens::Nothing => SceneEvent::of("nothing"),
         }
     }
     fn modes(&self, model: &Model) -> Vec<Stances<MOST_IN_SPACE>> {
@@ -130,6 +130,6 @@ impl Reader<Model> for Flocked {
         list
     }
     fn why(&self, stances: Stances<MOST_IN_SPACE>, advance: Advance) -> &'static str {
-        Among::because(stances.of(0), advance)
+        FloorsView::because(stances.of(0), advance)
     }
 }

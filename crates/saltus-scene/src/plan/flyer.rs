@@ -4,8 +4,8 @@ use nalgebra::{SVector, Vector3};
 use saltus::Jump;
 
 use super::explain::Advance;
-use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
+use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
 use super::surroundings::{Surroundings, surroundings};
 use super::{PlanError, failed, label};
 use crate::{Ball, Law, Scene};
@@ -32,7 +32,7 @@ pub(super) fn uniform(scene: &Scene) -> bool {
     effects.linear.is_none() && effects.quadratic.is_none() && effects.lift.is_none() && effects.spin_decay.is_none()
 }
 
-pub(super) fn machine(scene: &Scene) -> Result<Box<dyn Machine>, PlanError> {
+pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let ball = &scene.balls[0];
     let spin = ball.spin.unwrap_or_default();
     // One model for each kind of state: which of the effects are named is asked as it runs, and where none is but gravity, flights are exact.
@@ -62,20 +62,20 @@ fn wind<const N: usize, E>(scene: &Scene, effects: E) -> Result<Wind<N, E>, Plan
     Wind::new(position(&scene.effects.wind.unwrap_or_default()), effects).map_err(failed)
 }
 
-pub(super) type Blown<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
+pub(super) type InWind<const N: usize, E> = (Gravity, Option<Buoyancy>, Wind<N, E>);
 
 type Drags = (Option<LinearDrag>, Option<QuadraticDrag>);
 
-fn air<const N: usize>(scene: &Scene) -> Result<Blown<N, Drags>, PlanError> {
+fn air<const N: usize>(scene: &Scene) -> Result<InWind<N, Drags>, PlanError> {
     let (ball, effects) = (&scene.balls[0], &scene.effects);
     let (gravity, buoyancy) = steady(scene, ball);
     Ok((gravity, buoyancy, wind(scene, (effects.linear_drag(ball), effects.quadratic_drag(ball)))?))
 }
 
 /// What acts on a ball that spins.
-pub(super) type Spun = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
+pub(super) type SpinEffects = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
 
-pub(super) fn spinning_air<const N: usize>(scene: &Scene, ball: &Ball) -> Result<Blown<N, Spun>, PlanError> {
+pub(super) fn spinning_air<const N: usize>(scene: &Scene, ball: &Ball) -> Result<InWind<N, SpinEffects>, PlanError> {
     let effects = &scene.effects;
     let (gravity, buoyancy) = steady(scene, ball);
     let drag = (effects.linear_drag(ball), effects.quadratic_drag(ball));
@@ -97,19 +97,19 @@ fn spread<const N: usize>(v: &SVector<f64, N>) -> Vector3<f64> {
     all
 }
 
-fn smooth<const N: usize, E>(scene: &Scene, effects: E) -> Result<Box<dyn Machine>, PlanError>
+fn smooth<const N: usize, E>(scene: &Scene, effects: E) -> Result<Box<dyn Runner>, PlanError>
 where
     E: Effect<N> + Send + Sync + 'static,
 {
     let (walls, laws, _) = faces::<N>(scene, 0)?;
     let start = start::<N>(&scene.balls[0]);
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
-    let reader = Among::new(scene, false);
+    let view = FloorsView::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
-    Ok(Ready::boxed(flyer, reader, stance, start))
+    Ok(BoundModel::boxed(flyer, view, stance, start))
 }
 
-fn rough<const N: usize, S, E>(scene: &Scene, effects: E, spin: S) -> Result<Box<dyn Machine>, PlanError>
+fn rough<const N: usize, S, E>(scene: &Scene, effects: E, spin: S) -> Result<Box<dyn Runner>, PlanError>
 where
     S: Turning + Turned + Send + Sync + 'static,
     E: Effect<N, S> + Send + Sync + 'static,
@@ -118,9 +118,9 @@ where
     let (walls, laws, grips) = gripped::<N>(scene, 0)?;
     let start = start::<N>(&scene.balls[0]).spinning(spin);
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
-    let reader = Among::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
+    let view = FloorsView::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
-    Ok(Ready::boxed(flyer, reader, stance, start))
+    Ok(BoundModel::boxed(flyer, view, stance, start))
 }
 
 /// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and radius, whatever its mass.
@@ -261,14 +261,14 @@ pub(super) const fn named<const N: usize>(stance: Stance<N>) -> &'static str {
 }
 
 /// Reads a ball among the floors of a scene.
-pub(super) struct Among {
+pub(super) struct FloorsView {
     kinds: Vec<&'static str>,
     labels: Vec<String>,
     moves: Vec<bool>,
     rubs: bool,
 }
 
-impl Among {
+impl FloorsView {
     pub(super) fn new(scene: &Scene, rubs: bool) -> Self {
         Self {
             kinds: scene.floors.iter().map(|floor| floor.shape.word()).collect(),
@@ -279,17 +279,17 @@ impl Among {
     }
 }
 
-impl Among {
+impl FloorsView {
     /// What an event of `ball` is in the scene, which takes it at `p` at time `t`.
-    pub(super) fn happened<const N: usize>(
+    pub(super) fn event_of<const N: usize>(
         &self,
         walls: &Surroundings<N>,
         ball: usize,
         t: f64,
         p: &SVector<f64, N>,
         event: Event<N>,
-    ) -> Happening {
-        let one = |edge| Happening { balls: [Some(ball), None], ..Happening::of(edge) };
+    ) -> SceneEvent {
+        let one = |edge| SceneEvent { balls: [Some(ball), None], ..SceneEvent::of(edge) };
         match event {
             Event::Meet(face) => {
                 if walls.leads(face, t, p).is_some() {
@@ -298,12 +298,12 @@ impl Among {
                 let gradient = walls.gradient(face, t, p);
                 let length = gradient.norm();
                 let owner = walls.owner(face);
-                let hit = Hit {
+                let collision = Collision {
                     with: With::Floor(owner),
                     normal: spread(&(gradient / length)),
                     speed: -walls.rate(face, t, p) / length,
                 };
-                Happening { hit: Some(hit), ..one(self.kinds.get(owner).copied().unwrap_or("floor")) }
+                SceneEvent { collision: Some(collision), ..one(self.kinds.get(owner).copied().unwrap_or("floor")) }
             }
             Event::Leave(_) => one("lift-off"),
             Event::Stop { .. } => one("stop"),
@@ -344,9 +344,9 @@ impl Among {
     }
 }
 
-type Scenic<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
+type SceneFlyer<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
 
-impl<const N: usize, S, E, G> Reader<Scenic<N, S, E, G>> for Among
+impl<const N: usize, S, E, G> SceneView<SceneFlyer<N, S, E, G>> for FloorsView
 where
     S: Turning + Turned,
     E: Effect<N, S>,
@@ -367,10 +367,15 @@ where
         let still = x.velocity.norm() == 0.0 && x.spin.vector().norm() == 0.0;
         still && !matches!(stance, Stance::Flight { .. }) && !self.moves.contains(&true)
     }
-    fn happening(&self, model: &Scenic<N, S, E, G>, jump: &Jump<Scenic<N, S, E, G>>, event: Event<N>) -> Happening {
-        self.happened(model.walls(), 0, jump.t(), &jump.before.position, event)
+    fn scene_event(
+        &self,
+        model: &SceneFlyer<N, S, E, G>,
+        jump: &Jump<SceneFlyer<N, S, E, G>>,
+        event: Event<N>,
+    ) -> SceneEvent {
+        self.event_of(model.walls(), 0, jump.t(), &jump.before.position, event)
     }
-    fn modes(&self, model: &Scenic<N, S, E, G>) -> Vec<Stance<N>> {
+    fn modes(&self, model: &SceneFlyer<N, S, E, G>) -> Vec<Stance<N>> {
         let walls = model.walls();
         let mut modes = vec![Stance::FLIGHT];
         let mut slip = SVector::zeros();
@@ -384,7 +389,7 @@ where
         }
         modes
     }
-    fn edge(&self, model: &Scenic<N, S, E, G>, event: Event<N>) -> String {
+    fn edge(&self, model: &SceneFlyer<N, S, E, G>, event: Event<N>) -> String {
         self.listed(model.walls(), event)
     }
     fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {

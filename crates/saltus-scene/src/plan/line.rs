@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use saltus::Jump;
 
 use super::explain::Advance;
-use super::machine::{Happening, Hit, Machine, Reader, Ready};
 use super::record::{Moment, With};
+use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
 use super::{MOST_BALLS, PlanError, failed};
 use crate::{Law, Scene};
 use saltus_bounce::Line;
@@ -34,11 +34,11 @@ pub(super) fn direction(scene: &Scene) -> Option<Vector3<f64>> {
 }
 
 /// Balls that stay on the line along `u`; `floor` is which one is below and how high it is.
-pub(super) fn machine(
+pub(super) fn runner(
     scene: &Scene,
     u: Vector3<f64>,
     floor: Option<(usize, f64)>,
-) -> Result<Box<dyn Machine>, PlanError> {
+) -> Result<Box<dyn Runner>, PlanError> {
     match scene.balls.len() {
         2 => with::<2>(scene, u, floor),
         3 => with::<3>(scene, u, floor),
@@ -52,7 +52,7 @@ fn with<const N: usize>(
     scene: &Scene,
     u: Vector3<f64>,
     floor: Option<(usize, f64)>,
-) -> Result<Box<dyn Machine>, PlanError> {
+) -> Result<Box<dyn Runner>, PlanError> {
     let Some(between) = scene.collision else {
         return Err(PlanError::new("[collisions]", "no restitution is given between the balls"));
     };
@@ -94,12 +94,12 @@ fn with<const N: usize>(
         places[order[i]] = i;
         stacked += 2.0 * radius(i);
     }
-    let reader = Placed { u, floor: floor.map(|(owner, _)| owner), order, places, origins };
-    Ok(Ready::boxed(line, reader, Lying::NONE, Row { gaps, velocities }))
+    let view = LineView { u, floor: floor.map(|(owner, _)| owner), order, places, origins };
+    Ok(BoundModel::boxed(line, view, Lying::NONE, Row { gaps, velocities }))
 }
 
 /// Reads balls on a line; `order` says which ball is in a place, `places` in which place a ball is.
-struct Placed<const N: usize> {
+struct LineView<const N: usize> {
     u: Vector3<f64>,
     floor: Option<usize>,
     order: [usize; N],
@@ -107,8 +107,8 @@ struct Placed<const N: usize> {
     origins: Vec<Moment>,
 }
 
-impl<const N: usize> Reader<Line<N, Law>> for Placed<N> {
-    type Stepper = super::method::Unasked;
+impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
+    type Stepper = super::method::NoStepper;
 
     fn balls(&self) -> usize {
         N
@@ -130,17 +130,17 @@ impl<const N: usize> Reader<Line<N, Law>> for Placed<N> {
     fn rests(&self, lying: Lying, _: &Row<N>) -> bool {
         lying.count() == N
     }
-    fn happening(&self, _: &Line<N, Law>, _: &Jump<Line<N, Law>>, Contact(contact): Contact) -> Happening {
-        let Some(&ball) = self.order.get(contact) else { return Happening::of("wall") };
+    fn scene_event(&self, _: &Line<N, Law>, _: &Jump<Line<N, Law>>, Contact(contact): Contact) -> SceneEvent {
+        let Some(&ball) = self.order.get(contact) else { return SceneEvent::of("wall") };
         match contact.checked_sub(1) {
             None => {
-                let hit = Hit { with: With::Floor(self.floor.unwrap_or(0)), normal: self.u, speed: 0.0 };
-                Happening { edge: "floor", balls: [Some(ball), None], hit: Some(hit) }
+                let collision = Collision { with: With::Floor(self.floor.unwrap_or(0)), normal: self.u, speed: 0.0 };
+                SceneEvent { edge: "floor", balls: [Some(ball), None], collision: Some(collision) }
             }
             Some(below) => {
                 let other = self.order[below];
-                let hit = Hit { with: With::Ball(other), normal: self.u, speed: 0.0 };
-                Happening { edge: "ball", balls: [Some(ball), Some(other)], hit: Some(hit) }
+                let collision = Collision { with: With::Ball(other), normal: self.u, speed: 0.0 };
+                SceneEvent { edge: "ball", balls: [Some(ball), Some(other)], collision: Some(collision) }
             }
         }
     }

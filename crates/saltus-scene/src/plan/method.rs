@@ -39,15 +39,15 @@ impl From<Method> for Chosen {
 
 /// For models that a formula solves in every mode: it is never asked for a step, and would have none.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unasked;
+pub(super) struct NoStepper;
 
-impl From<Method> for Unasked {
+impl From<Method> for NoStepper {
     fn from(_: Method) -> Self {
         Self
     }
 }
 
-impl Step for Unasked {
+impl Step for NoStepper {
     type Stages<S: State> = ();
     type Dense<S: State> = [S; 1];
 

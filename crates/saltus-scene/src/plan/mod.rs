@@ -11,11 +11,11 @@ mod explain;
 mod flock;
 mod flyer;
 mod line;
-mod machine;
 mod method;
 mod outcome;
 mod polyline;
 mod record;
+mod runner;
 mod surroundings;
 
 use std::fmt;
@@ -28,8 +28,8 @@ pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment,
 use super::accuracy::Way;
 use super::source::Source;
 use super::{Contact, Floor, Law, Scene, SceneError, Shape, Stepper};
-use machine::{How, Machine, Recording};
 use method::Method;
+use runner::{Recording, RunOptions, Runner};
 
 /// After how many jumps a run ends that says nothing of it.
 const MOST_JUMPS: u32 = 10_000;
@@ -103,15 +103,18 @@ impl fmt::Display for Model {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Plan {
-    machine: Box<dyn Machine>,
+    runner: Box<dyn Runner>,
     scene: Arc<Scene>,
-    how: How,
+    options: RunOptions,
     explanation: Explanation,
 }
 
 impl fmt::Debug for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Plan").field("how", &self.how).field("explanation", &self.explanation).finish_non_exhaustive()
+        f.debug_struct("Plan")
+            .field("how", &self.options)
+            .field("explanation", &self.explanation)
+            .finish_non_exhaustive()
     }
 }
 
@@ -125,21 +128,21 @@ impl Plan {
     /// Ends the run at `t` in s, instead of when the scene says.
     #[must_use]
     pub const fn until(mut self, t: f64) -> Self {
-        self.how.until = Some(t);
+        self.options.until = Some(t);
         self
     }
 
     /// Ends the run after so many jumps, instead of the scene's number.
     #[must_use]
     pub const fn most_jumps(mut self, count: u32) -> Self {
-        self.how.most_jumps = count as usize;
+        self.options.most_jumps = count as usize;
         self
     }
 
     /// Ends the run after so many evaluations of flows and guards; 2 × 10⁸ unless set.
     #[must_use]
     pub const fn most_evaluations(mut self, count: u64) -> Self {
-        self.how.most_evaluations = count;
+        self.options.most_evaluations = count;
         self
     }
 
@@ -148,21 +151,22 @@ impl Plan {
         match way {
             Way::Formulas => {}
             Way::Steps { stepper, tolerance } => {
-                (self.how.method, self.how.tolerance, self.how.stepped) = (Method(stepper), tolerance, true);
+                (self.options.method, self.options.tolerance, self.options.stepped) =
+                    (Method(stepper), tolerance, true);
             }
-            Way::Frames { rate } => self.how.frames = Some(rate),
+            Way::Frames { rate } => self.options.frames = Some(rate),
         }
         self
     }
 
     /// Whether a formula solves every mode.
     pub(super) const fn is_solved(&self) -> bool {
-        self.how.solved
+        self.options.solved
     }
 
     /// The stepper it would use where it has to.
     pub(super) const fn stepper(&self) -> Stepper {
-        self.how.method.0
+        self.options.method.0
     }
 
     /// Runs from the scene's start, and records everything.
@@ -170,7 +174,7 @@ impl Plan {
     /// # Errors
     /// [`RunError`] if the engine fails, or if nothing ends the run.
     pub fn run(&self) -> Result<Record, RunError> {
-        let Recording { run, until, end, rest } = self.machine.run(&self.how)?;
+        let Recording { run, until, end, rest } = self.runner.run(&self.options)?;
         Ok(Record { run, scene: Arc::clone(&self.scene), model: self.explanation.model, until, end, rest })
     }
 
@@ -182,7 +186,7 @@ impl Plan {
         match self.explanation.model {
             // What a contact that takes time comes to is seen along it only.
             Model::Compliant => Ok(Outcome::of(&self.run()?)),
-            _ => self.machine.outcome(&self.how),
+            _ => self.runner.outcome(&self.options),
         }
     }
 }
@@ -201,21 +205,21 @@ impl Scene {
     pub(super) fn steppable(&self) -> Option<Plan> {
         let plan = self.plan().ok()?;
         match plan.explanation.model {
-            Model::Ball => Some(self.planned((Model::Flyer, flyer::machine(self).ok()?, None))),
+            Model::Ball => Some(self.planned((Model::Flyer, flyer::runner(self).ok()?, None))),
             Model::Flyer => Some(plan),
-            _ => (!plan.how.solved).then_some(plan),
+            _ => (!plan.options.solved).then_some(plan),
         }
     }
 
-    fn planned(&self, (model, machine, absolute): Chosen) -> Plan {
+    fn planned(&self, (model, runner, absolute): Chosen) -> Plan {
         let default = if model == Model::Compliant { CONTACT_TOLERANCE } else { TOLERANCE };
         let tolerance = self.run.tolerance.unwrap_or(default);
         let method = Method::of(self.run.stepper, tolerance);
         let most_jumps = self.run.most_jumps.unwrap_or(MOST_JUMPS) as usize;
-        let modes = machine.modes(method);
+        let modes = runner.modes(method);
         let solved = modes.iter().all(|mode| mode.advance.is_solved());
-        let explanation = Explanation::of(self, model, machine.coordinates(), modes, tolerance);
-        let how = How {
+        let explanation = Explanation::of(self, model, runner.coordinates(), modes, tolerance);
+        let options = RunOptions {
             until: self.run.until,
             most_jumps,
             most_evaluations: MOST_EVALUATIONS,
@@ -226,11 +230,11 @@ impl Scene {
             frames: None,
             absolute,
         };
-        Plan { machine, scene: Arc::new(self.clone()), how, explanation }
+        Plan { runner, scene: Arc::new(self.clone()), options, explanation }
     }
 }
 
-type Chosen = (Model, Box<dyn Machine>, Option<f64>);
+type Chosen = (Model, Box<dyn Runner>, Option<f64>);
 
 fn choose(scene: &Scene) -> Result<Chosen, PlanError> {
     if scene.balls.len() > 1 {
@@ -238,12 +242,12 @@ fn choose(scene: &Scene) -> Result<Chosen, PlanError> {
     }
     if scene.contact != Contact::Rigid {
         let (pressed, contact) = (pressed(scene)?, scene.contact);
-        return compliant::machine(pressed, contact).map(|(machine, absolute)| (Model::Compliant, machine, absolute));
+        return compliant::runner(pressed, contact).map(|(runner, absolute)| (Model::Compliant, runner, absolute));
     }
     if let Some((vertical, law)) = vertical(scene) {
-        return Ok((Model::Ball, ball::machine(vertical, law)?, None));
+        return Ok((Model::Ball, ball::runner(vertical, law)?, None));
     }
-    Ok((Model::Flyer, flyer::machine(scene)?, None))
+    Ok((Model::Flyer, flyer::runner(scene)?, None))
 }
 
 /// The level floor under the balls of a vertical scene: which, and how high; `None` if there is none or it moves.
@@ -320,16 +324,16 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
         let vertical = scene.dimensions == 1;
         if let Some(u) = line::direction(scene) {
             let floor = if vertical { ground(scene) } else { None };
-            return Ok((Model::Line, line::machine(scene, u, floor)?, None));
+            return Ok((Model::Line, line::runner(scene, u, floor)?, None));
         }
         if cloud::suffices(scene) {
-            return Ok((Model::Cloud, cloud::machine(scene)?, None));
+            return Ok((Model::Cloud, cloud::runner(scene)?, None));
         }
     }
     // On one line they come to rest upon each other, which only `Line` says what lies beyond.
     match beside_gravity(scene).filter(|_| scene.dimensions == 1) {
         Some(error) => Err(error),
-        None => Ok((Model::Flock, flock::machine(scene)?, None)),
+        None => Ok((Model::Flock, flock::runner(scene)?, None)),
     }
 }
 

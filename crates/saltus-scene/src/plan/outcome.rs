@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use saltus::{Automaton, Ending, Jump, Observer, Piece};
 
-use super::machine::{Reader, impact, moment, segment};
 use super::record::{Apex, Cost, End, Moment, Record, Tops};
+use super::runner::{SceneView, impact, moment, segment};
 
 /// What came of a run: what a table of many runs wants to know of each.
 ///
@@ -61,9 +61,9 @@ impl Outcome {
 }
 
 /// Counts impacts as they come, and looks at the motion only from the first one to the apex after it.
-pub(super) struct Watch<'a, A: Automaton, R> {
+pub(super) struct OutcomeObserver<'a, A: Automaton, R> {
     automaton: &'a A,
-    reader: &'a R,
+    view: &'a R,
     impacts: usize,
     first: Option<f64>,
     last: Option<f64>,
@@ -73,9 +73,9 @@ pub(super) struct Watch<'a, A: Automaton, R> {
     pub(super) left: Option<(f64, A::Mode, A::State)>,
 }
 
-impl<'a, A: Automaton, R: Reader<A>> Watch<'a, A, R> {
-    pub(super) const fn new(automaton: &'a A, reader: &'a R) -> Self {
-        Self { automaton, reader, impacts: 0, first: None, last: None, tops: None, apex: None, left: None }
+impl<'a, A: Automaton, R: SceneView<A>> OutcomeObserver<'a, A, R> {
+    pub(super) const fn new(automaton: &'a A, view: &'a R) -> Self {
+        Self { automaton, view, impacts: 0, first: None, last: None, tops: None, apex: None, left: None }
     }
 
     /// When the last jump was.
@@ -100,20 +100,20 @@ impl<'a, A: Automaton, R: Reader<A>> Watch<'a, A, R> {
             rest,
             end,
             until,
-            balls: (0..self.reader.balls()).map(|ball| moment(self.reader, state, ball)).collect(),
+            balls: (0..self.view.balls()).map(|ball| moment(self.view, state, ball)).collect(),
             cost: ending.stats.into(),
         }
     }
 }
 
-impl<A: Automaton, R: Reader<A>> Observer<A> for Watch<'_, A, R> {
+impl<A: Automaton, R: SceneView<A>> Observer<A> for OutcomeObserver<'_, A, R> {
     fn wants_pieces(&self) -> bool {
-        self.tops.is_some() && self.reader.apex_jump().is_none()
+        self.tops.is_some() && self.view.apex_jump().is_none()
     }
 
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         if let Some(tops) = &mut self.tops {
-            self.apex = tops.next(&segment(self.reader, mode, piece, 0));
+            self.apex = tops.next(&segment(self.view, mode, piece, 0));
             if self.apex.is_some() {
                 self.tops = None;
             }
@@ -122,12 +122,12 @@ impl<A: Automaton, R: Reader<A>> Observer<A> for Watch<'_, A, R> {
     }
 
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
-        if self.reader.apex_jump() == Some((jump.from, jump.to)) {
+        if self.view.apex_jump() == Some((jump.from, jump.to)) {
             if self.tops.take().is_some() {
-                let height = moment(self.reader, &jump.before, 0).height();
+                let height = moment(self.view, &jump.before, 0).height();
                 self.apex = Some(Apex { t: jump.t(), height });
             }
-        } else if let Some(impact) = impact(self.automaton, self.reader, jump) {
+        } else if let Some(impact) = impact(self.automaton, self.view, jump) {
             self.impacts += 1;
             self.first.get_or_insert(impact.t);
             self.last = Some(impact.t);

@@ -274,7 +274,7 @@ impl From<saltus::Stats> for Cost {
 }
 
 /// A recorded run of one model, whichever it is.
-pub(super) trait Recorded: Send + Sync {
+pub(super) trait RecordedRun: Send + Sync {
     fn balls(&self) -> usize;
     fn at(&self, ball: usize, t: f64) -> Option<(&'static str, Moment)>;
     fn before(&self, ball: usize, t: f64) -> Option<Moment>;
@@ -300,7 +300,7 @@ pub(super) trait Recorded: Send + Sync {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Record {
-    pub(super) run: Box<dyn Recorded>,
+    pub(super) run: Box<dyn RecordedRun>,
     pub(super) scene: Arc<Scene>,
     pub(super) model: Model,
     pub(super) until: f64,

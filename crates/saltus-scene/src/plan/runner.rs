@@ -13,12 +13,12 @@ use saltus::{
 use super::RunError;
 use super::explain::{Advance, ModePlan};
 use super::method::Method;
-use super::outcome::{Outcome, Watch};
-use super::record::{Cost, End, Event, Impact, Moment, Recorded, Segment, Sides, With};
+use super::outcome::{Outcome, OutcomeObserver};
+use super::record::{Cost, End, Event, Impact, Moment, RecordedRun, Segment, Sides, With};
 
-/// How to run a machine.
+/// The options of a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct How {
+pub(super) struct RunOptions {
     pub(super) until: Option<f64>,
     pub(super) most_jumps: usize,
     pub(super) most_evaluations: u64,
@@ -44,7 +44,7 @@ fn shown(last: f64) -> f64 {
     if last > 0.0 { last * (1.0 + SHOWN_AFTER_REST) } else { SHOWN_AT_REST }
 }
 
-impl How {
+impl RunOptions {
     /// Until when a run that reached `until` is shown: what lies still or rolls on beyond the `last` jump needs no end, and a little of it is shown.
     fn shown(&self, end: End, until: f64, last: f64, rest: Option<f64>) -> Result<f64, RunError> {
         if self.until.is_some() {
@@ -61,30 +61,30 @@ impl How {
     }
 }
 
-/// What a jump means in the scene.
-pub(super) struct Happening {
+/// A jump as an event of the scene.
+pub(super) struct SceneEvent {
     pub(super) edge: &'static str,
     /// The balls that take part; none means all.
     pub(super) balls: [Option<usize>; 2],
-    pub(super) hit: Option<Hit>,
+    pub(super) collision: Option<Collision>,
 }
 
-impl Happening {
+impl SceneEvent {
     /// Something that is no impact, with ball 0 or with all.
     pub(super) const fn of(edge: &'static str) -> Self {
-        Self { edge, balls: [None; 2], hit: None }
+        Self { edge, balls: [None; 2], collision: None }
     }
 }
 
 /// An impact: with what, along which normal, and how fast that itself moves along it.
-pub(super) struct Hit {
+pub(super) struct Collision {
     pub(super) with: With,
     pub(super) normal: Vector3<f64>,
     pub(super) speed: f64,
 }
 
-/// Reads the states, modes and jumps of a model in terms of the scene.
-pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
+/// How the states, modes and jumps of a model are seen in the scene.
+pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     /// The stepper to compile the model for: the whole choice, or, where a formula solves every mode, one that is never asked.
     type Stepper: Stepper + From<Method>;
     fn balls(&self) -> usize {
@@ -106,7 +106,7 @@ pub(super) trait Reader<A: Automaton>: Send + Sync + 'static {
         None
     }
     /// A jump by an edge.
-    fn happening(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> Happening;
+    fn scene_event(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> SceneEvent;
     /// The modes a run may enter, as far as they differ in how they are advanced.
     fn modes(&self, model: &A) -> Vec<A::Mode>;
     /// How an edge is listed.
@@ -138,49 +138,49 @@ impl<A> Shared for A where A: Automaton<Mode: Send + Sync, State: Send + Sync, E
 
 /// A run that was recorded, up to where it is shown.
 pub(super) struct Recording {
-    pub(super) run: Box<dyn Recorded>,
+    pub(super) run: Box<dyn RecordedRun>,
     pub(super) until: f64,
     pub(super) end: End,
     pub(super) rest: Option<f64>,
 }
 
-/// Anything that runs.
-pub(super) trait Machine: Send + Sync {
-    fn run(&self, how: &How) -> Result<Recording, RunError>;
-    fn outcome(&self, how: &How) -> Result<Outcome, RunError>;
+/// A model bound to its start, of whatever kind.
+pub(super) trait Runner: Send + Sync {
+    fn run(&self, options: &RunOptions) -> Result<Recording, RunError>;
+    fn outcome(&self, options: &RunOptions) -> Result<Outcome, RunError>;
     fn modes(&self, method: Method) -> Vec<ModePlan>;
     fn coordinates(&self) -> usize;
 }
 
-/// A model, who reads it, and where it starts.
-pub(super) struct Ready<A: Automaton, R> {
+/// A model, how its states, modes and jumps are seen in the scene, and where it starts.
+pub(super) struct BoundModel<A: Automaton, R> {
     pub(super) automaton: Arc<A>,
-    pub(super) reader: Arc<R>,
+    pub(super) view: Arc<R>,
     pub(super) mode: A::Mode,
     pub(super) state: A::State,
 }
 
-impl<A: Automaton, R: Reader<A>> Ready<A, R> {
-    pub(super) fn boxed(automaton: A, reader: R, mode: A::Mode, state: A::State) -> Box<dyn Machine>
+impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
+    pub(super) fn boxed(automaton: A, view: R, mode: A::Mode, state: A::State) -> Box<dyn Runner>
     where
         A: Shared,
     {
-        Box::new(Self { automaton: Arc::new(automaton), reader: Arc::new(reader), mode, state })
+        Box::new(Self { automaton: Arc::new(automaton), view: Arc::new(view), mode, state })
     }
 }
 
-impl<A: Automaton, R: Reader<A>> Ready<A, R> {
-    fn simulation(&self, how: &How) -> Simulation<'_, A, R::Stepper> {
+impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
+    fn simulation(&self, options: &RunOptions) -> Simulation<'_, A, R::Stepper> {
         let simulation = Simulation::of(&*self.automaton)
-            .stepper(R::Stepper::from(how.method))
-            .tolerance(how.tolerance)
-            .most_jumps(how.most_jumps)
-            .most_evaluations(how.most_evaluations);
-        let simulation = match how.absolute {
+            .stepper(R::Stepper::from(options.method))
+            .tolerance(options.tolerance)
+            .most_jumps(options.most_jumps)
+            .most_evaluations(options.most_evaluations);
+        let simulation = match options.absolute {
             Some(absolute) => simulation.absolute_tolerance(absolute),
             None => simulation,
         };
-        if how.stepped { simulation.stepped() } else { simulation }
+        if options.stepped { simulation.stepped() } else { simulation }
     }
 
     /// Runs from the start until `until`. Whoever observes, the engine is compiled once for a model.
@@ -194,13 +194,13 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
     }
 
     /// Until when to run.
-    fn until(&self, how: &How, simulation: &Simulation<'_, A, R::Stepper>) -> Result<f64, saltus::Error> {
-        match how.until {
+    fn until(&self, options: &RunOptions, simulation: &Simulation<'_, A, R::Stepper>) -> Result<f64, saltus::Error> {
+        match options.until {
             Some(until) => Ok(until),
-            None if how.solved => Ok(f64::INFINITY),
+            None if options.solved => Ok(f64::INFINITY),
             // Steps would go on for ever: the run is made twice, first to see when it ends.
             None => {
-                let mut resting = Resting { reader: &*self.reader };
+                let mut resting = Resting { view: &*self.view };
                 let ending = self.drive(simulation, f64::INFINITY, &mut resting)?;
                 Ok(shown(ending.time.seconds()))
             }
@@ -208,11 +208,11 @@ impl<A: Automaton, R: Reader<A>> Ready<A, R> {
     }
 }
 
-impl<A: Shared, R: Reader<A>> Machine for Ready<A, R> {
-    fn run(&self, how: &How) -> Result<Recording, RunError> {
-        let simulation = self.simulation(how);
-        let until = self.until(how, &simulation)?;
-        let run = match how.frames {
+impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
+    fn run(&self, options: &RunOptions) -> Result<Recording, RunError> {
+        let simulation = self.simulation(options);
+        let until = self.until(options, &simulation)?;
+        let run = match options.frames {
             None => {
                 let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
                 let Ending { stop, stats, time, mode, state, limits, .. } =
@@ -221,49 +221,49 @@ impl<A: Shared, R: Reader<A>> Machine for Ready<A, R> {
                 Run { trajectory, stop, stats, mode, state, limits }
             }
             Some(rate) => {
-                saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, how.most_jumps)?
+                saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, options.most_jumps)?
             }
         };
         let end = End::of(&run.stop);
         let last = run.trajectory.jumps().last().map_or(0.0, Jump::t);
-        let rest = (end == End::Time && self.reader.rests(run.mode, &run.state)).then_some(last);
-        let until = how.shown(end, run.trajectory.end().seconds(), last, rest)?;
-        let read = Read { automaton: Arc::clone(&self.automaton), reader: Arc::clone(&self.reader), run };
+        let rest = (end == End::Time && self.view.rests(run.mode, &run.state)).then_some(last);
+        let until = options.shown(end, run.trajectory.end().seconds(), last, rest)?;
+        let read = BoundRun { automaton: Arc::clone(&self.automaton), view: Arc::clone(&self.view), run };
         Ok(Recording { run: Box::new(read), until, end, rest })
     }
 
-    fn outcome(&self, how: &How) -> Result<Outcome, RunError> {
-        let simulation = self.simulation(how);
-        let until = self.until(how, &simulation)?;
-        let mut watch = Watch::new(&*self.automaton, &*self.reader);
-        let ending = self.drive(&simulation, until, &mut watch)?;
-        let (end, last) = (End::of(&ending.stop), watch.last_jump());
-        let rest = (end == End::Time && self.reader.rests(ending.mode, &ending.state)).then_some(last);
-        let until = how.shown(end, ending.time.seconds(), last, rest)?;
+    fn outcome(&self, options: &RunOptions) -> Result<Outcome, RunError> {
+        let simulation = self.simulation(options);
+        let until = self.until(options, &simulation)?;
+        let mut observer = OutcomeObserver::new(&*self.automaton, &*self.view);
+        let ending = self.drive(&simulation, until, &mut observer)?;
+        let (end, last) = (End::of(&ending.stop), observer.last_jump());
+        let rest = (end == End::Time && self.view.rests(ending.mode, &ending.state)).then_some(last);
+        let until = options.shown(end, ending.time.seconds(), last, rest)?;
         let state = if until < ending.time.seconds() {
-            let (t, mode, state) = watch.left.unwrap_or((0.0, self.mode, self.state));
+            let (t, mode, state) = observer.left.unwrap_or((0.0, self.mode, self.state));
             let mut nothing: &mut dyn Observer<A> = &mut ();
             simulation.drive(mode, state, t..until, &mut nothing)?.state
         } else {
             ending.state
         };
-        Ok(watch.outcome(&ending, end, until, &state, rest))
+        Ok(observer.outcome(&ending, end, until, &state, rest))
     }
 
     fn modes(&self, method: Method) -> Vec<ModePlan> {
         let plan = |mode: A::Mode| {
-            let (automaton, reader) = (&*self.automaton, &*self.reader);
+            let (automaton, view) = (&*self.automaton, &*self.view);
             let advance = match automaton.solution(mode, 0.0, &self.state) {
                 Solution::Polynomial(_) => Advance::Exact,
                 Solution::Formula(_) => Advance::Formula,
                 _ if method.is_stiff() => Advance::Stiff(method.name()),
                 _ => Advance::Explicit(method.name()),
             };
-            let mut edges = reader.edges(automaton, mode);
+            let mut edges = view.edges(automaton, mode);
             edges.dedup();
-            ModePlan { name: reader.mode(mode, 0), advance, why: reader.why(mode, advance), edges }
+            ModePlan { name: view.mode(mode, 0), advance, why: view.why(mode, advance), edges }
         };
-        self.reader.modes(&self.automaton).into_iter().map(plan).collect()
+        self.view.modes(&self.automaton).into_iter().map(plan).collect()
     }
 
     fn coordinates(&self) -> usize {
@@ -273,26 +273,26 @@ impl<A: Shared, R: Reader<A>> Machine for Ready<A, R> {
 
 /// Ends a run as everything has come to rest.
 struct Resting<'a, R> {
-    reader: &'a R,
+    view: &'a R,
 }
 
-impl<A: Automaton, R: Reader<A>> Observer<A> for Resting<'_, R> {
+impl<A: Automaton, R: SceneView<A>> Observer<A> for Resting<'_, R> {
     fn wants_pieces(&self) -> bool {
         false
     }
     fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
-        if self.reader.rests(jump.to, &jump.after) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.view.rests(jump.to, &jump.after) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
 /// A ball in a state.
-pub(super) fn moment<A: Automaton>(reader: &impl Reader<A>, x: &A::State, ball: usize) -> Moment {
-    reader.linear(x, ball) + reader.origin(ball)
+pub(super) fn moment<A: Automaton>(view: &impl SceneView<A>, x: &A::State, ball: usize) -> Moment {
+    view.linear(x, ball) + view.origin(ball)
 }
 
 /// A ball along a piece.
 pub(super) fn segment<A: Automaton>(
-    reader: &impl Reader<A>,
+    view: &impl SceneView<A>,
     mode: A::Mode,
     piece: &Piece<'_, A::State>,
     ball: usize,
@@ -300,34 +300,34 @@ pub(super) fn segment<A: Automaton>(
     let mut factor = 1.0;
     let mut coefficients: Vec<Moment> = Vec::with_capacity(piece.coefficients().len());
     for c in piece.coefficients() {
-        coefficients.push(reader.linear(c, ball) * factor);
+        coefficients.push(view.linear(c, ball) * factor);
         factor /= piece.scale();
     }
     if let Some(first) = coefficients.first_mut() {
-        *first = *first + reader.origin(ball);
+        *first = *first + view.origin(ball);
     }
     let (start, span) = (piece.start().seconds(), piece.span());
-    Segment { start, span, mode: reader.mode(mode, ball), flight: reader.flies(mode, ball), coefficients }
+    Segment { start, span, mode: view.mode(mode, ball), flight: view.flies(mode, ball), coefficients }
 }
 
-fn happening<A: Automaton>(model: &A, reader: &impl Reader<A>, jump: &Jump<A>) -> Happening {
+fn scene_event<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &Jump<A>) -> SceneEvent {
     match jump.cause {
-        Cause::Edge(edge) => reader.happening(model, jump, edge),
-        _ => Happening::of("zeno"),
+        Cause::Edge(edge) => view.scene_event(model, jump, edge),
+        _ => SceneEvent::of("zeno"),
     }
 }
 
 /// The impact that a jump is; `None` if it is none.
-pub(super) fn impact<A: Automaton>(model: &A, reader: &impl Reader<A>, jump: &Jump<A>) -> Option<Impact> {
-    let happening = happening(model, reader, jump);
-    let Hit { with, normal, speed } = happening.hit?;
-    let ball = happening.balls[0].unwrap_or(0);
+pub(super) fn impact<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &Jump<A>) -> Option<Impact> {
+    let scene_event = scene_event(model, view, jump);
+    let Collision { with, normal, speed } = scene_event.collision?;
+    let ball = scene_event.balls[0].unwrap_or(0);
     let approach = |x: &A::State| {
         let other = match with {
-            With::Ball(other) => moment(reader, x, other).velocity.dot(&normal),
+            With::Ball(other) => moment(view, x, other).velocity.dot(&normal),
             With::Floor(_) => speed,
         };
-        other - moment(reader, x, ball).velocity.dot(&normal)
+        other - moment(view, x, ball).velocity.dot(&normal)
     };
     let (before, after) = (approach(&jump.before), -approach(&jump.after));
     // What comes to lie where it starts hits nothing. Rounding may leave a hair of the wrong sign.
@@ -342,26 +342,26 @@ pub(super) fn impact<A: Automaton>(model: &A, reader: &impl Reader<A>, jump: &Ju
 }
 
 /// A run that is read when it is asked.
-struct Read<A: Automaton, R> {
+struct BoundRun<A: Automaton, R> {
     automaton: Arc<A>,
-    reader: Arc<R>,
+    view: Arc<R>,
     run: Run<A>,
 }
 
-impl<A: Automaton, R: Reader<A>> Read<A, R> {
+impl<A: Automaton, R: SceneView<A>> BoundRun<A, R> {
     fn moment(&self, x: &A::State, ball: usize) -> Moment {
-        moment(&*self.reader, x, ball)
+        moment(&*self.view, x, ball)
     }
 }
 
-impl<A: Shared, R: Reader<A>> Recorded for Read<A, R> {
+impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
     fn balls(&self) -> usize {
-        self.reader.balls()
+        self.view.balls()
     }
 
     fn at(&self, ball: usize, t: f64) -> Option<(&'static str, Moment)> {
         let mode = self.run.trajectory.mode_at(t)?;
-        Some((self.reader.mode(mode, ball), self.moment(&self.run.trajectory.at(t)?, ball)))
+        Some((self.view.mode(mode, ball), self.moment(&self.run.trajectory.at(t)?, ball)))
     }
 
     fn before(&self, ball: usize, t: f64) -> Option<Moment> {
@@ -372,23 +372,23 @@ impl<A: Shared, R: Reader<A>> Recorded for Read<A, R> {
         let trajectory = &self.run.trajectory;
         let mut segments = Vec::new();
         for (index, arc) in trajectory.arcs().iter().enumerate() {
-            segments.extend(trajectory.pieces(index).map(|piece| segment(&*self.reader, arc.mode(), &piece, ball)));
+            segments.extend(trajectory.pieces(index).map(|piece| segment(&*self.view, arc.mode(), &piece, ball)));
         }
         segments
     }
 
     fn events(&self) -> Vec<Event> {
         let event = |jump: &Jump<A>| {
-            let happening = happening(&*self.automaton, &*self.reader, jump);
+            let scene_event = scene_event(&*self.automaton, &*self.view, jump);
             let side = |ball: usize| Sides {
                 ball,
-                from: self.reader.mode(jump.from, ball),
+                from: self.view.mode(jump.from, ball),
                 before: self.moment(&jump.before, ball),
-                to: self.reader.mode(jump.to, ball),
+                to: self.view.mode(jump.to, ball),
                 after: self.moment(&jump.after, ball),
             };
             let all = || (0..self.balls()).map(side);
-            let sides = match happening.balls {
+            let sides = match scene_event.balls {
                 [None, None] => all().collect(),
                 // What touches hands an impact on at the same time: then others take part.
                 some => {
@@ -397,21 +397,21 @@ impl<A: Shared, R: Reader<A>> Recorded for Read<A, R> {
                     some.into_iter().flatten().map(side).chain(passed).collect()
                 }
             };
-            Event { t: jump.t(), j: jump.j, edge: happening.edge, sides }
+            Event { t: jump.t(), j: jump.j, edge: scene_event.edge, sides }
         };
         self.run.trajectory.jumps().iter().map(event).collect()
     }
 
     fn impacts(&self) -> Vec<Impact> {
-        if let Some(contacts) = self.reader.contacts(&self.automaton, &self.run.trajectory) {
+        if let Some(contacts) = self.view.contacts(&self.automaton, &self.run.trajectory) {
             return contacts;
         }
         let jumps = self.run.trajectory.jumps().iter();
-        jumps.filter_map(|jump| impact(&*self.automaton, &*self.reader, jump)).collect()
+        jumps.filter_map(|jump| impact(&*self.automaton, &*self.view, jump)).collect()
     }
 
     fn hysteresis(&self, contact: usize, count: usize) -> Vec<[f64; 2]> {
-        self.reader.hysteresis(&self.automaton, &self.run.trajectory, contact, count)
+        self.view.hysteresis(&self.automaton, &self.run.trajectory, contact, count)
     }
 
     fn cost(&self) -> Cost {
@@ -420,10 +420,10 @@ impl<A: Shared, R: Reader<A>> Recorded for Read<A, R> {
 
     fn doubts(&self) -> Vec<String> {
         let said = |doubt: &Inspection<A>| {
-            let edge = self.reader.edge(&self.automaton, doubt.edge);
+            let edge = self.view.edge(&self.automaton, doubt.edge);
             // What follows a colon says what the edge is.
             let name = edge.split(':').next().unwrap_or(&edge);
-            let mode = self.reader.mode(doubt.mode, 0);
+            let mode = self.view.mode(doubt.mode, 0);
             let times = doubt.doubt().unwrap_or_default();
             let why = match doubt.evidence {
                 Evidence::Rounding { .. } => "rounding hides whether it came to that",
