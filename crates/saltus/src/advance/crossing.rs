@@ -34,7 +34,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
         for edge in self.automaton.edges(mode).iter() {
-            let (start, level) = (self.start(edge, first), self.level(edge, first));
+            let (start, level) = (self.start(edge, first), self.level(edge));
+            if self.memory.wall_count > 0 && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
+                if let Some(crossing) = self.leaves((mode, edge, now), (c, scale), limit) {
+                    found = earlier(found, OnStep { edge, crossing, near: None });
+                }
+                continue;
+            }
             let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
@@ -65,9 +71,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             }
             if let Some(crossing) = fall {
-                let both =
-                    found.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &crossing)?, ..first }));
-                found = both.or(Some(OnStep { edge, crossing, near }));
+                found = earlier(found, OnStep { edge, crossing, near });
             }
         }
         Ok(found)
@@ -368,6 +372,13 @@ impl Along<'_> {
         let p = Bernstein::from_powers(self.powers.coefficients())?;
         Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.powers.bend()))
     }
+}
+
+/// The earlier of two crossings on a step; of two that time cannot tell apart the `first`.
+#[inline]
+fn earlier<A: Automaton>(first: Option<OnStep<A>>, second: OnStep<A>) -> Option<OnStep<A>> {
+    let both = first.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &second.crossing)?, ..first }));
+    both.or(Some(second))
 }
 
 /// Of two crossings that time cannot tell apart the first, with the inner end of both, so that neither guard is past zero there; nothing if the second is

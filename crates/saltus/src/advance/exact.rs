@@ -67,7 +67,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
-        let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
+        let mut powers = [g(&c[0]) - self.level(edge), power(1), power(2)];
         if start == Start::Spent && only_touched(&powers, &g, constant, &c[1], &mut self.memory.stats.guards) {
             powers[1] = 0.0;
         }
@@ -104,7 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (longest, limit) = (self.options.longest_step, limit.min(LAST));
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
-        let (mut start, mut level) = (start, self.level(edge, true));
+        let (mut start, mut level) = (start, self.level(edge));
         let automaton = self.automaton;
         let mut evidence = Evidence::Excluded;
         loop {

@@ -15,12 +15,11 @@ use crate::time::{LAST, Time, grace, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
+use super::noise::PROBE;
 use super::{Advance, ArcEnd, Span};
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
-/// The part of a step over which the slope of a guard that is not affine is seen.
-const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x`, where the arc begins or (not `first`) has come to by other means.
@@ -49,6 +48,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if clear && !observer.wants_pieces() {
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 (x, slope, first) = (trial.end, trial.slope, false);
+                self.memory.wall_count = 0; // clear of zero
                 continue;
             }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
@@ -61,6 +61,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.stats.rejected += 1;
                 self.memory.step = Some(0.1 * h);
                 continue;
+            }
+            if first {
+                self.find_staying(mode, clock.now, c, h, &slope);
             }
             let limit = searched(h, remaining, clock.now.since(began), clock.end);
             let found = if clear {
@@ -77,6 +80,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
                 }
                 (x, slope, first) = (state, trial.slope, false);
+                if self.memory.wall_count > 0 {
+                    self.keep_staying(mode, clock.now, &x, h);
+                }
                 continue;
             };
             self.memory.cut(h);

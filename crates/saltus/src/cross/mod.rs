@@ -11,8 +11,8 @@ use crate::poly::{Bernstein, Shape};
 
 pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
-pub(crate) use search::ROUGH;
 use search::Search;
+pub(crate) use search::{AT_START, ROUGH};
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
 /// A fall within this fraction of the interval from its start is at its start.
-pub(super) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
+pub(crate) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
 /// An interval that holds no more numbers than this is looked at number by number.
 const FEW: f64 = 64.0;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
@@ -87,8 +87,10 @@ pub(super) struct Stretch {
 
 /// What a part of the interval holds.
 pub(super) enum Part {
-    /// Its first fall lies between these times; with the root, as far as the polynomial knows it.
+    /// Its first fall lies between these times; with the root, where the polynomial is exact.
     Fall { a: f64, b: f64, near: Option<f64> },
+    /// Its only fall lies between these times, close to the `guess` of an interpolant.
+    Falls { a: f64, b: f64, guess: f64 },
     /// The guard falls at once from the root at the start.
     AtStart,
     /// Rounding hides a rise and the fall after it, which lies here.
@@ -131,14 +133,15 @@ impl<'a> Search<'a> {
         let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
         let mut part = self.part(&all, side)?;
         let fall = loop {
-            let (a, b) = match part {
+            let (a, b, guess) = match part {
                 Part::None(_) => break None,
                 Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
                 Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
                 Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
-                Part::Fall { a, b, near: None } => (a, b),
+                Part::Fall { a, b, near: None } => (a, b, None),
+                Part::Falls { a, b, guess } => (a, b, Some(guess)),
             };
-            let crossing = self.refined(a, b)?;
+            let crossing = self.refined(a, b, guess)?;
             if self.passage(&crossing)? != Passage::Pole {
                 break Some(crossing);
             }
@@ -264,10 +267,11 @@ impl<'a> Search<'a> {
                 }
                 // Falling strictly from a zero, the rest of which is rounding.
                 Side::Inside if start == 0.0 => Some(Part::Fall { a, b, near: Some(a) }),
-                _ if end < 0.0 => {
-                    let near = known.as_ref().and_then(|_| q.root()).map(|u| a + (b - a) * u);
-                    Some(Part::Fall { a: from, b, near })
-                }
+                _ if end < 0.0 => Some(match (q.root().map(|u| a + (b - a) * u), known) {
+                    (Some(guess), None) if from == a => Part::Falls { a, b, guess },
+                    (near, Some(_)) => Part::Fall { a: from, b, near },
+                    (_, None) => Part::Fall { a: from, b, near: None },
+                }),
                 _ => Some(Part::None(Side::Inside)),
             },
             Shape::Rising if resolved => match side {
