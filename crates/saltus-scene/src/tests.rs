@@ -306,7 +306,10 @@ fn a_record_is_sent_shared_and_serialised() {
 #[test]
 fn quantities_have_ranges() {
     for (toml, says) in [
-        ("restitution = 0.5\nball = { height = 1, velocity = '1e160 m/s' }\n", "2:31: '1e160 m/s' is beyond"),
+        (
+            "restitution = 0.5\nball = { height = 1, velocity = '1e160 m/s' }\n",
+            "'1e160 m/s' is beyond the numbers that can be right",
+        ),
         ("restitution = 0.5\nball = { height = 1, velocity = -1e160 }\n", "a speed is at most 299792458 m/s"),
         ("restitution = 1\nball = { height = 1 }\nrun = { until = '1e300 s' }\n", "a time is at most 1000000000000 s"),
         ("restitution = 0.5\nball = { height = '1e200 km' }\n", "a length is at most 1000000000000 m"),
