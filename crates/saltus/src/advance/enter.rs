@@ -78,9 +78,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let still = self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
         let slope = self.guard_slope(mode, edge, t, x, g, still);
-        let rounding = slope.abs() * resolution(t) + still;
+        // A flow that is no number here says nothing.
+        let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };
         if -g <= 4.0 * rounding {
-            let unsure = slope.abs() * self.glance() <= SURELY * rounding;
+            let unsure = slope.is_nan() || slope.abs() * self.glance() <= SURELY * rounding;
             if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
                 return Ok(false);

@@ -73,7 +73,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
-                Some(at) => Searched { fall: None, evidence: Evidence::Rounding { from: at, to: at } },
+                Some(at) => Searched { evidence: Evidence::Rounding { from: at, to: at }, ..Searched::solved(None) },
                 None => Searched::solved(None),
             };
         };
@@ -121,15 +121,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
-                return Ok(Searched { fall, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(fall) });
             }
             if to >= limit {
-                return Ok(Searched { fall: None, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(None) });
             }
             self.memory.stats.windows += 1;
             if self.options.exceeded::<A::Edge>(&self.memory.stats).is_some() {
                 self.memory.cut_at = Some(self.memory.cut_at.map_or(to, |earlier| earlier.min(to)));
-                return Ok(Searched { fall: None, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(None) });
             }
             from = to;
             // However short it is to be, it must move time on.

@@ -4,6 +4,7 @@ mod closed;
 mod crossing;
 mod enter;
 mod exact;
+mod grazing;
 mod noise;
 mod series;
 mod solved;
@@ -106,6 +107,8 @@ pub(crate) struct Memory<E> {
     longest_duration: f64,
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard spoils their duration.
     hidden: u32,
+    /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the step.
+    resolved: bool,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from zero: jumps have accumulated as far as can be told.
     pub(crate) spurious: bool,
 }
@@ -127,6 +130,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
+            resolved: false,
             spurious: false,
         }
     }

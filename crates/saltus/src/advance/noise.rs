@@ -35,8 +35,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         STEPS * (rounding + self.moved(edge, t, x, g, |x| tolerance.allowed(x, x)))
     }
 
+    /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
+    pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        let tolerance = self.options.tolerance;
+        STEP_ERROR * self.moved(edge, t, x, g, |x| tolerance.allowed(x, x))
+    }
+
     /// How far the guard, `g` at `x`, moves with each coordinate that is moved `by` so much, all together.
-    fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
+    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for k in 0..x.len() {
             self.memory.stats.guards += 1;

@@ -51,6 +51,8 @@ pub(super) struct Search<'a> {
     /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on one.
     pub(super) flat: Option<f64>,
     evidence: Evidence,
+    /// Between which times the samples of the whole interval turn up from their least.
+    turn: Option<[f64; 2]>,
 }
 
 /// On which side of its zero the guard is.
@@ -116,6 +118,7 @@ impl<'a> Search<'a> {
             largest: 0.0,
             flat: None,
             evidence: Evidence::Excluded,
+            turn: None,
         }
     }
 
@@ -152,7 +155,7 @@ impl<'a> Search<'a> {
         if fall.is_some() {
             self.weaken(Evidence::Isolated);
         }
-        Ok(Searched { fall, evidence: self.evidence })
+        Ok(Searched { fall, evidence: self.evidence, turn: self.turn })
     }
 
     /// On which side the search starts.
@@ -200,6 +203,9 @@ impl<'a> Search<'a> {
         let proxy = if let Some(p) = known {
             Proxy { p: *p, margin: whole, start: p.start(), end: p.end(), least: p.start() }
         } else if let Ok(samples) = self.sampled(a, b) {
+            if depth == DEEPEST && a == 0.0 {
+                self.turn = samples.turn().map(|x| x.map(|x| 0.5 * b * (1.0 + x)));
+            }
             if side == Side::Inside && samples.stay_above() {
                 self.flat = None;
                 return Ok(Part::None(Side::Inside));
@@ -396,8 +402,9 @@ impl<'a> Search<'a> {
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
         // The nodes themselves are rounded, and the state at them likewise.
-        let least = values.into_iter().fold(f64::INFINITY, f64::min);
-        Ok(Samples { series, off, spacing: (b.next_up() - b) / (b - a), start: values[0], end: values[8], least })
+        let lowest = (1..9).fold(0, |low, k| if values[k] < values[low] { k } else { low });
+        let spacing = (b.next_up() - b) / (b - a);
+        Ok(Samples { series, off, spacing, start: values[0], end: values[8], lowest, least: values[lowest] })
     }
 }
 
@@ -411,11 +418,27 @@ struct Samples {
     /// The guard at both ends.
     start: f64,
     end: f64,
-    /// The least value seen.
+    /// The node with the least value, and that value.
+    lowest: usize,
     least: f64,
 }
 
 impl Samples {
+    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end.
+    fn turn(&self) -> Option<[f64; 2]> {
+        // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
+        let slope = |odd: f64| {
+            let c = &self.series;
+            odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8]
+        };
+        let turns = match self.lowest {
+            0 => slope(-1.0) > 0.0,
+            8 => slope(1.0) > 0.0,
+            _ => true,
+        };
+        turns.then(|| [chebyshev::NODES[self.lowest.max(1) - 1], chebyshev::NODES[(self.lowest + 1).min(8)]])
+    }
+
     /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
     fn stay_above(&self) -> bool {
         let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);
