@@ -1,7 +1,7 @@
 //! What has to hold of any bytes that are given as a scene.
 
-use saltus_bounce::scene::plan::Plan;
-use saltus_bounce::scene::{Scene, SceneError};
+use saltus_scene::plan::Plan;
+use saltus_scene::{Scene, SceneError};
 
 /// How many evaluations of flows and guards a run may make.
 const BUDGET: u64 = 20_000;

@@ -1,7 +1,7 @@
 //! The laws a random scene has to keep: it is refused with a reason or runs to a named end; nothing sinks through a floor; energy is not gained.
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{End, Moment, Record};
+use saltus_scene::Scene;
+use saltus_scene::plan::{End, Moment, Record};
 
 use crate::random_scene::Made;
 
@@ -51,7 +51,7 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
         }
         last = event.t;
         if made.loses {
-            let energy = |of: &dyn Fn(&saltus_bounce::scene::plan::Sides) -> Moment| -> f64 {
+            let energy = |of: &dyn Fn(&saltus_scene::plan::Sides) -> Moment| -> f64 {
                 event.sides.iter().map(|side| made.masses[side.ball] * kinetic(made, side.ball, &of(side))).sum()
             };
             let (before, after) = (energy(&|side| side.before), energy(&|side| side.after));

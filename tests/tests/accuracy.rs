@@ -4,8 +4,8 @@
 
 use proptest::prelude::*;
 use saltus_bounce::flight::{LinearDragFlight, VerticalFlight};
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::accuracy::{Accuracy, Outcome, Target, Way};
+use saltus_scene::Scene;
+use saltus_scene::accuracy::{Accuracy, Outcome, Target, Way};
 
 /// A ball thrown sideways through a wind, held back in proportion to its speed: no formula of the planner solves it, yet there is one.
 #[derive(Clone, Copy, Debug)]

@@ -4,9 +4,9 @@
 
 use std::fmt::Write;
 
-use saltus_bounce::scene::plan::Record;
-use saltus_bounce::scene::{Law, Scene};
 use saltus_fit::{CorModel, Fit, ReadOptions, Report, Table};
+use saltus_scene::plan::Record;
+use saltus_scene::{Law, Scene};
 
 fn run(toml: &str) -> Record {
     Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap()

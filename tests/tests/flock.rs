@@ -8,10 +8,10 @@ use saltus_bounce::effects::{Gravity, QuadraticDrag};
 use saltus_bounce::flight::{QuadraticDragFlight, VerticalFlight};
 use saltus_bounce::flock::Flying;
 use saltus_bounce::friction::Friction;
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{Advance, End, Model, Record, With};
 use saltus_bounce::walls::Plane;
 use saltus_bounce::{Cor, Flock, Flyer, Moving, Rolls, Sphere};
+use saltus_scene::Scene;
+use saltus_scene::plan::{Advance, End, Model, Record, With};
 
 fn scene(toml: &str) -> Scene {
     Scene::parse("test.toml", toml.as_bytes()).unwrap_or_else(|error| panic!("{error}"))

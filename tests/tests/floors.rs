@@ -12,9 +12,9 @@ use saltus::nalgebra::{Vector2, Vector3, vector};
 use saltus::{Dop853, Rodas5P, Simulation, State, Stop, Tsit5};
 use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
-use saltus_bounce::scene::Scene;
 use saltus_bounce::walls::{Cuboid, Face, Lift, MOST_FACES, Plane, Round, Stairs, Table, Walls};
 use saltus_bounce::{Block, Cor, Event, Flyer, Moving, Rolls, Sphere, Stance};
+use saltus_scene::Scene;
 
 const FLOOR: Face = Face { cell: 0, index: 0 };
 

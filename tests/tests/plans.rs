@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use proptest::prelude::*;
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::{Advance, Effect, End, Model, Record};
+use saltus_scene::Scene;
+use saltus_scene::plan::{Advance, Effect, End, Model, Record};
 
 fn scene(toml: &str) -> Scene {
     Scene::parse("test.toml", toml.as_bytes()).unwrap_or_else(|error| panic!("{error}"))

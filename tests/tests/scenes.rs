@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
-use saltus_bounce::scene::{Contact, Scene, Shape, schema};
+use saltus_scene::{Contact, Scene, Shape, schema};
 use saltus_tests::any_scene::answered;
 
 fn root() -> PathBuf {

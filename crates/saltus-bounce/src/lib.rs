@@ -2,7 +2,8 @@
 //!
 //! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`] on a floor that gives, [`Line`],
 //! [`Cloud`] and [`Flock`] are several balls; run them with [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
-//! and apexes in closed form. [`units`] reads quantities as people write them; `scene`, behind the feature of this name, whole scenes from TOML.
+//! and apexes in closed form. [`units`] reads quantities as people write them; whole scenes from TOML are
+//! the crate `saltus-scene`.
 
 mod ball;
 mod ballistic;
@@ -19,8 +20,6 @@ mod live;
 pub mod materials;
 mod parameter;
 pub mod restitution;
-#[cfg(feature = "scene")]
-pub mod scene;
 mod sphere;
 mod stable;
 pub mod units;

@@ -132,6 +132,50 @@ impl Quantity {
         }
     }
 
+    /// The largest number in the SI unit, positive or negative, with which a simulation can be right.
+    ///
+    /// Places up to 10¹² m and times up to 10¹² s are kept to a tenth of a millimetre and of a millisecond, for the rounding of a number is 1.1 × 10⁻¹⁶
+    /// of it; angles and what they change by in a second likewise. Speeds end where Newton's mechanics does, at that of light. Anything else may be
+    /// as large as 10³⁰: the product of ten such numbers is still one.
+    ///
+    /// ```
+    /// use saltus_bounce::units::Quantity;
+    /// assert_eq!(Quantity::Speed.largest(), 299_792_458.0);
+    /// let error = Quantity::Speed.parse("1e160 m/s").unwrap_err().to_string();
+    /// assert_eq!(error, "'1e160 m/s' is beyond the numbers that can be right: a speed is at most 299792458 m/s either way");
+    /// ```
+    #[must_use]
+    pub const fn largest(self) -> f64 {
+        match self {
+            Self::Length | Self::Time | Self::Angle | Self::AngularSpeed | Self::Frequency | Self::Rate => 1e12,
+            Self::Speed => 299_792_458.0,
+            _ => 1e30,
+        }
+    }
+
+    /// `value` in the SI unit, if it is a number and not beyond [`largest`](Self::largest).
+    ///
+    /// # Errors
+    /// [`UnitError`] that says the range.
+    ///
+    /// ```
+    /// use saltus_bounce::units::Quantity;
+    /// assert_eq!(Quantity::Length.check(-2.5), Ok(-2.5));
+    /// assert!(Quantity::Time.check(1e300).unwrap_err().to_string().contains("at most 1000000000000 s"));
+    /// ```
+    pub fn check(self, value: f64) -> Result<f64, UnitError> {
+        let problem = if !value.is_finite() {
+            Problem::NotFinite
+        } else if value.abs() > self.largest() {
+            Problem::TooLarge
+        } else {
+            return Ok(value);
+        };
+        let text =
+            if value.abs() < 1e15 { format!("{value} {}", self.si()) } else { format!("{value:e} {}", self.si()) };
+        Err(UnitError { text, quantity: self, problem })
+    }
+
     /// The SI unit in which numbers come back, such as `m`.
     #[must_use]
     pub const fn si(self) -> &'static str {
@@ -139,7 +183,8 @@ impl Quantity {
     }
 
     /// The indefinite article that goes before its name.
-    pub(crate) const fn article(self) -> &'static str {
+    #[must_use]
+    pub const fn article(self) -> &'static str {
         match self {
             Self::Acceleration | Self::Angle | Self::AngularSpeed | Self::PerLength | Self::PerSpeed => "an",
             _ => "a",
@@ -170,7 +215,7 @@ impl Quantity {
     /// ```
     ///
     /// # Errors
-    /// [`UnitError`] when the text is not a finite number followed by a unit of this quantity.
+    /// [`UnitError`] when the text is not a finite number followed by a unit of this quantity, or is beyond [`largest`](Self::largest).
     pub fn parse(self, text: &str) -> Result<f64, UnitError> {
         let fail = |problem| UnitError { text: text.trim().to_owned(), quantity: self, problem };
         let trimmed = text.trim();
@@ -188,7 +233,10 @@ impl Quantity {
         let inverse = (1.0 / scale).round();
         let si =
             if scale < 1.0 && (inverse * scale - 1.0).abs() < f64::EPSILON { value / inverse } else { value * scale };
-        if si.is_finite() { Ok(si) } else { Err(fail(Problem::NotFinite)) }
+        match self.check(si) {
+            Err(error) => Err(fail(error.problem)),
+            Ok(si) => Ok(si),
+        }
     }
 }
 
@@ -252,6 +300,7 @@ pub struct UnitError {
 enum Problem {
     NotANumber,
     NotFinite,
+    TooLarge,
     NoUnit,
     UnknownUnit(String),
 }
@@ -266,6 +315,11 @@ impl fmt::Display for UnitError {
                 write!(f, "'{text}' is not {a} {quantity}: write a number and a unit, such as '1 {si}'")
             }
             Problem::NotFinite => write!(f, "'{text}' is not a finite {quantity}"),
+            Problem::TooLarge => write!(
+                f,
+                "'{text}' is beyond the numbers that can be right: {a} {quantity} is at most {} {si} either way",
+                quantity.largest()
+            ),
             Problem::NoUnit => {
                 write!(f, "'{text}' has no unit: give a unit of {quantity} ({known}), such as '{text} {si}'")
             }
@@ -338,6 +392,7 @@ mod tests {
             ("NaN m", "not a length"),
             ("1e999 m", "not a finite length"),
             ("1e308 km", "not a finite length"),
+            ("2e9 km", "a length is at most 1000000000000 m"),
         ] {
             let message = Quantity::Length.parse(text).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");

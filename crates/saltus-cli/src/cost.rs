@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use saltus::Timing;
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::Effect;
+use saltus_scene::Scene;
+use saltus_scene::plan::Effect;
 use serde::Serialize;
 
 use crate::error::Error;

@@ -1,7 +1,7 @@
 //! What the command says when it cannot go on.
 
 use std::fmt;
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -49,8 +49,10 @@ impl Error {
         }
         if json {
             let error = self.data.clone().unwrap_or_else(|| json!({ "kind": "command", "message": self.message }));
-            return crate::output::stdout(format!("{:#}\n", json!({ "schema": 1, "error": error })).as_bytes())
-                .map_or(ExitCode::FAILURE, |_| ExitCode::from(2));
+            let text = format!("{:#}\n", json!({ "schema": 1, "error": error }));
+            let mut out = io::stdout().lock();
+            let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            return if written.is_ok() { ExitCode::from(2) } else { ExitCode::FAILURE };
         }
         anstream::eprintln!("\u{1b}[1;31merror:\u{1b}[0m {}", self.message);
         ExitCode::from(2)

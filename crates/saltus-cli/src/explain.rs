@@ -1,16 +1,19 @@
 //! `saltus explain`: how a scene would be run, and why.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use saltus_bounce::scene::plan::{Explanation, ModePlan};
+use clap::Args as ClapArgs;
+use saltus_bounce::units::Quantity;
+use saltus_scene::plan::{Explanation, ModePlan};
 use serde::Serialize;
 
-use crate::args;
 use crate::cost::{self, Measured};
 use crate::error::Error;
 use crate::output::write;
+use crate::parse::{ReportFormat, positive};
 use crate::row::Row;
-use crate::simulate::{ending, planned, scene};
+use crate::scenes::{ending, planned, scene};
 
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
@@ -38,14 +41,33 @@ struct Mode<'a> {
     edges: &'a [String],
 }
 
-pub(crate) fn run(args: &args::Explain) -> Result<ExitCode, Error> {
+/// Say how a scene would be run, and why.
+///
+/// Which effects act and which are left out, how many coordinates are carried, how each mode is advanced (an exact arc, a closed form, an explicit or
+/// a stiff stepper), and which edges are watched.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Explain {
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// Run the scene with each effect toggled: what that changes in the first impacts and apexes, and what it costs.
+    #[arg(long)]
+    pub(crate) cost: bool,
+    /// When to stop these runs, such as `4s`; otherwise when the scene says.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+    /// How to write it; docs/simulating.md describes its JSON.
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ReportFormat,
+}
+
+pub(crate) fn run(args: &Explain) -> Result<ExitCode, Error> {
     let scene = scene(&args.scene, ending(args.until, None))?;
     let plan = planned(&scene, Some(&args.scene))?;
     let explanation = plan.explain();
     let cost = if args.cost { Some(cost::rows(&scene)?) } else { None };
     let text = match args.format {
-        args::ReportFormat::Text => explanation.to_string() + &cost.map_or_else(String::new, |rows| cost::table(&rows)),
-        args::ReportFormat::Json => json(explanation, cost)?,
+        ReportFormat::Text => explanation.to_string() + &cost.map_or_else(String::new, |rows| cost::table(&rows)),
+        ReportFormat::Json => json(explanation, cost)?,
     };
     write(None, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)

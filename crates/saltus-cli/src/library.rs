@@ -6,20 +6,21 @@ use std::process::ExitCode;
 use std::{fs, io};
 
 use clap::Args as ClapArgs;
-use saltus_bounce::scene::Template;
 use saltus_fit::{Fit, ReadOptions};
+use saltus_motion::Format;
+use saltus_scene::vary::{Value, Vary, refused};
+use saltus_scene::{Stage, Template, length};
 use serde_json::{Map, Value as Json, json};
 
 use crate::error::Error;
-use crate::export::{self, ExportFormat, Shown};
+use crate::export::Shown;
 use crate::fit::tables;
 use crate::output::{extension, say, write};
+use crate::parse::one_of;
 use crate::progress::Progress;
-use crate::quantity;
-use crate::simulate::{ending, read};
-use crate::stage::{Stage, length};
-use crate::staging::Staging;
-use crate::vary::{self, VARIATIONS, Value, Vary};
+use crate::scenes::{ending, read};
+use crate::staging::{Staging, drawn};
+use crate::varying::{VARIATIONS, Varying};
 
 /// The number of the contract of `index.json`.
 const SCHEMA: u32 = 1;
@@ -39,10 +40,10 @@ pub(crate) struct Library {
     /// The scene, `-` for standard input; or a table of bounces (.csv, .tsv, .txt, .xlsx, .xls, .zip).
     pub(crate) source: PathBuf,
     #[command(flatten)]
-    pub(crate) vary: Vary,
+    pub(crate) vary: Varying,
     /// What is written of each motion; several with commas between.
-    #[arg(long, value_enum, value_name = "FORMATS", value_delimiter = ',', required = true)]
-    pub(crate) to: Vec<ExportFormat>,
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true, value_parser = one_of(&Format::ALL, Format::name, Format::about))]
+    pub(crate) to: Vec<Format>,
     /// The folder, made if there is none.
     #[arg(long, short, value_name = "FOLDER", required = true)]
     pub(crate) output: PathBuf,
@@ -54,8 +55,9 @@ pub(crate) struct Library {
 }
 
 pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
-    let keys = args.vary.keys()?;
-    let runs = args.vary.runs()?;
+    let vary = args.vary.vary();
+    let keys = vary.keys().map_err(Error::new)?;
+    let runs = vary.runs().map_err(Error::new)?;
     if runs > MOST {
         return Err(Error::new(format!(
             "{runs} motions are more than {MOST}: vary less, or draw some of them by --random 100"
@@ -65,12 +67,12 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     check_folder(&args.output, args.force)?;
     let of_scene: Vec<&str> = keys.into_iter().filter(|key| !Staging::VARIED.contains(key)).collect();
     let template = Template::parse(&name, &toml, &of_scene).map_err(Error::new)?;
-    let maker = Maker { args, template: &template, digits: (runs - 1).to_string().len() };
+    let maker = Maker { args, vary: &vary, template: &template, digits: (runs - 1).to_string().len() };
 
     // What is wrong with the first motion is wrong with the library, and is said before anything is written.
-    let first = maker.made(0).map_err(|error| Error::new(format!("motion 0, {}: {error}", args.vary.says(0))))?;
-    if let Some(note) = &first.note {
-        say(quiet, note);
+    let first = maker.made(0).map_err(|error| Error::new(format!("motion 0, {}: {error}", vary.says(0))))?;
+    if let Some(drawn) = &first.drawn {
+        say(quiet, drawn);
     }
     let folder = |error: io::Error| Error::new(format!("cannot make the folder '{}': {error}", args.output.display()));
     fs::create_dir_all(&args.output).map_err(folder)?;
@@ -91,7 +93,7 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
                 motions.push(made.says);
             }
             Err(why) => {
-                let values = named(&args.vary, &args.vary.values(run as u64));
+                let values = named(&vary, &vary.values(run as u64));
                 nothing.push(json!({ "run": run, "values": values, "why": why }));
             }
         }
@@ -108,8 +110,8 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
         return Err(error);
     }
     let index = json!({
-        "schema": SCHEMA, "saltus": env!("CARGO_PKG_VERSION"), "source": name, "vary": args.vary.texts(),
-        "random": args.vary.random, "seed": args.vary.random.map(|_| args.vary.seed),
+        "schema": SCHEMA, "saltus": env!("CARGO_PKG_VERSION"), "source": name, "vary": vary.texts(),
+        "random": vary.random, "seed": vary.random.map(|_| vary.seed),
         "motions": motions, "nothing": nothing,
     });
     let index = serde_json::to_string_pretty(&index).map_err(Error::new)? + "\n";
@@ -130,7 +132,7 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
             &format!(
                 "{} of {runs} came to nothing; the first is motion {run}, {}: {why}",
                 nothing.len(),
-                args.vary.says(run)
+                vary.says(run)
             ),
         );
     }
@@ -174,6 +176,7 @@ fn check_folder(path: &Path, force: bool) -> Result<(), Error> {
 /// Makes motions by their numbers.
 struct Maker<'a> {
     args: &'a Library,
+    vary: &'a Vary,
     template: &'a Template<'a>,
     /// Of the greatest number.
     digits: usize,
@@ -184,7 +187,8 @@ struct Made {
     files: Vec<(String, Vec<u8>)>,
     /// Its entry in the index.
     says: Json,
-    note: Option<String>,
+    /// What had to be supposed of sizes.
+    drawn: Option<String>,
     /// Farthest contact from a frame, in frames, and worst error of a height, in m.
     off: f64,
     miss: f64,
@@ -194,10 +198,10 @@ impl Maker<'_> {
     /// The motion of a run, or why there is none.
     fn made(&self, run: u64) -> Result<Made, String> {
         let args = self.args;
-        let values = args.vary.values(run);
+        let values = self.vary.values(run);
         let mut staging = args.shown.staging.clone();
         let mut of_scene: Vec<&str> = Vec::new();
-        for (variation, value) in args.vary.variations.iter().zip(&values) {
+        for (variation, value) in self.vary.variations.iter().zip(&values) {
             if Staging::VARIED.contains(&variation.key.as_str()) {
                 staging.set(&variation.key, value.bare())?;
             } else {
@@ -205,22 +209,23 @@ impl Maker<'_> {
             }
         }
         let end = ending(staging.until, None);
-        let scene = self.template.scene(&of_scene, end).map_err(|error| vary::refused(&error))?;
+        let scene = self.template.scene(&of_scene, end).map_err(|error| refused(&error))?;
         let record = scene.plan().map_err(|error| error.to_string())?.run().map_err(|error| error.to_string())?;
-        let stage =
-            Stage::shown(&scene, &record, &staging, args.shown.first_frame).map_err(|error| error.to_string())?;
+        let stage = staging.stage(&record, args.shown.first_frame).map_err(|error| error.to_string())?;
         let name = self.name(run, &values);
         let (mut files, mut written, mut miss) = (Vec::new(), Map::new(), 0.0_f64);
         for &format in &args.to {
-            let file = export::file(&stage, format, args.shown.tolerance).map_err(|error| error.to_string())?;
+            let file = stage.file(format, args.shown.tolerance).map_err(|error| error.to_string())?;
             let path = format!("{name}.{}", format.ending());
-            miss = miss.max(file.miss.height);
-            let says = export::says(&stage, &file);
-            let of = json!({ "name": path, "keys": file.keys, "height_error_m": file.miss.height, "says": says });
-            written.insert(format.name(), of);
+            let error = stage.height_error(&file);
+            miss = miss.max(error);
+            let says = stage.says(&file);
+            let of = json!({ "name": path, "keys": file.keys, "height_error_m": error, "says": says });
+            written.insert(format.name().to_owned(), of);
             files.push((path, file.bytes));
         }
-        let Stage { motion, frames, note, .. } = stage;
+        let drawn = drawn(&stage);
+        let Stage { motion, frames, .. } = stage;
         let contacts = motion.tracks.iter().enumerate().flat_map(|(ball, track)| {
             track.stretches.iter().filter_map(move |stretch| {
                 let contact = stretch.contact?;
@@ -230,24 +235,18 @@ impl Maker<'_> {
         });
         let off = motion.off_frame(frames);
         let says = json!({
-            "run": run, "values": named(&args.vary, &values), "files": written, "fps": frames.rate.to_string(),
+            "run": run, "values": named(self.vary, &values), "files": written, "fps": frames.rate.to_string(),
             "first_frame": frames.first, "last_frame": frames.number(motion.end()), "end_s": motion.end(), "loops": motion.loops,
             "contacts": contacts.collect::<Vec<_>>(), "frames_off": off,
         });
-        Ok(Made { files, says, note, off, miss })
+        Ok(Made { files, says, drawn, off, miss })
     }
 
     /// `07-restitution=0.7-ball.height=1m`: for people to tell files apart; the number alone does for programs.
     fn name(&self, run: u64, values: &[Value]) -> String {
         let mut name = format!("{run:0width$}", width = self.digits);
-        for (variation, value) in self.args.vary.variations.iter().zip(values) {
-            let value = match quantity::split(value.bare()) {
-                Some((number, unit)) => {
-                    format!("{}{}", quantity::digits(number, 4), unit.replace('/', "p"))
-                }
-                None => value.bare().to_owned(),
-            };
-            name += &format!("-{}={value}", variation.key);
+        for (variation, value) in self.vary.variations.iter().zip(values) {
+            name += &format!("-{}={}", variation.key, value.short());
         }
         let plain = |c: char| c.is_alphanumeric() || matches!(c, '.' | '-' | '=' | '_' | '+');
         name.chars().map(|c| if plain(c) { c } else { '_' }).take(NAME).collect()

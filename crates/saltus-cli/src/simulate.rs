@@ -1,22 +1,89 @@
 //! `saltus simulate`: a scene or a drop in, a motion out.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::{Args as ClapArgs, ValueEnum};
+use saltus_bounce::Cor;
 use saltus_bounce::effects::Gravity;
-use saltus_bounce::scene::plan::{End, Plan, Record};
-use saltus_bounce::scene::{Law, ReadError, Run, Scene};
+use saltus_bounce::units::Quantity;
+use saltus_plot::record;
+use saltus_scene::accuracy::Target;
+use saltus_scene::{Kind, Sampling, Scene};
 
 use crate::accuracy;
-use crate::args::{self, MotionFormat};
 use crate::error::Error;
-use crate::motion::Motion;
 use crate::output::{check_picture, extension, say, write};
-use crate::picture;
+use crate::parse::{one_of, positive, quantity, rate, target};
+use crate::scenes::{ended, ending, note, planned, scene};
 
-pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error> {
+/// Simulate a scene, or a ball that bounces on a level floor.
+///
+/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is: gravity and a constant coefficient of
+/// restitution, every flight an exact parabola. Without --until the run ends when the ball has come to rest.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Simulate {
+    /// The scene; `-` for standard input.
+    #[arg(conflicts_with_all = ["drop", "cor", "velocity", "gravity"])]
+    pub(crate) scene: Option<PathBuf>,
+    /// The height it starts from, such as `1m` or `100cm`.
+    #[arg(long, value_name = "LENGTH", value_parser = quantity(Quantity::Length), allow_hyphen_values = true)]
+    pub(crate) drop: Option<f64>,
+    /// The coefficient of restitution, from 0 to 1.
+    #[arg(long, value_name = "NUMBER", value_parser = cor, allow_hyphen_values = true)]
+    pub(crate) cor: Option<Cor>,
+    /// The upward velocity it starts with, such as `-2m/s`.
+    #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
+    pub(crate) velocity: f64,
+    /// Gravity, which acts downwards.
+    #[arg(long, value_name = "ACCELERATION", value_parser = quantity(Quantity::Acceleration), default_value = "9.81m/s^2", allow_hyphen_values = true)]
+    pub(crate) gravity: f64,
+    /// When to stop, such as `4s`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+    /// After how many jumps to stop; 10000 unless given here or in the scene.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) most_jumps: Option<u32>,
+    /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
+    pub(crate) every: Option<f64>,
+    /// Sample the motion at this many frames per second.
+    #[arg(long, value_name = "NUMBER", value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// How to write the motion; without it, after the extension of the output file, or else as text.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<MotionFormat>,
+    /// Write the motion to a file; `-` for standard output.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to standard output, and nothing else goes there.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact, such as `1mm`, `0.1ms`, or `1mm,1ms`.
+    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
+    pub(crate) target: Option<Target>,
+    /// What is drawn; without it what the scene says, or else height.
+    #[arg(long, value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
+    pub(crate) kind: Option<Kind>,
+}
+
+/// How a motion is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MotionFormat {
+    /// The jumps, for people.
+    Text,
+    /// The motion, for a spreadsheet: both sides of each jump, and samples if asked for.
+    Csv,
+    /// The jumps with both sides, for programs.
+    Json,
+}
+
+fn cor(text: &str) -> Result<Cor, String> {
+    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    Cor::new(value).map_err(|error| error.to_string())
+}
+
+pub(crate) fn run(args: &Simulate, quiet: bool) -> Result<ExitCode, Error> {
     let (format, drawn) = outputs(args)?;
     check_picture(drawn)?;
     let mut scene = made(args)?;
@@ -29,60 +96,26 @@ pub(crate) fn run(args: &args::Simulate, quiet: bool) -> Result<ExitCode, Error>
         scene = aimed;
     }
     let plan = planned(&scene, args.scene.as_deref())?;
-    let model = plan.explain().model;
     let record = plan.run().map_err(Error::new)?;
     ended(&record, quiet);
     if drawn.is_some() {
-        let kind = args.kind.map_or(scene.picture.kind, args::PictureKind::kind);
-        write(drawn, picture::svg(&scene, &record, kind)?.as_bytes())?;
+        let picture = record::svg(&record, args.kind.unwrap_or(scene.picture.kind)).map_err(Error::new)?;
+        write(drawn, picture.as_bytes())?;
     }
-    let motion = Motion { scene: &scene, model, every: args.every, fps: args.fps, record: &record };
+    let sampling = args.every.map(Sampling::Every).or(args.fps.map(Sampling::Rate));
     let text = match format {
         None => return Ok(ExitCode::SUCCESS),
-        Some(MotionFormat::Text) => motion.text(),
-        Some(MotionFormat::Csv) => motion.csv()?,
-        Some(MotionFormat::Json) => motion.json()?,
+        Some(MotionFormat::Text) => record.to_string(),
+        Some(MotionFormat::Csv) => record.table(sampling).map_err(Error::new)?.csv(),
+        Some(MotionFormat::Json) => record.json(sampling).map_err(Error::new)?,
     };
     let to = args.output.as_deref().filter(|path| !is_svg(path));
     write(to, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The plan of a scene; what cannot be run is said with the file's name.
-pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error> {
-    scene.plan().map_err(|error| match path {
-        Some(path) if path != Path::new("-") && error.in_text().is_none() => {
-            Error::new(format!("{}: {error}", path.display()))
-        }
-        _ => Error::new(error),
-    })
-}
-
-/// Says why a run ended, if that is not what was asked for.
-pub(crate) fn ended(record: &Record, quiet: bool) {
-    let t = record.until();
-    let doubts = record.doubts();
-    if let Some(first) = doubts.first() {
-        let more = match doubts.len() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more like it)"),
-        };
-        say(quiet, &format!("a jump may have been missed: {first}{more}"));
-    }
-    match record.end() {
-        End::Time => {}
-        End::Jumps { most } => {
-            say(
-                quiet,
-                &format!("stopped after {most} jumps, at {t:.6} s: --most-jumps allows more, --until ends by time"),
-            );
-        }
-        end => say(quiet, &format!("stopped at {t:.6} s: {end}")),
-    }
-}
-
 /// What is asked for, by a scene or by options.
-fn made(args: &args::Simulate) -> Result<Scene, Error> {
+fn made(args: &Simulate) -> Result<Scene, Error> {
     match (&args.scene, args.drop, args.cor) {
         (Some(path), _, _) => scene(path, ending(args.until, args.most_jumps)),
         (None, Some(height), Some(cor)) if height >= 0.0 => {
@@ -106,38 +139,12 @@ fn made(args: &args::Simulate) -> Result<Scene, Error> {
     }
 }
 
-/// What the command line says of the run's end.
-pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
-    let mut run = Run::default();
-    (run.until, run.most_jumps) = (until, most_jumps);
-    run
-}
-
-/// The scene of a file or of standard input; what the command line says in `run` goes before what the scene says.
-pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
-    let (name, toml) = read(path)?;
-    Scene::parse_with(&name, &toml, run).map_err(Error::new)
-}
-
-/// The text of a scene, from a file or from standard input, and its name.
-pub(crate) fn read(path: &Path) -> Result<(String, Vec<u8>), Error> {
-    let most = Scene::LARGEST as u64 + 1;
-    let mut toml = Vec::new();
-    if path == Path::new("-") {
-        std::io::stdin().lock().take(most).read_to_end(&mut toml).map_err(Error::new)?;
-        return Ok(("standard input".to_owned(), toml));
-    }
-    let error = |error| Error::new(ReadError::File { path: path.to_owned(), error });
-    File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
-    Ok((path.to_string_lossy().into_owned(), toml))
-}
-
 fn is_svg(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
 }
 
 /// The format of the motion, if it is to be written, and where the picture goes.
-fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>), Error> {
+fn outputs(args: &Simulate) -> Result<(Option<MotionFormat>, Option<&Path>), Error> {
     let output = args.output.as_deref();
     if args.plot.as_deref() == Some(Path::new("-")) && output.is_none_or(|path| path == Path::new("-")) {
         if output.is_none() && args.format.is_none() {
@@ -166,17 +173,4 @@ fn outputs(args: &args::Simulate) -> Result<(Option<MotionFormat>, Option<&Path>
         }
     };
     Ok((Some(format), args.plot.as_deref()))
-}
-
-/// A range is said to be one, with its source, where a run takes one number of it.
-pub(crate) fn note(scene: &Scene) -> Option<String> {
-    let law = scene.law(0, 0)?;
-    let [low, high] = law.range(0.0);
-    let cor = law.constant()?;
-    let taken = format!("this run takes {:.4}; `restitution = {{ pick = 0 }}` to `1` takes another", cor.value());
-    match law {
-        Law::Preset { preset, .. } => Some(format!("{preset}: {taken}")),
-        Law::Range { .. } => Some(format!("COR between {low} and {high}: {taken}")),
-        _ => None,
-    }
 }

@@ -1,10 +1,17 @@
 //! How a motion is shown: what can be asked of it.
 
+use std::path::Path;
+
 use clap::{Args as ClapArgs, ValueEnum};
 use saltus_bounce::units::Quantity;
-use saltus_motion::Rate;
+use saltus_motion::{Frames, Rate, Snap};
+use saltus_scene::plan::Record;
+use saltus_scene::{Squash, Stage, length};
 
-use crate::args::positive;
+use crate::error::Error;
+use crate::output::say;
+use crate::parse::positive;
+use crate::scenes::{ended, ending, note, planned, scene};
 
 /// How a motion is shown.
 #[derive(Clone, Debug, ClapArgs)]
@@ -36,18 +43,12 @@ pub(crate) struct Staging {
     /// Turn left and right around.
     #[arg(long)]
     pub(crate) mirror: bool,
+    /// Set a key at the top of every flight too, to be moved by hand; the motion is the same.
+    #[arg(long)]
+    pub(crate) apexes: bool,
     /// When to stop, such as `4s`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-}
-
-/// How far a ball is squashed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Squash {
-    /// As the law of a contact that takes time has it.
-    Law,
-    /// By a part of its height.
-    Part(f64),
 }
 
 /// What stays when contacts move to whole frames.
@@ -63,6 +64,34 @@ impl Staging {
     /// The options that may vary from motion to motion, by name.
     pub(crate) const VARIED: [&'static str; 9] =
         ["fps", "snap", "on-twos", "squash", "stretch", "exaggerate", "hold", "loop", "mirror"];
+
+    /// Runs the scene of a file, says what has to be said of it, and stages it.
+    pub(crate) fn of(&self, path: &Path, first: i32, quiet: bool) -> Result<Stage, Error> {
+        let scene = scene(path, ending(self.until, None))?;
+        if let Some(note) = note(&scene) {
+            say(quiet, &note);
+        }
+        let record = planned(&scene, Some(path))?.run().map_err(Error::new)?;
+        ended(&record, quiet);
+        let stage = self.stage(&record, first)?;
+        if let Some(drawn) = drawn(&stage) {
+            say(quiet, &drawn);
+        }
+        Ok(stage)
+    }
+
+    /// A run as it is to be shown.
+    pub(crate) fn stage(&self, record: &Record, first: i32) -> Result<Stage, Error> {
+        let mut staging = saltus_scene::Staging::new(Frames { rate: self.fps, first, on_twos: self.on_twos });
+        staging.snap = self.snap.map(|snap| match snap {
+            SnapBy::Gravity => Snap::Gravity,
+            SnapBy::Heights => Snap::Heights,
+        });
+        (staging.squash, staging.stretch) = (self.squash, self.stretch.unwrap_or(0.0));
+        (staging.exaggerate, staging.hold) = (self.exaggerate, self.hold);
+        (staging.looped, staging.mirror, staging.apexes) = (self.looped, self.mirror, self.apexes);
+        staging.stage(record).map_err(Error::new)
+    }
 
     /// Sets one of [`Staging::VARIED`] to what would stand behind it.
     pub(crate) fn set(&mut self, option: &str, value: &str) -> Result<(), String> {
@@ -81,6 +110,12 @@ impl Staging {
         }
         Ok(())
     }
+}
+
+/// What had to be supposed of sizes.
+pub(crate) fn drawn(stage: &Stage) -> Option<String> {
+    let radius = length(stage.drawn?);
+    Some(format!("the scene gives no radius: drawn with {radius}; set `radius` under [ball]"))
 }
 
 /// A number from 0 to `most`.

@@ -5,6 +5,7 @@
 mod tool;
 
 use std::fs;
+use std::path::Path;
 
 use tempfile::TempDir;
 use tool::{done, refused, root, run, text};
@@ -162,4 +163,34 @@ fn squash_and_stretch_are_never_silent() {
     assert!(refuse("box.toml", &["--squash", "0.3"]).contains("several balls cannot wait"));
     assert!(refuse("squash.toml", &["--squash", "2"]).contains("not a number from 0 to 0.9, nor `law`"));
     assert!(refuse("squash.toml", &["--squash", "0.5", "--exaggerate", "4"]).contains("squash it by 0 to 0.9"));
+}
+
+/// What an animator may do by mistake, or asks for beyond keys.
+#[test]
+fn what_animators_ask_for() {
+    let squash = root().join("examples/scenes/squash.toml");
+    let squash = squash.to_str().unwrap();
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    for (name, begins) in [("ball.html", "<!doctype html>"), ("ball.gltf", "{"), ("ball.wav", "RIFF")] {
+        assert!(run(&["-q", "export", squash, "-o", &path(name)]).status.success());
+        assert!(fs::read(path(name)).unwrap().starts_with(begins.as_bytes()), "{name}");
+    }
+    assert!(done(&["-q", "export", squash, "--to", "contacts"]).starts_with("ball,frame,time_s,"));
+    let keys = |more: &[&str]| done(&[&["-q", "export", squash, "--to", "csv"], more].concat()).lines().count();
+    assert!(keys(&["--apexes"]) > keys(&[]) + 3);
+    // A drawing is exact where it is drawn.
+    let output = run(&["export", squash, "--to", "csv", "--on-twos"]);
+    let said = text(&output.stderr);
+    assert!(said.contains("each drawing stands for two frames"), "{said}");
+    assert!(said.contains("worst height error: 8.37 mm; hops of up to 8.37 mm left out"), "{said}");
+    // A table is no scene, and a moment no motion.
+    let table = root().join("examples/data/squash-on-cement.csv");
+    let message = refused(&["export", table.to_str().unwrap(), "-o", &path("ball.glb")]);
+    assert!(message.contains("is a table, not a scene: fit it first, by `saltus fit "), "{message}");
+    let message = refused(&["export", squash, "--until", "1e-9s", "-o", &path("short.glb")]);
+    assert!(
+        message.contains("less than a hundredth of a frame") && !Path::new(&path("short.glb")).exists(),
+        "{message}"
+    );
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use saltus_bounce::scene::Scene;
+use saltus_scene::Scene;
 use serde_json::Value;
 use tempfile::TempDir;
 use tool::root;

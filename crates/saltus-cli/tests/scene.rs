@@ -332,3 +332,15 @@ fn an_elastic_ball_never_rests_and_says_when_it_stopped() {
     assert!(output.status.success());
     assert!(text(&output.stderr).contains("stopped after 50 jumps"), "{}", text(&output.stderr));
 }
+
+/// Numbers beyond any that can be right are refused at once, with the range.
+#[test]
+fn numbers_have_ranges() {
+    let message = refused(&["simulate", "--drop", "1m", "--cor", "0.5", "--velocity", "1e160m/s"]);
+    assert!(
+        message.contains("'1e160m/s' is beyond the numbers that can be right: a speed is at most 299792458 m/s"),
+        "{message}"
+    );
+    let (_folder, path) = scene("restitution = 1\nball = { height = 1 }\nrun = { until = '1e300 s' }\n");
+    assert!(refused(&["simulate", &path]).contains("a time is at most 1000000000000 s"));
+}

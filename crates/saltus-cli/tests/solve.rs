@@ -6,8 +6,8 @@ mod tool;
 
 use std::fs;
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::plan::Record;
+use saltus_scene::Scene;
+use saltus_scene::plan::Record;
 use tempfile::TempDir;
 
 const G: f64 = 9.806_65;
@@ -164,4 +164,16 @@ fn what_is_no_wish_is_said() {
     }
     assert!(refused(&["rest at 1s", "--free", "mass"]).contains("'mass' is neither height"));
     assert!(refused(&["rest at 1s", "--free", "cor,cor"]).contains("free twice"));
+}
+
+/// Two wishes of one thing are no wish, however many numbers are free; nothing is written.
+#[test]
+fn wishes_of_one_thing_that_differ() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("never.toml");
+    let free = ["--free", "throw,height,gravity", "-o", path.to_str().unwrap()];
+    let (status, out, message) = solve(&[&["touch 1 at frame 10", "touch 1 at frame 20"], &free[..]].concat());
+    assert_eq!((status, out.as_str()), (Some(2), ""));
+    assert!(message.contains("'touch 1 at frame 10' and 'touch 1 at frame 20' contradict each other"), "{message}");
+    assert!(!path.exists());
 }

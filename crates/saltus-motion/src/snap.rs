@@ -5,7 +5,6 @@ use crate::rate::Frames;
 
 /// What stays as it was when contacts move to whole frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Snap {
     /// Gravity: every flight lasts the nearest whole number n of frames, so a hop on a level floor is g n²/(8 fps²) high.
     Gravity,

@@ -43,6 +43,8 @@ pub enum PlotError {
         /// The height asked for.
         height: f64,
     },
+    /// The run has nothing that such a picture shows: what is missing, and what to do.
+    Missing(&'static str),
     /// The drawing library could not place an element.
     Drawing(String),
 }
@@ -69,6 +71,7 @@ impl fmt::Display for PlotError {
             Self::Drawing(reason) => {
                 write!(f, "the drawing library could not place an element ({reason}): try a larger size")
             }
+            Self::Missing(says) => f.write_str(says),
         }
     }
 }

@@ -38,6 +38,8 @@ mod heading;
 mod height_time;
 mod marks;
 mod page;
+#[cfg(feature = "scene")]
+pub mod record;
 mod residuals;
 mod stroke;
 mod svg;

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use saltus_bounce::scene::{Run, Template};
+use saltus_scene::{Run, Template};
 
 fuzz_target!(|text: &str| {
     let mut lines = text.splitn(3, '\n');

@@ -50,7 +50,8 @@ impl Magnus {
     }
 
     /// Lift over ω×v where the spin is slow, (ρA/2m) κR, without a unit.
-    pub(crate) const fn slope(&self) -> f64 {
+    #[must_use]
+    pub const fn slope(&self) -> f64 {
         self.slope
     }
 

@@ -96,7 +96,13 @@ impl Cor {
     }
 
     /// The coefficient nearest to `value`, which a law has kept within 0..=1 but for rounding; what is not a number gives 0.
-    pub(crate) const fn within(value: f64) -> Self {
+    ///
+    /// ```
+    /// use saltus_bounce::Cor;
+    /// assert_eq!([1.0 + f64::EPSILON, 0.3, f64::NAN].map(|e| Cor::within(e).value()), [1.0, 0.3, 0.0]);
+    /// ```
+    #[must_use]
+    pub const fn within(value: f64) -> Self {
         Self(value.max(0.0).min(1.0))
     }
 

@@ -1,7 +1,7 @@
 //! The same for programs: JSON.
 
-use saltus_bounce::scene::Stepper;
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Outcome, Target, Toggle, Way};
+use saltus_scene::Stepper;
+use saltus_scene::accuracy::{Accuracy, Difference, Outcome, Target, Toggle, Way};
 use serde::Serialize;
 
 use super::effects::toggled;

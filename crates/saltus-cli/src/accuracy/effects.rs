@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Target, Toggle};
+use saltus_scene::accuracy::{Accuracy, Difference, Target, Toggle};
 
 use super::words::{aim, short, took};
 use crate::row::plainly;

@@ -7,25 +7,53 @@ mod picture;
 mod table;
 mod words;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use saltus_bounce::scene::Scene;
-use saltus_bounce::scene::accuracy::{Accuracy, Target, Way};
+use clap::Args as ClapArgs;
+use saltus_bounce::units::Quantity;
+use saltus_scene::Scene;
+use saltus_scene::accuracy::{Accuracy as Measured, Target, Way};
 
-use crate::args;
 use crate::error::Error;
 use crate::output::{check_picture, say, write};
-use crate::simulate::{ending, scene};
+use crate::parse::{ReportFormat, positive, target};
+use crate::scenes::{ending, scene};
 
-pub(crate) fn run(args: &args::Accuracy, quiet: bool) -> Result<ExitCode, Error> {
+/// Show what accuracy costs in a scene.
+///
+/// Says which setting to take: the cheapest that meets the target, how exact it is, what it costs. To know, it runs the scene by each stepper to ten tolerances, and
+/// frame by frame at 24 to 240 frames per second, and compares every run with a reference: by formulas where they solve the scene, or else a run to a tolerance two
+/// orders tighter, whose own error is estimated.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Accuracy {
+    /// The scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or both; `1mm,1ms` unless given.
+    #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
+    pub(crate) target: Option<Target>,
+    /// Show every setting that was tried, not only those that cost least for what they give; JSON has them all.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Draw time against error as SVG.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// When to stop, such as `4s`; otherwise when the scene says.
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    pub(crate) until: Option<f64>,
+    /// How to write it; docs/accuracy.md describes its JSON.
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: ReportFormat,
+}
+
+pub(crate) fn run(args: &Accuracy, quiet: bool) -> Result<ExitCode, Error> {
     check_picture(args.plot.as_deref())?;
     if args.plot.as_deref() == Some(Path::new("-")) {
         return Err(Error::new("standard output holds the report: name a file for the picture instead of '-'"));
     }
     let scene = scene(&args.scene, ending(args.until, None))?;
     let name = name(&scene, &args.scene);
-    let accuracy = Accuracy::timed(&scene).map_err(Error::new)?;
+    let accuracy = Measured::timed(&scene).map_err(Error::new)?;
     let toggles = accuracy.toggled(&scene);
     let target = args.target.unwrap_or(Target::DEFAULT);
     if let Some(path) = &args.plot {
@@ -33,14 +61,14 @@ pub(crate) fn run(args: &args::Accuracy, quiet: bool) -> Result<ExitCode, Error>
         say(quiet, &format!("picture: {}", path.display()));
     }
     let text = match args.format {
-        args::ReportFormat::Text => [
+        ReportFormat::Text => [
             format!("What accuracy costs: {name}\n\n"),
             advice::in_full(&accuracy, target),
             table::text(&accuracy, target, args.all),
             effects::text(&toggles, &accuracy, target),
         ]
         .concat(),
-        args::ReportFormat::Json => document::json(&accuracy, &toggles, target)?,
+        ReportFormat::Json => document::json(&accuracy, &toggles, target)?,
     };
     write(None, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
@@ -48,7 +76,7 @@ pub(crate) fn run(args: &args::Accuracy, quiet: bool) -> Result<ExitCode, Error>
 
 /// The scene with the cheapest setting that meets the target, and that setting in words.
 pub(crate) fn aimed(mut scene: Scene, target: Target) -> Result<(Scene, String), Error> {
-    let accuracy = Accuracy::counted(&scene).map_err(Error::new)?;
+    let accuracy = Measured::counted(&scene).map_err(Error::new)?;
     let best = accuracy.cheapest(target).ok_or_else(|| Error::new(advice::unmet(&accuracy, target)))?;
     if let Way::Steps { stepper, tolerance } = best.way {
         (scene.run.stepper, scene.run.tolerance) = (Some(stepper), Some(tolerance));

@@ -1,7 +1,7 @@
 //! The picture: error across, time up, both by powers of ten; a line for each stepper and one for frames.
 
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Target, Trial, Way};
 use saltus_plot::{Background, Chart, Measure, Stroke};
+use saltus_scene::accuracy::{Accuracy, Difference, Target, Trial, Way};
 
 use super::table::kind;
 use super::words::{aim, impacts, median, reference, sized};

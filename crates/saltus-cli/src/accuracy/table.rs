@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Outcome, Target, Trial, Way};
+use saltus_scene::accuracy::{Accuracy, Difference, Outcome, Target, Trial, Way};
 
 use super::words::{impacts, reference, short, took};
 

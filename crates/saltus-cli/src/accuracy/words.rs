@@ -1,6 +1,6 @@
 //! Errors, costs and targets in words.
 
-use saltus_bounce::scene::accuracy::{Accuracy, Difference, Outcome, Target, Way};
+use saltus_scene::accuracy::{Accuracy, Difference, Outcome, Target, Way};
 
 /// Two digits; a dash where there is nothing to compare.
 pub(super) fn short(value: f64) -> String {

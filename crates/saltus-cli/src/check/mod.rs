@@ -7,13 +7,13 @@ use std::process::ExitCode;
 
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
-use saltus_motion::{Export, Format, Motion};
+use saltus_motion::{Export, Format, Frames, Motion};
+use saltus_scene::{Stage, length};
 
 use self::read::Reading;
-use crate::args::positive;
 use crate::error::Error;
 use crate::output::stdout;
-use crate::stage::{Stage, length};
+use crate::parse::positive;
 use crate::staging::Staging;
 
 /// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
@@ -45,8 +45,8 @@ const KEYS: f64 = 1e-4;
 pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
     // A file that cannot be read is said before a scene is run.
     let readings = read::readings(&args.file)?;
-    let Stage { motion, frames, shape, .. } = Stage::of(&args.scene, &args.staging, 0, quiet)?;
-    let export = Export { motion: &motion, frames, tolerance: KEYS, shape };
+    let Stage { motion, frames, shape, .. } = args.staging.of(&args.scene, 0, quiet)?;
+    let export = Export { motion: &motion, frames, tolerance: KEYS, shape, apexes: false };
     let [[left, right], [low, high]] = motion.reach();
     let size = (right - left).max(high - low);
     let (mut lines, mut good) = (String::new(), true);
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
                 export.file(format).map_err(Error::new)?.miss.height * LOOKED + SINGLE * size
             }
         };
-        let Found { worst, at, sunk } = compared(reading, &motion);
+        let Found { worst, at, sunk } = compared(reading, &motion, frames);
         let ends = reading.balls.iter().map(|ball| ball.end).fold(0.0, f64::max);
         let whole = (ends - motion.end()).abs() <= frames.step();
         let kept = worst <= allowed && whole;
@@ -89,7 +89,7 @@ struct Found {
     sunk: f64,
 }
 
-fn compared(reading: &Reading, motion: &Motion) -> Found {
+fn compared(reading: &Reading, motion: &Motion, frames: Frames) -> Found {
     let mut found = Found { worst: 0.0, at: 0.0, sunk: 0.0 };
     for (ball, track) in reading.balls.iter().zip(&motion.tracks) {
         // A picture shows by how much the ball is lower than at the start.
@@ -98,8 +98,8 @@ fn compared(reading: &Reading, motion: &Motion) -> Found {
             Some(_) => track.at(0.0)[2] + above * (ball.height)(t),
             None => (ball.height)(t),
         };
-        let mut compare = |t: f64, contact: bool| {
-            let off = height(t) - track.at(t)[2];
+        let mut compare = |t: f64, look: f64, contact: bool| {
+            let off = height(look) - track.at(t)[2];
             // A number that is none is as wrong as can be.
             let far = if off.is_finite() { off.abs() } else { f64::INFINITY };
             if far > found.worst {
@@ -110,8 +110,15 @@ fn compared(reading: &Reading, motion: &Motion) -> Found {
             }
         };
         let end = track.end();
-        (0..TIMES).for_each(|k| compare(end * (f64::from(k) + 0.5) / f64::from(TIMES), false));
-        track.contacts().for_each(|t| compare(t, true));
+        if frames.on_twos {
+            // Drawings stand: each is looked at while it does, and compared with where the ball was as it was drawn.
+            let drawn = (0_u32..).map(|k| f64::from(k) * frames.step());
+            drawn.take_while(|&t| t <= end).for_each(|t| compare(t, t + 0.5 * frames.step(), false));
+        } else {
+            let times = (0..TIMES).map(|k| end * (f64::from(k) + 0.5) / f64::from(TIMES));
+            times.for_each(|t| compare(t, t, false));
+            track.contacts().for_each(|t| compare(t, t, true));
+        }
     }
     found
 }

@@ -242,9 +242,9 @@ fn svg(text: &str) -> Result<Vec<Reading>, Error> {
     let duration = duration.ok_or_else(|| Error::new("it does not move"))?;
     let (mut balls, mut sampled) = (Vec::new(), false);
     for circle in document.descendants().filter(|node| node.attribute("class") == Some("ball")) {
-        let radius: f64 = circle.attribute("r").and_then(|r| r.parse().ok()).ok_or_else(|| lacks("radius"))?;
-        let rules =
-            after(&style, &format!("@keyframes b{}y{{", balls.len())).and_then(|rest| rest.split("}\n}").next());
+        let radius: f64 =
+            circle.attribute("data-radius").and_then(|r| r.parse().ok()).ok_or_else(|| lacks("radius"))?;
+        let rules = after(&style, &format!("b{}y{{", balls.len())).and_then(|rest| rest.split("}\n}").next());
         let rules = rules.ok_or_else(|| lacks("rule for a ball's height"))?;
         let key = |line: &str| {
             let value: f64 = after(line, "translateY(")?.split("px").next()?.parse().ok()?;

@@ -1,5 +1,6 @@
 //! `saltus fit`: a table in, a report and pictures out.
 
+mod args;
 mod pictures;
 mod values;
 
@@ -11,10 +12,12 @@ use std::sync::Once;
 use saltus_fit::{CorModel, Fit, Loss, ReadOptions, Report, Table, Verdict};
 use saltus_plot::PlotError;
 
-use crate::args::{self, ReportFormat};
 use crate::error::Error;
 use crate::output::{check_new, check_picture, say, write};
+use crate::parse::ReportFormat;
 use crate::progress::Progress;
+
+pub(crate) use args::Fit as FitArgs;
 
 /// A picture of a report, where it has one.
 type Draw = fn(&Report) -> Option<Result<String, PlotError>>;

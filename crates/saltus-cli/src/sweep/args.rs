@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args as ClapArgs, ValueEnum};
+use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
+use saltus_scene::sweep::{Column, RowFormat};
 
-use super::row::Column;
-use crate::args::positive;
-use crate::vary::{VARIATIONS, Vary};
+use crate::parse::{one_of, positive};
+use crate::varying::{VARIATIONS, Varying};
 
 /// Run a scene many times with other values, and write a table with a row for each run.
 ///
@@ -19,15 +19,15 @@ pub(crate) struct Sweep {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
     #[command(flatten)]
-    pub(crate) vary: Vary,
+    pub(crate) vary: Varying,
     /// The results to write, behind the values; without it, all that the scene has.
-    #[arg(long, value_enum, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = one_of(&Column::ALL, Column::name, Column::about))]
     pub(crate) columns: Option<Vec<Column>>,
     /// Write to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// How to write it; without it, after the extension of the output file, or else as CSV.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = one_of(&RowFormat::ALL, RowFormat::name, RowFormat::about))]
     pub(crate) format: Option<RowFormat>,
     /// Go on with a file that the same sweep has begun.
     #[arg(long, requires = "output", conflicts_with = "force")]
@@ -44,13 +44,4 @@ pub(crate) struct Sweep {
     /// After how many jumps to stop each run; 10000 unless given here or in the scene.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) most_jumps: Option<u32>,
-}
-
-/// How the rows are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RowFormat {
-    /// For a spreadsheet.
-    Csv,
-    /// For programs: an object of JSON in each line.
-    Jsonl,
 }

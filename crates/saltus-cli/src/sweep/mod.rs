@@ -1,51 +1,35 @@
 //! `saltus sweep`: a scene in, a table of many runs out.
 
 mod args;
-mod row;
 mod table;
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
-use args::RowFormat;
-pub(crate) use args::Sweep;
+pub(crate) use args::Sweep as SweepArgs;
 use rayon::ThreadPoolBuilder;
-use row::{Nothing, Rows};
-use saltus_bounce::scene::{Run, Template};
+use saltus_scene::sweep::{RowFormat, Sweep};
+use saltus_scene::vary::Vary;
 use serde_json::{Value as Json, json};
 use table::Table;
 
 use crate::error::Error;
 use crate::output::{extension, say};
 use crate::progress::Progress;
-use crate::quantity::number;
-use crate::simulate::{ending, note, read};
-use crate::vary::{self, Variation, Vary};
+use crate::scenes::{ending, note, read};
 
-pub(crate) fn run(args: &Sweep, quiet: bool) -> Result<ExitCode, Error> {
+pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
     let (name, toml) = read(&args.scene)?;
-    let keys = args.vary.keys()?;
-    let runs = args.vary.runs()?;
-    let template = Template::parse(&name, &toml, &keys).map_err(Error::new)?;
-    let runner = Runner { template: &template, vary: &args.vary, end: ending(args.until, args.most_jumps) };
-
+    let vary = args.vary.vary();
+    let end = ending(args.until, args.most_jumps);
     // What is wrong with the first run is wrong with the sweep, and is said before anything is written.
-    let refused = |error: &dyn fmt::Display| Error::new(format!("run 0, {}: {error}", args.vary.says(0)));
-    let scene = vary::scene(&template, &args.vary.values(0), runner.end).map_err(|error| refused(&error))?;
-    scene.plan().map_err(|error| refused(&error))?;
-    if let Some(note) = note(&scene) {
+    let sweep = Sweep::new(&name, &toml, &vary, end, format, args.columns.as_deref()).map_err(Error::new)?;
+    if let Some(note) = note(sweep.first()) {
         say(quiet, &note);
     }
-
-    let rows = Rows::new(
-        format,
-        args.vary.variations.iter().map(Variation::header).collect(),
-        args.columns.as_deref(),
-        &scene,
-    );
-    let (mut table, done) = Table::open(args, &rows, &whose(args, &toml, &rows, runs))?;
+    let runs = sweep.runs();
+    let (mut table, done) = Table::open(args, &sweep, &whose(args, &toml, &sweep, &vary, format))?;
     if done > 0 {
         say(
             quiet,
@@ -64,14 +48,14 @@ pub(crate) fn run(args: &Sweep, quiet: bool) -> Result<ExitCode, Error> {
     let ended = pool.install(|| {
         saltus::ensemble(
             left,
-            |k| runner.row(&rows, k as u64),
-            |k, (row, why)| {
-                if let Some(why) = why {
+            |k| sweep.row(k as u64),
+            |k, row| {
+                if let Some(why) = row.why {
                     nothing.0 += 1;
                     nothing.1.get_or_insert((k, why));
                 }
                 progress.reached(k as u64 + 1);
-                match table.push(&row) {
+                match table.push(&row.text) {
                     Ok(()) => ControlFlow::Continue(()),
                     Err(error) => ControlFlow::Break(error),
                 }
@@ -84,51 +68,30 @@ pub(crate) fn run(args: &Sweep, quiet: bool) -> Result<ExitCode, Error> {
     }
     table.finish()?;
     if let (count, Some((first, why))) = nothing {
-        let values = args.vary.says(first as u64);
+        let values = vary.says(first as u64);
         say(quiet, &format!("{count} of {runs} runs came to nothing; the first is run {first}, {values}: {why}"));
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Makes runs by their numbers.
-struct Runner<'a> {
-    template: &'a Template<'a>,
-    vary: &'a Vary,
-    end: Run,
-}
-
-impl Runner<'_> {
-    /// The row of a run, and why it came to nothing if it did.
-    fn row(&self, rows: &Rows, run: u64) -> (String, Option<String>) {
-        let values = self.vary.values(run);
-        let nothing = |end: &'static str, why: String| Nothing { end, why: why.replace('\n', " ") };
-        let came = vary::scene(self.template, &values, self.end)
-            .map_err(|error| nothing("refused", vary::refused(&error)))
-            .and_then(|scene| scene.plan().map_err(|error| nothing("refused", error.to_string())))
-            .and_then(|plan| plan.outcome().map_err(|error| nothing("failed", error.to_string())));
-        let row = rows.row(run, &values, &came);
-        (row, came.err().map(|nothing| nothing.why))
-    }
-}
-
 /// What the rows of a file depend on.
-fn whose(args: &Sweep, toml: &[u8], rows: &Rows, runs: u64) -> Json {
+fn whose(args: &SweepArgs, toml: &[u8], sweep: &Sweep<'_>, vary: &Vary, format: RowFormat) -> Json {
     json!({
         "saltus": env!("CARGO_PKG_VERSION"),
-        "vary": args.vary.texts(),
-        "random": args.vary.random,
-        "seed": args.vary.random.map(|_| args.vary.seed),
-        "runs": runs,
-        "until_s": args.until.map(number),
+        "vary": vary.texts(),
+        "random": vary.random,
+        "seed": vary.random.map(|_| vary.seed),
+        "runs": sweep.runs(),
+        "until_s": args.until.map(|until| until.to_string()),
         "most_jumps": args.most_jumps,
-        "format": match rows.format { RowFormat::Csv => "csv", RowFormat::Jsonl => "jsonl" },
-        "columns": rows.headers(),
+        "format": format.name(),
+        "columns": sweep.headers(),
         "scene": String::from_utf8_lossy(toml),
     })
 }
 
 /// The format by name, or by the extension of the file.
-fn format(args: &Sweep) -> Result<RowFormat, Error> {
+fn format(args: &SweepArgs) -> Result<RowFormat, Error> {
     let extension = args.output.as_deref().and_then(extension);
     match (args.format, extension.as_deref()) {
         (Some(format), _) => Ok(format),

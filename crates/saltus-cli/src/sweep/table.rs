@@ -7,10 +7,10 @@ use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use saltus_scene::sweep::Sweep;
 use serde_json::Value;
 
-use super::args::Sweep;
-use super::row::Rows;
+use super::SweepArgs;
 use crate::error::Error;
 use crate::output;
 
@@ -29,13 +29,13 @@ pub(super) struct Table {
 
 impl Table {
     /// Standard output, or the file that is asked for; how many rows of this sweep are in it.
-    pub(super) fn open(args: &Sweep, rows: &Rows, whose: &Value) -> Result<(Self, u64), Error> {
+    pub(super) fn open(args: &SweepArgs, sweep: &Sweep<'_>, whose: &Value) -> Result<(Self, u64), Error> {
         let to = |file, kept: String| Self { file, kept: kept.into_bytes(), written: Instant::now() };
         let Some(path) = args.output.as_deref().filter(|path| *path != Path::new("-")) else {
             if args.resume {
                 return Err(Error::new("standard output cannot be gone on with: name a file by -o"));
             }
-            return Ok((to(None, rows.header()), 0));
+            return Ok((to(None, sweep.header()), 0));
         };
         let fail = |error| Error::writing(path, &error);
         let beside = beside(path);
@@ -50,14 +50,14 @@ impl Table {
                     return Err(Error::new(format!("'{}' is no file that can be gone on with", path.display())));
                 }
                 let file = OpenOptions::new().write(true).open(path).map_err(fail)?;
-                return Ok((to(Some((file, path.to_owned())), rows.header()), 0));
+                return Ok((to(Some((file, path.to_owned())), sweep.header()), 0));
             }
             Some(_) if args.resume => {
                 let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(fail)?;
                 lock(&file, path)?;
                 same(path, &beside, whose)?;
-                let done = gone_on(&mut file, path, rows)?;
-                let header = if done.is_none() { rows.header() } else { String::new() };
+                let done = gone_on(&mut file, path, sweep)?;
+                let header = if done.is_none() { sweep.header() } else { String::new() };
                 return Ok((to(Some((file, path.to_owned())), header), done.unwrap_or(0)));
             }
             Some(_) if !args.force => {
@@ -75,7 +75,7 @@ impl Table {
         output::write(Some(&beside), text.as_bytes())?;
         let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(fail)?;
         lock(&file, path)?;
-        Ok((to(Some((file, path.to_owned())), rows.header()), 0))
+        Ok((to(Some((file, path.to_owned())), sweep.header()), 0))
     }
 
     /// Takes a row; writes when there is enough or it has waited.
@@ -148,9 +148,9 @@ fn same(path: &Path, beside: &Path, whose: &Value) -> Result<(), Error> {
 }
 
 /// How many whole rows there are, a torn line behind them cut off; `None` if not even the header is whole.
-fn gone_on(file: &mut File, path: &Path, rows: &Rows) -> Result<Option<u64>, Error> {
+fn gone_on(file: &mut File, path: &Path, sweep: &Sweep<'_>) -> Result<Option<u64>, Error> {
     let fail = |error| Error::writing(path, &error);
-    let header = rows.header();
+    let header = sweep.header();
     let mut reader = BufReader::new(&mut *file);
     let (mut whole, mut line, mut number) = (0, Vec::new(), 0_u64);
     loop {
@@ -162,7 +162,7 @@ fn gone_on(file: &mut File, path: &Path, rows: &Rows) -> Result<Option<u64>, Err
         number += 1;
         let run = number - 1 - u64::from(!header.is_empty()).min(number - 1);
         let is_header = number == 1 && !header.is_empty();
-        let wanted = if is_header { header.clone() } else { rows.beginning(run) };
+        let wanted = if is_header { header.clone() } else { sweep.beginning(run) };
         if !line.starts_with(wanted.as_bytes()) {
             let (path, wanted) = (path.display(), wanted.trim_end());
             return Err(Error::new(format!(

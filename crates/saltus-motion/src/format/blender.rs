@@ -14,6 +14,45 @@ import json
 DATA = json.loads(r'''@DATA@''')
 
 
+def collection():
+    """A collection of its own; what an earlier run of this script has put there is replaced."""
+    found = bpy.data.collections.get(DATA["collection"])
+    if found is not None and found.get("saltus"):
+        for item in list(found.objects):
+            data, action = item.data, item.animation_data.action if item.animation_data else None
+            bpy.data.objects.remove(item, do_unlink=True)
+            for block, blocks in ((data, (bpy.data.meshes, bpy.data.cameras, bpy.data.lights)), (action, (bpy.data.actions,))):
+                for kept in blocks:
+                    if block is not None and block.users == 0 and kept.get(block.name) == block:
+                        kept.remove(block)
+                        break
+    else:
+        found = bpy.data.collections.new(DATA["collection"])
+        bpy.context.scene.collection.children.link(found)
+    found["saltus"] = True
+    return found
+
+
+def camera_and_light():
+    """A camera from the front that sees all of the motion, and a sun; a camera that the scene has stays the one in use."""
+    (left, right), (low, high) = DATA["reach"]
+    middle, size = (0.5 * (left + right), 0.5 * (low + high)), max(right - left, high - low, 1e-3)
+    camera = bpy.data.cameras.new("saltus camera")
+    camera.clip_start, camera.clip_end = 0.01 * size, 100.0 * size
+    item = bpy.data.objects.new("saltus camera", camera)
+    # A lens of 50 mm on 36 mm of film sees 0.72 of its distance across, and 0.4 upwards in 16:9.
+    item.location = (middle[0], -1.2 * size / 0.4, middle[1])
+    item.rotation_euler = (1.5707963267948966, 0.0, 0.0)
+    COLLECTION.objects.link(item)
+    if bpy.context.scene.camera is None:
+        bpy.context.scene.camera = item
+    light = bpy.data.objects.new("saltus sun", bpy.data.lights.new("saltus sun", "SUN"))
+    light.data.energy = 3.0
+    light.location = (middle[0] - size, -size, high + size)
+    light.rotation_euler = (0.7, 0.0, -0.5)
+    COLLECTION.objects.link(light)
+
+
 def curves_of(item):
     """The curves of an object's new action, before and since actions have layers."""
     item.animation_data_create()
@@ -33,8 +72,20 @@ def mesh_object(name, vertices, faces, smooth):
     for polygon in mesh.polygons:
         polygon.use_smooth = smooth
     item = bpy.data.objects.new(name, mesh)
-    bpy.context.scene.collection.objects.link(item)
+    COLLECTION.objects.link(item)
     return item
+
+
+def paint(item, name, colour):
+    """A material in a colour, in the viewport and in what is rendered."""
+    material = bpy.data.materials.new(name)
+    material.diffuse_color = colour
+    if not material.node_tree:
+        material.use_nodes = True
+    for node in material.node_tree.nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            node.inputs["Base Color"].default_value = colour
+    item.data.materials.append(material)
 
 
 def sphere(name, radius, bottom, stripes, rings=16, sides=32):
@@ -58,12 +109,10 @@ def sphere(name, radius, bottom, stripes, rings=16, sides=32):
         top = 1 + (rings - 2) * sides
         faces.append((top + side, top + after, last))
     item = mesh_object(name, vertices, faces, True)
+    paint(item, "ball", (0.85, 0.33, 0.1, 1.0))
     if stripes:
         # In two colours, so that a turning ball is seen to turn.
-        for colour in ((0.85, 0.33, 0.1, 1.0), (0.95, 0.8, 0.6, 1.0)):
-            material = bpy.data.materials.new("ball")
-            material.diffuse_color = colour
-            item.data.materials.append(material)
+        paint(item, "stripe", (0.95, 0.8, 0.6, 1.0))
         for number, polygon in enumerate(item.data.polygons):
             polygon.material_index = number // rings // (sides // 4) % 2
     return item
@@ -104,6 +153,7 @@ def key_turns(item, curves, turns):
             curve.modifiers.new(type="CYCLES")
 
 
+COLLECTION = collection()
 scene = bpy.context.scene
 scene.render.fps = DATA["fps"]
 scene.render.fps_base = DATA["fps_base"]
@@ -117,7 +167,7 @@ for ball in DATA["balls"]:
         else:
             item = bpy.data.objects.new(node["name"], None)
             item.empty_display_size = ball["radius"]
-            bpy.context.scene.collection.objects.link(item)
+            COLLECTION.objects.link(item)
         item.parent = around
         item.location = node["still"]
         around = item
@@ -131,7 +181,9 @@ for ball in DATA["balls"]:
         if node["turns"]:
             key_turns(item, curves, node["turns"])
 for number, (vertices, faces) in enumerate(DATA["ground"]):
-    mesh_object("ground" if number == 0 else "ground %d" % number, vertices, faces, False)
+    item = mesh_object("ground" if number == 0 else "ground %d" % number, vertices, faces, False)
+    paint(item, "ground", (0.6, 0.6, 0.6, 1.0))
+camera_and_light()
 scene.frame_set(DATA["range"][0])
 print("saltus: %d balls; the curves are within %.2g m of the motion" % (len(DATA["balls"]), worst))
 if worst > 1e-5 * DATA["size"]:
@@ -162,12 +214,24 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({
         "fps": whole, "fps_base": fps / nominal, "range": export.range(), "loops": export.motion.loops,
+        "collection": collection(&export.motion.title), "reach": export.motion.reach(),
         "balls": balls.collect::<Vec<_>>(), "ground": ground(export), "size": (right - left).max(high - low).max(1.0),
     });
     // A raw string of Python ends at three quotes only, and JSON has none.
     let data = data.to_string().replace('\'', "\\u0027");
     let head = "# Blender 4 and 5: blender --python FILE, or the Scripting tab. Written by saltus.\n";
     format!("{head}{}", SCRIPT.trim_start().replace("@DATA@", &data).replace("\"fps\":", "\n\"fps\":"))
+}
+
+/// The name of the collection: Blender's names have 63 bytes at most.
+fn collection(title: &str) -> String {
+    const MOST: usize = 63;
+    let name = format!("saltus: {title}");
+    let mut end = name.len().min(MOST);
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    name[..end].to_owned()
 }
 
 /// A node as the script reads it.

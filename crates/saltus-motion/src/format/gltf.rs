@@ -232,7 +232,7 @@ fn animation(name: &str, balls: &[Ball<'_>], buffer: &mut Buffer) -> Value {
 }
 
 /// The balls are the first nodes; each stands on its origin, so that height 0 is touch.
-pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> Result<Vec<u8>, ExportError> {
+fn parts(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> (Value, Vec<u8>) {
     let motion = export.motion;
     let mut buffer = Buffer::default();
     let mut meshes = Vec::new();
@@ -289,6 +289,28 @@ pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]
         "animations": animations, "accessors": buffer.accessors, "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
+    (document, buffer.bytes)
+}
+
+/// All of it as text, the numbers in base64 (RFC 4648).
+pub(super) fn text(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> Result<String, ExportError> {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let (mut document, bytes) = parts(export, shown, exact);
+    let mut uri = String::from("data:application/octet-stream;base64,");
+    for three in bytes.chunks(3) {
+        let bits = three.iter().fold(0_u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - three.len()));
+        for k in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * k) & 63) as usize];
+            uri.push(if k <= three.len() { char::from(digit) } else { '=' });
+        }
+    }
+    document["buffers"][0]["uri"] = json!(uri);
+    Ok(serde_json::to_string(&document)? + "\n")
+}
+
+/// The same in one binary file.
+pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> Result<Vec<u8>, ExportError> {
+    let (document, bytes) = parts(export, shown, exact);
     let mut text = serde_json::to_vec(&document)?;
     text.resize(text.len().next_multiple_of(4), b' ');
     let length = |bytes: usize| {
@@ -298,8 +320,8 @@ pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]
     let mut file = Vec::new();
     file.extend(b"glTF");
     file.extend(2_u32.to_le_bytes());
-    file.extend(length(12 + 8 + text.len() + 8 + buffer.bytes.len())?.to_le_bytes());
-    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &buffer.bytes)] {
+    file.extend(length(12 + 8 + text.len() + 8 + bytes.len())?.to_le_bytes());
+    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &bytes)] {
         file.extend(length(chunk.len())?.to_le_bytes());
         file.extend(kind);
         file.extend(chunk);

@@ -83,9 +83,29 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
     layers.push(ground);
     let document = json!({
         "v": "5.7.0", "nm": export.motion.title, "fr": export.frames.rate.per_second(), "ip": first, "op": end,
-        "w": view.width, "h": view.height, "ddd": 0, "assets": [], "layers": layers,
+        "w": whole(view.width), "h": whole(view.height), "ddd": 0, "assets": [], "layers": layers,
     });
-    Ok(serde_json::to_string(&document)? + "\n")
+    Ok(written(&document) + "\n")
+}
+
+/// A side of the picture, which has whole units: rlottie takes no others.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // above zero, and some thousands at most
+const fn whole(side: f64) -> u32 {
+    side as u32
+}
+
+/// JSON in which the type of an object stands before what it is of: rlottie reads a shape as it comes, and passes over one whose type it does not know yet.
+fn written(value: &Value) -> String {
+    let list = |parts: Vec<String>, [open, close]: [char; 2]| format!("{open}{}{close}", parts.join(","));
+    match value {
+        Value::Array(items) => list(items.iter().map(written).collect(), ['[', ']']),
+        Value::Object(fields) => {
+            let pair = |(key, value): (&String, &Value)| format!("{}:{}", Value::from(key.as_str()), written(value));
+            let (first, rest): (Vec<_>, Vec<_>) = fields.iter().partition(|(key, _)| *key == "ty");
+            list(first.into_iter().chain(rest).map(pair).collect(), ['{', '}'])
+        }
+        other => other.to_string(),
+    }
 }
 
 /// A key for each ease, x of its handles the time and y the progress.

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Ball, Export, ExportError, Node};
-use crate::curve::{Between, Curve, Key};
+use crate::curve::{APART, Between, Curve, Key};
 use crate::turn::Turn;
 
 /// What is not sure is in which unit Maya counts the slope of a tangent: the script tries, reads the curve back, and bakes frames if neither fits.
@@ -101,7 +101,10 @@ for ball in DATA["balls"]:
             cmds.setInfinity(item, preInfinite="cycle", postInfinite="cycle")
 for strip in DATA["ground"]:
     for a, b, c, d in strip:
-        cmds.polyCreateFacet(point=[a, b, c, d], name="ground")
+        # The command takes points in the units Maya works in, which are centimetres; where a corner is, is set in the scene's.
+        item = cmds.polyCreateFacet(point=[a, b, c, d], name="ground")[0]
+        for number, corner in enumerate((a, b, c, d)):
+            cmds.xform("%s.vtx[%d]" % (item, number), worldSpace=True, translation=corner)
 cmds.playbackOptions(minTime=DATA["range"][0], maxTime=DATA["range"][1],
                      animationStartTime=DATA["range"][0], animationEndTime=DATA["range"][1])
 "#;
@@ -138,7 +141,10 @@ fn turned([x, y, up]: [f64; 3]) -> [f64; 3] {
 /// A node as the script reads it.
 fn chained(export: &Export<'_>, node: &Node<'_>, ball: &Ball<'_>) -> Value {
     let frames = export.frames;
-    let baked = ball.track.samples(frames, false);
+    let baked = ball.track.samples(frames, true);
+    // A frame on which a contact is, but for a share that programs take for the frame, shows the contact.
+    let near = |t: f64| ball.track.contacts().find(|contact| (contact - t).abs() < APART * frames.rate.frame());
+    let own = |t: f64| near(t).unwrap_or(t);
     let moves = |curve: &Curve, row: fn([f64; 3]) -> [f64; 3]| {
         let key = |key: &Key| json!({ "t": key.t, "value": row(key.place), "enter": row(key.enter), "leave": row(key.leave) });
         let check = |pair: &[Key]| {
@@ -153,7 +159,7 @@ fn chained(export: &Export<'_>, node: &Node<'_>, ball: &Ball<'_>) -> Value {
                 Between::Hold => "step",
             },
             "checks": curve.keys.windows(2).map(check).collect::<Vec<_>>(),
-            "frames": baked.keys.iter().map(|at| key(&curve.key(at.t))).collect::<Vec<_>>(),
+            "frames": baked.keys.iter().map(|at| key(&Key { t: at.t, ..curve.key(own(at.t)) })).collect::<Vec<_>>(),
         })
     };
     let flat = node.turns.iter().all(|turn| turn.quaternion[0] == 0.0 && turn.quaternion[2] == 0.0);

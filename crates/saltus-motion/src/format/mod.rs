@@ -6,6 +6,8 @@ mod flat;
 mod gltf;
 mod lottie;
 mod maya;
+mod player;
+mod sound;
 mod svg;
 mod table;
 mod usd;
@@ -13,7 +15,7 @@ mod view;
 
 use std::fmt;
 
-use crate::curve::{Between, Curve, Miss};
+use crate::curve::{APART, Between, Curve, Miss};
 use crate::dress::{Dress, Shown};
 use crate::motion::{Motion, Point, Track};
 use crate::rate::Frames;
@@ -49,13 +51,108 @@ pub enum Format {
     Svg,
     /// SVG that stands still: a tick for every frame, contacts and tops marked.
     Chart,
+    /// A page that plays the motion, frame by frame too, with its keys and contacts; it needs no network.
+    Html,
+    /// glTF 2.0 as text, with its buffer in it; otherwise as [`Format::Glb`].
+    Gltf,
+    /// The contacts as a table.
+    Contacts,
+    /// A tick at each contact, as loud as it is fast: mono, 16 bits, 48 kHz.
+    Wav,
 }
 
 impl Format {
+    /// Every one.
+    pub const ALL: [Self; 15] = [
+        Self::Csv,
+        Self::CsvFrames,
+        Self::Json,
+        Self::Blender,
+        Self::Maya,
+        Self::Glb,
+        Self::Usd,
+        Self::UsdSplines,
+        Self::Lottie,
+        Self::Svg,
+        Self::Chart,
+        Self::Html,
+        Self::Gltf,
+        Self::Contacts,
+        Self::Wav,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::CsvFrames => "csv-frames",
+            Self::Json => "json",
+            Self::Blender => "blender",
+            Self::Maya => "maya",
+            Self::Glb => "glb",
+            Self::Usd => "usd",
+            Self::UsdSplines => "usd-splines",
+            Self::Lottie => "lottie",
+            Self::Svg => "svg",
+            Self::Chart => "chart",
+            Self::Html => "html",
+            Self::Gltf => "gltf",
+            Self::Contacts => "contacts",
+            Self::Wav => "wav",
+        }
+    }
+
+    /// What files of it end in, each format in its own.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::CsvFrames => "frames.csv",
+            Self::Json => "json",
+            Self::Blender => "blender.py",
+            Self::Maya => "maya.py",
+            Self::Glb => "glb",
+            Self::Usd => "usda",
+            Self::UsdSplines => "splines.usda",
+            Self::Lottie => "lottie.json",
+            Self::Svg => "svg",
+            Self::Chart => "chart.svg",
+            Self::Html => "html",
+            Self::Gltf => "gltf",
+            Self::Contacts => "contacts.csv",
+            Self::Wav => "wav",
+        }
+    }
+
+    /// What it is.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Csv => "Keys as a table",
+            Self::CsvFrames => "A place for every frame as a table",
+            Self::Json => "Keys and frames, for programs",
+            Self::Blender => "A Python script for Blender 4 and 5",
+            Self::Maya => "A Python script for Maya",
+            Self::Glb => "Binary glTF: frames first, exact cubics second",
+            Self::Usd => "USD as text, a place for every frame",
+            Self::UsdSplines => "USD as text with splines, for USD 25.5 and later",
+            Self::Lottie => "Lottie",
+            Self::Svg => "A moving SVG",
+            Self::Chart => {
+                "The timing chart, an SVG that stands still: a tick for every frame, contacts and tops marked"
+            }
+            Self::Html => "A page that plays the motion, frame by frame too, with its keys and contacts",
+            Self::Gltf => "glTF as text, all in one file",
+            Self::Contacts => "The contacts as a table: when, where, how fast",
+            Self::Wav => "A sound with a tick at each contact, as loud as it is fast",
+        }
+    }
+
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {
-        matches!(self, Self::CsvFrames | Self::Glb | Self::Usd)
+        matches!(self, Self::CsvFrames | Self::Glb | Self::Gltf | Self::Usd)
     }
 }
 
@@ -83,6 +180,8 @@ pub struct Export<'a> {
     pub tolerance: f64,
     /// Squash and stretch; [`Shape::default`] is a ball that stays round.
     pub shape: Shape,
+    /// Whether there is a key at the top of every flight, for those who change the motion by hand; the motion is the same.
+    pub apexes: bool,
 }
 
 /// What is shown of one ball: where it is, and how it looks if that changes.
@@ -139,8 +238,10 @@ impl Export<'_> {
             let says = format!("{:.0} frames are too many: end the motion earlier", end / frame);
             return Err(ExportError(says));
         }
-        if end <= 0.0 {
-            return Err(ExportError("the motion has no length: there is nothing to show".to_owned()));
+        if end < APART * frame {
+            return Err(ExportError(format!(
+                "the motion lasts {end:.1e} s, less than a hundredth of a frame, and there is nothing to show: let it run longer"
+            )));
         }
         self.shape.check().map_err(ExportError)?;
         let balls = self.balls(format, format.sampled());
@@ -150,11 +251,15 @@ impl Export<'_> {
             Format::Blender => blender::script(self, &balls).into_bytes(),
             Format::Maya => maya::script(self, &balls)?.into_bytes(),
             Format::Glb => gltf::binary(self, &balls, &self.balls(format, false))?,
+            Format::Gltf => gltf::text(self, &balls, &self.balls(format, false))?.into_bytes(),
             Format::Usd => usd::samples(self, &balls).into_bytes(),
             Format::UsdSplines => usd::splines(self, &balls).into_bytes(),
             Format::Lottie => lottie::json(self, &balls)?.into_bytes(),
             Format::Svg => svg::animated(self, &balls).into_bytes(),
             Format::Chart => chart::chart(self, &balls).into_bytes(),
+            Format::Html => player::page(self, &balls)?.into_bytes(),
+            Format::Contacts => sound::contacts(self).into_bytes(),
+            Format::Wav => sound::wav(self)?,
         };
         let miss = balls.iter().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
         let shown = balls.iter().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
@@ -170,7 +275,8 @@ impl Export<'_> {
             let path = if sampled || (self.frames.on_twos && format != Format::Chart) {
                 Track::samples(track, self.frames, true)
             } else {
-                track.keys(self.tolerance, self.frames)
+                let keys = track.keys(self.tolerance, self.frames);
+                if self.apexes { keys.with(tops(track), APART * self.frames.rate.frame()) } else { keys }
             };
             let dress = Dress::of(track, form.as_ref(), &path, self.frames);
             Ball { track, path, dress }
@@ -185,6 +291,12 @@ impl Export<'_> {
         let count = (self.motion.end() / self.frames.rate.frame() - 1e-6).ceil() as i64;
         [first, first + count - i64::from(self.motion.loops)]
     }
+}
+
+/// When a track is at the top of a flight, but for the ends of it.
+fn tops(track: &Track) -> impl Iterator<Item = f64> + '_ {
+    let flights = track.stretches.iter().filter(|stretch| stretch.flight);
+    flights.map(|stretch| stretch.top().1)
 }
 
 /// How far the ground reaches on both sides of the plane of x and up, in m.

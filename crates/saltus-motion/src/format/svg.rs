@@ -10,7 +10,20 @@ use crate::curve::Between;
 /// For how long the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
 
+/// Stands for what tells pictures in one page apart until it is known; no text that is shown has a control character.
+const MARK: &str = "\u{1}";
+
+/// The picture, all of whose names begin with a number made of its content: several may stand in one page, and none moves another.
 pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
+    let picture = marked(export, balls);
+    // Fowler, Noll and Vo's hash, 1a.
+    let hash = picture
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    picture.replace(MARK, &format!("s{hash:016x}"))
+}
+
+fn marked(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let view = View::of(export.motion);
     let duration = export.motion.end() + if export.motion.loops { 0.0 } else { PAUSE };
     let (mut style, mut body) = (String::new(), String::new());
@@ -29,15 +42,22 @@ pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
             let of = channels.iter().find(|channel| channel.moves == moves).and_then(|channel| channel.eases.first());
             of.map_or(0.0, |ease| ease.value[0])
         };
-        let (x, y, r) = (start(Moves::X), start(Moves::Y), ball.track.radius * view.scale);
+        let (x, y) = (start(Moves::X), start(Moves::Y));
+        // A ball that would be no more than a dot is drawn larger about its centre.
+        let r = view.radius(ball.track.radius);
         let _ = write!(body, "<g transform=\"translate({x} {y})\">");
         for (k, channel) in channels.iter().enumerate() {
-            let name = format!("b{n}{}", channel.name);
+            let name = format!("{MARK}b{n}{}", channel.name);
             // The first two are shifts from where the ball starts.
             keyframes(&mut style, &name, channel, [x, y].get(k).copied().unwrap_or(0.0), duration);
             let _ = write!(body, "<g class=\"moves\" style=\"animation-name:{name}\">");
         }
-        let _ = write!(body, "<circle class=\"ball\" r=\"{r}\"><title>{}</title></circle>", escaped(&ball.track.name));
+        let _ = write!(
+            body,
+            "<circle class=\"ball\" r=\"{r}\" data-radius=\"{}\"><title>{}</title></circle>",
+            ball.track.radius * view.scale,
+            escaped(&ball.track.name)
+        );
         if ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()) {
             // A mark, so that a turning ball is seen to turn.
             let _ = write!(body, "<path class=\"mark\" stroke-width=\"{}\" d=\"M0 0V{}\"/>", 0.3 * r, -0.8 * r);
@@ -46,15 +66,15 @@ pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     }
     let View { width, height, .. } = view;
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" class=\"{MARK}\">
 <title>{}</title>
 <style>
-.ground{{fill:none;stroke:#777;stroke-width:2}}
-.path{{fill:none;stroke:#999;stroke-width:1;stroke-dasharray:2 4}}
-.ball{{fill:#d9541a}}
-.mark{{stroke:#f2cc99;stroke-linecap:round}}
-.moves{{animation-duration:{duration}s;animation-iteration-count:infinite}}
-{style}@media (prefers-reduced-motion:reduce){{.moves{{animation:none}}}}
+.{MARK} .ground{{fill:none;stroke:#777;stroke-width:2}}
+.{MARK} .path{{fill:none;stroke:#999;stroke-width:1;stroke-dasharray:2 4}}
+.{MARK} .ball{{fill:#d9541a}}
+.{MARK} .mark{{stroke:#f2cc99;stroke-linecap:round}}
+.{MARK} .moves{{animation-duration:{duration}s;animation-iteration-count:infinite}}
+{style}@media (prefers-reduced-motion:reduce){{.{MARK} .moves{{animation:none}}}}
 </style>
 {body}</svg>
 ",

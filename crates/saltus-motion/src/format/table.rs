@@ -5,12 +5,17 @@ use std::fmt::Write;
 use serde_json::{Value, json};
 
 use super::{Ball, Export, ExportError};
-use crate::curve::{Between, Key};
+use crate::curve::{APART, Between, Key};
 use crate::dress::Dress;
 use crate::turn::{STRAIGHT, Turn, axis, product, turned};
 
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
+
+/// A name as a cell: in quotes where it has to be.
+pub(super) fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
 
 /// One row for each key. Where the form or the orientation has keys between those of the path, the path has rows there too; it is the same path.
 pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
@@ -27,17 +32,22 @@ pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     }
     csv.push('\n');
     for Ball { track, path, dress } in balls {
-        let name = if track.name.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", track.name.replace('"', "\"\""))
-        } else {
-            track.name.clone()
-        };
+        let name = quoted(&track.name);
         let mut times: Vec<f64> = path.keys.iter().map(|key| key.t).collect();
         if let Some(dress) = dress.as_ref().filter(|_| path.between == Between::Cubic) {
             times.extend(dress.offset.keys.iter().map(|key| key.t));
             times.extend(dress.aim.iter().chain(&dress.spin).map(|turn| turn.t));
             times.sort_by(f64::total_cmp);
-            times.dedup();
+            // What is one key to programs is one row, at the time of the path's own key.
+            let own = |t: f64| path.keys.iter().any(|key| key.t == t);
+            times.dedup_by(|later, earlier| {
+                let two = own(*later) && own(*earlier) && *later > *earlier;
+                let one = *later - *earlier < APART * export.frames.rate.frame() && !two;
+                if one && own(*later) {
+                    *earlier = *later;
+                }
+                one
+            });
         }
         for t in times {
             let Key { place, enter, leave, contact, .. } = path.key(t);

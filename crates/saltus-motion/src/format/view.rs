@@ -4,6 +4,8 @@ use crate::motion::Motion;
 
 /// The longer side of a picture in its own units.
 const LONGER: f64 = 720.0;
+/// The least radius of a ball in units of the picture.
+const LEAST: f64 = 3.0;
 /// Room around, as a share of the longer side.
 const ROOM: f64 = 0.06;
 
@@ -26,6 +28,11 @@ impl View {
         let scale = LONGER / (longer + 2.0 * room);
         let side = |low: f64, high: f64| ((high - low + 2.0 * room) * scale).ceil();
         Self { scale, width: side(left, right), height: side(low, high), left: left - room, top: high + room }
+    }
+
+    /// The radius that a ball is drawn with: its own, but three units at least, so that it is seen.
+    pub(super) fn radius(&self, radius: f64) -> f64 {
+        (radius * self.scale).max(LEAST)
     }
 
     pub(super) fn x(&self, x: f64) -> f64 {

@@ -1,0 +1,36 @@
+//! What varies from run to run: what can be asked of it.
+
+use clap::Args as ClapArgs;
+use saltus_scene::vary::{Variation, Vary};
+
+/// What may stand behind --vary.
+pub(crate) const VARIATIONS: &str = "Variations, for example:
+  --vary restitution=0.5:0.9:41        41 numbers from 0.5 to 0.9
+  --vary ball.height=1m:10m:100        a hundred heights
+  --vary drag.per_length=1e-3:1:31:log 31 numbers, each by the same factor above the last
+  --vary gravity=earth,moon,mars       a list
+  --vary floor.0.friction=0,0.2,0.4    of the first of several floors
+Several make a grid, in which the first changes slowest; with --random N each of N runs draws from all.";
+
+/// More draws than anyone waits for.
+const MOST_RUNS: u64 = 1_000_000_000_000;
+
+/// What varies, and how.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct Varying {
+    /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
+    #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
+    variations: Vec<Variation>,
+    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all; COUNT does not matter then.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
+    random: Option<u64>,
+    /// The seed of the draws: the same seed gives the same values.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "random")]
+    seed: u64,
+}
+
+impl Varying {
+    pub(crate) fn vary(&self) -> Vary {
+        Vary { variations: self.variations.clone(), random: self.random, seed: self.seed }
+    }
+}

@@ -1,0 +1,192 @@
+//! Velocity, energy, phase portrait, apex ladder, force over deformation.
+
+use crate::{Chart, Measure, PlotError, Stroke};
+use saltus_bounce::effects::Buoyancy;
+use saltus_scene::Shape;
+use saltus_scene::plan::{Moment, Record, Segment};
+
+use super::title;
+
+/// One coordinate of a segment's motion, by powers of the time since its start.
+fn part(segment: &Segment, of: impl Fn(&Moment) -> f64) -> Vec<f64> {
+    segment.coefficients.iter().map(of).collect()
+}
+
+/// A quantity over time through a segment.
+fn over_time(segment: &Segment, y: Vec<f64>) -> Stroke {
+    Stroke::new(segment.span, vec![segment.start, 1.0], y)
+}
+
+/// The two sides of each jump of a ball, as points.
+fn jumps(record: &Record, ball: usize, point: impl Fn(f64, &Moment) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+    let events = record.events();
+    let sides = events.iter().flat_map(|event| event.sides.iter().map(move |sides| (event.t, sides)));
+    let own = sides.filter(|(_, sides)| sides.ball == ball);
+    own.map(|(t, sides)| [point(t, &sides.before), point(t, &sides.after)]).collect()
+}
+
+pub(super) fn velocity(record: &Record) -> Chart {
+    let scene = record.scene();
+    // Of several balls one velocity is drawn: upwards, unless none of them moves that way.
+    let level = |ball: usize| record.segments(ball).iter().all(|segment| segment.at(0.0).velocity.z == 0.0);
+    let sideways = record.balls() > 1 && (0..record.balls()).all(level);
+    let what = if sideways { "Velocity along x" } else { "Velocity" };
+    let mut chart = Chart::new(&title(scene), ("Time", Measure::Time), (what, Measure::Speed));
+    let axes: &[(&str, usize)] = match (scene.dimensions, record.balls()) {
+        (_, 2..) if sideways => &[("along x", 0)],
+        (1, _) | (_, 2..) => &[("up", 2)],
+        (2, _) => &[("up", 2), ("along x", 0)],
+        _ => &[("up", 2), ("along x", 0), ("along y", 1)],
+    };
+    for ball in 0..record.balls() {
+        let segments = record.segments(ball);
+        for &(axis, k) in axes {
+            let label = match (record.balls(), axes.len()) {
+                (1, 1) => String::new(),
+                (1, _) => axis.to_owned(),
+                _ => scene.ball_name(ball),
+            };
+            let strokes = segments.iter().map(|segment| over_time(segment, part(segment, |m| m.velocity[k])));
+            chart = chart.line(&label, strokes).jumps(jumps(record, ball, |t, m| [t, m.velocity[k]]));
+        }
+    }
+    chart
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let at = |c: &[f64], k: usize| c.get(k).copied().unwrap_or(0.0);
+    (0..a.len().max(b.len())).map(|k| at(a, k) + at(b, k)).collect()
+}
+
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; (a.len() + b.len()).saturating_sub(1)];
+    for (i, a) in a.iter().enumerate() {
+        for (k, b) in b.iter().enumerate() {
+            product[i + k] += a * b;
+        }
+    }
+    product
+}
+
+/// Potential and kinetic energy of all balls, and their sum; per mass where there is none.
+pub(super) fn energy(record: &Record) -> Chart {
+    let scene = record.scene();
+    let known = scene.balls.iter().all(|ball| ball.mass.is_some());
+    let measure = if known { Measure::Energy } else { Measure::SpecificEnergy };
+    let mut kinds: [Vec<Stroke>; 3] = [Vec::new(), Vec::new(), Vec::new()];
+    let all: Vec<Vec<Segment>> = (0..record.balls()).map(|ball| record.segments(ball)).collect();
+    // All balls of a run have the same pieces of time.
+    for n in 0..all[0].len() {
+        let (mut potential, mut kinetic) = (Vec::new(), Vec::new());
+        for (ball, segments) in scene.balls.iter().zip(&all) {
+            let Some(segment) = segments.get(n) else { continue };
+            let gravity =
+                scene.effects.buoyancy(ball, scene.gravity).map_or(scene.gravity.value(), Buoyancy::net_gravity);
+            let mass = ball.mass.unwrap_or(1.0);
+            let turning = ball.inertia * ball.radius.unwrap_or(0.0).powi(2);
+            let heights: Vec<f64> = segment.coefficients.iter().map(|m| mass * gravity * m.height()).collect();
+            potential = sum(&potential, &heights);
+            for k in 0..3 {
+                let (v, w) = (part(segment, |m| m.velocity[k]), part(segment, |m| m.spin[k]));
+                let spin: Vec<f64> = product(&w, &w).iter().map(|c| 0.5 * mass * turning * c).collect();
+                let speed: Vec<f64> = product(&v, &v).iter().map(|c| 0.5 * mass * c).collect();
+                kinetic = sum(&kinetic, &sum(&speed, &spin));
+            }
+        }
+        let total = sum(&potential, &kinetic);
+        for (strokes, y) in kinds.iter_mut().zip([total, potential, kinetic]) {
+            strokes.push(over_time(&all[0][n], y));
+        }
+    }
+    let name = if known { "Energy" } else { "Energy per mass" };
+    let chart = Chart::new(&title(scene), ("Time", Measure::Time), (name, measure));
+    let [total, potential, kinetic] = kinds;
+    let ends = |strokes: &[Stroke]| -> Vec<[[f64; 2]; 2]> {
+        let point = |(x, y): (f64, f64)| [x, y];
+        strokes.windows(2).map(|pair| [point(pair[0].end()), point(pair[1].start())]).collect()
+    };
+    let jumps = ends(&total);
+    chart.line("total", total).line("potential", potential).line("kinetic", kinetic).jumps(jumps)
+}
+
+/// Velocity over height; an arrow on each of the first arcs.
+pub(super) fn phase(record: &Record) -> Chart {
+    let scene = record.scene();
+    const ARROWS: usize = 6;
+    let mut chart = Chart::new(&title(scene), ("Height", Measure::Length), ("Velocity", Measure::Speed));
+    for ball in 0..record.balls() {
+        let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
+        let segments = record.segments(ball);
+        let point = |m: &Moment| [m.height(), m.velocity.z];
+        let long = segments.iter().filter(|segment| segment.flight && segment.span > 0.02 * record.until());
+        let arrows = long.take(ARROWS).map(|segment| {
+            let at = |part: f64| point(&segment.at(part * segment.span));
+            [at(0.5), at(0.501)].map(|p| p)
+        });
+        // An arrow points from a little before to the middle.
+        let arrows: Vec<_> = arrows.map(|[at, next]| [at, [2.0 * next[0] - at[0], 2.0 * next[1] - at[1]]]).collect();
+        let strokes = segments
+            .iter()
+            .map(|segment| Stroke::new(segment.span, part(segment, Moment::height), part(segment, |m| m.velocity.z)));
+        chart = chart.line(&label, strokes).jumps(jumps(record, ball, |_, m| point(m))).arrows(arrows);
+    }
+    chart
+}
+
+/// Apex heights above the floor, bounce by bounce; a start at rest is bounce 0.
+pub(super) fn ladder(record: &Record) -> Result<Chart, PlotError> {
+    let scene = record.scene();
+    /// Apexes below this part of the first are of no bounce that is seen.
+    const LEAST: f64 = 1e-6;
+    let level = scene.floors.iter().find_map(|floor| match floor.shape {
+        Shape::Level { height } => Some(height),
+        _ => None,
+    });
+    let level = level.unwrap_or(0.0);
+    let mut chart = Chart::new(&title(scene), ("Bounce", Measure::Count), ("Apex", Measure::Length)).logarithmic();
+    let mut count = 0;
+    for ball in 0..record.balls() {
+        let mut heights: Vec<f64> = Vec::new();
+        if scene.balls[ball].velocity.z == 0.0 {
+            heights.push(scene.balls[ball].lowest().z - level);
+        }
+        let first = usize::from(heights.is_empty());
+        heights.extend(record.apexes(ball).iter().map(|apex| apex.height - level));
+        let most = heights.iter().copied().fold(0.0, f64::max);
+        let numbers = (0_u32..).map(|n| f64::from(n) + if first == 1 { 1.0 } else { 0.0 });
+        let points: Vec<[f64; 2]> =
+            numbers.zip(heights).take_while(|&(_, h)| h > LEAST * most).map(|(n, h)| [n, h]).collect();
+        count = count.max(points.len());
+        let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
+        chart = chart.line(&label, Stroke::polygon(&points)).marks(points);
+    }
+    if count < 2 {
+        return Err(PlotError::Missing(
+            "an apex ladder needs two apexes above the floor at least, and this run has fewer: let it run longer, or draw another kind",
+        ));
+    }
+    Ok(chart)
+}
+
+/// Force over deformation of the first contacts.
+pub(super) fn hysteresis(record: &Record) -> Result<Chart, PlotError> {
+    let scene = record.scene();
+    const CONTACTS: usize = 3;
+    const POINTS: usize = 60;
+    let mut chart = Chart::new(&title(scene), ("Deformation", Measure::Length), ("Force", Measure::Force));
+    let mut drawn = 0;
+    for contact in 0..CONTACTS {
+        let points = record.hysteresis(contact, POINTS);
+        if points.is_empty() {
+            break;
+        }
+        drawn += 1;
+        chart = chart.line(&format!("contact {}", contact + 1), Stroke::polygon(&points));
+    }
+    if drawn == 0 {
+        return Err(PlotError::Missing(
+            "force over deformation needs a contact that takes time: give the scene a [contact] with a law such as \"hertz\", or draw another kind",
+        ));
+    }
+    Ok(chart)
+}

@@ -1,0 +1,70 @@
+//! What only the whole scene can tell: whether the balls have room, and whether the run has an end.
+
+use std::ops::Range;
+
+use super::error::{Fault, short};
+use super::{Ball, Contact, Scene};
+
+/// How far rounding may let things overlap, relative to the numbers involved.
+const ROUNDING: f64 = 1e-12;
+
+pub(super) fn scene(scene: &Scene, place: impl Fn(usize) -> Range<usize>, ends: &Range<usize>) -> Result<(), Fault> {
+    for (n, ball) in scene.balls.iter().enumerate() {
+        for (m, floor) in scene.floors.iter().enumerate() {
+            if let Some(says) = floor.blocked(ball) {
+                let which = if scene.floors.len() > 1 { format!(" (floor {})", m + 1) } else { String::new() };
+                let (wrong, right) = says.split_once(": ").unwrap_or((&says, "move it"));
+                return Err(Fault::new(place(n), format!("{wrong}{which}: {right}")));
+            }
+        }
+        for (m, other) in scene.balls[..n].iter().enumerate() {
+            let (apart, room) = ((ball.centre() - other.centre()).norm(), radius(ball) + radius(other));
+            if apart < room * (1.0 - ROUNDING) || apart == 0.0 {
+                let says = format!(
+                    "ball {} starts inside ball {}: their centres are {} m apart, move them to {} m or more",
+                    n + 1,
+                    m + 1,
+                    short(apart),
+                    short(room)
+                );
+                return Err(Fault::new(place(n), says));
+            }
+        }
+    }
+    if scene.run.until.is_none()
+        && scene.run.most_jumps.is_none()
+        && let Some(why) = endless(scene)
+    {
+        let says = format!("nothing ends this run, {why}: say when to stop, with `until = \"5 s\"` under [run]");
+        return Err(Fault::new(ends.clone(), says));
+    }
+    Ok(())
+}
+
+fn radius(ball: &Ball) -> f64 {
+    ball.radius.unwrap_or(0.0)
+}
+
+/// Why the scene may go on for ever.
+fn endless(scene: &Scene) -> Option<&'static str> {
+    let (balls, floors) = (&scene.balls, &scene.floors);
+    let drag = scene.effects.linear.is_some() || scene.effects.quadratic.is_some();
+    let elastic = |m: usize| scene.law(0, m).and_then(super::Law::constant).is_some_and(|cor| cor.value() == 1.0);
+    if floors.is_empty() {
+        Some("there is no floor")
+    } else if scene.gravity.value() == 0.0 {
+        Some("there is no gravity to bring the ball down")
+    } else if balls.len() > 1 {
+        Some("there are several balls")
+    } else if floors.iter().any(|floor| floor.motion.is_some()) {
+        Some("the floor moves")
+    } else if scene.dimensions > 1 {
+        Some("a ball that moves sideways may slide or roll on")
+    } else if scene.contact != Contact::Rigid {
+        Some("a contact that takes time dies out ever more slowly")
+    } else if !drag && (0..floors.len()).any(elastic) {
+        Some("the ball loses nothing")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,66 @@
+//! The steppers of the engine as one, chosen as a plan is made: so that each model is compiled once.
+
+use saltus::step::{Either, Stepper as Step, Trial};
+use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
+
+use crate::Stepper;
+
+/// One of the engine's methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Method(pub(super) Stepper);
+
+impl Method {
+    /// What the scene names, or what its tolerance asks for.
+    pub(super) fn of(named: Option<Stepper>, tolerance: f64) -> Self {
+        Self(named.unwrap_or(if tolerance < Auto::TIGHT { Stepper::Dop853 } else { Stepper::Tsit5 }))
+    }
+
+    pub(super) const fn name(self) -> &'static str {
+        self.0.name()
+    }
+
+    pub(super) const fn is_stiff(self) -> bool {
+        matches!(self.0, Stepper::Rodas5p)
+    }
+}
+
+/// Any of them: an explicit one, or the stiff one.
+pub(super) type Chosen = Either<Either<Tsit5, Dop853>, Rodas5P>;
+
+impl From<Method> for Chosen {
+    fn from(method: Method) -> Self {
+        match method.0 {
+            Stepper::Tsit5 => Self::Loose(Either::Loose(Tsit5)),
+            Stepper::Dop853 => Self::Loose(Either::Tight(Dop853)),
+            Stepper::Rodas5p => Self::Tight(Rodas5P),
+        }
+    }
+}
+
+/// For models that a formula solves in every mode: it is never asked for a step, and would have none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NoStepper;
+
+impl From<Method> for NoStepper {
+    fn from(_: Method) -> Self {
+        Self
+    }
+}
+
+impl Step for NoStepper {
+    type Stages<S: State> = ();
+    type Dense<S: State> = [S; 1];
+
+    fn error_order(&self) -> f64 {
+        1.0
+    }
+    fn trial<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, slope: &S, _: f64) -> Trial<S, ()> {
+        Trial { end: x.with(|_| f64::NAN), slope: *slope, stages: () }
+    }
+    fn error<S: State>(&self, _: f64, _: Trial<&S, &()>, _: impl Fn(&S) -> f64) -> f64 {
+        f64::NAN
+    }
+    fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, _: Trial<&S, &()>) -> [S; 1] {
+        [*x]
+    }
+}

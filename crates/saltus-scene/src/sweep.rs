@@ -1,0 +1,456 @@
+//! A scene run many times with other values, and each run as a row: what of it a table of many runs wants.
+
+use std::ops::ControlFlow;
+
+use crate::number::number;
+use crate::plan::{Moment, Outcome};
+use crate::vary::{Value, Variation, Vary, refused};
+use crate::{Error, Run, Scene, Template};
+
+/// A result of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Column {
+    /// How many impacts there were.
+    Impacts,
+    /// When the first began.
+    FirstImpact,
+    /// And the last.
+    LastImpact,
+    /// How high the first ball rose after its first impact.
+    FirstApex,
+    /// From when on everything was at rest.
+    Rest,
+    /// Why the run ended: "time", "jumps", "zeno", "evaluations", "cascade"; or "refused" or "failed", and there was no run.
+    End,
+    /// When it ended.
+    EndTime,
+    /// Where each ball was then.
+    Position,
+    /// How fast each ball was then.
+    Velocity,
+    /// How fast each ball turned then.
+    Spin,
+    /// How many jumps there were.
+    Jumps,
+    /// How many steps were tried.
+    Steps,
+    /// How often flows and guards were evaluated.
+    Evaluations,
+    /// Why there was no run.
+    Why,
+}
+
+impl Column {
+    /// Every one, in the order in which they are written.
+    pub const ALL: [Self; 14] = [
+        Self::Impacts,
+        Self::FirstImpact,
+        Self::LastImpact,
+        Self::FirstApex,
+        Self::Rest,
+        Self::End,
+        Self::EndTime,
+        Self::Position,
+        Self::Velocity,
+        Self::Spin,
+        Self::Jumps,
+        Self::Steps,
+        Self::Evaluations,
+        Self::Why,
+    ];
+
+    /// Its name, which heads its cells where it has one for all balls.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Impacts => "impacts",
+            Self::FirstImpact => "first_impact_s",
+            Self::LastImpact => "last_impact_s",
+            Self::FirstApex => "first_apex_m",
+            Self::Rest => "rest_s",
+            Self::End => "end",
+            Self::EndTime => "end_s",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Spin => "spin",
+            Self::Jumps => "jumps",
+            Self::Steps => "steps",
+            Self::Evaluations => "evaluations",
+            Self::Why => "why",
+        }
+    }
+
+    /// What it says of a run.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Impacts => "How many impacts there were",
+            Self::FirstImpact => "When the first began",
+            Self::LastImpact => "And the last",
+            Self::FirstApex => "How high the first ball rose after its first impact",
+            Self::Rest => "From when on everything was at rest",
+            Self::End => {
+                "Why the run ended: \"time\", \"jumps\", \"zeno\", \"evaluations\", \"cascade\"; or \"refused\" or \"failed\", and there was no run"
+            }
+            Self::EndTime => "When it ended",
+            Self::Position => "Where each ball was then",
+            Self::Velocity => "How fast each ball was then",
+            Self::Spin => "How fast each ball turned then",
+            Self::Jumps => "How many jumps there were",
+            Self::Steps => "How many steps were tried",
+            Self::Evaluations => "How often flows and guards were evaluated",
+            Self::Why => "Why there was no run",
+        }
+    }
+}
+
+/// How rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowFormat {
+    /// For a spreadsheet: cells with commas between.
+    Csv,
+    /// For programs: an object of JSON in each line.
+    Jsonl,
+}
+
+impl RowFormat {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Csv, Self::Jsonl];
+
+    /// Its name, which is what its files end in.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Jsonl => "jsonl",
+        }
+    }
+
+    /// What it is for.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Csv => "For a spreadsheet",
+            Self::Jsonl => "For programs: an object of JSON in each line",
+        }
+    }
+}
+
+/// The runs of a scene with other values. A row depends on the number of its run alone, so runs may be made in any order and anywhere.
+///
+/// ```
+/// use saltus_scene::sweep::{RowFormat, Sweep};
+/// use saltus_scene::{Run, vary::Vary};
+/// let vary = Vary::new(&["restitution=0.5:0.9:5"])?;
+/// let toml = b"restitution = 0.8\nball = { height = '1 m' }\n";
+/// let sweep = Sweep::new("drop.toml", toml, &vary, Run::default(), RowFormat::Csv, None)?;
+/// assert!(sweep.header().starts_with("run,restitution,impacts,first_impact_s,"));
+/// let rows: Vec<_> = (0..sweep.runs()).map(|run| sweep.row(run)).collect();
+/// assert_eq!(sweep.text(), sweep.header() + &rows.iter().map(|row| row.text.as_str()).collect::<String>());
+/// assert!(rows.len() == 5 && rows[4].text.starts_with("4,0.9,") && rows[4].why.is_none());
+/// # Ok::<(), saltus_scene::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Sweep<'a> {
+    template: Template<'a>,
+    vary: &'a Vary,
+    end: Run,
+    runs: u64,
+    first: Scene,
+    rows: Rows,
+}
+
+/// A run as a row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// The line, its end included.
+    pub text: String,
+    /// Why it came to nothing, if it did.
+    pub why: Option<String>,
+}
+
+/// Why there is no run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Nothing {
+    /// "refused" for a scene that cannot be run, "failed" for a run that broke.
+    pub end: &'static str,
+    /// In one line.
+    pub why: String,
+}
+
+impl<'a> Sweep<'a> {
+    /// A sweep of the scene `toml`, which messages call `name`; what `run` says goes before what the scene says. The rows have `columns`, or all
+    /// that the scene has.
+    ///
+    /// # Errors
+    /// [`Error`] if a key varies twice, the number of runs is not known, or the first run cannot be planned.
+    pub fn new(
+        name: &str,
+        toml: &'a [u8],
+        vary: &'a Vary,
+        run: Run,
+        format: RowFormat,
+        columns: Option<&[Column]>,
+    ) -> Result<Self, Error> {
+        let (keys, runs) = (vary.keys()?, vary.runs()?);
+        let template = Template::parse(name, toml, &keys).map_err(Error::new)?;
+        // What is wrong with the first run is wrong with the sweep.
+        let values = vary.values(0);
+        let refused = |error: &dyn std::fmt::Display| Error::new(format!("run 0, {}: {error}", vary.says(0)));
+        let first = made(&template, &values, run).map_err(|error| refused(&error))?;
+        first.plan().map_err(|error| refused(&error))?;
+        let varied = vary.variations.iter().map(Variation::header).collect();
+        let rows = Rows::new(format, varied, columns, &first);
+        Ok(Self { template, vary, end: run, runs, first, rows })
+    }
+
+    /// How many runs there are.
+    #[must_use]
+    pub const fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    /// The scene of the first run.
+    #[must_use]
+    pub const fn first(&self) -> &Scene {
+        &self.first
+    }
+
+    /// The names of all cells, the run's number first.
+    #[must_use]
+    pub fn headers(&self) -> &[String] {
+        &self.rows.headers
+    }
+
+    /// The first line, if the format has one.
+    #[must_use]
+    pub fn header(&self) -> String {
+        self.rows.header()
+    }
+
+    /// What the row of a run begins with.
+    #[must_use]
+    pub fn beginning(&self, run: u64) -> String {
+        self.rows.beginning(run)
+    }
+
+    /// What came of a run, counted from 0.
+    ///
+    /// # Errors
+    /// [`Nothing`]: the scene is refused with these values, or its run failed.
+    pub fn outcome(&self, run: u64) -> Result<Outcome, Nothing> {
+        self.came(&self.vary.values(run))
+    }
+
+    fn came(&self, values: &[Value]) -> Result<Outcome, Nothing> {
+        let nothing = |end: &'static str, why: String| Nothing { end, why: why.replace('\n', " ") };
+        made(&self.template, values, self.end)
+            .map_err(|error| nothing("refused", refused(&error)))
+            .and_then(|scene| scene.plan().map_err(|error| nothing("refused", error.to_string())))
+            .and_then(|plan| plan.outcome().map_err(|error| nothing("failed", error.to_string())))
+    }
+
+    /// The row of a run, counted from 0.
+    #[must_use]
+    pub fn row(&self, run: u64) -> Row {
+        let values = self.vary.values(run);
+        let came = self.came(&values);
+        let text = self.rows.row(run, &values, &came);
+        Row { text, why: came.err().map(|nothing| nothing.why) }
+    }
+
+    /// The whole table, its runs made on all cores where `saltus` has its feature `rayon`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = self.header();
+        let runs = usize::try_from(self.runs).unwrap_or(usize::MAX);
+        let _: ControlFlow<()> = saltus::ensemble(
+            0..runs,
+            |run| self.row(run as u64).text,
+            |_, row| {
+                text.push_str(&row);
+                ControlFlow::Continue(())
+            },
+        );
+        text
+    }
+}
+
+/// The scene of a run.
+fn made(template: &Template<'_>, values: &[Value], end: Run) -> Result<Scene, crate::SceneError> {
+    let values: Vec<&str> = values.iter().map(|value| value.toml.as_str()).collect();
+    template.scene(&values, end)
+}
+
+/// What stands in a cell.
+enum Cell {
+    None,
+    Number(f64),
+    /// A number as text.
+    Written(String),
+    Count(u64),
+    Word(String),
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::None, Self::Number)
+    }
+}
+
+/// The rows of a table.
+#[derive(Debug)]
+struct Rows {
+    format: RowFormat,
+    columns: Vec<Column>,
+    /// Names of all cells, the run's number first.
+    headers: Vec<String>,
+    dimensions: usize,
+    balls: usize,
+}
+
+impl Rows {
+    /// The table of `columns`, or of all that `scene` has.
+    fn new(format: RowFormat, varied: Vec<String>, columns: Option<&[Column]>, scene: &Scene) -> Self {
+        let rubs = scene.floors.iter().any(|floor| floor.friction.coefficient() > 0.0);
+        let spins = scene.dimensions > 1 && (rubs || scene.balls.iter().any(|ball| ball.spin.is_some()));
+        let all = |column: &&Column| **column != Column::Spin || spins;
+        let columns = columns.map_or_else(|| Column::ALL.iter().filter(all).copied().collect(), Vec::from);
+        let (dimensions, balls) = (scene.dimensions, scene.balls.len());
+        let mut rows = Self { format, columns, headers: Vec::new(), dimensions, balls };
+        rows.headers.push("run".to_owned());
+        rows.headers.extend(varied);
+        for column in rows.columns.clone() {
+            rows.headers.extend(rows.names(column));
+        }
+        rows
+    }
+
+    /// The first line, if the format has one.
+    fn header(&self) -> String {
+        match self.format {
+            RowFormat::Csv => self.headers.join(",") + "\n",
+            RowFormat::Jsonl => String::new(),
+        }
+    }
+
+    /// What the row of a run begins with.
+    fn beginning(&self, run: u64) -> String {
+        match self.format {
+            RowFormat::Csv => format!("{run},"),
+            RowFormat::Jsonl => format!("{{\"run\":{run},"),
+        }
+    }
+
+    fn names(&self, column: Column) -> Vec<String> {
+        let parts: &[&str] = match (column, self.dimensions) {
+            (Column::Position, 1) => &["height_m"],
+            (Column::Position, 2) => &["x_m", "height_m"],
+            (Column::Position, _) => &["x_m", "y_m", "height_m"],
+            (Column::Velocity, 1) => &["velocity_m_per_s"],
+            (Column::Velocity, 2) => &["velocity_x_m_per_s", "velocity_m_per_s"],
+            (Column::Velocity, _) => &["velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_m_per_s"],
+            (Column::Spin, 1 | 2) => &["spin_rad_per_s"],
+            (Column::Spin, _) => &["spin_x_rad_per_s", "spin_y_rad_per_s", "spin_up_rad_per_s"],
+            _ => return vec![column.name().to_owned()],
+        };
+        let of = |ball: usize| {
+            let name =
+                move |part: &&str| if self.balls == 1 { (*part).to_owned() } else { format!("ball.{ball}.{part}") };
+            parts.iter().map(name)
+        };
+        (0..self.balls).flat_map(of).collect()
+    }
+
+    /// The row of a run, or of one that came to nothing: `end` says how, and `why`.
+    fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> String {
+        let mut row = String::with_capacity(200);
+        let mut names = self.headers.iter();
+        let mut put = |cell: Cell| self.put(&mut row, names.next().map_or("", String::as_str), &cell);
+        put(Cell::Count(run));
+        for value in values {
+            put(if value.word { Cell::Word(value.cell.clone()) } else { Cell::Written(value.cell.clone()) });
+        }
+        for &column in &self.columns {
+            let outcome = match came {
+                Ok(outcome) => outcome,
+                Err(nothing) => {
+                    match column {
+                        Column::End => put(Cell::Word(nothing.end.to_owned())),
+                        Column::Why => put(Cell::Word(nothing.why.clone())),
+                        _ => self.names(column).iter().for_each(|_| put(Cell::None)),
+                    }
+                    continue;
+                }
+            };
+            let cost = outcome.cost;
+            match column {
+                Column::Impacts => put(Cell::Count(outcome.impacts as u64)),
+                Column::FirstImpact => put(outcome.first_impact.into()),
+                Column::LastImpact => put(outcome.last_impact.into()),
+                Column::FirstApex => put(outcome.first_apex.map(|apex| apex.height).into()),
+                Column::Rest => put(outcome.rest.into()),
+                Column::End => put(Cell::Word(outcome.end.name().to_owned())),
+                Column::EndTime => put(Cell::Number(outcome.until)),
+                Column::Position | Column::Velocity | Column::Spin => {
+                    for ball in &outcome.balls {
+                        self.parts(column, ball).for_each(&mut put);
+                    }
+                }
+                Column::Jumps => put(Cell::Count(cost.jumps as u64)),
+                Column::Steps => put(Cell::Count(cost.steps)),
+                Column::Evaluations => put(Cell::Count(cost.flows + cost.guards)),
+                Column::Why => put(Cell::None),
+            }
+        }
+        row.push_str(if self.format == RowFormat::Csv { "\n" } else { "}\n" });
+        row
+    }
+
+    fn parts(&self, column: Column, moment: &Moment) -> impl Iterator<Item = Cell> {
+        let spin = column == Column::Spin;
+        let vector = match column {
+            Column::Position => moment.position,
+            Column::Velocity => moment.velocity,
+            _ => moment.spin,
+        };
+        let parts: &[usize] = match (self.dimensions, spin) {
+            // In a plane a ball turns about y, against it where the spin is positive.
+            (1 | 2, true) => &[1],
+            (1, false) => &[2],
+            (2, false) => &[0, 2],
+            _ => &[0, 1, 2],
+        };
+        let sign = if spin && self.dimensions < 3 { -1.0 } else { 1.0 };
+        parts.iter().map(move |&part| Cell::Number(sign * vector[part]))
+    }
+
+    fn put(&self, row: &mut String, name: &str, cell: &Cell) {
+        if self.format == RowFormat::Csv {
+            if !row.is_empty() {
+                row.push(',');
+            }
+            match cell {
+                Cell::None => {}
+                Cell::Number(value) => row.push_str(&number(*value)),
+                Cell::Written(number) => row.push_str(number),
+                Cell::Count(count) => row.push_str(&count.to_string()),
+                Cell::Word(word) if word.contains([',', '"', '\n']) => {
+                    row.extend(["\"", &word.replace('"', "\"\""), "\""]);
+                }
+                Cell::Word(word) => row.push_str(word),
+            }
+            return;
+        }
+        row.extend([if row.is_empty() { "{\"" } else { ",\"" }, name, "\":"]);
+        match cell {
+            Cell::None => row.push_str("null"),
+            Cell::Number(value) if !value.is_finite() => row.push_str("null"),
+            Cell::Number(value) => row.push_str(&number(*value)),
+            Cell::Written(number) => row.push_str(number),
+            Cell::Count(count) => row.push_str(&count.to_string()),
+            Cell::Word(word) => row.push_str(&serde_json::Value::from(word.as_str()).to_string()),
+        }
+    }
+}

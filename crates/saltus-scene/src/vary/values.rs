@@ -1,0 +1,233 @@
+//! A key of the scene, and the values it takes.
+
+use std::str::FromStr;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use saltus_bounce::units::Quantity;
+
+use crate::number::{self, number};
+
+/// A key of the scene, and the values it takes.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// Its path in the file.
+    pub key: String,
+    /// As it was written.
+    pub text: String,
+    values: Values,
+}
+
+#[derive(Clone, Debug)]
+enum Values {
+    Range { from: f64, to: f64, count: Option<u64>, logarithmic: bool, unit: Option<String> },
+    List { list: Vec<Value>, unit: Option<String> },
+}
+
+/// A value of a run.
+#[derive(Clone, Debug)]
+pub struct Value {
+    /// As the scene file would have it.
+    pub toml: String,
+    /// As the table has it: a number, or a word.
+    pub cell: String,
+    /// Whether it is a word.
+    pub word: bool,
+}
+
+impl Value {
+    fn number(value: f64, unit: Option<&str>) -> Self {
+        let toml = match unit {
+            Some(unit) => format!("\"{value:?} {unit}\""),
+            // Some keys take whole numbers only.
+            None if value.fract() == 0.0 && value.abs() < 2e9 => format!("{value:.0}"),
+            None => format!("{value:?}"),
+        };
+        Self { toml, cell: number(value), word: false }
+    }
+
+    /// Four digits and the unit, `1.5m` or `30mps`, or the word: short enough for the name of a file.
+    #[must_use]
+    pub fn short(&self) -> String {
+        match number::split(self.bare()) {
+            Some((number, unit)) => format!("{}{}", number::digits(number, 4), unit.replace('/', "p")),
+            None => self.bare().to_owned(),
+        }
+    }
+
+    /// Without quotes.
+    #[must_use]
+    pub fn bare(&self) -> &str {
+        self.toml.trim_matches('"')
+    }
+
+    fn word(word: &str) -> Self {
+        let toml = if matches!(word, "true" | "false") { word.to_owned() } else { format!("\"{word}\"") };
+        Self { toml, cell: word.to_owned(), word: true }
+    }
+}
+
+impl FromStr for Variation {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (key, values) =
+            text.split_once('=').ok_or("a key and its values have `=` between them, such as restitution=0.5:0.9:41")?;
+        let (key, values) = (key.trim(), values.trim());
+        let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+        if !key.split('.').all(|step| !step.is_empty() && step.chars().all(plain)) {
+            return Err(format!("'{key}' is no key: write a path such as ball.height or floor.0.friction"));
+        }
+        if values.contains(['"', '\'', '\\']) || values.contains(char::is_control) {
+            return Err("values stand without quotes, such as ball.height=1m:10m:100".to_owned());
+        }
+        let values = if values.contains(':') { range(values)? } else { list(values)? };
+        Ok(Self { key: key.to_owned(), text: text.trim().to_owned(), values })
+    }
+}
+
+/// FROM:TO:COUNT, with `:log` behind it or not; for random draws without COUNT.
+fn range(text: &str) -> Result<Values, String> {
+    let mut parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    let logarithmic = parts.last() == Some(&"log");
+    if logarithmic {
+        parts.pop();
+    }
+    let (from, to, count) = match parts[..] {
+        [from, to] => (from, to, None),
+        [from, to, count] => {
+            let says = |_| format!("'{count}' is no count: write FROM:TO:COUNT, such as 1m:10m:100");
+            (from, to, Some(count.parse::<u64>().map_err(says)?))
+        }
+        _ => return Err(format!("'{text}' is no range: write FROM:TO:COUNT, such as 1m:10m:100")),
+    };
+    let read = |text: &str| {
+        let wrong = || format!("'{text}' is not a number: write FROM:TO:COUNT, such as 1m:10m:100");
+        let (value, unit) = parsed(text).ok_or_else(wrong)?;
+        Ok::<_, String>((value, unit.map(str::to_owned)))
+    };
+    let ((from, unit), (to, other)) = (read(from)?, read(to)?);
+    let (to, unit) = match (unit, other) {
+        (Some(unit), Some(other)) if unit != other => (to * ratio(&other, &unit)?, Some(unit)),
+        (unit, other) => (to, unit.or(other)),
+    };
+    match count {
+        Some(0) => return Err("no value is asked for: give a count above zero".to_owned()),
+        Some(1) if from != to => {
+            return Err("one value does not reach from end to end: give a count of two or more".to_owned());
+        }
+        _ => {}
+    }
+    if logarithmic && !(from > 0.0 && to > 0.0) {
+        return Err("a range by equal factors has both ends above zero".to_owned());
+    }
+    if !(to - from).is_finite() {
+        return Err("the range is too wide".to_owned());
+    }
+    Ok(Values::Range { from, to, count, logarithmic, unit })
+}
+
+fn list(text: &str) -> Result<Values, String> {
+    let value = |item: &str| match (parsed(item), item) {
+        (_, "") => Err("a value is missing: write A,B,C or FROM:TO:COUNT".to_owned()),
+        (Some((value, unit)), _) => Ok((Value::number(value, unit), unit.map(str::to_owned))),
+        (None, word) => Ok((Value::word(word), None)),
+    };
+    let read: Vec<(Value, Option<String>)> =
+        text.split(',').map(|item| value(item.trim())).collect::<Result<_, _>>()?;
+    // Numbers of one unit are numbers; else each cell says its unit.
+    let first = read.first().and_then(|(_, unit)| unit.clone());
+    let one = read.iter().all(|(value, unit)| !value.word && *unit == first);
+    let values = read.into_iter().zip(text.split(',')).map(|((value, unit), item)| match unit {
+        Some(_) if !one => Value { cell: item.trim().to_owned(), word: true, ..value },
+        _ => value,
+    });
+    Ok(Values::List { list: values.collect(), unit: first.filter(|_| one) })
+}
+
+/// A number, and the unit behind it if there is one.
+fn parsed(text: &str) -> Option<(f64, Option<&str>)> {
+    let (value, unit) = number::split(text)?;
+    Some((value, (!unit.is_empty()).then_some(unit)))
+}
+
+/// What one `unit` is in `other`.
+fn ratio(unit: &str, other: &str) -> Result<f64, String> {
+    let both = |quantity: &Quantity| Some(quantity.scale(unit)? / quantity.scale(other)?);
+    Quantity::ALL.iter().find_map(both).ok_or_else(|| format!("'{other}' and '{unit}' do not measure the same"))
+}
+
+impl Variation {
+    /// How many values it takes; `None` for a range without a count.
+    #[must_use]
+    pub fn count(&self) -> Option<u64> {
+        match &self.values {
+            Values::Range { count, .. } => *count,
+            Values::List { list, .. } => Some(list.len() as u64),
+        }
+    }
+
+    /// The name of its column.
+    #[must_use]
+    pub fn header(&self) -> String {
+        let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
+        match unit {
+            None => self.key.clone(),
+            Some(unit) => {
+                let unit = unit.strip_prefix("1/").map_or_else(|| unit.to_owned(), |rest| format!("per_{rest}"));
+                let unit = unit.replace('/', "_per_").replace(' ', "_").replace(['^', '(', ')'], "");
+                format!("{}_{}", self.key, unit.trim_start_matches('_'))
+            }
+        }
+    }
+
+    /// Value `n` of as many as it takes.
+    #[allow(clippy::cast_precision_loss)] // counts are below 10^12
+    #[must_use]
+    pub fn value(&self, n: u64) -> Value {
+        match &self.values {
+            Values::List { list, .. } => list[n as usize].clone(),
+            Values::Range { from, to, count, logarithmic, unit } => {
+                let last = count.unwrap_or(1).saturating_sub(1);
+                let value = match (n, *logarithmic) {
+                    (0, _) => *from,
+                    _ if n >= last => *to,
+                    (_, false) => (from * (last - n) as f64 + to * n as f64) / last as f64,
+                    (_, true) => between(*from, *to, n as f64 / last as f64),
+                };
+                Value::number(value, unit.as_deref())
+            }
+        }
+    }
+}
+
+/// Values drawn from a seed, each run's from a stream of its own.
+pub(super) struct Draws(ChaCha8Rng);
+
+impl Draws {
+    pub(super) fn of(seed: u64, run: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(run);
+        Self(random)
+    }
+
+    /// A value drawn from all that a variation may take.
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    pub(super) fn next(&mut self, variation: &Variation) -> Value {
+        let bits = self.0.next_u64();
+        match &variation.values {
+            Values::List { list, .. } => list[((u128::from(bits) * list.len() as u128) >> 64) as usize].clone(),
+            Values::Range { from, to, logarithmic, unit, .. } => {
+                let share = (bits >> 11) as f64 * 2.0_f64.powi(-53);
+                let value = if *logarithmic { between(*from, *to, share) } else { from + (to - from) * share };
+                Value::number(value.clamp(from.min(*to), from.max(*to)), unit.as_deref())
+            }
+        }
+    }
+}
+
+/// By equal factors, to the fifteen digits that a logarithm keeps.
+fn between(from: f64, to: f64, share: f64) -> f64 {
+    let value = from * (to / from).powf(share);
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
