@@ -153,6 +153,14 @@ pub enum FindingKind {
     },
     TrendCauses,
 
+    /// The contacts can be read in another way about as well, with another COR.
+    ReadOtherwise {
+        cor: f64,
+        /// Which way: the flights that it counts from the first contact to the last, of the first trial that differs.
+        flights: usize,
+        instead_of: usize,
+    },
+
     // Heights and times, and the table as a whole.
     SigmaAssumed {
         heights: bool,

@@ -92,6 +92,9 @@ pub(super) fn widening(widening: &Widening) -> String {
             "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
              tennis) or its drag (--drag)"
         ),
+        Widening::Lens { share } => format!(
+            "a lens that bends the picture by a few hundredths may move the COR by {share:.3}: film from further away, with the path in the middle"
+        ),
         Widening::Misfit { rms, noise, share } => format!(
             "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \
              the lens, the scale and the tracking"

@@ -44,6 +44,10 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
         FindingKind::ErrorsTooLarge { readings, times } => format!(
             "the {readings} scatter {times:.2} times as much as their reading errors say: those are probably too large"
         ),
+        FindingKind::ReadOtherwise { cor, flights, instead_of } => format!(
+            "the contacts can be read in another way about as well: as {flights} flights instead of {instead_of}, or other ones, which gives {cor:.3}; count \
+             the bounces again, or leave out what is none"
+        ),
         FindingKind::Lossless { readings } => format!(
             "the {readings} hardly shrink, as if no bounce lost anything: they are those of something else, or in another unit"
         ),
