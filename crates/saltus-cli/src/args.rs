@@ -74,11 +74,21 @@ pub(crate) enum Command {
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
     /// The tables, whose trials are fitted together; `-` for standard input.
-    #[arg(required_unless_present = "values", value_name = "FILE")]
+    #[arg(required_unless_present_any = ["values", "want"], value_name = "FILE")]
     pub(crate) tables: Vec<PathBuf>,
     /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from the release on, or times of contacts.
     #[arg(long, value_name = "NUMBERS UNIT", conflicts_with = "tables", allow_hyphen_values = true)]
     pub(crate) values: Option<String>,
+    /// Plan the measurement that gives the COR to within this, 95 %, such as `0.005`: how many drops and bounces by ruler, film or sound; with a table
+    /// for the ball of that table, without one before the first drop.
+    #[arg(long, value_name = "NUMBER", value_parser = want)]
+    pub(crate) want: Option<f64>,
+    /// The COR to plan for where no table tells it.
+    #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75")]
+    pub(crate) expect: f64,
+    /// The height of the drop to plan for where no table tells it.
+    #[arg(long, value_name = "LENGTH", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = small(Quantity::Length, "m"), default_value = "1m")]
+    pub(crate) drop: f64,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -476,6 +486,22 @@ fn finite(text: &str) -> Result<f64, String> {
 fn cor(text: &str) -> Result<Cor, String> {
     let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     Cor::new(value).map_err(|error| error.to_string())
+}
+
+fn want(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 0.5 => Ok(value),
+        _ => Err(format!(
+            "'{text}' is no half-width of an interval of CORs: give a number between 0 and 0.5, such as 0.005"
+        )),
+    }
+}
+
+fn expect(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if saltus_fit::Expected::new(value, 1.0).is_some() => Ok(value),
+        _ => Err(format!("'{text}' is no COR to plan for: give a number between 0.05 and 0.99")),
+    }
 }
 
 fn rate(text: &str) -> Result<f64, String> {

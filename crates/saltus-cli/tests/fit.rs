@@ -37,6 +37,24 @@ fn film(drop: f64) -> String {
     text
 }
 
+/// A plan before the first drop, as the guide prints it; with a table, for its ball; wrong numbers are refused.
+#[test]
+fn a_measurement_is_planned() {
+    let folder = TempDir::new().unwrap();
+    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fitting.md")).unwrap();
+    let planned = saltus(folder.path(), &["fit", "--want", "0.005", "--ball", "tennis"]);
+    assert!(planned.status.success() && guide.contains(&text(&planned.stdout)), "{}", text(&planned.stdout));
+    let values = ["fit", "--values", "100 64 41 26 cm", "--want", "0.004", "--format", "json", "--sigma-zero", "0"];
+    let json: serde_json::Value = serde_json::from_slice(&saltus(folder.path(), &values).stdout).unwrap();
+    assert!((json["plan"]["cor"].as_f64().unwrap() - 0.8).abs() < 0.01 && json["plan"]["drop_m"] == 1.0, "{json}");
+    for wrong in
+        [["--want", "0", "--expect", "0.8"], ["--want", "0.01", "--expect", "1.2"], ["--want", "0.01", "--drop", "2"]]
+    {
+        let refused = saltus(folder.path(), &[&["fit"], wrong.as_slice()].concat());
+        assert!(!refused.status.success() && text(&refused.stderr).contains("give a"), "{}", text(&refused.stderr));
+    }
+}
+
 #[test]
 fn the_first_example_of_the_guide_is_what_is_printed() {
     let folder = TempDir::new().unwrap();

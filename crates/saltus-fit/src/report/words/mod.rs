@@ -4,6 +4,7 @@
 
 mod models;
 mod names;
+mod plan;
 mod repairs;
 mod verdict;
 
@@ -13,6 +14,7 @@ use super::numbers::{duration, length};
 use crate::finding::{Finding, FindingKind, Widening};
 
 pub(super) use names::{about, loss_words, method_about, method_short, settles, short, supposes};
+pub(super) use plan::{brings, every_bounce, way};
 
 /// The list of a report that a finding stands in, where the verdict does not rest on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
