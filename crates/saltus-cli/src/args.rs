@@ -397,15 +397,10 @@ pub(crate) enum Ball {
 }
 
 fn ball(text: &str) -> Result<Ball, String> {
-    let name = match text.trim().to_lowercase().replace([' ', '_'], "-") {
-        name if ["pingpong", "ping-pong"].contains(&name.as_str()) => "table-tennis".to_owned(),
-        name if name == "soccer" => "football".to_owned(),
-        name => name,
-    };
-    if let Some(kind) = saltus_fit::Ball::ALL.into_iter().find(|kind| *kind == name.as_str()) {
+    if let Some(kind) = saltus_fit::Ball::named(text) {
         return Ok(Ball::Kind(kind));
     }
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+    if text.trim_start().starts_with(|c: char| c.is_ascii_alphabetic()) {
         let known = saltus_fit::Ball::ALL.map(saltus_fit::Ball::name).join(", ");
         return Err(format!(
             "'{text}' is no ball that is known: use one of {known}, or give a diameter, such as '4 cm', and --drag"

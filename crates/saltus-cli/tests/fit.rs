@@ -37,6 +37,26 @@ fn film(drop: f64) -> String {
     text
 }
 
+/// Every trial has its curve and its rungs, and groups have one picture that compares them.
+#[test]
+fn trials_and_groups_are_all_drawn() {
+    let folder = TempDir::new().unwrap();
+    let draw = |option: &str, rows: &str| {
+        fs::write(folder.path().join("t.csv"), rows).unwrap();
+        let drawn = saltus(folder.path(), &["fit", "t.csv", option, "p.svg"]);
+        assert!(drawn.status.success(), "{}", text(&drawn.stderr));
+        fs::read_to_string(folder.path().join("p.svg")).unwrap()
+    };
+    let (one, three) = ("drop_cm,rebound_cm\n100,55\n", "drop_cm,rebound_cm\n100,55\n150,82\n200,108\n");
+    let several = draw("--plot", three);
+    assert!(several.contains("3 trials") && several.contains("Contacts of the model: 6"), "{several}");
+    assert!(draw("--plot", one).contains("Contacts of the model: 2"));
+    let rungs = draw("--plot-ladder", three);
+    assert!(rungs.matches("<path").count() >= draw("--plot-ladder", one).matches("<path").count() + 2, "{rungs}");
+    let groups = draw("--plot", "ball,drop_cm,rebound_cm\nA,100,55\nA,100,54\nB,100,25\nB,100,26\n");
+    assert!(groups.contains(">A<") && groups.contains(">B<") && groups.contains("95 % interval"), "{groups}");
+}
+
 /// A plan before the first drop, as the guide prints it; with a table, for its ball; wrong numbers are refused.
 #[test]
 fn a_measurement_is_planned() {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::detail::{Basis, By, Cause, Gives, Missing, Untried};
-use crate::quantity::{CorModel, Measured, Readings, Sourced};
+use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 
 /// What was found, with its numbers: SI units, but for recordings of unknown scale.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +29,10 @@ pub enum FindingKind {
         groups: usize,
         trusted: usize,
         refused: usize,
+    },
+    /// The table names the ball in a column of its own: its size and drag are taken.
+    BallNamed {
+        ball: Ball,
     },
     /// What was stated of the way that heights count, where the ball then falls upwards.
     FallsUpwards {
