@@ -152,7 +152,10 @@ impl<A: Automaton> Observer<A> for Certificate<A> {
         match inspection.evidence {
             Evidence::Excluded => self.row(inspection.edge).excluded += 1,
             Evidence::Isolated => self.row(inspection.edge).isolated += 1,
-            Evidence::Rounding { .. } | Evidence::Unresolved { .. } | Evidence::Discontinuous { .. } => {
+            Evidence::Grazing { .. }
+            | Evidence::Rounding { .. }
+            | Evidence::Unresolved { .. }
+            | Evidence::Discontinuous { .. } => {
                 self.doubts.add(inspection);
             }
         }

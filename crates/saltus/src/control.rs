@@ -52,7 +52,7 @@ pub(crate) struct Controller {
 
 impl Controller {
     const SAFETY: f64 = 0.9;
-    const SMALLEST: f64 = 0.2;
+    pub(crate) const SMALLEST: f64 = 0.2;
     const LARGEST: f64 = 10.0;
     /// The logarithm of the square of 1e-4, below which an error is not remembered.
     const LEAST: f64 = -18.420_680_743_952_367;

@@ -16,7 +16,7 @@ use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::time::Time;
 use crate::trajectory::{Cause, Jump, Piece};
-use crate::zeno::Contraction;
+use crate::zeno::{Cascade, Contraction};
 
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.
 ///
@@ -104,7 +104,7 @@ pub struct Checkpoint<A: Automaton> {
     jumps: usize,
     /// The time of the last jump that was not at once after another.
     instant: Time,
-    cascade: usize,
+    cascade: Cascade,
     contraction: Contraction<A::State>,
     recent: Recent<A::Edge>,
     ticks: Ticks<A::Mode>,
@@ -123,7 +123,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 2;
+    const NUMBER: u32 = 3;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -154,7 +154,7 @@ impl<A: Automaton> Checkpoint<A> {
             span,
             jumps: 0,
             instant: start,
-            cascade: 0,
+            cascade: Cascade::NONE,
             contraction: Contraction::new(&state),
             recent: Recent::new(),
             ticks: Ticks::new(),
@@ -333,7 +333,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
-            (at.cascade, at.instant) = (if at_once { at.cascade + 1 } else { 0 }, instant);
+            (at.cascade, at.instant) = (if at_once { at.cascade.and(&x, &after) } else { Cascade::NONE }, instant);
             if !after.is_finite() || to != mode && automaton.validate(to).is_err() {
                 let (kind, note) = wrong(*automaton, to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
@@ -358,10 +358,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         Ok(if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
-        } else if at.cascade >= options.longest_cascade {
-            // Collisions that go on at one time: what lies beyond them is the model's to say.
+        } else if at.cascade.jumps() >= options.longest_cascade {
+            // Collisions that go on at one time: where they contract, what lies beyond them is the model's to say.
             let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
-            if at.recent.cycle().with(beyond).is_some() {
+            if at.cascade.contracts() && at.recent.cycle().with(beyond).is_some() {
                 return Ok(Next::Limit { remaining: 0.0, certified: true });
             }
             Next::Stop(Stop::Cascade { edge })
@@ -401,7 +401,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), 0);
+        (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), Cascade::NONE);
         at.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }

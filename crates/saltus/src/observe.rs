@@ -92,9 +92,10 @@ impl<A: Automaton> Inspection<A> {
 /// From when to when a doubt lasts.
 const fn when(evidence: Evidence) -> Option<(f64, f64)> {
     match evidence {
-        Evidence::Rounding { from, to } | Evidence::Unresolved { from, to } | Evidence::Discontinuous { from, to } => {
-            Some((from, to))
-        }
+        Evidence::Grazing { from, to }
+        | Evidence::Rounding { from, to }
+        | Evidence::Unresolved { from, to }
+        | Evidence::Discontinuous { from, to } => Some((from, to)),
         Evidence::Excluded | Evidence::Isolated => None,
     }
 }
@@ -102,6 +103,7 @@ const fn when(evidence: Evidence) -> Option<(f64, f64)> {
 /// The same doubt, from another time to another.
 const fn between(evidence: Evidence, from: f64, to: f64) -> Evidence {
     match evidence {
+        Evidence::Grazing { .. } => Evidence::Grazing { from, to },
         Evidence::Rounding { .. } => Evidence::Rounding { from, to },
         Evidence::Unresolved { .. } => Evidence::Unresolved { from, to },
         Evidence::Discontinuous { .. } => Evidence::Discontinuous { from, to },
@@ -126,6 +128,10 @@ impl<A: Automaton> fmt::Display for Inspection<A> {
         f.write_str(match evidence {
             Evidence::Excluded => "not crossed; bounds on its guard leave no room",
             Evidence::Isolated => "searched until no part had room for more than one crossing",
+            Evidence::Grazing { .. } => {
+                "its guard comes as close to zero as the error of the step, and turns: whether it is crossed there \
+                 is not decided. If that matters, lower Simulation::tolerance"
+            }
             Evidence::Rounding { .. } => {
                 "its guard is zero but for rounding and was taken for a touch; two crossings may hide there. \
                  If that matters, write the guard so that it does not cancel"

@@ -119,6 +119,46 @@ impl<S: State> Contraction<S> {
     }
 }
 
+/// Jumps at one time, one after the other, and how far they move the state.
+///
+/// What lies beyond them is a limit where they contract: a ball between two that close on it. Jumps that
+/// change nothing, or as much as ever, have none: a relay that switches to and fro.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Cascade {
+    jumps: usize,
+    /// The square of the longest way of a jump among the first ones, and since the last power of two of them.
+    first: f64,
+    late: f64,
+}
+
+/// How many jumps are the first ones of a cascade: two of the longest cycles.
+const FIRST: usize = 2 * LONGEST_CYCLE;
+/// The part of the first ways of jumps that contract to which the ways have shrunk by the end; a harmonic
+/// series, which has no limit, would still be larger after a million jumps.
+const SHRUNK: f64 = 1e-6;
+
+impl Cascade {
+    pub(crate) const NONE: Self = Self { jumps: 0, first: 0.0, late: 0.0 };
+
+    /// After one more jump, from the state after the one before to the state `after` it.
+    pub(crate) fn and<S: State>(self, before: &S, after: &S) -> Self {
+        let (jumps, way) = (self.jumps + 1, square_way(before, after));
+        let first = if jumps <= FIRST { self.first.max(way) } else { self.first };
+        let late = if jumps.is_power_of_two() { way } else { self.late.max(way) };
+        Self { jumps, first, late }
+    }
+
+    pub(crate) const fn jumps(&self) -> usize {
+        self.jumps
+    }
+
+    /// Whether the jumps moved the state, and hardly do so any more.
+    pub(crate) fn contracts(&self) -> bool {
+        self.jumps > FIRST && self.first > 0.0 && self.late <= SHRUNK * SHRUNK * self.first
+    }
+}
+
 /// |x - y|², where a coordinate that differs by no more than its rounding does not differ; endless
 /// where the two have unlike dimensions.
 #[inline]
@@ -196,6 +236,22 @@ mod tests {
             contraction.push(duration, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
+    }
+
+    #[test]
+    fn a_cascade_contracts_where_its_jumps_do() {
+        let ends = |way: fn(i32) -> f64| {
+            let (mut cascade, mut x) = (Cascade::NONE, 0.0);
+            for n in 0..10_000 {
+                let next = x + way(n);
+                cascade = cascade.and(&x, &next);
+                x = next;
+            }
+            cascade.contracts()
+        };
+        assert!(ends(|n| 0.5_f64.powi(n)) && ends(|n| -(-0.995_f64).powi(n)));
+        assert!(!ends(|_| 0.0) && !ends(|_| 1.0) && !ends(|n| if n % 2 == 0 { 1.0 } else { -1.0 }));
+        assert!(!ends(|n| 1.0 / f64::from(n + 1)));
     }
 
     #[test]

@@ -14,6 +14,7 @@ use crate::time::{Time, resolution};
 use crate::trajectory::{LONG, horner};
 
 use super::Advance;
+use super::grazing::Step;
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
@@ -33,8 +34,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
+        let step = Step { now, c, scale };
         for edge in self.automaton.edges(mode).iter() {
-            let (start, level) = (self.start(edge, first), self.level(edge, first));
+            let (start, level) = (self.start(edge, first), self.level(edge));
+            if self.memory.wall_count > 0 && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
+                if let Some(crossing) = self.leaves((mode, edge, now), (c, scale), limit) {
+                    found = earlier(found, OnStep { edge, crossing, near: None });
+                }
+                continue;
+            }
             let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
@@ -52,6 +60,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 automaton.guard(edge, now.after(s).seconds(), &at(&near, c, scale, s))
             };
             let mut above = |s: f64| guard(s) - level;
+            let turn_of_powers = along.as_ref().and_then(|along| along.powers.turns()).map(|u| u.map(|u| u * limit));
             let searched = match (by_powers, &p) {
                 (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
                 (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
@@ -59,15 +68,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 _ => first_fall_on_arc(&mut above, limit, start, bend, resolution(now.seconds().abs() + limit)),
             };
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
-            let Searched { fall, evidence } =
+            let Searched { fall, mut evidence, turn } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
             if let Some(observer) = &mut observer {
+                let grazing = match (fall, turn.or(turn_of_powers)) {
+                    (Some(crossing), _) => {
+                        self.dips(edge, step, crossing.root).or_else(|| self.unresolved(edge, step, crossing.root))
+                    }
+                    (None, Some(turn)) => self.missed(edge, step, turn),
+                    (None, None) => None,
+                };
+                evidence = grazing.map_or(evidence, |grazing| evidence.and(grazing));
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             }
             if let Some(crossing) = fall {
-                let both =
-                    found.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &crossing)?, ..first }));
-                found = both.or(Some(OnStep { edge, crossing, near }));
+                found = earlier(found, OnStep { edge, crossing, near });
             }
         }
         Ok(found)
@@ -368,6 +383,13 @@ impl Along<'_> {
         let p = Bernstein::from_powers(self.powers.coefficients())?;
         Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.powers.bend()))
     }
+}
+
+/// The earlier of two crossings on a step; of two that time cannot tell apart the `first`.
+#[inline]
+fn earlier<A: Automaton>(first: Option<OnStep<A>>, second: OnStep<A>) -> Option<OnStep<A>> {
+    let both = first.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &second.crossing)?, ..first }));
+    both.or(Some(second))
 }
 
 /// Of two crossings that time cannot tell apart the first, with the inner end of both, so that neither guard is past zero there; nothing if the second is

@@ -10,6 +10,7 @@ use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
+use super::noise::ROUNDINGS;
 
 /// A guard no larger than this part of the state may be zero but for rounding.
 const SMALL: f64 = 1e-12;
@@ -69,16 +70,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g >= 0.0 {
             if !spent && g == 0.0 {
                 *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
+                self.memory.at_wall(edge, g);
             } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
                 self.memory.at_wall(edge, g);
             }
             return Ok(false);
         }
-        let slope = self.guard_slope(mode, edge, t, x, g);
-        let rounding =
-            slope.abs() * resolution(t) + self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
+        let still = self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
+        let slope = self.guard_slope(mode, edge, t, x, g, still);
+        // A flow that is no number here says nothing.
+        let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };
         if -g <= 4.0 * rounding {
-            let unsure = slope.abs() * self.glance() <= SURELY * rounding;
+            let unsure = slope.is_nan() || slope.abs() * self.glance() <= SURELY * rounding;
             if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
                 return Ok(false);
@@ -101,12 +104,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
         let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
         let then = idle.find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
-        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g) * DRIVEN < then)
+        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) * DRIVEN < then)
     }
 
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.
     fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
-        zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0) < 0.0).unwrap_or(edge)
+        zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0, 0.0) < 0.0).unwrap_or(edge)
     }
 
     /// The longest time over which a guard's slope is looked at.
@@ -114,46 +117,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 }
     }
 
-    /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
-    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
-        const NUDGE: f64 = 1.0 / (1 << 20) as f64;
-        self.moved(edge, t, x, g, |x| NUDGE * x.abs().max(least)) * (f64::EPSILON / NUDGE)
-    }
-
-    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
-    pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        const STEPS: f64 = 1024.0;
-        let rounding = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
-        let tolerance = self.options.tolerance;
-        STEPS * (rounding + self.moved(edge, t, x, g, |x| tolerance.allowed(x, x)))
-    }
-
-    /// How far the guard, `g` at `x`, moves with each coordinate that is moved `by` so much, all together.
-    fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
-        let mut sum = 0.0;
-        for k in 0..x.len() {
-            self.memory.stats.guards += 1;
-            let nudged = x.with(|i| if i == k { x.get(i) + by(x.get(i)) } else { x.get(i) });
-            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
-            sum += if change.is_finite() { change } else { 0.0 };
-        }
-        sum
-    }
-
-    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
-    fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        const SOME: f64 = 1024.0;
-        self.memory.stats.guards += 1;
-        let ahead = t + SOME * resolution(t);
-        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
-        if change.is_finite() { change } else { 0.0 }
-    }
-
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
     ///
     /// The shortest time is taken over which the change of the guard doubles (or, where it never does, quadruples) with time twice in a row: longer than
-    /// rounding, shorter than the way to the guard's next root.
-    pub(super) fn guard_slope(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+    /// rounding, shorter than the way to the guard's next root. A change by no more than `rounding` tells nothing.
+    pub(super) fn guard_slope(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        t: f64,
+        x: &A::State,
+        g: f64,
+        rounding: f64,
+    ) -> f64 {
         let longest = self.glance();
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
@@ -172,7 +148,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let mut h = shortest;
             while h < longest && h > 0.0 {
                 let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
-                if (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs() {
+                let doubles =
+                    (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
+                if doubles && far.abs() > ROUNDINGS * rounding {
                     return far / h;
                 }
                 h *= 8.0;

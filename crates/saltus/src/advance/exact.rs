@@ -67,13 +67,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += c.len() as u64 + 1;
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
-        let mut powers = [g(&c[0]) - self.level(edge, true), power(1), power(2)];
+        let mut powers = [g(&c[0]) - self.level(edge), power(1), power(2)];
         if start == Start::Spent && only_touched(&powers, &g, constant, &c[1], &mut self.memory.stats.guards) {
             powers[1] = 0.0;
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
-                Some(at) => Searched { fall: None, evidence: Evidence::Rounding { from: at, to: at } },
+                Some(at) => Searched { evidence: Evidence::Rounding { from: at, to: at }, ..Searched::solved(None) },
                 None => Searched::solved(None),
             };
         };
@@ -104,7 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (longest, limit) = (self.options.longest_step, limit.min(LAST));
         let mut window = if natural > 0.0 { natural.min(limit) } else { limit.min(1.0) }.min(longest);
         let mut from = 0.0;
-        let (mut start, mut level) = (start, self.level(edge, true));
+        let (mut start, mut level) = (start, self.level(edge));
         let automaton = self.automaton;
         let mut evidence = Evidence::Excluded;
         loop {
@@ -121,15 +121,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
-                return Ok(Searched { fall, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(fall) });
             }
             if to >= limit {
-                return Ok(Searched { fall: None, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(None) });
             }
             self.memory.stats.windows += 1;
             if self.options.exceeded::<A::Edge>(&self.memory.stats).is_some() {
                 self.memory.cut_at = Some(self.memory.cut_at.map_or(to, |earlier| earlier.min(to)));
-                return Ok(Searched { fall: None, evidence });
+                return Ok(Searched { evidence, ..Searched::solved(None) });
             }
             from = to;
             // However short it is to be, it must move time on.

@@ -4,6 +4,8 @@ mod closed;
 mod crossing;
 mod enter;
 mod exact;
+mod grazing;
+mod noise;
 mod series;
 mod solved;
 mod stepped;
@@ -61,6 +63,18 @@ struct Spent<E> {
     slack: f64,
 }
 
+/// An edge at whose wall the state is: its guard is zero, but for rounding or the drift of the steps.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Wall<E> {
+    edge: E,
+    /// What rounding or drift has left of the guard.
+    level: f64,
+    /// Whether the flow runs along the wall, as far as rounding shows: the edge stays, and is taken
+    /// only where the flow carries the guard down.
+    stays: bool,
+}
+
 /// How many edges that were taken at one time, and go on falling, are remembered.
 const MOST_IDLE: usize = 16;
 
@@ -83,8 +97,8 @@ pub(crate) struct Memory<E> {
     /// Edges taken earlier whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
     idle: [Option<(Spent<E>, f64)>; MOST_IDLE],
     idle_count: usize,
-    /// Edges that were not just taken and whose guards are zero but for rounding as the mode is entered, and what rounding has left of them.
-    walls: [Option<(E, f64)>; MOST_IDLE],
+    /// Edges whose guards are zero, but for rounding, as the mode is entered, and were not just taken.
+    walls: [Option<Wall<E>>; MOST_IDLE],
     wall_count: usize,
     /// How far the search of this exact arc went before a limit of the run cut it.
     cut_at: Option<f64>,
@@ -93,6 +107,8 @@ pub(crate) struct Memory<E> {
     longest_duration: f64,
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard spoils their duration.
     hidden: u32,
+    /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the step.
+    resolved: bool,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from zero: jumps have accumulated as far as can be told.
     pub(crate) spurious: bool,
 }
@@ -114,6 +130,7 @@ impl<E: Copy + PartialEq> Memory<E> {
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
+            resolved: false,
             spurious: false,
         }
     }
@@ -136,7 +153,7 @@ impl<E: Copy + PartialEq> Memory<E> {
     /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of it.
     fn at_wall(&mut self, edge: E, g: f64) {
         if self.wall_count < MOST_IDLE {
-            self.walls[self.wall_count] = Some((edge, g));
+            self.walls[self.wall_count] = Some(Wall { edge, level: g, stays: false });
             self.wall_count += 1;
         }
     }
@@ -144,8 +161,11 @@ impl<E: Copy + PartialEq> Memory<E> {
     #[cold]
     #[inline(never)]
     fn level(&self, edge: E) -> f64 {
-        let mut walls = self.walls[..self.wall_count].iter().flatten();
-        walls.find(|wall| wall.0 == edge).map_or(0.0, |wall| wall.1)
+        self.wall(edge).map_or(0.0, |wall| wall.level)
+    }
+
+    fn wall(&self, edge: E) -> Option<&Wall<E>> {
+        self.walls[..self.wall_count].iter().flatten().find(|wall| wall.edge == edge)
     }
 
     /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
@@ -213,7 +233,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             && duration.is_none_or(|s| self.memory.is_short(s) && self.is_below(mode, last.edge, t, before))
         {
             let g = self.automaton.guard(last.edge, began, x);
-            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g) } else { 0.0 };
+            let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g, 0.0) } else { 0.0 };
             if slope < 0.0 {
                 self.memory.idle.rotate_right(1);
                 self.memory.idle[0] = Some((last, slope));
@@ -338,7 +358,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero but for that at its start: it is to be seen without, so
     /// that the rise or fall from there decides, and not the rounding.
     #[inline]
-    fn level(&self, edge: A::Edge, first: bool) -> f64 {
-        if first && self.memory.wall_count > 0 { self.memory.level(edge) } else { 0.0 }
+    fn level(&self, edge: A::Edge) -> f64 {
+        if self.memory.wall_count > 0 { self.memory.level(edge) } else { 0.0 }
     }
 }

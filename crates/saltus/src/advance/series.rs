@@ -75,6 +75,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let Expansion { unit, order, .. } = expansion;
             let c = &c[..=order];
+            if first {
+                let slope = x.with(|i| c[1].get(i) / unit);
+                self.find_staying(mode, clock.now, c, unit, &slope);
+            }
             let way = Way { mode, now: clock.now, since: clock.now.since(began), remaining, first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
                 return self.stepped(mode, x, clock, first, observer);
@@ -91,6 +95,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             self.tape.anew(ahead.kink.filter(|_| h == ahead.step));
             (x, first) = (end, false);
+            if self.memory.wall_count > 0 {
+                self.keep_staying(mode, clock.now, &x, h);
+            }
         }
     }
 

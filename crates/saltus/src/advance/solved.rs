@@ -52,7 +52,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for edge in self.automaton.edges(mode).iter() {
             let limit = found.as_ref().map_or(past(now, remaining), |first| first.crossing.outside);
             let mut arrival = None;
-            let (Searched { fall, evidence }, by_formula) = match self.automaton.falls(mode, edge, now.seconds(), x) {
+            let (Searched { fall, evidence, .. }, by_formula) = match self.automaton.falls(mode, edge, now.seconds(), x)
+            {
                 Fall::Unknown => search(self, edge, limit, self.start(edge, true))?,
                 Fall::In(s, state) if self.arrives(edge, now, s, &state, limit) => {
                     arrival = Some(state);

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::control::first_step;
+use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
@@ -15,12 +15,17 @@ use crate::time::{LAST, Time, grace, resolution};
 use crate::trajectory::{Piece, horner};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
+use super::noise::PROBE;
 use super::{Advance, ArcEnd, Span};
+
+/// The shortest step, in spacings of time.
+const SHORTEST: f64 = 2.0;
+
+/// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond rounding.
+const INSIDE: f64 = 0.875;
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
-/// The part of a step over which the slope of a guard that is not affine is seen.
-const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x`, where the arc begins or (not `first`) has come to by other means.
@@ -43,12 +48,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
-            let (h, trial) = self.accepted(mode, clock.now, &x, &slope, remaining)?;
+            let (h, trial) = match self.accepted(mode, clock.now, &x, &slope, remaining) {
+                Ok(accepted) => accepted,
+                Err(error) if error.kind() == ErrorKind::Flow => {
+                    return self.edge_of_flow(mode, clock.now, &x, &slope).ok_or(error);
+                }
+                Err(error) => return Err(error),
+            };
             let last = h >= remaining;
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
             if clear && !observer.wants_pieces() {
                 clock.now = if last { clock.end } else { clock.now.after(h) };
                 (x, slope, first) = (trial.end, trial.slope, false);
+                self.memory.wall_count = 0; // clear of zero
                 continue;
             }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
@@ -61,6 +73,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.stats.rejected += 1;
                 self.memory.step = Some(0.1 * h);
                 continue;
+            }
+            if first {
+                self.find_staying(mode, clock.now, c, h, &slope);
             }
             let limit = searched(h, remaining, clock.now.since(began), clock.end);
             let found = if clear {
@@ -77,6 +92,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
                 }
                 (x, slope, first) = (state, trial.slope, false);
+                if self.memory.wall_count > 0 {
+                    self.keep_staying(mode, clock.now, &x, h);
+                }
                 continue;
             };
             self.memory.cut(h);
@@ -154,7 +172,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             self.memory.stats.rejected += 1;
             h = size * factor;
-            if h <= 2.0 * resolution(t) {
+            if h <= SHORTEST * resolution(t) {
                 let kind = if finite { ErrorKind::StepSize } else { ErrorKind::Flow };
                 return Err(Error::new(kind, Place::new(t, mode, None::<A::Edge>, x)));
             }
@@ -192,6 +210,28 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             automaton.flow(mode, t, x)
         };
         self.stepper.dense(&mut flow, t, x, h, trial.as_ref())
+    }
+
+    /// The crossing within rounding of a state `x` beyond which the flow is no number: of a contact that ends
+    /// where its force does, as d^1.5.
+    #[cold]
+    fn edge_of_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, slope: &A::State) -> Option<ArcEnd<A>> {
+        // A step is tried until it is shorter than the spacing of time; the one before failed too.
+        let by = SHORTEST / Controller::SMALLEST * resolution(now.seconds());
+        let ahead = |s: f64| x.with(|i| x.get(i) + s * slope.get(i));
+        for edge in self.automaton.edges(mode).iter() {
+            self.memory.stats.guards += 4;
+            let guard = |s: f64| self.automaton.guard(edge, now.after(s).seconds(), &ahead(s));
+            let (here, there) = (guard(0.0), guard(by));
+            if here >= 0.0 && there < 0.0 {
+                let root = by * here / (here - there);
+                // A state a little inside where rounding leaves the nearest one outside.
+                let s = [root, INSIDE * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
+                self.memory.slack = 4.0 * (here - there);
+                return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
+            }
+        }
+        None
     }
 
     /// The flow, of as many coordinates as the state.

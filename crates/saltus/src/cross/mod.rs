@@ -11,8 +11,8 @@ use crate::poly::{Bernstein, Shape};
 
 pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
-pub(crate) use search::ROUGH;
 use search::Search;
+pub(crate) use search::{AT_START, ROUGH};
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,13 +82,24 @@ pub enum Evidence {
         /// Shortly after.
         to: f64,
     },
+    /// Between these times the guard comes so close to zero, and turns, that the error of the step decides whether it falls: it did not, or it fell and
+    /// would have risen again.
+    Grazing {
+        /// Where that begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
 }
 
 impl Evidence {
     /// Whether a crossing may have been missed.
     #[must_use]
     pub const fn is_doubtful(&self) -> bool {
-        matches!(self, Self::Rounding { .. } | Self::Unresolved { .. } | Self::Discontinuous { .. })
+        matches!(
+            self,
+            Self::Grazing { .. } | Self::Rounding { .. } | Self::Unresolved { .. } | Self::Discontinuous { .. }
+        )
     }
 
     /// The weaker of two.
@@ -96,9 +107,10 @@ impl Evidence {
         let rank = |evidence: &Self| match evidence {
             Self::Excluded => 0,
             Self::Isolated => 1,
-            Self::Rounding { .. } => 2,
-            Self::Unresolved { .. } => 3,
-            Self::Discontinuous { .. } => 4,
+            Self::Grazing { .. } => 2,
+            Self::Rounding { .. } => 3,
+            Self::Unresolved { .. } => 4,
+            Self::Discontinuous { .. } => 5,
         };
         match (self, other) {
             (Self::Rounding { from, .. }, Self::Rounding { to, .. }) => Self::Rounding { from, to },
@@ -112,6 +124,7 @@ impl Evidence {
     /// The same with its times counted from a moment `s` earlier.
     pub(crate) fn later(self, s: f64) -> Self {
         match self {
+            Self::Grazing { from, to } => Self::Grazing { from: from + s, to: to + s },
             Self::Rounding { from, to } => Self::Rounding { from: from + s, to: to + s },
             Self::Unresolved { from, to } => Self::Unresolved { from: from + s, to: to + s },
             Self::Discontinuous { from, to } => Self::Discontinuous { from: from + s, to: to + s },
@@ -128,12 +141,14 @@ pub struct Searched {
     pub fall: Option<Crossing>,
     /// What speaks for it.
     pub evidence: Evidence,
+    /// Between which times the guard turns up from its least value, where its samples show that.
+    pub(crate) turn: Option<[f64; 2]>,
 }
 
 impl Searched {
     /// By a formula.
     pub(crate) const fn solved(fall: Option<Crossing>) -> Self {
-        Self { fall, evidence: if fall.is_some() { Evidence::Isolated } else { Evidence::Excluded } }
+        Self { fall, evidence: if fall.is_some() { Evidence::Isolated } else { Evidence::Excluded }, turn: None }
     }
 }
 

@@ -115,6 +115,14 @@ impl Powers {
         self.a[0] + self.rest.sum
     }
 
+    /// Between which times it turns up, where it falls at the start and rises at the end.
+    #[inline]
+    pub(crate) fn turns(&self) -> Option<[f64; 2]> {
+        let a = self.coefficients();
+        let falls = a.len() > 2 && a[1] < 0.0;
+        (falls && a.iter().zip(0..).skip(1).map(|(a, k)| f64::from(k) * a).sum::<f64>() > 0.0).then_some([0.0, 1.0])
+    }
+
     /// How far it bends: by its powers from the second on.
     #[inline]
     pub(crate) fn bend(&self) -> f64 {

@@ -64,6 +64,9 @@ const FARTHER: f64 = 1024.0;
 /// What a guard grows or shrinks by, by then.
 const CLEARLY: f64 = 4.0;
 
+/// How often a fall is looked for around its guess, each time four times as far.
+const TRIES: usize = 4;
+
 impl Search<'_> {
     /// How the guard changes its sign at a crossing between neighbouring times; what is no root is noted.
     pub(super) fn passage(&mut self, &Crossing { inside, outside, .. }: &Crossing) -> Result<Passage, Undefined> {
@@ -88,9 +91,14 @@ impl Search<'_> {
         Ok(passage)
     }
 
-    /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, by ITP, which is never slower than bisection by more than
-    /// one step (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
-    pub(super) fn refined(&mut self, mut a: f64, mut b: f64) -> Result<Crossing, Undefined> {
+    /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, and close to a `guess` if there is one.
+    pub(super) fn refined(&mut self, a: f64, b: f64, guess: Option<f64>) -> Result<Crossing, Undefined> {
+        if let Some(guess) = guess
+            && let Some([inside, outside]) = self.around(guess, a, b)?
+        {
+            return self.narrowed(inside, outside);
+        }
+        let (mut a, mut b) = (a, b);
         let start = self.value(0.0)?;
         if a == 0.0 && !self.spent && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
             b = self.span * AT_START;
@@ -98,7 +106,6 @@ impl Search<'_> {
                 return Ok(Crossing::at_start(b));
             }
         }
-        let (mut above, mut below) = (self.value(a)?.max(0.0), self.value(b)?);
         if a == 0.0 && self.spent {
             // Rounding may leave the guard negative at the spent root and after it: begin where it is seen to have risen.
             let mut middle = 0.5 * b;
@@ -115,8 +122,39 @@ impl Search<'_> {
                 ahead *= 2.0;
             }
             b = ahead.min(b);
-            (above, below) = (self.value(a)?.max(0.0), self.value(b)?);
         }
+        let (above, below) = (self.value(a)?.max(0.0), self.value(b)?);
+        self.narrowed((a, above), (b, below))
+    }
+
+    /// Two times close to a `guess` of the only fall in `[a, b]` between which the guard falls, and its values there; nothing if these are not found at once.
+    fn around(&mut self, guess: f64, a: f64, b: f64) -> Result<Option<[(f64, f64); 2]>, Undefined> {
+        let mut near = (guess, self.value(guess)?);
+        let end = self.value(b)?;
+        let towards = if near.1 >= 0.0 { 1.0 } else { -1.0 };
+        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(4.0 * (guess.next_up() - guess));
+        for _ in 0..TRIES {
+            let s = guess + towards * by;
+            if s <= a || s >= b {
+                break;
+            }
+            let next = (s, self.value(s)?);
+            if (next.1 >= 0.0) != (towards > 0.0) {
+                return Ok(Some(if towards > 0.0 { [near, next] } else { [next, near] }));
+            }
+            near = next;
+            by *= 4.0;
+        }
+        Ok(None)
+    }
+
+    /// The fall between an inner and an outer time at which the guard has these values, by ITP, which is never slower than bisection by more than one step
+    /// (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
+    fn narrowed(
+        &mut self,
+        (mut a, mut above): (f64, f64),
+        (mut b, mut below): (f64, f64),
+    ) -> Result<Crossing, Undefined> {
         let mut allowance = 2.0 * (b - a);
         let truncation = 0.2 / (b - a);
         while a.next_up() < b && b - a > f64::MIN_POSITIVE {

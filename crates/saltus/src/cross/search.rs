@@ -10,7 +10,7 @@ use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
 /// A fall within this fraction of the interval from its start is at its start.
-pub(super) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
+pub(crate) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
 /// An interval that holds no more numbers than this is looked at number by number.
 const FEW: f64 = 64.0;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
@@ -51,6 +51,8 @@ pub(super) struct Search<'a> {
     /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on one.
     pub(super) flat: Option<f64>,
     evidence: Evidence,
+    /// Between which times the samples of the whole interval turn up from their least.
+    turn: Option<[f64; 2]>,
 }
 
 /// On which side of its zero the guard is.
@@ -87,8 +89,10 @@ pub(super) struct Stretch {
 
 /// What a part of the interval holds.
 pub(super) enum Part {
-    /// Its first fall lies between these times; with the root, as far as the polynomial knows it.
+    /// Its first fall lies between these times; with the root, where the polynomial is exact.
     Fall { a: f64, b: f64, near: Option<f64> },
+    /// Its only fall lies between these times, close to the `guess` of an interpolant.
+    Falls { a: f64, b: f64, guess: f64 },
     /// The guard falls at once from the root at the start.
     AtStart,
     /// Rounding hides a rise and the fall after it, which lies here.
@@ -114,6 +118,7 @@ impl<'a> Search<'a> {
             largest: 0.0,
             flat: None,
             evidence: Evidence::Excluded,
+            turn: None,
         }
     }
 
@@ -131,14 +136,15 @@ impl<'a> Search<'a> {
         let all = Stretch { a: 0.0, b: self.span, depth: DEEPEST, margin, known: known.map(|(p, _)| p) };
         let mut part = self.part(&all, side)?;
         let fall = loop {
-            let (a, b) = match part {
+            let (a, b, guess) = match part {
                 Part::None(_) => break None,
                 Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
                 Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
                 Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
-                Part::Fall { a, b, near: None } => (a, b),
+                Part::Fall { a, b, near: None } => (a, b, None),
+                Part::Falls { a, b, guess } => (a, b, Some(guess)),
             };
-            let crossing = self.refined(a, b)?;
+            let crossing = self.refined(a, b, guess)?;
             if self.passage(&crossing)? != Passage::Pole {
                 break Some(crossing);
             }
@@ -149,7 +155,7 @@ impl<'a> Search<'a> {
         if fall.is_some() {
             self.weaken(Evidence::Isolated);
         }
-        Ok(Searched { fall, evidence: self.evidence })
+        Ok(Searched { fall, evidence: self.evidence, turn: self.turn })
     }
 
     /// On which side the search starts.
@@ -197,6 +203,9 @@ impl<'a> Search<'a> {
         let proxy = if let Some(p) = known {
             Proxy { p: *p, margin: whole, start: p.start(), end: p.end(), least: p.start() }
         } else if let Ok(samples) = self.sampled(a, b) {
+            if depth == DEEPEST && a == 0.0 {
+                self.turn = samples.turn().map(|x| x.map(|x| 0.5 * b * (1.0 + x)));
+            }
             if side == Side::Inside && samples.stay_above() {
                 self.flat = None;
                 return Ok(Part::None(Side::Inside));
@@ -264,10 +273,11 @@ impl<'a> Search<'a> {
                 }
                 // Falling strictly from a zero, the rest of which is rounding.
                 Side::Inside if start == 0.0 => Some(Part::Fall { a, b, near: Some(a) }),
-                _ if end < 0.0 => {
-                    let near = known.as_ref().and_then(|_| q.root()).map(|u| a + (b - a) * u);
-                    Some(Part::Fall { a: from, b, near })
-                }
+                _ if end < 0.0 => Some(match (q.root().map(|u| a + (b - a) * u), known) {
+                    (Some(guess), None) if from == a => Part::Falls { a, b, guess },
+                    (near, Some(_)) => Part::Fall { a: from, b, near },
+                    (_, None) => Part::Fall { a: from, b, near: None },
+                }),
                 _ => Some(Part::None(Side::Inside)),
             },
             Shape::Rising if resolved => match side {
@@ -392,8 +402,9 @@ impl<'a> Search<'a> {
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
         // The nodes themselves are rounded, and the state at them likewise.
-        let least = values.into_iter().fold(f64::INFINITY, f64::min);
-        Ok(Samples { series, off, spacing: (b.next_up() - b) / (b - a), start: values[0], end: values[8], least })
+        let lowest = (1..9).fold(0, |low, k| if values[k] < values[low] { k } else { low });
+        let spacing = (b.next_up() - b) / (b - a);
+        Ok(Samples { series, off, spacing, start: values[0], end: values[8], lowest, least: values[lowest] })
     }
 }
 
@@ -407,11 +418,27 @@ struct Samples {
     /// The guard at both ends.
     start: f64,
     end: f64,
-    /// The least value seen.
+    /// The node with the least value, and that value.
+    lowest: usize,
     least: f64,
 }
 
 impl Samples {
+    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end.
+    fn turn(&self) -> Option<[f64; 2]> {
+        // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
+        let slope = |odd: f64| {
+            let c = &self.series;
+            odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8]
+        };
+        let turns = match self.lowest {
+            0 => slope(-1.0) > 0.0,
+            8 => slope(1.0) > 0.0,
+            _ => true,
+        };
+        turns.then(|| [chebyshev::NODES[self.lowest.max(1) - 1], chebyshev::NODES[(self.lowest + 1).min(8)]])
+    }
+
     /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
     fn stay_above(&self) -> bool {
         let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);

@@ -417,6 +417,7 @@ impl<A: Automaton, R: Reader<A>> Recorded for Read<A, R> {
             let mode = self.reader.mode(doubt.mode, 0);
             let times = doubt.doubt().unwrap_or_default();
             let why = match doubt.evidence {
+                Evidence::Grazing { .. } => "the error of the steps decides whether it came to that",
                 Evidence::Rounding { .. } => "rounding hides whether it came to that",
                 Evidence::Discontinuous { .. } => "what decides it is not continuous",
                 _ => "the search for it was given up",

@@ -1,0 +1,123 @@
+//! Where a guard comes so close to zero, and turns, that the error of the step decides whether it
+//! falls.
+
+use crate::automaton::Automaton;
+use crate::cross::Evidence;
+use crate::step::Stepper;
+use crate::time::Time;
+use crate::trajectory::horner;
+
+use super::Advance;
+use super::noise::{PROBE, STEP_ERROR};
+
+/// A guard that turns farther from zero than this part of the way by which it moves on the step is no
+/// grazing one, at any tolerance that a step can be taken with.
+const CLOSE: f64 = 0.1;
+
+/// The size of a guard beside what the absolute tolerance leaves open of it, from which a run has two
+/// digits of it.
+const RESOLVED: f64 = 100.0;
+
+/// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
+/// below what the tolerance allows off by the square of 0.618⁴⁰.
+const SECTIONS: usize = 40;
+
+/// A step's start, dense output and size.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'c, S> {
+    pub(super) now: Time,
+    pub(super) c: &'c [S],
+    pub(super) scale: f64,
+}
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// Of a guard that does not fall on a step, and turns between two times: whether its least value is
+    /// within the error of the step, and when.
+    #[cold]
+    pub(super) fn missed(&mut self, edge: A::Edge, step: Step<'_, A::State>, turn: [f64; 2]) -> Option<Evidence> {
+        let ends = turn.map(|s| self.on(edge, step, s));
+        let (s, least) = self.least(edge, step, turn);
+        let rise = ends[0].max(ends[1]) - least;
+        if !(least >= 0.0 && least <= CLOSE * rise) {
+            return None;
+        }
+        let room = self.error_of(edge, step, s, least) - least;
+        // As far to both sides as a parabola through the least value and an end stays within it.
+        let half = |end: usize| (turn[end] - s).abs() * (room / (ends[end] - least)).sqrt().min(1.0);
+        (room >= 0.0).then(|| Evidence::Grazing { from: s - half(0), to: s + half(1) })
+    }
+
+    /// Of a guard that falls at `root`: whether it rises again from within the error of the step, and
+    /// when.
+    #[inline]
+    pub(super) fn dips(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+        let by = PROBE * step.scale;
+        if root < by {
+            return None;
+        }
+        let [before, at, after] = [root - by, root, root + by].map(|s| self.on(edge, step, s));
+        let (slope, bend) = ((after - before) / (2.0 * by), (before - 2.0 * at + after) / (by * by));
+        let turn = -slope / bend;
+        (bend > 0.0 && turn < CLOSE * step.scale).then(|| self.shallow(edge, step, root, (turn, bend)))?
+    }
+
+    #[cold]
+    fn shallow(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        root: f64,
+        (turn, bend): (f64, f64),
+    ) -> Option<Evidence> {
+        let depth = 0.5 * bend * turn * turn;
+        let close = depth <= self.error_of(edge, step, root, 0.0);
+        close.then(|| Evidence::Grazing { from: (root - turn.abs()).max(0.0), to: root + 2.0 * turn.abs() })
+    }
+
+    /// Whether a guard that falls at `root` has been no farther from zero on the step than what the
+    /// absolute tolerance leaves open, nor any other on a step of this run before: all that moves is of a
+    /// size that this tolerance does not resolve.
+    #[inline]
+    pub(super) fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+        if self.memory.resolved {
+            return None;
+        }
+        let middle = 0.5 * root;
+        let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
+        let (absolute, x) = (self.options.tolerance.absolute, horner(step.c, middle / step.scale));
+        let off = self.moved(edge, step.now.after(middle).seconds(), &x, half, |_| STEP_ERROR * absolute);
+        self.memory.resolved = start.abs().max(half.abs()) > RESOLVED * off;
+        (!self.memory.resolved).then_some(Evidence::Grazing { from: 0.0, to: root })
+    }
+
+    /// The guard of `edge` a time `s` after the start of a step.
+    fn on(&mut self, edge: A::Edge, Step { now, c, scale }: Step<'_, A::State>, s: f64) -> f64 {
+        self.memory.stats.guards += 1;
+        self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+    }
+
+    /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its start.
+    fn error_of(&mut self, edge: A::Edge, Step { now, c, scale }: Step<'_, A::State>, s: f64, g: f64) -> f64 {
+        self.step_error(edge, now.after(s).seconds(), &horner(c, s / scale), g)
+    }
+
+    /// Where a guard that turns up between two times is least, and its value there.
+    fn least(&mut self, edge: A::Edge, step: Step<'_, A::State>, [mut a, mut b]: [f64; 2]) -> (f64, f64) {
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let inner = |a: f64, b: f64| [b - golden * (b - a), a + golden * (b - a)];
+        let mut at = inner(a, b);
+        let mut values = at.map(|s| self.on(edge, step, s));
+        for _ in 0..SECTIONS {
+            if values[0] <= values[1] {
+                b = at[1];
+                at = [inner(a, b)[0], at[0]];
+                values = [self.on(edge, step, at[0]), values[0]];
+            } else {
+                a = at[0];
+                at = [at[1], inner(a, b)[1]];
+                values = [values[1], self.on(edge, step, at[1])];
+            }
+        }
+        (a.midpoint(b), values[0].min(values[1]))
+    }
+}

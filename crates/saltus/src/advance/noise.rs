@@ -1,0 +1,201 @@
+//! How far a guard's value may be off: by the rounding of the state and of time, and by the error of
+//! the steps.
+
+use crate::automaton::Automaton;
+use crate::cross::{AT_START, Crossing};
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::{Time, resolution};
+use crate::trajectory::horner;
+
+use super::{Advance, Spent, Wall};
+
+/// How many times what the tolerance allows in a step a state on its dense output may be off.
+///
+/// The error estimate is that of a step's end, to the order below the method's own; within the step
+/// and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
+pub(super) const STEP_ERROR: f64 = 16.0;
+
+/// The part of a step over which the slope of a guard is taken: short enough that what four powers
+/// of it leave out is below every tolerance, long enough that roundings stay below it.
+pub(super) const PROBE: f64 = 1e-3;
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
+    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
+        const NUDGE: f64 = 1.0 / (1 << 20) as f64;
+        self.moved(edge, t, x, g, |x| NUDGE * x.abs().max(least)) * (f64::EPSILON / NUDGE)
+    }
+
+    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
+    pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const STEPS: f64 = 1024.0;
+        let rounding = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
+        let tolerance = self.options.tolerance;
+        STEPS * (rounding + self.moved(edge, t, x, g, |x| tolerance.allowed(x, x)))
+    }
+
+    /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
+    pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        let tolerance = self.options.tolerance;
+        STEP_ERROR * self.moved(edge, t, x, g, |x| tolerance.allowed(x, x))
+    }
+
+    /// How far the guard, `g` at `x`, moves with each coordinate that is moved `by` so much, all together.
+    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for k in 0..x.len() {
+            self.memory.stats.guards += 1;
+            let nudged = x.with(|i| if i == k { x.get(i) + by(x.get(i)) } else { x.get(i) });
+            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
+            sum += if change.is_finite() { change } else { 0.0 };
+        }
+        sum
+    }
+
+    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
+    pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const SOME: f64 = 1024.0;
+        self.memory.stats.guards += 1;
+        let ahead = t + SOME * resolution(t);
+        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
+        if change.is_finite() { change } else { 0.0 }
+    }
+
+    /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their walls,
+    /// g = 0 and n·f + ∂g/∂t = 0 to rounding.
+    #[inline]
+    pub(super) fn find_staying(&mut self, mode: A::Mode, now: Time, c: &[A::State], scale: f64, slope: &A::State) {
+        if let Some(Spent { edge, slack }) = self.memory.spent
+            && self.memory.wall(edge).is_none()
+            && self.automaton.edges(mode).iter().any(|other| other == edge)
+        {
+            let (automaton, t, x, by) = (self.automaton, now.seconds(), &c[0], PROBE * scale);
+            self.memory.stats.guards += 2;
+            let guard = |s: f64| automaton.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+            if (guard(by) - guard(-by)).abs() <= LEAVES * slack {
+                self.memory.at_wall(edge, 0.0);
+            }
+        }
+        if self.memory.wall_count > 0 {
+            self.sort_walls(mode, now, c, scale);
+        }
+    }
+
+    #[cold]
+    fn sort_walls(&mut self, mode: A::Mode, now: Time, c: &[A::State], scale: f64) {
+        let (t, x) = (now.seconds(), &c[0]);
+        for k in 0..self.memory.wall_count {
+            let Some(Wall { edge, level, .. }) = self.memory.walls[k] else { continue };
+            let rate = self.guard_rate(mode, edge, t, x, PROBE * scale);
+            let mut along = |part: f64| {
+                let t = now.after(part * scale).seconds();
+                self.carried(mode, edge, t, &horner(c, part), scale) == Carried::Along
+            };
+            // A guard that falls or rises as a power of time does so within a small part of the step.
+            let along = along(1.0) || along(EARLY);
+            let stays = along && rate.abs() <= self.rate_rounding(edge, t, x, PROBE * scale);
+            let taken = self.memory.spent_as(edge).is_some();
+            self.memory.walls[k] = (stays || !taken).then_some(Wall { edge, level, stays });
+        }
+    }
+
+    /// How far rounding may take the rate of a guard from differences over `by`.
+    fn rate_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
+        self.memory.stats.guards += 1;
+        let g = self.automaton.guard(edge, t, x);
+        ROUNDINGS * (self.guard_rounding(edge, t, x, g, 0.0) + self.time_rounding(edge, t, x, g)) / by
+    }
+
+    /// Where the flow carries the guard of `edge` at `x`: the sign of n·f + ∂g/∂t, beyond what rounding
+    /// and the error of a step of size `h` leave open.
+    ///
+    /// What the dense output does is not asked: along a surface that the flow keeps, it drifts.
+    fn carried(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> Carried {
+        let by = PROBE * h;
+        let rate = self.guard_rate(mode, edge, t, x, by);
+        let mut noise = self.rate_rounding(edge, t, x, by);
+        for k in 0..x.len() {
+            let off = STEP_ERROR * self.options.tolerance.allowed(x.get(k), x.get(k));
+            let nudged = x.with(|i| if i == k { x.get(i) + off } else { x.get(i) });
+            let change = (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
+            noise += if change.is_finite() { change } else { 0.0 };
+        }
+        if rate > noise {
+            Carried::Up
+        } else if rate < -noise {
+            Carried::Down
+        } else {
+            Carried::Along
+        }
+    }
+
+    /// dg/dt along the flow at `x`, by differences over `by` and half of it to both sides, from which
+    /// the square of the distance is taken out (L. F. Richardson, Phil. Trans. A 210 (1911) 307).
+    fn guard_rate(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
+        let slope = self.flow(mode, t, x);
+        self.memory.stats.guards += 4;
+        let guard = |s: f64| self.automaton.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+        let [far, near] = [by, 0.5 * by].map(|s| (guard(s) - guard(-s)) / (2.0 * s));
+        (4.0 * near - far) / 3.0
+    }
+
+    /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins to
+    /// carry its guard down, if it does so at the end of the search, after `limit`.
+    #[cold]
+    pub(super) fn leaves(
+        &mut self,
+        (mode, edge, now): (A::Mode, A::Edge, Time),
+        (c, scale): (&[A::State], f64),
+        limit: f64,
+    ) -> Option<Crossing> {
+        let mut carried = |s: f64| self.carried(mode, edge, now.after(s).seconds(), &horner(c, s / scale), scale);
+        if carried(limit) != Carried::Down {
+            return None;
+        }
+        let (mut on, mut off) = (0.0, limit);
+        if carried(on) == Carried::Down {
+            return Some(Crossing::at_start(limit * AT_START));
+        }
+        while off - on > resolution(now.seconds() + off).max(off.next_up() - off) {
+            let middle = on.midpoint(off);
+            *(if carried(middle) == Carried::Down { &mut off } else { &mut on }) = middle;
+        }
+        Some(Crossing::after(on))
+    }
+
+    /// After a step without a crossing to `x`: which edges stay, whose guards the flow carries neither
+    /// up nor down.
+    #[cold]
+    pub(super) fn keep_staying(&mut self, mode: A::Mode, now: Time, x: &A::State, h: f64) {
+        let t = now.seconds();
+        for k in 0..self.memory.wall_count {
+            let Some(Wall { edge, stays: true, .. }) = self.memory.walls[k].take() else { continue };
+            if self.carried(mode, edge, t, x, h) == Carried::Along {
+                self.memory.stats.guards += 1;
+                let level = self.automaton.guard(edge, t, x);
+                self.memory.walls[k] = Some(Wall { edge, level, stays: true });
+            }
+        }
+        if self.memory.walls[..self.memory.wall_count].iter().all(Option::is_none) {
+            self.memory.wall_count = 0;
+        }
+    }
+}
+
+/// The part of a step within which a guard leaves its wall that leaves it at once.
+const EARLY: f64 = 1.0 / 16.0;
+
+/// Where the flow carries a guard.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Carried {
+    Up,
+    Down,
+    Along,
+}
+
+/// A guard that moves by so many times what rounding leaves of it leaves its wall.
+const LEAVES: f64 = (1_u64 << 20) as f64;
+
+/// How many roundings of a guard's value the difference of two such values may be off.
+pub(super) const ROUNDINGS: f64 = 8.0;

@@ -1,0 +1,98 @@
+//! A guard that turns within the error of a step: the crossing is right, or doubted.
+
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+use saltus::cross::Evidence;
+use saltus::{Certificate, Dop853, Entry, Hybrid, Rodas5P, Simulation, Tsit5};
+
+/// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1 of
+/// an oscillator, in three forms; and how often that is doubted.
+fn falls(
+    method: usize,
+    tolerance: f64,
+    (form, affine): (usize, bool),
+    (miss, scale): (f64, f64),
+    (phase, rate): (f64, f64),
+) -> (usize, usize) {
+    let mut oscillator = Hybrid::new()
+        .mode("swing", move |_t, x: &[f64; 2]| [x[1] * rate, -x[0] * rate])
+        .edge(
+            "swing",
+            "swing",
+            move |_t, x| {
+                scale
+                    * match form {
+                        0 => x[0] + 1.0 + miss,
+                        1 => (1.0 + miss - x[0]) * (1.0 + miss + x[0]) * (2.0 - x[0]),
+                        _ => (1.0 + miss + x[0]) * (3.0 + x[1]),
+                    }
+            },
+            |_t, x| *x,
+        )
+        .entry("swing", "swing", Entry::Wait);
+    if affine && form == 0 {
+        oscillator = oscillator.affine("swing", "swing");
+    }
+    let mut certificate = Certificate::new();
+    let simulation = Simulation::of(&oscillator).tolerance(tolerance);
+    let (x, span) = ([phase.cos(), -phase.sin()], 0.0..3.0 * TAU / rate);
+    let end = match method {
+        0 => simulation.stepper(Tsit5).drive("swing", x, span, &mut certificate),
+        1 => simulation.stepper(Dop853).drive("swing", x, span, &mut certificate),
+        _ => simulation.stepper(Rodas5P).drive("swing", x, span, &mut certificate),
+    };
+    let doubts = certificate.doubts();
+    assert!(doubts.iter().all(|doubt| matches!(doubt.evidence, Evidence::Grazing { .. })), "{doubts:?}");
+    (end.unwrap().jumps, doubts.len())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// What the error of the steps decides is doubted, and nothing else is.
+    #[test]
+    fn what_the_error_of_a_step_decides_is_doubted(
+        method in 0..3_usize,
+        digits in 3.0..12.0_f64,
+        form in 0..3_usize,
+        (affine, above) in any::<(bool, bool)>(),
+        (miss, scale) in (2.0..14.0_f64, -3.0..3.0_f64),
+        (phase, rate) in (0.0..3.0_f64, -1.0..1.5_f64),
+    ) {
+        let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
+        let miss = 10_f64.powf(-miss) * if above { 1.0 } else { -1.0 };
+        let (jumps, doubts) = falls(method, tolerance, (form, affine), (miss, scale), (phase, rate));
+        let right = if above { 0 } else if form == 1 { 6 } else { 3 };
+        prop_assert!(jumps == right || doubts > 0, "{jumps} falls, and no doubt");
+        prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
+    }
+}
+
+/// The end of ten bounces of a ball with drag, dropped from a height in a unit in which that is `size`;
+/// and the doubts.
+fn bounces(size: f64, tolerance: f64) -> (f64, usize) {
+    let ball = Hybrid::new()
+        .mode("flight", move |_t, x: &[f64; 2]| [x[1], -9.81 * size - 0.3 / size * x[1] * x[1].abs()])
+        .edge("flight", "flight", |_t, x| x[0], |_t, x| [x[0], -0.85 * x[1]]);
+    let mut certificate = Certificate::new();
+    let simulation = Simulation::of(&ball).tolerance(tolerance).most_jumps(10).most_steps(2000);
+    let end = simulation.drive("flight", [size, 0.0], 0.0..f64::INFINITY, &mut certificate).unwrap();
+    (end.time.seconds(), certificate.doubts().len())
+}
+
+/// Units do not matter, or the run is doubted: where two digits of a bounce are below the absolute
+/// tolerance.
+#[test]
+fn a_motion_below_the_absolute_tolerance_is_doubted() {
+    for tolerance in [1e-6, 1e-9, 1e-11] {
+        let (right, _) = bounces(1.0, tolerance);
+        for power in -40..=24 {
+            let size = 10_f64.powf(0.5 * f64::from(power));
+            let (end, doubts) = bounces(size, tolerance);
+            let off = (end - right).abs() / right;
+            assert!(off < 1e-3 || doubts > 0, "of size {size:e} at {tolerance:e}: off by {off:e}, and no doubt");
+            assert!(doubts == 0 || size < 1e4 * tolerance, "of size {size:e} at {tolerance:e}: {doubts} doubts");
+        }
+    }
+}
