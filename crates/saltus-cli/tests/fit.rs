@@ -37,6 +37,44 @@ fn film(drop: f64) -> String {
     text
 }
 
+/// Every trial has its curve and its rungs, and groups have one picture that compares them.
+#[test]
+fn trials_and_groups_are_all_drawn() {
+    let folder = TempDir::new().unwrap();
+    let draw = |option: &str, rows: &str| {
+        fs::write(folder.path().join("t.csv"), rows).unwrap();
+        let drawn = saltus(folder.path(), &["fit", "t.csv", option, "p.svg"]);
+        assert!(drawn.status.success(), "{}", text(&drawn.stderr));
+        fs::read_to_string(folder.path().join("p.svg")).unwrap()
+    };
+    let (one, three) = ("drop_cm,rebound_cm\n100,55\n", "drop_cm,rebound_cm\n100,55\n150,82\n200,108\n");
+    let several = draw("--plot", three);
+    assert!(several.contains("3 trials") && several.contains("Contacts of the model: 6"), "{several}");
+    assert!(draw("--plot", one).contains("Contacts of the model: 2"));
+    let rungs = draw("--plot-ladder", three);
+    assert!(rungs.matches("<path").count() >= draw("--plot-ladder", one).matches("<path").count() + 2, "{rungs}");
+    let groups = draw("--plot", "ball,drop_cm,rebound_cm\nA,100,55\nA,100,54\nB,100,25\nB,100,26\n");
+    assert!(groups.contains(">A<") && groups.contains(">B<") && groups.contains("95 % interval"), "{groups}");
+}
+
+/// A plan before the first drop, as the guide prints it; with a table, for its ball; wrong numbers are refused.
+#[test]
+fn a_measurement_is_planned() {
+    let folder = TempDir::new().unwrap();
+    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fitting.md")).unwrap();
+    let planned = saltus(folder.path(), &["fit", "--want", "0.005", "--ball", "tennis"]);
+    assert!(planned.status.success() && guide.contains(&text(&planned.stdout)), "{}", text(&planned.stdout));
+    let values = ["fit", "--values", "100 64 41 26 cm", "--want", "0.004", "--format", "json", "--sigma-zero", "0"];
+    let json: serde_json::Value = serde_json::from_slice(&saltus(folder.path(), &values).stdout).unwrap();
+    assert!((json["plan"]["cor"].as_f64().unwrap() - 0.8).abs() < 0.01 && json["plan"]["drop_m"] == 1.0, "{json}");
+    for wrong in
+        [["--want", "0", "--expect", "0.8"], ["--want", "0.01", "--expect", "1.2"], ["--want", "0.01", "--drop", "2"]]
+    {
+        let refused = saltus(folder.path(), &[&["fit"], wrong.as_slice()].concat());
+        assert!(!refused.status.success() && text(&refused.stderr).contains("give a"), "{}", text(&refused.stderr));
+    }
+}
+
 #[test]
 fn the_first_example_of_the_guide_is_what_is_printed() {
     let folder = TempDir::new().unwrap();

@@ -3,7 +3,7 @@
 use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
-use crate::finding::FindingKind;
+use crate::finding::{Finding, FindingKind};
 use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
 use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
 use crate::read::{Reading, Table};
@@ -45,6 +45,8 @@ pub struct Fit {
     drag: Option<f64>,
     sigma_zero: Option<f64>,
     model: Option<CorModel>,
+    /// The ball that the table names.
+    named: Option<Ball>,
 }
 
 impl Fit {
@@ -217,6 +219,9 @@ impl Fit {
             let like = groups[0].report.clone();
             return Ok(Report::of_groups(table, groups, &like));
         }
+        if let Some(ball) = self.named_by(table) {
+            return Self { named: Some(ball), ..self.kind(ball) }.run_with(table, progress);
+        }
         let known = self.known(table);
         let table = &*table
             .at_gravity(known.gravity.value, known.sigma_time.map_or(<Contacts as OneKind>::ASSUMED, |s| s.value));
@@ -233,10 +238,20 @@ impl Fit {
         let mut comparison = compare::all(&fits, &self.wanted())?;
         let extras = self.extras(&fits, progress)?;
         let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model, (&known, self.stated()));
+        judgement.findings.extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball })));
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
         Ok(Report::build(&fits, comparison, extras, judgement, self.ball))
+    }
+
+    /// The ball that a column of the table names, where nothing is stated of it.
+    fn named_by(&self, table: &Table) -> Option<Ball> {
+        if self.ball.or(self.drag).is_some() {
+            return None;
+        }
+        let ball = table.trials().first()?.ball?;
+        table.trials().iter().all(|trial| trial.ball == Some(ball)).then_some(ball)
     }
 
     /// What is known before anything is fitted: gravity, and the errors of reading as far as somebody states them.
@@ -301,6 +316,7 @@ impl Fit {
 
     fn report_of_recordings(&self, fits: &Fits<'_>, series: Series) -> Report {
         let (mut judgement, estimates, models) = verdict::of_recordings(fits, &series);
+        judgement.findings.extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball })));
         if self.model.is_some() {
             judgement.note(FindingKind::ModelNotHeeded);
         }

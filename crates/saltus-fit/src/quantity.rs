@@ -259,6 +259,29 @@ impl Ball {
         Self::Lacrosse,
     ];
 
+    /// The ball of a name such as `tennis`, `Golf ball` or `ping-pong`; `None` where a word of it is not understood.
+    ///
+    /// ```
+    /// use saltus_fit::Ball;
+    /// assert_eq!(Ball::named("Table tennis ball"), Some(Ball::TableTennis));
+    /// assert_eq!((Ball::named("old tennis ball"), Ball::named("soccer")), (None, Some(Ball::Football)));
+    /// ```
+    #[must_use]
+    pub fn named(text: &str) -> Option<Self> {
+        let lower = text.trim().to_lowercase();
+        let words: Vec<&str> = lower.split(|c: char| c.is_whitespace() || "_-".contains(c)).collect();
+        let bare = match words.as_slice() {
+            [name @ .., "ball" | "balls"] if !name.is_empty() => name.join("-"),
+            name => name.join("-"),
+        };
+        let name = match bare.as_str() {
+            "pingpong" | "ping-pong" => Self::TableTennis.name(),
+            "soccer" => Self::Football.name(),
+            name => name,
+        };
+        Self::ALL.into_iter().find(|ball| ball.name() == name || name.strip_suffix("ball") == Some(ball.name()))
+    }
+
     /// Diameter, m, and mass, kg.
     const fn sizes(self) -> (f64, f64) {
         match self {

@@ -9,6 +9,9 @@ pub(crate) const REPLICATED: usize = 5;
 /// From this many degrees of freedom on, the scatter can stand for a reading error that nobody stated.
 pub(crate) const SCATTER: usize = 4;
 
+/// A BIC, or a chi-square, this much less decides (Kass and Raftery, J. Am. Stat. Assoc. 90 (1995) 773: strong evidence).
+pub(crate) const CLEAR: f64 = 6.0;
+
 /// The 97.5 % point of the normal distribution.
 pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
 
@@ -49,6 +52,24 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     Some(if n % 2 == 1 { high } else { 0.5 * (values[n / 2 - 1] + high) })
 }
 
+/// Frame rates of cameras, 1/s; colour television's are a thousandth slower.
+const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
+
+/// The standard deviation of the rounding that these numbers share: to a decimal, or to frames of a camera. A scatter that happens to be smaller claims
+/// too much.
+pub(crate) fn rounding(values: &[f64]) -> f64 {
+    let whole = |step: f64, off: f64| values.iter().all(|v| (v / step - (v / step).round()).abs() <= off / step);
+    let decimals = [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5];
+    let Some(written) = decimals.into_iter().find(|step| whole(*step, 1e-6 * step)) else { return 0.0 };
+    // Numbers that were written to a decimal fall on frames by chance with the probability that the decimal leaves each.
+    let by_chance =
+        |frame: f64| (1.02 * written / frame).min(1.0).powi(i32::try_from(values.len()).unwrap_or(i32::MAX) - 1);
+    let rates = RATES.into_iter().flat_map(|rate| [rate, rate / 1.001]);
+    let mut frames = rates.map(|rate| 1.0 / rate);
+    let frame = frames.find(|frame| by_chance(*frame) < REJECT / RATES.len() as f64 && whole(*frame, 0.51 * written));
+    frame.unwrap_or(0.0).max(written) / 12f64.sqrt()
+}
+
 /// A straight line y + b (x - x̄) through points.
 pub(crate) struct Line {
     middle: (f64, f64),
@@ -79,6 +100,17 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_on_frames_are_rounded_to_frames() {
+        let on = |rate: f64| [0.0, 3.0, 7.0, 11.0, 12.0, 17.0, 23.0, 29.0].map(|n| (1e4 * n / rate).round() / 1e4);
+        for rate in [25.0, 29.97, 30.0, 60.0, 240.0] {
+            assert!((rounding(&on(rate)) * 12f64.sqrt() * rate - 1.0).abs() < 2e-3, "{rate}");
+        }
+        assert!((rounding(&[0.1234, 0.2351, 0.3412, 0.0077]) - 1e-4 / 12f64.sqrt()).abs() < 1e-12);
+        // So few that they may be on frames by chance, and heights in whole centimetres.
+        assert!(rounding(&[0.03, 0.07]) < 0.003 && (rounding(&[1.0, 0.5, 0.25]) * 12f64.sqrt() - 0.01).abs() < 1e-9);
+    }
 
     #[test]
     fn tails_match_printed_tables() {

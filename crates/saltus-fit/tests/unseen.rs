@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use saltus_fit::{Cor, Fit, Table, Verdict};
+use saltus_fit::{Ball, Cor, Fit, ReadOptions, Table, Verdict};
 
 const G: f64 = 9.81;
 /// A tennis ball, read anywhere on it.
@@ -85,4 +85,30 @@ fn the_size_of_the_ball_bounds_the_zero() {
     let report =
         Fit::new().sigma_height(0.002).sigma_zero(1e-5).drag(0.0).run(&Table::from_heights(&read).unwrap()).unwrap();
     assert!(!report.to_string().contains("zero of the heights"), "{report}");
+}
+
+/// A ball that the table names in a column of its own is used as a stated one is, group by group; a name that is not understood is not.
+#[test]
+fn a_ball_that_the_table_names_is_that_ball() {
+    let rows = |ball: &str, rebounds: [f64; 4]| -> String {
+        rebounds.iter().map(|rebound| format!("{ball},100,{rebound}\n")).collect()
+    };
+    let read = |text: &str| {
+        Table::parse("t.csv", format!("ball,drop_cm,rebound_cm\n{text}").as_bytes(), &ReadOptions::default()).unwrap()
+    };
+    let plain = read(&rows("", [55.0, 54.0, 56.0, 55.0]));
+    for (name, kind) in [("tennis", Ball::Tennis), ("Golf ball", Ball::Golf), ("ping-pong", Ball::TableTennis)] {
+        let named = Fit::new().run(&read(&rows(name, [55.0, 54.0, 56.0, 55.0]))).unwrap();
+        let stated = Fit::new().kind(kind).run(&plain).unwrap();
+        assert_eq!(named.cor(), stated.cor(), "{named}");
+        assert!(named.to_string().contains("names the ball"), "{named}");
+        // What is stated stands above what the table says.
+        let bare = Fit::new().ball(0.01).drag(0.0);
+        let table = read(&rows(name, [55.0, 54.0, 56.0, 55.0]));
+        assert_eq!(bare.run(&table).unwrap().cor(), bare.run(&plain).unwrap().cor());
+    }
+    let both = rows("tennis", [55.0, 54.0, 56.0, 55.0]) + &rows("my ball", [26.0, 25.0, 25.0, 26.0]);
+    let both = Fit::new().run(&read(&both)).unwrap();
+    let says = |n: usize| both.groups()[n].report.to_string().contains("names the ball");
+    assert!(both.groups().len() == 2 && says(0) && !says(1), "{both}");
 }

@@ -30,11 +30,21 @@ Reading errors come from --sigma-height and --sigma-time, from lines such as '# 
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
     /// The tables, whose trials are fitted together; `-` for standard input.
-    #[arg(required_unless_present = "values", value_name = "FILE")]
+    #[arg(required_unless_present_any = ["values", "want"], value_name = "FILE")]
     pub(crate) tables: Vec<PathBuf>,
     /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from the release on, or times of contacts.
     #[arg(long, value_name = "NUMBERS UNIT", conflicts_with = "tables", allow_hyphen_values = true)]
     pub(crate) values: Option<String>,
+    /// Plan the measurement that gives the COR to within this, 95 %, such as `0.005`: how many drops and bounces by ruler, film or sound; with a table
+    /// for the ball of that table, without one before the first drop.
+    #[arg(long, value_name = "NUMBER", value_parser = want)]
+    pub(crate) want: Option<f64>,
+    /// The COR to plan for where no table tells it.
+    #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75")]
+    pub(crate) expect: f64,
+    /// The height of the drop to plan for where no table tells it.
+    #[arg(long, value_name = "LENGTH", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = small(Quantity::Length, "m"), default_value = "1m")]
+    pub(crate) drop: f64,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
@@ -178,15 +188,10 @@ pub(crate) enum Ball {
 }
 
 fn ball(text: &str) -> Result<Ball, String> {
-    let name = match text.trim().to_lowercase().replace([' ', '_'], "-") {
-        name if ["pingpong", "ping-pong"].contains(&name.as_str()) => "table-tennis".to_owned(),
-        name if name == "soccer" => "football".to_owned(),
-        name => name,
-    };
-    if let Some(kind) = saltus_fit::Ball::ALL.into_iter().find(|kind| *kind == name.as_str()) {
+    if let Some(kind) = saltus_fit::Ball::named(text) {
         return Ok(Ball::Kind(kind));
     }
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+    if text.trim_start().starts_with(|c: char| c.is_ascii_alphabetic()) {
         let known = saltus_fit::Ball::ALL.map(saltus_fit::Ball::name).join(", ");
         return Err(format!(
             "'{text}' is no ball that is known: use one of {known}, or give a diameter, such as '4 cm', and --drag"
@@ -244,6 +249,22 @@ fn scale(text: &str) -> Result<f64, String> {
 
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| format!("'{text}' is not a number"))
+}
+
+fn want(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 0.5 => Ok(value),
+        _ => Err(format!(
+            "'{text}' is no half-width of an interval of CORs: give a number between 0 and 0.5, such as 0.005"
+        )),
+    }
+}
+
+fn expect(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if saltus_fit::Expected::new(value, 1.0).is_some() => Ok(value),
+        _ => Err(format!("'{text}' is no COR to plan for: give a number between 0.05 and 0.99")),
+    }
 }
 
 fn filter(text: &str) -> Result<(String, String), String> {

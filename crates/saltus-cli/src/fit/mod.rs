@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Once;
 
-use saltus_fit::{CorModel, Fit, Loss, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{CorModel, Expected, Fit, Loss, ReadOptions, Report, Table, Verdict};
 use saltus_plot::PlotError;
 
 use crate::error::Error;
@@ -28,13 +28,16 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     }
     check_new(args.scene.as_deref(), args.force)?;
     one_to_standard_output(args)?;
+    if let Some(want) = args.want.filter(|_| args.tables.is_empty() && args.values.is_none()) {
+        return plan(args, want);
+    }
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
     // What takes long is a bootstrap.
     let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
     let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));
     progress.clear();
-    let report = report.map_err(Error::data)?;
+    let report = report.and_then(|report| fit(args).advised(&table, report, args.want)).map_err(Error::data)?;
     let text = match args.format {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
@@ -72,6 +75,19 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     }
     let passed = !args.strict || report.verdict() == Verdict::Trusted;
     Ok(if passed { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// What a measurement takes, before the first drop.
+fn plan(args: &args::Fit, want: f64) -> Result<ExitCode, Error> {
+    let expected = Expected::new(args.expect, args.drop)
+        .ok_or_else(|| Error::new("a drop to plan for is between 1 cm and 100 m: give it by --drop, such as 1m"))?;
+    let plan = fit(args).plan(want, expected).map_err(Error::data)?;
+    let text = match args.format {
+        ReportFormat::Text => plan.to_string(),
+        ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&plan).map_err(Error::new)?),
+    };
+    write(args.output.as_deref(), text.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Refuses a report and a picture, or two pictures, in one stream, where neither could be used.

@@ -7,6 +7,9 @@ use saltus_plot::{
 
 /// The measured points, the fitted motion, and what is left between them.
 pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
+    if !report.groups().is_empty() {
+        return compared(report);
+    }
     let motion = report.motion()?;
     let points = report.points().iter().map(|point| {
         let mut measured = Measured::new(point.time, point.height).mark(mark(point.mark));
@@ -18,11 +21,19 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
         }
         measured
     });
+    // All first contacts coincide, as those of the readings do.
+    let first = motion.contacts.first().copied().unwrap_or(0.0);
+    let shifted = |m: &Motion| (first - m.contacts.first().copied().unwrap_or(first), m.clone());
+    let all: Vec<(f64, Motion)> = if report.series().is_empty() {
+        report.motions().iter().map(shifted).collect()
+    } else {
+        vec![(0.0, motion.clone())]
+    };
     let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(r.mark)));
     let mut picture = HeightTime::new(&report.title())
-        .motion(&label(report, motion), arcs(motion))
+        .motion(&label(report, motion), all.iter().flat_map(|(shift, motion)| arcs(motion, *shift)))
         .measured(points)
-        .contacts(motion.contacts.iter().copied())
+        .contacts(all.iter().flat_map(|(shift, motion)| motion.contacts.iter().map(move |t| t + shift)))
         .residuals(residuals)
         .background(Background::Adaptive)
         .caption(&caption(report));
@@ -100,15 +111,42 @@ fn impacts(report: &Report) -> Option<Result<String, PlotError>> {
     Some(picture.caption(&caption(report)).svg())
 }
 
+/// The height of release and of each apex of a fitted motion, by the number of the bounce.
+fn rungs(motion: &Motion) -> Vec<[f64; 2]> {
+    let release = motion.release_height.map(|height| [0.0, height]);
+    let apexes = (1_u32..).map(f64::from).zip(&motion.apexes).map(|(n, height)| [n, *height]);
+    release.into_iter().chain(apexes).collect()
+}
+
+/// The COR of each group with its 95 % interval, side by side.
+fn compared(report: &Report) -> Option<Result<String, PlotError>> {
+    let groups: Vec<(f64, &saltus_fit::Group, saltus_fit::Cor)> = (1_u32..)
+        .map(f64::from)
+        .zip(report.groups())
+        .filter_map(|(n, group)| Some((n, group, *group.report.cor()?)))
+        .collect();
+    let interval = |(n, _, cor): &(f64, _, saltus_fit::Cor)| Stroke::polygon(&[[*n, cor.low], [*n, cor.high]]);
+    if groups.len() < 2 {
+        return None;
+    }
+    let mut chart = Chart::new(&report.title(), ("Group", Scale::Count), ("COR", Scale::Number))
+        .line("", groups.iter().flat_map(interval))
+        .marks(groups.iter().map(|(n, _, cor)| [*n, cor.value]))
+        .background(Background::Adaptive)
+        .caption("Marks: the COR of each group, with its 95 % interval");
+    for (n, group, cor) in &groups {
+        chart = chart.callout(&group.name, [*n, cor.value]);
+    }
+    Some(chart.svg())
+}
+
 /// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every trial, and of the fitted motion.
 pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     let motion = report.motion()?;
     let apexes = [saltus_fit::Mark::Release, saltus_fit::Mark::Apex];
     let read = report.points().iter().filter(|point| point.height > 0.0 && apexes.contains(&point.mark));
     let read: Vec<_> = read.map(|point| (count(point.number), point)).collect();
-    let fitted = motion.release_height.map(|height| (0.0, height)).into_iter();
-    let fitted: Vec<[f64; 2]> =
-        fitted.chain((1_u32..).map(f64::from).zip(motion.apexes.iter().copied())).map(|(n, h)| [n, h]).collect();
+    let fitted = rungs(motion);
     if fitted.len() < 2 {
         return None;
     }
@@ -134,6 +172,9 @@ pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
         .background(Background::Adaptive)
         .caption(marked)
         .caption(&caption(report));
+    let others = report.motions().iter().skip(1).filter(|_| report.series().is_empty());
+    let chart = if others.clone().next().is_some() { chart.caption("A line for each trial") } else { chart };
+    let chart = others.fold(chart, |chart, motion| chart.line("", Stroke::polygon(&rungs(motion))));
     Some(chart.svg())
 }
 
@@ -208,8 +249,12 @@ fn speed(report: &Report, bounce: usize) -> Option<f64> {
 
 fn label(report: &Report, motion: &Motion) -> String {
     let read = report.points().iter().map(|point| point.trial + 1).max().unwrap_or(1);
-    let trials = report.series().len().max(read);
-    let whose = if trials > 1 { format!("first of {trials} trials: ") } else { String::new() };
+    let films = report.series().len();
+    let whose = match (films, read) {
+        (2.., _) => format!("first of {films} trials: "),
+        (0, 2..) => format!("{read} trials: "),
+        _ => String::new(),
+    };
     let free = if report.series().is_empty() { "free flight with " } else { "" };
     format!("{whose}{free}{}", course(report, motion))
 }
@@ -219,8 +264,8 @@ fn course(report: &Report, motion: &Motion) -> String {
     if report.series().is_empty() { format!("one COR of {:.3}", motion.cor) } else { "the fitted motion".to_owned() }
 }
 
-fn arcs(motion: &Motion) -> impl Iterator<Item = Arc> {
-    motion.flights.iter().map(|flight| Arc::new(flight.start, flight.span, flight.height.to_vec()))
+fn arcs(motion: &Motion, shift: f64) -> impl Iterator<Item = Arc> {
+    motion.flights.iter().map(move |flight| Arc::new(flight.start + shift, flight.span, flight.height.to_vec()))
 }
 
 fn mark(of: saltus_fit::Mark) -> Mark {

@@ -9,13 +9,13 @@ use crate::error::FitError;
 use crate::finding::{Finding, FindingKind, Missing, Need, Untried};
 use crate::model::{Bounds, CorLaw, FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, Model, READINGS};
 use crate::quantity::{self, CorModel, Loss, Measured};
-use crate::solve::choice::{CLEAR, Limit, Misfit, ModelChoice, SpeedCor, UnderLoss};
+use crate::solve::choice::{Limit, Misfit, ModelChoice, SpeedCor, UnderLoss};
 use crate::solve::joint::slope;
 use crate::solve::one::identified;
 use crate::solve::profile::limit;
 use crate::solve::robust;
 use crate::solve::successive::{Fitted, fit};
-use crate::statistics::chi_square_p;
+use crate::statistics::{CLEAR, chi_square_p};
 
 /// So many spare readings a model must leave to be worth comparing.
 const SPARE: usize = 3;
@@ -275,7 +275,7 @@ fn tried(
     let n = used(&model) as f64;
     // The place of a rebound that is missing was looked for too.
     let p = n - fitted.freedom as f64 + if name == CorModel::Missed { 1.0 } else { 0.0 };
-    let misfit = Misfit { chi_square: fitted.chi_square, readings: n, unknowns: p };
+    let misfit = Misfit { chi_square: fitted.chi_square, readings: n, unknowns: p, scattered: readings.scattered };
     let bic = if readings.scattered { misfit.by_scatter() } else { misfit.by_errors(1.0) };
     let cor = if model.law.of_speed() {
         at(&model, &fitted, (slowest * fastest).sqrt())

@@ -1,13 +1,13 @@
 //! What the readings of a table say, trial by trial, in the form the models ask for.
 
-mod mend;
+mod follow;
 
-use mend::{Contact, Repair, mend, usual};
+use follow::{Repair, Run, Step, Way};
 
 use crate::finding::{At, Finding, FindingKind};
 use crate::quantity::Readings;
 use crate::read::{Event, Reading, Table};
-use crate::statistics::median;
+use crate::statistics::rounding;
 
 /// A height: after how many contacts, how high (m), its standard error (m).
 pub(crate) type Height = (usize, f64, f64);
@@ -21,8 +21,11 @@ pub(crate) struct Moment {
     pub(crate) sigma: f64,
 }
 
-/// By so much the first ratio of intervals is above the later ones if the first is a fall; exactly it would be twice.
-const RELEASED: f64 = 1.25;
+/// The error of a time that nobody states, s.
+pub(crate) const ASSUMED_TIME: f64 = 0.01;
+
+/// So many other ways to read the contacts are fitted.
+const RIVALS: usize = 6;
 
 /// At least so many pairs of contacts show that each was heard twice: within each they are no further apart than this, s,
 const PAIRS: usize = 3;
@@ -53,8 +56,10 @@ pub(crate) struct Evidence {
     pub(crate) trials: Vec<TrialEvidence>,
     /// What was done to put the readings in order.
     pub(crate) repairs: Vec<Finding>,
-    /// How many contacts were left out because they follow from nothing else.
+    /// How many contacts are supposed missed, extra or misread.
     pub(crate) adrift: usize,
+    /// The trials as they are if the contacts are read in other ways that are about as likely.
+    pub(crate) rivals: Vec<Vec<TrialEvidence>>,
 }
 
 impl Evidence {
@@ -96,7 +101,6 @@ impl Evidence {
         }
         if repair {
             evidence.pairs(table);
-            evidence.releases(table);
             evidence.mend(table, sigma_time);
         }
         evidence
@@ -127,54 +131,32 @@ impl Evidence {
         }
     }
 
-    /// Finds releases that stand among the contacts: a first time of exactly 0, and a flight after it that is the fall, half a flight.
-    ///
-    /// From the release the times between are 1, 2e, 2e², …; from a contact 1, e, e², …
-    fn releases(&mut self, table: &Table) {
-        let first = |t: &TrialEvidence| {
-            let bare = t.release_time.is_none() && t.heights.iter().all(|h| h.0 == 0) && t.moments.len() > 3;
-            bare && t.moments.first() == Some(&(0, false, 0.0, t.moments[0].3))
-        };
-        let starts: Vec<usize> = (0..self.trials.len()).filter(|&n| first(&self.trials[n])).collect();
-        let mut later: Vec<f64> =
-            self.trials.iter().flat_map(|t| t.ratios().filter(|r| r.0 > 1).map(|r| r.3)).collect();
-        let ratios = |n: &usize| self.trials[*n].ratios().find(|r| r.0 == 1).map(|r| r.3);
-        let mut early: Vec<f64> = starts.iter().filter_map(ratios).collect();
-        let (Some(early), Some(later)) = (median(&mut early), median(&mut later)) else { return };
-        if early < RELEASED * later {
-            return;
-        }
-        for n in starts {
-            let trial = &mut self.trials[n];
-            trial.moments.remove(0);
-            trial.moments.iter_mut().for_each(|m| m.0 -= 1);
-            trial.release_time = Some(0.0);
-            self.repairs.push(Finding::note(FindingKind::ReleaseAmongContacts).at(at(table, trial.trial)));
-        }
-    }
-
-    /// Finds contacts that were missed, heard twice or misread.
+    /// Finds contacts that were missed, heard twice or misread, and releases that stand among contacts.
     fn mend(&mut self, table: &Table, sigma_time: Option<f64>) {
-        let Some(ratio) = usual(self.trials.iter().flat_map(|t| t.ratios().map(|r| r.3)).collect()) else { return };
-        for trial in &mut self.trials {
-            let contacts: Vec<Contact> = trial
-                .moments
-                .iter()
-                .enumerate()
-                .filter(|(_, m)| !m.1)
-                .map(|(place, m)| Contact { flights: m.0, time: m.2, place })
-                .collect();
-            // Gaps that the table itself numbers, and apexes between contacts, are what they are.
-            let plain =
-                contacts.len() == trial.moments.len() && contacts.windows(2).all(|w| w[1].flights == w[0].flights + 1);
-            let (mended, repairs) = mend(&contacts, ratio, sigma_time.unwrap_or(0.0));
-            // Heights are told by the number of the contact before them: where there are any, numbers stay.
-            if !plain || repairs.is_empty() || trial.heights.iter().any(|h| h.0 > 0) {
-                continue;
+        let places: Vec<usize> = (0..self.trials.len()).filter(|&n| self.trials[n].plain()).collect();
+        let runs: Vec<Run> = places.iter().map(|&n| self.trials[n].run()).collect();
+        let times: Vec<f64> = runs.iter().flat_map(|run| run.times.iter().copied()).collect();
+        let sigma = (sigma_time.unwrap_or(ASSUMED_TIME), sigma_time.is_some());
+        let ways = follow::ways(&runs, sigma, rounding(&times));
+        let Some((best, others)) = ways.split_first() else { return };
+        let before = self.trials.clone();
+        let read = |way: &Way| {
+            let mut trials = before.clone();
+            for (&n, steps) in places.iter().zip(&way.runs) {
+                trials[n].reread(steps, way.released);
             }
-            trial.moments = mended.iter().map(|c| (c.flights, false, c.time, trial.moments[c.place].3)).collect();
-            self.adrift += repairs.iter().map(Repair::adrift).sum::<usize>();
-            self.repairs.extend(repairs.iter().map(|r| Finding::note(r.finding()).at(at(table, trial.trial))));
+            trials
+        };
+        self.rivals = others.iter().take(RIVALS).map(read).collect();
+        self.trials = read(best);
+        for ((&n, run), steps) in places.iter().zip(&runs).zip(&best.runs) {
+            let place = at(table, self.trials[n].trial);
+            if best.released && run.from_rest {
+                self.repairs.push(Finding::note(FindingKind::ReleaseAmongContacts).at(place.clone()));
+            }
+            let repairs = follow::repairs(&run.times, steps);
+            self.adrift += repairs.iter().map(Repair::events).sum::<usize>();
+            self.repairs.extend(repairs.iter().map(|r| Finding::note(r.finding()).at(place.clone())));
         }
     }
 
@@ -226,7 +208,55 @@ pub(crate) fn at(table: &Table, trial: usize) -> At {
     At { trial: several.then_some(trial), name, ..At::default() }
 }
 
+impl Repair {
+    /// How many contacts it supposes missed, extra or misread.
+    fn events(&self) -> usize {
+        if let Self::Ended { left_out, .. } = self { *left_out } else { 1 }
+    }
+
+    /// As a finding.
+    fn finding(&self) -> FindingKind {
+        match *self {
+            Self::Missed { after } => FindingKind::ContactMissed { after_s: after },
+            Self::Double { at } => FindingKind::ContactTwice { at_s: at },
+            Self::Misread { at } => FindingKind::ContactMisread { at_s: at },
+            Self::Ended { last, left_out, before } => FindingKind::RunEnded { at_s: last, left_out, before },
+        }
+    }
+}
+
 impl TrialEvidence {
+    /// Whether its contacts are one run that nothing else numbers: gaps that the table itself numbers, and apexes between contacts, are what they
+    /// are, and heights are counted by the number of the contact before them.
+    fn plain(&self) -> bool {
+        let one_by_one = self.moments.windows(2).all(|w| w[1].0 == w[0].0 + 1);
+        one_by_one && self.moments.iter().all(|m| !m.1) && self.heights.iter().all(|h| h.0 == 0)
+    }
+
+    /// Its contacts as a run; a first time of exactly 0 may be that of the release.
+    fn run(&self) -> Run {
+        let bare = self.release_time.is_none() && self.moments.len() > 3;
+        let from_rest = bare && self.moments.first().is_some_and(|m| m.0 == 0 && m.2 == 0.0);
+        Run { times: self.moments.iter().map(|m| m.2).collect(), from_rest }
+    }
+
+    /// Keeps these contacts, with these numbers of flights between them.
+    fn reread(&mut self, steps: &[Step], released: bool) {
+        let released = released && self.run().from_rest;
+        let mut flights = steps.first().and_then(|step| self.moments.get(step.0)).map_or(0, |m| m.0);
+        let mut kept = Vec::with_capacity(steps.len());
+        for &(place, since) in steps {
+            flights += since;
+            let (_, apex, time, sigma) = self.moments[place];
+            kept.push((flights, apex, time, sigma));
+        }
+        if released {
+            self.release_time = Some(kept.remove(0).2);
+            kept.iter_mut().for_each(|m| m.0 -= 1);
+        }
+        self.moments = kept;
+    }
+
     pub(crate) fn moments(&self, sigma: f64) -> Vec<Moment> {
         self.moments
             .iter()

@@ -252,6 +252,11 @@ pub enum Widening {
         /// By how much the COR may be higher.
         share: f64,
     },
+    /// The bend of the lens, which the samples do not show.
+    Lens {
+        /// By how much the COR may be off.
+        share: f64,
+    },
     /// A pattern in what the motion leaves of the samples.
     Misfit {
         /// What the motion leaves, and the scatter from sample to sample, in the recording's unit.

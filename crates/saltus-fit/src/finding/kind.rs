@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::detail::{Basis, By, Cause, Gives, Missing, Untried};
-use crate::quantity::{CorModel, Measured, Readings, Sourced};
+use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 
 /// What was found, with its numbers: SI units, but for recordings of unknown scale.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +29,10 @@ pub enum FindingKind {
         groups: usize,
         trusted: usize,
         refused: usize,
+    },
+    /// The table names the ball in a column of its own: its size and drag are taken.
+    BallNamed {
+        ball: Ball,
     },
     /// What was stated of the way that heights count, where the ball then falls upwards.
     FallsUpwards {
@@ -152,6 +156,14 @@ pub enum FindingKind {
         p: f64,
     },
     TrendCauses,
+
+    /// The contacts can be read in another way about as well, with another COR.
+    ReadOtherwise {
+        cor: f64,
+        /// Which way: the flights that it counts from the first contact to the last, of the first trial that differs.
+        flights: usize,
+        instead_of: usize,
+    },
 
     // Heights and times, and the table as a whole.
     SigmaAssumed {

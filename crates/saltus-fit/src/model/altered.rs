@@ -78,9 +78,27 @@ fn heights(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
     }
 }
 
+/// The speed that a ball leaves the first contact with if the flights from one number to another last so long together.
+fn launch(air: Air, e: f64, (from, to, lasts): (usize, usize, f64)) -> f64 {
+    let flights = (from..to).fold(0.0, |sum, n| sum + e.powi(i32::try_from(n).unwrap_or(i32::MAX)));
+    let mut speed = 0.5 * air.gravity * lasts / flights;
+    for _ in 0..ROUNDS {
+        let (mut at, mut together) = (speed, 0.0);
+        for n in 0..to {
+            let hop = air.hop(at);
+            together += if n < from { 0.0 } else { hop.rise.value + hop.fall.value };
+            at = e * hop.arrival.value;
+        }
+        speed *= lasts / together;
+    }
+    speed
+}
+
 fn times(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
     let released = trial.release_height.filter(|_| trial.release_time.is_some()).map(|h| h.0);
-    let first = trial.intervals().next();
+    let contacts: Vec<(usize, f64)> = trial.moments.iter().filter(|m| !m.1).map(|m| (m.0, m.2)).take(2).collect();
+    let first = contacts.first().zip(contacts.get(1)).map(|(a, b)| (a.0, b.0, b.1 - a.1));
+    let first = first.filter(|(from, to, lasts)| from < to && *to < FOLLOWED && *lasts > 0.0);
     let Some(last) = trial.moments.last().map(|m| m.0) else { return };
     // The time of the first contact, and the speed with which the ball leaves it.
     let starts = airs.map(|air| match (released, first) {
@@ -88,15 +106,7 @@ fn times(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
             let arrival = air.speed(height).value;
             Some((air.fallen(arrival).0.value, e * arrival))
         }
-        (None, Some((number, lasts))) => {
-            let mut speed = 0.5 * air.gravity * lasts;
-            for _ in 0..ROUNDS {
-                let hop = air.hop(speed);
-                speed *= lasts / (hop.rise.value + hop.fall.value);
-            }
-            // An interval is numbered by the contact that ends it; the motion is followed from the first contact only.
-            (number == 1).then_some((0.0, speed))
-        }
+        (None, Some(between)) => Some((0.0, launch(air, e, between))),
         (None, None) => None,
     });
     let [Some(mut with), Some(mut without)] = starts else { return };
@@ -141,5 +151,12 @@ mod tests {
         }
         let ratios: Vec<f64> = altered.trials[0].ratios().map(|r| r.3).collect();
         assert!(ratios.len() == 4 && ratios.iter().all(|r| (r - e).abs() < 1e-9), "{ratios:?}");
+        // A contact that is missing changes nothing for the others.
+        let mut gap = evidence.clone();
+        gap.trials[0].heights.clear();
+        gap.trials[0].moments.remove(1);
+        let moments = &without_air(&gap, (9.81, 0.05), e).trials[0].moments;
+        let last = |n: usize| moments[n + 1].2 - moments[n].2;
+        assert!((last(2) / last(1) - e).abs() < 1e-9 && (last(0) * e * e / (1.0 + e) - last(1)).abs() < 1e-9);
     }
 }

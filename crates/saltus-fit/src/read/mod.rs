@@ -35,6 +35,7 @@ pub use doubt::Doubt;
 pub use options::ReadOptions;
 
 use crate::error::TableError;
+use crate::quantity::Ball;
 
 /// What a reading was taken of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -84,6 +85,8 @@ pub struct Trial {
     pub(crate) setting: String,
     /// The ball, the surface, the sheet: trials of different groups have CORs of their own.
     pub(crate) group: String,
+    /// The ball, where a column of the table names one.
+    pub(crate) ball: Option<Ball>,
     pub(crate) readings: Vec<Reading>,
     /// A time from which, with gravity, the rebound follows.
     pub(crate) timed: Option<Timed>,
@@ -288,8 +291,14 @@ impl Table {
                     .ok_or_else(|| wrong("is below the floor, or not later than the contact before"))?,
             );
         }
-        let trials =
-            vec![Trial { label: String::new(), setting: String::new(), group: String::new(), readings, timed: None }];
+        let trials = vec![Trial {
+            label: String::new(),
+            setting: String::new(),
+            group: String::new(),
+            ball: None,
+            readings,
+            timed: None,
+        }];
         let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
         check::table(&mut table);
         Ok(table)

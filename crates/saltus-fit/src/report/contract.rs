@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::motion::Motion;
+use super::plan::{Plan, Planned};
 use super::residual::{Point, Residual};
 use crate::compare::explain::{Agreement, Hypothesis};
 use crate::finding::{Finding, Widening};
@@ -68,6 +69,12 @@ pub struct Report {
     pub(super) groups: Vec<Group>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) differences: Vec<Difference>,
+    /// The next measurement, of a doubtful COR.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) next: Option<Planned>,
+    /// What it takes to know the COR as well as is wanted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) plan: Option<Plan>,
     /// The files of the table, where there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) files: Vec<String>,
@@ -118,6 +125,23 @@ pub struct Difference {
 }
 
 impl Report {
+    /// The cheapest next measurement, where [`Fit::advised`](crate::Fit::advised) was asked and the COR is in doubt.
+    #[must_use]
+    pub const fn next(&self) -> Option<&Planned> {
+        self.next.as_ref()
+    }
+
+    /// What it takes to know the COR as well as was wanted of [`Fit::advised`](crate::Fit::advised).
+    #[must_use]
+    pub const fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref()
+    }
+
+    /// The report with what may be measured next.
+    pub(crate) fn with_advice(self, next: Option<Planned>, plan: Option<Plan>) -> Self {
+        Self { next, plan, ..self }
+    }
+
     /// What the files hold and was not used, each with its place and the reason.
     #[must_use]
     pub fn left_aside(&self) -> &[LeftAside] {

@@ -72,6 +72,8 @@ impl Report {
             findings: std::iter::once(finding).chain(notes).collect(),
             differences: differences(&groups),
             groups,
+            next: None,
+            plan: None,
             files: table.files.clone(),
             left_aside: table.left_aside().to_vec(),
             ..Self::empty(table.name(), like.gravity())

@@ -77,6 +77,11 @@ fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     section(f, "Keep in mind", &mind)?;
     let aside: Vec<String> = report.left_aside.iter().map(ToString::to_string).collect();
     section(f, "Left aside", &aside)?;
+    let next: Vec<String> = report.next.iter().map(ToString::to_string).collect();
+    section(f, "What would settle it", &next)?;
+    if let Some(plan) = &report.plan {
+        write!(f, "\n{plan}")?;
+    }
     footer(report, f)
 }
 

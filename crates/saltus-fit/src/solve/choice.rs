@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::finding::{Gives, Missing};
 use crate::model::Law;
 use crate::quantity::{CorModel, Loss, Measured};
-
-/// A BIC this much less decides (Kass and Raftery, J. Am. Stat. Assoc. 90 (1995) 773: strong evidence).
-pub(crate) const CLEAR: f64 = 6.0;
+use crate::statistics::{chi_square_p, variance_ratio_p};
 
 /// A model that was tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,6 +58,8 @@ pub(crate) struct Misfit {
     pub(crate) chi_square: f64,
     pub(crate) readings: f64,
     pub(crate) unknowns: f64,
+    /// The errors of the readings are those of their scatter.
+    pub(crate) scattered: bool,
 }
 
 impl Misfit {
@@ -71,6 +71,18 @@ impl Misfit {
     /// The BIC where the errors are so many times those of the fit.
     pub(crate) fn by_errors(self, times: f64) -> f64 {
         self.chi_square / (times * times) + self.unknowns * self.readings.ln()
+    }
+
+    /// The probability that a model with more unknowns leaves so much less than `fewer` does by chance; none where it has no more.
+    pub(crate) fn by_chance(self, fewer: Self) -> Option<f64> {
+        let (gain, more) = (fewer.chi_square - self.chi_square, self.unknowns - fewer.unknowns);
+        let free = self.readings - self.unknowns;
+        let count = |x: f64| Some(x as usize).filter(|n| *n > 0);
+        if self.scattered {
+            variance_ratio_p(gain / more / (self.chi_square / free), count(more)?, count(free)?)
+        } else {
+            chi_square_p(gain, count(more)?)
+        }
     }
 
     /// The scatter of the readings about the model, in the errors of the fit.

@@ -13,7 +13,7 @@ use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::Contacts;
 use crate::quantity::{Measured, Method, Source, Sourced};
-use crate::statistics::{NORMAL, REJECT, REPLICATED, SCATTER, chi_square_p, student, variance_ratio_p};
+use crate::statistics::{NORMAL, REJECT, REPLICATED, SCATTER, chi_square_p, rounding, student, variance_ratio_p};
 
 /// The fit of one kind of reading.
 #[derive(Clone, Debug)]
@@ -37,13 +37,6 @@ pub(crate) struct Kind<M> {
     pub(crate) spread: Option<f64>,
     /// The models of ratios beside one COR, where the bounces scatter.
     pub(crate) models: Vec<ModelChoice>,
-}
-
-/// The standard deviation of rounding to the decimal that all these numbers are given to. A scatter that happens to be smaller claims too much.
-pub(crate) fn rounding(values: &[f64]) -> f64 {
-    let steps = [1.0, 0.1, 0.01, 0.001, 1e-4];
-    let whole = |step: &f64| values.iter().all(|v| (v / step - (v / step).round()).abs() < 1e-6);
-    steps.into_iter().find(whole).map_or(0.0, |step| step / 12f64.sqrt())
 }
 
 /// Fits one kind of reading; `None` where the table does not determine a COR by it.

@@ -3,7 +3,7 @@
 use super::least_squares::Failure;
 use super::successive::{Fitted, fit};
 use crate::error::FitError;
-use crate::evidence::{Evidence, Height, Moment};
+use crate::evidence::{ASSUMED_TIME, Evidence, Height, Moment};
 use crate::model::{Contacts, Heights, Model};
 use crate::quantity::Readings;
 use crate::statistics::median;
@@ -79,7 +79,7 @@ impl OneKind for Heights {
 
 impl OneKind for Contacts {
     const READINGS: Readings = Readings::Times;
-    const ASSUMED: f64 = 0.01;
+    const ASSUMED: f64 = ASSUMED_TIME;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
         Self { trials: evidence.moments(sigma), high: 1.0, trend: false, added_up: evidence.added_up() }

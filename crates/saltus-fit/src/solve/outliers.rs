@@ -1,12 +1,11 @@
 //! Readings that are no readings of the ball: found by the sum of absolute residuals, which a third of them hardly moves.
 
-use super::kind::rounding;
 use super::one::{OneKind, identified};
 use super::robust;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::quantity::{Loss, Sourced};
-use crate::statistics::{REJECT, chi_square_p, median};
+use crate::statistics::{REJECT, chi_square_p, median, rounding};
 
 /// A reading this many standard errors from the robust fit is left out.
 const FAR: f64 = 5.0;

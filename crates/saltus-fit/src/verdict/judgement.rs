@@ -47,6 +47,12 @@ impl Cor {
     }
 }
 
+/// A share of less than this part of the interval is not named: without it the interval would be shorter by half a per cent.
+pub(crate) const NAMED: f64 = 0.1;
+
+/// Two CORs that differ by less are the same for any purpose.
+pub(crate) const SAME: f64 = 0.005;
+
 /// The COR and the findings, as the stages fill them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Judgement {
@@ -76,6 +82,15 @@ impl Judgement {
             (cor.low, cor.high) = (cor.low.min(low).max(0.0), cor.high.max(high));
             self.widen(why);
         }
+    }
+
+    /// Whether a rival answers so far outside the interval that reaching out to it would more than double it: then the interval was that of
+    /// another question.
+    pub(crate) fn outside(&self, rival: f64) -> bool {
+        self.cor.is_some_and(|cor| {
+            let twice = 2.0 * cor.low - cor.value..=2.0 * cor.high - cor.value;
+            !twice.contains(&rival) && (rival - cor.value).abs() > SAME
+        })
     }
 
     /// Doubts a COR whose interval says hardly anything.

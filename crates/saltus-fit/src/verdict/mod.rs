@@ -48,6 +48,7 @@ pub(crate) fn of_readings(
     whole::judge(&mut judgement, fits, agreement);
     if !agreement.is_some_and(Agreement::rejected) {
         unseen::allow(&mut judgement, fits, (known, stated));
+        unseen::read_otherwise(&mut judgement, fits, known);
         judgement.doubt_if_vague();
     }
     unseen::drag_held(&mut judgement, stated.drag.unwrap_or(0.0));

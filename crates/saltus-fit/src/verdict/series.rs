@@ -1,14 +1,14 @@
 //! What the recordings amount to, and what speaks against it.
 
-use super::judgement::{Cor, Judgement};
+use super::judgement::{Cor, Judgement, NAMED, SAME};
 use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
 use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG};
 use crate::quantity::{Measured, Method, Sourced};
-use crate::solve::choice::{CLEAR, ModelChoice, of_recording};
+use crate::solve::choice::{ModelChoice, of_recording};
 use crate::solve::estimate::Estimate;
-use crate::solve::series::{Choice, Pooled, Series, Track, in_metres};
+use crate::solve::series::{Choice, Pooled, Series, Track, Unseen, in_metres};
 use crate::solve::spread::across;
-use crate::statistics::NORMAL;
+use crate::statistics::{CLEAR, NORMAL};
 
 /// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
 const LASTS: f64 = 0.01;
@@ -18,8 +18,6 @@ const ROUGH: f64 = 6.0;
 const MOVED: f64 = 1.05;
 /// Two numbers further apart than so many standard errors differ: one chance in a hundred.
 const DIFFER: f64 = 2.576;
-/// Two CORs that differ by less are the same for any purpose of a film.
-const SAME: f64 = 0.005;
 
 /// Judges the fit of all recordings; fills the estimates and the models of the report.
 pub(crate) fn judge(
@@ -42,12 +40,11 @@ pub(crate) fn judge(
     judgement.findings.extend(series.refused.iter().map(|f| Finding { severity: Severity::Note, ..f.clone() }));
     let estimates = estimates(judgement, series, pooled);
     judgement.cor = estimates.first().and_then(Cor::of);
-    unseen_air(judgement, &series.tracks, pooled);
-    misfit(judgement, &series.tracks, pooled);
+    allow(judgement, &series.tracks, pooled);
     let models = rivals(judgement, pooled);
     let contact = contact_time(&series.tracks);
-    if let Some((other, worse)) = &series.otherwise {
-        impact_time(judgement, pooled, (other, *worse), contact);
+    if let Some((other, tracks, worse)) = &series.otherwise {
+        impact_time(judgement, pooled, (other, tracks, *worse), contact);
     }
     single_impact(judgement, series, pooled);
     varying(judgement, pooled);
@@ -94,15 +91,6 @@ fn differs(a: Measured, b: Measured) -> bool {
     apart > 2.0 * a.standard_error.hypot(b.standard_error) && apart > SAME
 }
 
-/// Whether a rival answers so far outside the interval that reaching out to it would more than double it: then the interval was that of
-/// another question.
-fn outside(judgement: &Judgement, rival: f64) -> bool {
-    judgement.cor.is_some_and(|cor| {
-        let twice = 2.0 * cor.low - cor.value..=2.0 * cor.high - cor.value;
-        !twice.contains(&rival) && (rival - cor.value).abs() > SAME
-    })
-}
-
 /// The models beside the chosen one: where one fits as well with another COR, the interval takes in both.
 fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
     let name = |choice: Choice| of_recording(choice.0, choice.1);
@@ -118,7 +106,7 @@ fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
                 other: name(choice),
                 other_cor: cor.value,
             };
-            let severity = if outside(judgement, cor.value) { Severity::Doubt } else { Severity::Note };
+            let severity = if judgement.outside(cor.value) { Severity::Doubt } else { Severity::Note };
             judgement.findings.push(Finding::new(severity, kind));
             let reach = pooled.quantile * cor.standard_error;
             judgement.reach(cor.value - reach, cor.value + reach, Widening::BothModels);
@@ -128,7 +116,12 @@ fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
 }
 
 /// Impacts that take time beside such that take none.
-fn impact_time(judgement: &mut Judgement, pooled: &Pooled, (other, worse): (&Pooled, f64), contact: Option<Measured>) {
+fn impact_time(
+    judgement: &mut Judgement,
+    pooled: &Pooled,
+    (other, tracks, worse): (&Pooled, &[Track], f64),
+    contact: Option<Measured>,
+) {
     let (was, is) = (other.cor, pooled.cor);
     if let Some(contact_s) = contact {
         judgement.note(FindingKind::ContactShows { contact_s, bic: worse, cor_without: was.value });
@@ -139,13 +132,13 @@ fn impact_time(judgement: &mut Judgement, pooled: &Pooled, (other, worse): (&Poo
     if differs(was, is) {
         let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
         let (cor_instant, cor_lasting) = (instant.value, lasting.value);
-        let severity = if outside(judgement, was.value) { Severity::Doubt } else { Severity::Note };
+        let severity = if judgement.outside(was.value) { Severity::Doubt } else { Severity::Note };
         let kind = FindingKind::ContactOpen { bic: worse, cor_instant, cor_lasting };
         judgement.findings.push(Finding::new(severity, kind));
     }
     // Every impact takes some time.
-    let reach = pooled.quantile * was.standard_error;
-    judgement.reach(was.value - reach, was.value + reach, Widening::ImpactTime);
+    let allowed = Allowed::of(tracks, other);
+    judgement.reach(allowed.low, allowed.high, Widening::ImpactTime);
 }
 
 /// One impact does not show how long it lasts, and a ball that stayed on the floor would look as if its COR were higher.
@@ -175,29 +168,52 @@ fn cause_is_open(pooled: &Pooled) -> bool {
     one_of_two(pooled.choice) && pooled.rivals.iter().any(other)
 }
 
-/// Drag that no recording shows, as far as each allows it; the ball is the same.
-fn unseen_air(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
-    let airs: Vec<Measured> = tracks.iter().filter_map(|track| track.air).collect();
-    if airs.len() < tracks.len() {
-        return;
-    }
-    let mean = |of: fn(&Measured) -> f64| airs.iter().map(of).sum::<f64>() / airs.len() as f64;
-    let (shift, spread) = (mean(|air| air.value), mean(|air| air.standard_error));
-    let (centre, reach) = (pooled.cor.value + shift, pooled.quantile * pooled.cor.standard_error.hypot(spread));
-    let share = shift + NORMAL * spread;
-    judgement.reach(centre - reach, centre + reach, Widening::Air { most_per_m: ORDINARY_DRAG, share });
+/// The interval of recordings under one model: the error of the COR, what the samples do not show of air and lens, and a pattern in what is left.
+struct Allowed {
+    low: f64,
+    high: f64,
+    air: f64,
+    lens: f64,
+    misfit: f64,
 }
 
-/// A pattern in what is left, beyond the noise of the samples.
-fn misfit(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
-    let share = (tracks.iter().map(|track| track.reach.powi(2)).sum::<f64>() / tracks.len() as f64).sqrt();
-    let Some(worst) = tracks.iter().max_by(|a, b| a.reach.total_cmp(&b.reach)) else { return };
+impl Allowed {
+    fn of(tracks: &[Track], pooled: &Pooled) -> Self {
+        let count = tracks.len().max(1) as f64;
+        let unseen: Vec<Unseen> = tracks.iter().filter_map(|track| track.unseen).collect();
+        // Ball and camera are the same in all.
+        let mean = |of: fn(&Unseen) -> f64| {
+            if unseen.len() < tracks.len() { 0.0 } else { unseen.iter().map(of).sum::<f64>() / count }
+        };
+        let (shift, spread) = (mean(|u| u.shift.value), mean(|u| u.shift.standard_error));
+        let share = |of: Measured| of.value + NORMAL.copysign(of.value) * of.standard_error;
+        let misfit = (tracks.iter().map(|track| track.reach.powi(2)).sum::<f64>() / count).sqrt();
+        let reach = (pooled.quantile * pooled.cor.standard_error.hypot(spread)).hypot(NORMAL * misfit);
+        let part = |of: fn(&Unseen) -> Measured| {
+            let shares = unseen.iter().map(|unseen| share(of(unseen)));
+            shares.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+        };
+        let (low, high) = (pooled.cor.value + shift - reach, pooled.cor.value + shift + reach);
+        Self { low, high, air: part(|u| u.air), lens: part(|u| u.lens), misfit }
+    }
+}
+
+/// Widens the interval by what the samples do not show, and names what takes part in it.
+fn allow(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
+    let allowed = Allowed::of(tracks, pooled);
     let Some(cor) = judgement.cor else { return };
-    let wider = |side: f64| side.hypot(NORMAL * share);
-    let (low, high) =
-        (pooled.cor.value - wider(pooled.cor.value - cor.low), pooled.cor.value + wider(cor.high - pooled.cor.value));
-    if share > 0.0 {
-        judgement.reach(low, high, Widening::Misfit { rms: worst.rms, noise: worst.noise, share });
+    let Some(worst) = tracks.iter().max_by(|a, b| a.reach.total_cmp(&b.reach)) else { return };
+    judgement.cor = Some(Cor { low: cor.low.min(allowed.low).max(0.0), high: cor.high.max(allowed.high), ..cor });
+    let (rms, noise) = (worst.rms, worst.noise);
+    let named = NAMED * 0.5 * (allowed.high - allowed.low);
+    for (share, why) in [
+        (allowed.air, Widening::Air { most_per_m: ORDINARY_DRAG, share: allowed.air }),
+        (allowed.lens, Widening::Lens { share: allowed.lens.abs() }),
+        (allowed.misfit, Widening::Misfit { rms, noise, share: allowed.misfit }),
+    ] {
+        if share.abs() > named {
+            judgement.widen(why);
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 //!
 //! Each is a change of the readings, and its share of the error is how far the COR moves when they are fitted anew.
 
-use super::judgement::{Cor, Judgement};
+use super::judgement::{Cor, Judgement, NAMED};
 use super::whole;
 use crate::error::FitError;
-use crate::evidence::{Evidence, has};
+use crate::evidence::{Evidence, TrialEvidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
 use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, missed, raised, released_higher, telling, without_air};
 use crate::quantity::{Readings, Source};
@@ -15,9 +15,6 @@ use crate::statistics::{NORMAL, student};
 
 /// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule without naming where on it.
 const USUAL_BALL: f64 = 0.067;
-
-/// A share of less than this part of the interval is not named: without it the interval would be shorter by half a per cent.
-const NAMED: f64 = 0.1;
 
 /// The COR without the air is found when it moves by less than this, a thousandth of the best error there is.
 const SETTLED: f64 = 1e-7;
@@ -109,6 +106,30 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
         judgement.widen(why);
     }
     one_missing(judgement, fits, known);
+}
+
+/// Contacts that can be read in other ways about as well: the interval takes in the COR of each, and one far outside is a doubt.
+pub(crate) fn read_otherwise(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
+    if fits.evidence.rivals.is_empty() || fits.times.is_none() {
+        return;
+    }
+    let flights = |trial: &TrialEvidence| trial.moments.last().map_or(0, |m| m.0);
+    let mut far = None;
+    for trials in &fits.evidence.rivals {
+        let evidence = Evidence { trials: trials.clone(), ..Evidence::default() };
+        let Some(cor) = Fits::of(fits.table, &evidence, known, false).ok().and_then(|fits| judged(&fits)) else {
+            continue;
+        };
+        if far.is_none() && judgement.outside(cor.value) {
+            let differs = |(a, b): &(&TrialEvidence, &TrialEvidence)| a.moments != b.moments;
+            let pair = trials.iter().zip(&fits.evidence.trials).find(differs);
+            far = pair.map(|(other, own)| (cor.value, flights(other), flights(own)));
+        }
+        judgement.reach(cor.value, cor.value, Widening::Models);
+    }
+    if let Some((cor, flights, instead_of)) = far {
+        judgement.doubt(FindingKind::ReadOtherwise { cor, flights, instead_of });
+    }
 }
 
 /// Heights that fit as well if a rebound is missing are not known to be without a gap: the interval takes in the COR that they then have.

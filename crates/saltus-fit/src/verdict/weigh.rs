@@ -4,8 +4,8 @@ use super::judgement::{Cor, Judgement};
 use crate::compare::rivals::Compared;
 use crate::finding::{Basis, Cause, Finding, FindingKind, Severity, Untried, Widening};
 use crate::quantity::{CorModel, Readings, Source, Sourced};
-use crate::solve::choice::{CLEAR, Misfit, ModelChoice};
-use crate::statistics::{NORMAL, REJECT};
+use crate::solve::choice::{Misfit, ModelChoice};
+use crate::statistics::{CLEAR, NORMAL, REJECT};
 
 /// A BIC this much less speaks for the model, weakly.
 const BETTER: f64 = 2.0;
@@ -49,7 +49,8 @@ fn kind(model: &ModelChoice) -> Option<Kind> {
 pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
     let Some(one) = list.iter().find(|m| m.chosen) else { return false };
     let least = list.first().map_or(0.0, |m| m.bic);
-    let mut seen = Vec::new();
+    let fits = !judgement.findings.iter().any(|f| matches!(f.kind, FindingKind::Misfit { .. }));
+    let (mut seen, allowed) = (Vec::new(), judgement.cor.filter(|_| fits));
     // What matters, beside one COR: if one of these is better, whatever comes close to the best may be the cause.
     let mut close: Vec<(Kind, &ModelChoice)> = Vec::new();
     // A model that another beats clearly is out of the question.
@@ -75,8 +76,42 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
             judgement.reach(model.cor.value - reach, model.cor.value + reach, Widening::Models);
         }
     }
-    let decided = close.iter().any(|(_, model)| model.bic < -CLEAR);
+    let open = Open { one, allowed };
+    let within = list.iter().filter(|model| !open.elsewhere(model)).min_by(|a, b| a.bic.total_cmp(&b.bic));
+    let least = within.map_or(0.0, |model| model.bic.min(0.0));
+    let decided = close.iter().any(|(_, m)| m.bic < least - CLEAR && open.surely(m) && open.elsewhere(m));
+    if !decided && within.is_some_and(|model| open.surely(model) && model.p.is_none_or(|p| p >= REJECT)) {
+        explained(judgement);
+    }
     decided && one_cor_fails(judgement, close, list)
+}
+
+/// One COR, and the interval that is allowed for whatever other models say; none where one COR does not fit, and its interval is as long as the misfit.
+struct Open<'a> {
+    one: &'a ModelChoice,
+    allowed: Option<Cor>,
+}
+
+impl Open<'_> {
+    /// Whether a model is better than one COR by more than chance: of few readings a BIC is less by as much more often than it says.
+    fn surely(&self, model: &ModelChoice) -> bool {
+        let chance = model.misfit.zip(self.one.misfit).and_then(|(misfit, one)| misfit.by_chance(one));
+        chance.is_none_or(|p| p < REJECT) && model.bic < 0.0
+    }
+
+    /// Whether a model answers outside the interval: one within it is no other answer.
+    fn elsewhere(&self, model: &ModelChoice) -> bool {
+        let own = model.speeds.is_empty().then_some(model.cor.value);
+        let mut answers = own.into_iter().chain(model.speeds.iter().map(|s| s.cor));
+        matches!(model.name, CorModel::Each | CorModel::Missed)
+            || self.allowed.is_none_or(|cor| answers.any(|e| e < cor.low || e > cor.high))
+    }
+}
+
+/// A trend that comes of what is allowed for is worth a word, and no doubt.
+fn explained(judgement: &mut Judgement) {
+    let trends = judgement.findings.iter_mut().filter(|f| matches!(f.kind, FindingKind::Trend { .. }));
+    trends.for_each(|finding| finding.severity = Severity::Note);
 }
 
 /// Doubts one COR: the models that are close to the best may each be the cause.

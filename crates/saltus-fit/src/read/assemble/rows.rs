@@ -2,6 +2,7 @@
 
 use super::Builder;
 use crate::error::TableError;
+use crate::quantity::Ball;
 use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::Cell;
 use crate::read::columns::Kind;
@@ -79,6 +80,8 @@ impl Builder<'_> {
             column.kind == Kind::Setting && column.heading.unit.is_none()
         });
         let mut group: Vec<String> = groups.map(|&n| self.text(row.at, n).to_owned()).collect();
+        let mut balls = group.iter().filter_map(|name| Ball::named(name));
+        let ball = balls.next().filter(|_| balls.next().is_none());
         for name in [&row.group, &track.group].into_iter().filter(|name| !name.is_empty()) {
             setting.push(name.clone());
             group.push(name.clone());
@@ -102,6 +105,7 @@ impl Builder<'_> {
             label: label.join(", "),
             setting: setting.join(", "),
             group: group.join(", "),
+            ball,
             readings,
             timed: None,
         });

@@ -4,6 +4,7 @@
 
 mod models;
 mod names;
+mod plan;
 mod repairs;
 mod verdict;
 
@@ -13,6 +14,7 @@ use super::numbers::{duration, length};
 use crate::finding::{Finding, FindingKind, Widening};
 
 pub(super) use names::{about, loss_words, method_about, method_short, settles, short, supposes};
+pub(super) use plan::{brings, every_bounce, way};
 
 /// The list of a report that a finding stands in, where the verdict does not rest on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +93,9 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::Air { most_per_m, share } => format!(
             "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
              tennis) or its drag (--drag)"
+        ),
+        Widening::Lens { share } => format!(
+            "a lens that bends the picture by a few hundredths may move the COR by {share:.3}: film from further away, with the path in the middle"
         ),
         Widening::Misfit { rms, noise, share } => format!(
             "the motion leaves {rms:.2e} where the samples scatter by {noise:.2e}, and a bend of that size may move the COR by {share:.3}: look at \

@@ -5,7 +5,7 @@ use super::models::gives;
 use super::names::about;
 use crate::finding::{Air, Basis, By, Finding, FindingKind};
 use crate::quantity::{Readings, Source};
-use crate::report::numbers::{duration, measured};
+use crate::report::numbers::{duration, length, measured};
 
 pub(super) fn words(finding: &Finding) -> Option<String> {
     one_kind(&finding.kind).or_else(|| whole(finding)).or_else(|| recordings(&finding.kind))
@@ -43,6 +43,15 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
         }
         FindingKind::ErrorsTooLarge { readings, times } => format!(
             "the {readings} scatter {times:.2} times as much as their reading errors say: those are probably too large"
+        ),
+        FindingKind::BallNamed { ball } => format!(
+            "the table names the ball, {ball}: its size ({}) and its drag ({:.3} /m) by the rules of its sport are taken, as --ball does",
+            length(ball.diameter()),
+            ball.drag()
+        ),
+        FindingKind::ReadOtherwise { cor, flights, instead_of } => format!(
+            "the contacts can be read in another way about as well: as {flights} flights instead of {instead_of}, or other ones, which gives {cor:.3}; count \
+             the bounces again, or leave out what is none"
         ),
         FindingKind::Lossless { readings } => format!(
             "the {readings} hardly shrink, as if no bounce lost anything: they are those of something else, or in another unit"

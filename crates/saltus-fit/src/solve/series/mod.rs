@@ -19,7 +19,7 @@ use crate::finding::{Finding, FindingKind};
 use crate::read::Table;
 use flights::NoFlights;
 pub(crate) use pool::Pooled;
-pub(crate) use recording::{Course, in_metres};
+pub(crate) use recording::{Course, Unseen, in_metres};
 pub use recording::{Impact, Track, Variant};
 use samples::samples;
 pub(crate) use track::Choice;
@@ -32,7 +32,7 @@ pub(crate) struct Series {
     pub(crate) tracks: Vec<Track>,
     pub(crate) pooled: Option<Pooled>,
     /// The same with contacts that take no time where these do, and the other way round; and by how much its BIC is worse.
-    pub(crate) otherwise: Option<(Pooled, f64)>,
+    pub(crate) otherwise: Option<(Pooled, Vec<Track>, f64)>,
     /// Trials whose series show no bounce that can be fitted, and why.
     pub(crate) refused: Vec<Finding>,
     /// What was done to put the samples in order.
@@ -84,7 +84,8 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
     };
     (series.pooled, series.tracks) = under(gain > 0.0);
     if fitted().any(|found| found.gain().is_some()) {
-        series.otherwise = under(gain <= 0.0).0.map(|pooled| (pooled, gain.abs()));
+        let (pooled, tracks) = under(gain <= 0.0);
+        series.otherwise = pooled.map(|pooled| (pooled, tracks, gain.abs()));
     }
     for (place, mut repairs, found) in recordings {
         repairs.extend(found.iter().flat_map(|found| found.under(gain > 0.0).repairs()));

@@ -35,9 +35,9 @@ pub struct Track {
     pub noise: f64,
     /// The models tried, that with the least BIC first.
     pub models: Vec<Variant>,
-    /// What drag that was not fitted can do to the COR.
+    /// What drag that was not fitted, and the lens, can do to the COR.
     #[serde(skip)]
-    pub(crate) air: Option<Measured>,
+    pub(crate) unseen: Option<Unseen>,
     /// The drag of the model of one COR that leaves it free, 1/m by the recording's own gravity.
     #[serde(skip)]
     pub(crate) free_drag: Option<Measured>,
@@ -46,6 +46,14 @@ pub struct Track {
     pub(crate) reach: f64,
     #[serde(skip)]
     pub(crate) course: Course,
+}
+
+/// By how much the COR is off by what the samples do not show: by all of it, by the air, by the lens; each a mean and a standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unseen {
+    pub(crate) shift: Measured,
+    pub(crate) air: Measured,
+    pub(crate) lens: Measured,
 }
 
 /// Gravity within this part of the expected means metres and seconds.

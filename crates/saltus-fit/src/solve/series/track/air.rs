@@ -1,11 +1,24 @@
-//! What the samples cannot show: the little drag of a heavy ball, and what a misfit may hide.
+//! What the samples cannot show: the little drag of a heavy ball, the bend of a lens, and what a misfit may hide.
 
 use super::{Candidates, Found};
-use crate::model::{Dual, GRAVITY, Law, ORDINARY_DRAG, STANDARD_GRAVITY};
+use crate::model::{BEND, Dual, GRAVITY, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
 use crate::quantity::Measured;
+use crate::solve::series::recording::Unseen;
 
-/// The likelihood over drag is summed at so many values: the integrand is a parabola's exponential over at most a few of its widths.
+/// The likelihood over drag and bend is summed at so many values of each: the integrand is a parabola's exponential over a few of its widths.
 const POINTS: u32 = 32;
+/// The sum goes out to so many standard deviations.
+const BENDS: f64 = 3.0;
+
+/// The middle of one of the parts that the sum goes over.
+fn middle(n: u32) -> f64 {
+    (f64::from(n) + 0.5) / f64::from(POINTS)
+}
+
+/// A height as it is without a bend that moves the ends of the path by `bend` of half of it; the path goes from 0 to 1.
+fn straight(height: f64, bend: f64) -> f64 {
+    height - 0.5 * bend * (2.0 * height - 1.0).powi(3)
+}
 
 impl Candidates {
     /// Holds drag at what is stated, 1/m.
@@ -28,39 +41,53 @@ impl Candidates {
         per_metre * STANDARD_GRAVITY * self.scale.unit.powi(2)
     }
 
-    /// By how much drag that the model leaves out shifts the COR: the drag of an ordinary ball, as far as the samples allow it.
+    /// By how much the air and the lens may shift the COR, as far as the samples allow it; what is stated or fitted is left out.
     ///
-    /// Any drag from none to [`ORDINARY_DRAG`] is as probable before. The samples weigh it: the loss is a parabola through three values of drag,
-    /// and the COR a straight line. `None` where the model has drag of its own.
-    pub(super) fn unseen_air(&self, chosen: &Found) -> Option<Measured> {
-        if chosen.choice.1 || self.stated {
-            return None;
-        }
-        let most = self.scaled(ORDINARY_DRAG) / chosen.fitted.shared[GRAVITY];
-        let start = std::slice::from_ref(&chosen.fitted.shared);
-        let with = |part: f64| {
-            let held = Self { held: part * most, found: Vec::new(), ..self.clone() };
-            let found = held.best(chosen.choice, start).ok().flatten()?;
-            let loss = held.loss(&found, chosen.sigma) / self.dependence.powi(2);
-            Some((held.cor(&found).value, loss))
+    /// Any drag from none to [`ORDINARY_DRAG`] is as probable before, and a bend of [`BEND`] at the ends of the path as one standard deviation. The
+    /// samples weigh them together: the loss is a parabola in both, and the COR a plane, through the fits with each held in turn. `None` where
+    /// those are not determined.
+    pub(super) fn unseen(&self, chosen: &Found) -> Option<Unseen> {
+        let free = chosen.choice.1 || self.stated;
+        let most = if free { 0.0 } else { self.scaled(ORDINARY_DRAG) / chosen.fitted.shared[GRAVITY] };
+        let loss = |of: &Self, found: &Found| of.loss(found, chosen.sigma) / self.dependence.powi(2);
+        let none = loss(self, chosen);
+        // The loss and the COR with a part of the most drag, and so many bends, beside what they are without.
+        let with = |part: f64, bends: f64| {
+            let held = if free { self.held } else { part * most };
+            let samples = self.samples.iter().map(|s| Sample { height: straight(s.height, bends * BEND), ..*s });
+            let held = Self { held, samples: samples.collect(), found: Vec::new(), ..self.clone() };
+            let found = held.least_of(chosen.choice, std::slice::from_ref(&chosen.fitted.shared)).ok().flatten()?;
+            Some((held.cor(&found).value - chosen.cor.value, loss(&held, &found) - none))
         };
-        let none = self.loss(chosen, chosen.sigma) / self.dependence.powi(2);
-        let (half, full) = (with(0.5)?, with(1.0)?);
-        let curve = 2.0 * (full.1 - 2.0 * half.1 + none);
-        let slope = full.1 - none - curve;
-        let shift = full.0 - chosen.cor.value;
-        let weigh = |n: u32| {
-            let part = (f64::from(n) + 0.5) / f64::from(POINTS);
-            ((-0.5 * (curve * part * part + slope * part)), part)
+        let (out, back) = (with(0.0, 1.0)?, with(0.0, -1.0)?);
+        let (half, full, both) =
+            if free { ((0.0, 0.0), (0.0, 0.0), out) } else { (with(0.5, 0.0)?, with(1.0, 0.0)?, with(1.0, 1.0)?) };
+        let (curve, bent) = (2.0 * (full.1 - 2.0 * half.1), 0.5 * (out.1 + back.1));
+        let (slope, tilt) = (full.1 - curve, 0.5 * (out.1 - back.1));
+        let cross = both.1 - full.1 - out.1;
+        let shifts = (full.0, 0.5 * (out.0 - back.0));
+        let points = (0..POINTS).flat_map(|n| (0..POINTS).map(move |m| (middle(n), BENDS * (2.0 * middle(m) - 1.0))));
+        let weighed: Vec<(f64, f64, f64)> = points
+            .map(|(k, b)| {
+                let loss = k * (curve * k + slope) + b * (bent * b + tilt) + cross * k * b;
+                (-0.5 * (loss + b * b), k * shifts.0, b * shifts.1)
+            })
+            .collect();
+        let highest = weighed.iter().map(|w| w.0).fold(f64::NEG_INFINITY, f64::max);
+        let moments = |of: fn(f64, f64) -> f64| {
+            let sums = weighed.iter().fold([0.0; 3], |sums, &(log, air, lens)| {
+                let (weight, x) = ((log - highest).exp(), of(air, lens));
+                [sums[0] + weight, sums[1] + weight * x, sums[2] + weight * x * x]
+            });
+            let mean = sums[1] / sums[0];
+            Measured { value: mean, standard_error: (sums[2] / sums[0] - mean * mean).max(0.0).sqrt() }
         };
-        let highest = (0..POINTS).map(|n| weigh(n).0).fold(f64::NEG_INFINITY, f64::max);
-        let moment = |power: i32| {
-            (0..POINTS).map(weigh).map(|(log, part)| (log - highest).exp() * part.powi(power)).sum::<f64>()
+        let unseen = Unseen {
+            shift: moments(|air, lens| air + lens),
+            air: moments(|air, _| air),
+            lens: moments(|_, lens| lens),
         };
-        let mean = moment(1) / moment(0);
-        let spread = (moment(2) / moment(0) - mean * mean).max(0.0).sqrt();
-        let air = Measured { value: shift * mean, standard_error: (shift * spread).abs() };
-        (air.value.is_finite() && air.standard_error.is_finite()).then_some(air)
+        (unseen.shift.value.is_finite() && unseen.shift.standard_error.is_finite()).then_some(unseen)
     }
 
     /// What a pattern as large as what the motion leaves beyond the noise of the samples may do to the COR.

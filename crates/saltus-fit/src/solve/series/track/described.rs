@@ -89,7 +89,7 @@ impl Candidates {
             rms,
             noise: range * self.noise,
             models: self.variants(),
-            air: self.unseen_air(chosen),
+            unseen: self.unseen(chosen),
             reach: self.misfit(chosen, &left),
             free_drag: self.free_drag(),
             course,

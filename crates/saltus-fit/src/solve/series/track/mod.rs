@@ -297,8 +297,19 @@ impl Candidates {
         cors
     }
 
-    /// The best fit of a model from several starts, robust against wild samples; `None` where it is not determined.
+    /// The best fit of a model from several starts; `None` where it is not determined, or has a drag or a time of contact that is none.
     fn best(&self, choice: Choice, starts: &[Vec<f64>]) -> Result<Option<Found>, Failure> {
+        let place = self.model(&self.samples, choice).contact_place();
+        let some = |found: &Found| {
+            let values = &found.fitted.shared;
+            let drag = !choice.1 || values[GRAVITY + 1] > 2.0 * LEAST_DRAG;
+            drag && place.is_none_or(|j| values[j] > 2.0 * LASTING.low)
+        };
+        Ok(self.least_of(choice, starts)?.filter(some))
+    }
+
+    /// The best fit of a model from several starts, robust against wild samples; `None` where it is not determined.
+    fn least_of(&self, choice: Choice, starts: &[Vec<f64>]) -> Result<Option<Found>, Failure> {
         let every = self.samples.len().div_ceil(COARSE);
         let coarse: Vec<Sample> = self.samples.iter().step_by(every).copied().collect();
         let mut best: Option<Fitted> = None;
@@ -336,12 +347,8 @@ impl Candidates {
             }
         }
         let Some((fitted, sigma)) = last else { return Ok(None) };
-        // Drag that sits on its lower end is none, and so is a time of contact.
-        let place = self.model(&self.samples, choice).contact_place();
-        let none = choice.1 && fitted.shared[GRAVITY + 1] <= 2.0 * LEAST_DRAG
-            || place.is_some_and(|j| fitted.shared[j] <= 2.0 * LASTING.low);
         let cor = Measured { value: 0.0, standard_error: 0.0 };
-        Ok((!none).then_some(Found { choice, fitted, sigma, bic: 0.0, cor }))
+        Ok(Some(Found { choice, fitted, sigma, bic: 0.0, cor }))
     }
 
     /// Sample less motion, as far as it is trusted.

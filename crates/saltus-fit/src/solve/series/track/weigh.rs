@@ -3,8 +3,8 @@
 use super::{CHOICES, Candidates, Choice, Found};
 use crate::model::{BEFORE, Dual, Law, Sample};
 use crate::quantity::Measured;
-use crate::solve::choice::CLEAR;
 use crate::solve::robust::HUBER;
+use crate::statistics::CLEAR;
 
 /// More than so many times the noise from sample to sample is left for something else to explain, such as a drift of the camera.
 const UNEXPLAINED: f64 = 1.2;
