@@ -1,5 +1,7 @@
 //! A guard that turns within the error of a step: the crossing is right, or doubted.
 
+#![allow(clippy::unwrap_used)] // a test that cannot run should fail
+
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
