@@ -100,7 +100,7 @@ fn what_is_ambiguous_is_named() {
 #[test]
 fn two_balls_in_one_sheet_have_a_cor_each() {
     let mut text = "ball,trial,bounce,height_cm\n".to_owned();
-    for (ball, e) in [("superball", 0.85f64), ("tennis", 0.7)] {
+    for (ball, e) in [("superball", 0.85f64), ("old ball", 0.7)] {
         for trial in 0..3 {
             for bounce in 0..5 {
                 let wobble = 0.1 * f64::from((7 * bounce + 3 * trial) % 5 - 2);
