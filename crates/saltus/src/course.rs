@@ -333,7 +333,12 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
-            (at.cascade, at.instant) = (if at_once { at.cascade.and(&x, &after) } else { Cascade::NONE }, instant);
+            if at_once {
+                at.cascade = at.cascade.and(&x, &after);
+            } else if at.cascade.jumps() > 0 {
+                at.cascade = Cascade::NONE;
+            }
+            at.instant = instant;
             if !after.is_finite() || to != mode && automaton.validate(to).is_err() {
                 let (kind, note) = wrong(*automaton, to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));

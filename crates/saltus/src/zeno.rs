@@ -54,11 +54,20 @@ impl<S: State> Contraction<S> {
             self.durations[self.count % MEMORY] = duration;
             self.after[self.count % STATES] = *after;
             self.count += 1;
-            for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
-                self.longest[cycle - 1] = self.longest[cycle - 1].max(square_way(self.state(0), self.state(cycle)));
+            if self.count <= MEMORY || self.count % MEMORY == 0 {
+                self.measure(after);
             }
         } else if self.count > 0 {
             self.after[(self.count - 1) % STATES] = *after;
+        }
+    }
+
+    /// How far x⁺ went in the last cycles. Looked at while jumps are few, and now and then: a longest
+    /// way that is missed makes the test of the displacements stricter.
+    #[inline(never)]
+    fn measure(&mut self, after: &S) {
+        for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
+            self.longest[cycle - 1] = self.longest[cycle - 1].max(square_way(after, self.state(cycle)));
         }
     }
 
@@ -142,6 +151,8 @@ impl Cascade {
     pub(crate) const NONE: Self = Self { jumps: 0, first: 0.0, late: 0.0 };
 
     /// After one more jump, from the state after the one before to the state `after` it.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn and<S: State>(self, before: &S, after: &S) -> Self {
         let (jumps, way) = (self.jumps + 1, square_way(before, after));
         let first = if jumps <= FIRST { self.first.max(way) } else { self.first };

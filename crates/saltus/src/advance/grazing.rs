@@ -55,8 +55,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if root < by {
             return None;
         }
-        let [before, at, after] = [root - by, root, root + by].map(|s| self.on(edge, step, s));
-        let (slope, bend) = ((after - before) / (2.0 * by), (before - 2.0 * at + after) / (by * by));
+        // Zero between them.
+        let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
+        let (slope, bend) = ((after - before) / (2.0 * by), (before + after) / (by * by));
         let turn = -slope / bend;
         (bend > 0.0 && turn < CLOSE * step.scale).then(|| self.shallow(edge, step, root, (turn, bend)))?
     }

@@ -402,9 +402,9 @@ impl<'a> Search<'a> {
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
         // The nodes themselves are rounded, and the state at them likewise.
-        let lowest = (1..9).fold(0, |low, k| if values[k] < values[low] { k } else { low });
+        let least = values.into_iter().fold(f64::INFINITY, f64::min);
         let spacing = (b.next_up() - b) / (b - a);
-        Ok(Samples { series, off, spacing, start: values[0], end: values[8], lowest, least: values[lowest] })
+        Ok(Samples { series, off, spacing, start: values[0], end: values[8], least, values })
     }
 }
 
@@ -418,25 +418,32 @@ struct Samples {
     /// The guard at both ends.
     start: f64,
     end: f64,
-    /// The node with the least value, and that value.
-    lowest: usize,
+    /// The least value seen.
     least: f64,
+    /// All of them.
+    values: [f64; 9],
 }
 
 impl Samples {
-    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end.
+    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end or clear of zero: above a half of what the
+    /// interpolant varies by.
     fn turn(&self) -> Option<[f64; 2]> {
+        let varies: f64 = self.series[1..].iter().map(|c| c.abs()).sum();
+        if self.series[0] > 2.0 * varies {
+            return None;
+        }
         // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
         let slope = |odd: f64| {
             let c = &self.series;
             odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8]
         };
-        let turns = match self.lowest {
+        let lowest = (1..9).fold(0, |low, k| if self.values[k] < self.values[low] { k } else { low });
+        let turns = match lowest {
             0 => slope(-1.0) > 0.0,
             8 => slope(1.0) > 0.0,
             _ => true,
         };
-        turns.then(|| [chebyshev::NODES[self.lowest.max(1) - 1], chebyshev::NODES[(self.lowest + 1).min(8)]])
+        turns.then(|| [chebyshev::NODES[lowest.max(1) - 1], chebyshev::NODES[(lowest + 1).min(8)]])
     }
 
     /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
