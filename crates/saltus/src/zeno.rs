@@ -54,7 +54,7 @@ impl<S: State> Contraction<S> {
             self.durations[self.count % MEMORY] = duration;
             self.after[self.count % STATES] = *after;
             self.count += 1;
-            if self.count <= MEMORY || self.count % MEMORY == 0 {
+            if self.count <= MEMORY || self.count.is_multiple_of(MEMORY) {
                 self.measure(after);
             }
         } else if self.count > 0 {
