@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// The crates that are held to it, module by module of their root.
-const CRATES: [&str; 1] = ["saltus-cli"];
+const CRATES: [&str; 5] = ["saltus", "saltus-scene", "saltus-fit", "saltus-motion", "saltus-cli"];
 
 /// The text of a module: its file, or all files of its folder.
 fn text(path: &Path) -> String {

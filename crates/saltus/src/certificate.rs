@@ -6,9 +6,11 @@ use std::ops::ControlFlow;
 use crate::automaton::Automaton;
 use crate::copies::shown;
 use crate::cross::Evidence;
-use crate::observe::{Inspection, Observer};
+use crate::inspection::{Doubts, Inspection};
+use crate::jump::Jump;
+use crate::observe::Observer;
+use crate::piece::Piece;
 use crate::time::Time;
-use crate::trajectory::{Jump, Piece};
 
 /// An observer that keeps, for each edge, how the searches of its guard came out, and every doubt.
 ///
@@ -186,76 +188,5 @@ impl<A: Automaton> fmt::Display for Certificate<A> {
             0 => Ok(()),
             more => write!(f, "\n- and {more} more"),
         }
-    }
-}
-
-/// The doubts of a run: first those that stand, then those of the step in progress, whose end is not known yet.
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub(crate) struct Doubts<A: Automaton> {
-    list: Vec<Inspection<A>>,
-    settled: usize,
-}
-
-impl<A: Automaton> Doubts<A> {
-    pub(crate) const fn new() -> Self {
-        Self { list: Vec::new(), settled: 0 }
-    }
-
-    pub(crate) fn list(&self) -> &[Inspection<A>] {
-        &self.list
-    }
-
-    pub(crate) fn add(&mut self, inspection: &Inspection<A>) {
-        self.list.push(*inspection);
-    }
-
-    /// The step in progress ends here, and what lies after it was not gone through.
-    #[inline]
-    pub(crate) fn settle(&mut self, end: Time) {
-        while self.settle_next(end).is_some() {}
-    }
-
-    /// Settles one doubt, of the edge returned; says whether it stands.
-    #[inline]
-    fn settle_next(&mut self, end: Time) -> Option<(A::Edge, bool)> {
-        let doubt = *self.list.get(self.settled)?;
-        let edge = doubt.edge;
-        match doubt.until(end) {
-            None => {
-                self.list.remove(self.settled);
-                Some((edge, false))
-            }
-            Some(doubt) => {
-                // The last of this edge, among as many as a step is likely to raise.
-                let (stand, _) = self.list.split_at_mut(self.settled);
-                let last = stand.iter_mut().rev().take(16).find(|last| last.edge == edge && last.mode == doubt.mode);
-                if last.is_some_and(|last| last.extended_by(&doubt)) {
-                    self.list.remove(self.settled);
-                } else {
-                    self.list[self.settled] = doubt;
-                    self.settled += 1;
-                }
-                Some((edge, true))
-            }
-        }
-    }
-}
-
-impl<A: Automaton> Clone for Doubts<A> {
-    fn clone(&self) -> Self {
-        Self { list: self.list.clone(), settled: self.settled }
-    }
-}
-
-impl<A: Automaton> fmt::Debug for Doubts<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.list.fmt(f)
     }
 }

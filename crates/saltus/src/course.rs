@@ -3,19 +3,20 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Held, Memory, Span};
+use crate::advance::{Advance, ArcEnd, Held, Memory};
 use crate::automaton::{Automaton, Limit};
-use crate::clocks::Ticks;
+use crate::ending::Options;
 use crate::ending::{Ending, Limits, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, Refusal, listed};
+use crate::jump::{Cause, Jump};
 use crate::observe::Observer;
+use crate::piece::Piece;
 use crate::recent::Recent;
 use crate::series::Tape;
-use crate::simulation::Options;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
-use crate::time::Time;
-use crate::trajectory::{Cause, Jump, Piece};
+use crate::ticks::Ticks;
+use crate::time::{Span, Time};
 use crate::zeno::{Cascade, Contraction};
 
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.

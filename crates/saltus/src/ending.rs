@@ -3,11 +3,40 @@
 use std::fmt;
 
 use crate::automaton::Automaton;
+use crate::control::Tolerance;
 use crate::copies::shown;
 use crate::error::{Error, ErrorKind, Place};
-use crate::simulation::Options;
 use crate::time::Time;
 use crate::trajectory::Trajectory;
+
+/// What a run may cost and how exact it is to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Options {
+    pub(crate) tolerance: Tolerance,
+    pub(crate) first_step: Option<f64>,
+    pub(crate) longest_step: f64,
+    pub(crate) most_steps: u64,
+    pub(crate) most_evaluations: u64,
+    pub(crate) most_jumps: usize,
+    pub(crate) longest_cascade: usize,
+    pub(crate) most_bytes: usize,
+    /// Whether modes that a formula or a series solves are stepped through all the same.
+    pub(crate) stepped: bool,
+}
+
+impl Options {
+    /// Why a run that has cost so much takes no further step, if it does not.
+    #[inline]
+    pub(crate) fn exceeded<E>(&self, stats: &Stats) -> Option<Stop<E>> {
+        if stats.steps + stats.windows >= self.most_steps {
+            Some(Stop::Steps { most: self.most_steps })
+        } else if stats.evaluations() >= self.most_evaluations {
+            Some(Stop::Evaluations { most: self.most_evaluations })
+        } else {
+            None
+        }
+    }
+}
 
 /// Why a run ended. Written with `{}`, it is a sentence that says what to do.
 ///

@@ -2,8 +2,8 @@
 
 use std::marker::PhantomData;
 
+use crate::automaton::edges::Edges;
 use crate::automaton::{About, Automaton, Entry};
-use crate::edges::Edges;
 use crate::error::Refusal;
 use crate::state::State;
 

@@ -25,64 +25,63 @@
 //! [`Trajectory::before`] and [`Trajectory::at`].
 
 mod advance;
+mod analysis;
 mod automaton;
 mod certificate;
-mod clocks;
 mod control;
 mod copies;
 mod course;
 pub mod cross;
-mod distance;
-mod edges;
 mod ending;
 mod ensemble;
 mod error;
 mod filippov;
-mod frames;
 mod hybrid;
-#[cfg(feature = "num-dual")]
-mod linearize;
+mod inspection;
+mod jump;
 mod observe;
+mod piece;
 mod poly;
 mod recent;
-#[cfg(feature = "num-dual")]
-pub mod return_map;
-mod reverse;
 mod series;
 mod simulation;
-mod solution;
 mod state;
 pub mod step;
+mod ticks;
 mod time;
 mod trajectory;
-mod work;
 mod zeno;
 
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
 
+pub use analysis::distance::Closeness;
+pub use analysis::frames::frame_by_frame;
+#[cfg(feature = "num-dual")]
+pub use analysis::linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
+#[cfg(feature = "num-dual")]
+pub use analysis::return_map;
+pub use analysis::reverse::{Invertible, Reversed};
+pub use analysis::work::{Timing, WorkPoint, WorkPrecision};
+pub use automaton::clocks::{Clock, Clocks, Ticking};
+pub use automaton::edges::Edges;
+pub use automaton::solution::{Fall, Polynomial, Solution};
 pub use automaton::{About, Automaton, Entry, Limit};
 pub use certificate::{Certificate, Tally};
-pub use clocks::{Clock, Clocks, Ticking};
 pub use course::{Checkpoint, Course};
-pub use distance::Closeness;
-pub use edges::Edges;
 pub use ending::{Ending, Failed, Limits, Run, Stats, Stop};
 pub use ensemble::ensemble;
 pub use error::{Error, ErrorKind, Refusal};
 pub use filippov::{Filippov, Passage, Side, Sides, TwoSided};
-pub use frames::frame_by_frame;
 pub use hybrid::{Edge, Hybrid, Link};
-#[cfg(feature = "num-dual")]
-pub use linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
-pub use observe::{Inspection, Observer};
-pub use reverse::{Invertible, Reversed};
+pub use inspection::Inspection;
+pub use jump::{Cause, Jump};
+pub use observe::Observer;
+pub use piece::Piece;
 pub use series::{Jet, Series};
 pub use simulation::Simulation;
-pub use solution::{Fall, Polynomial, Solution};
 pub use state::{Coords, State};
 pub use step::{Auto, Dop853, Rodas5P, Tsit5};
 pub use time::Time;
-pub use trajectory::{Arc, Cause, Jump, Piece, Trajectory};
-pub use work::{Timing, WorkPoint, WorkPrecision};
+pub use trajectory::{Arc, Trajectory};

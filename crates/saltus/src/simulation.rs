@@ -7,13 +7,16 @@ use crate::advance::Memory;
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
 use crate::course::{Checkpoint, Course};
-use crate::ending::{Ending, Failed, Run, Stats, Stop};
+use crate::ending::{Ending, Failed, Options, Run, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::{Inspection, Observer};
+use crate::inspection::Inspection;
+use crate::jump::Jump;
+use crate::observe::Observer;
+use crate::piece::Piece;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::time::{LAST, Time};
-use crate::trajectory::{Jump, Piece, Trajectory};
+use crate::trajectory::Trajectory;
 
 /// How to run an automaton: its stepper, tolerances and limits.
 ///
@@ -49,35 +52,6 @@ impl<A, M: fmt::Debug> fmt::Debug for Simulation<'_, A, M> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { stepper, options, .. } = self;
         f.debug_struct("Simulation").field("stepper", stepper).field("options", options).finish_non_exhaustive()
-    }
-}
-
-/// What a run may cost and how exact it is to be.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Options {
-    pub(crate) tolerance: Tolerance,
-    pub(crate) first_step: Option<f64>,
-    pub(crate) longest_step: f64,
-    pub(crate) most_steps: u64,
-    pub(crate) most_evaluations: u64,
-    pub(crate) most_jumps: usize,
-    pub(crate) longest_cascade: usize,
-    pub(crate) most_bytes: usize,
-    /// Whether modes that a formula or a series solves are stepped through all the same.
-    pub(crate) stepped: bool,
-}
-
-impl Options {
-    /// Why a run that has cost so much takes no further step, if it does not.
-    #[inline]
-    pub(crate) fn exceeded<E>(&self, stats: &Stats) -> Option<Stop<E>> {
-        if stats.steps + stats.windows >= self.most_steps {
-            Some(Stop::Steps { most: self.most_steps })
-        } else if stats.evaluations() >= self.most_evaluations {
-            Some(Stop::Evaluations { most: self.most_evaluations })
-        } else {
-            None
-        }
     }
 }
 

@@ -84,6 +84,15 @@ impl Time {
     }
 }
 
+/// The span of a run and where it stands.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Span {
+    pub(crate) start: Time,
+    pub(crate) now: Time,
+    pub(crate) end: Time,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

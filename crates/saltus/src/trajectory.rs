@@ -1,162 +1,15 @@
 //! What a run leaves behind: arcs on hybrid time (t, j), the jumps between them, and both limits at each jump.
 
 use std::fmt;
+use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::certificate::Doubts;
 use crate::copies::{copied, shown};
-use crate::observe::Inspection;
-use crate::poly::value_and_slope;
-use crate::state::State;
+use crate::inspection::{Doubts, Inspection};
+use crate::jump::Jump;
+use crate::observe::Observer;
+use crate::piece::Piece;
 use crate::time::Time;
-
-/// Σ cₖ sᵏ, coordinate by coordinate.
-#[inline]
-pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
-    match coefficients {
-        [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
-        _ if coefficients.len() > LONG => coefficients[0].with(|i| value_and_slope(coefficients, |c| c.get(i), s).0),
-        _ => coefficients[0].with(|i| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c.get(i))),
-    }
-}
-
-/// More coefficients than any stepper's dense output has.
-pub(crate) const LONG: usize = 9;
-
-/// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
-///
-/// ```
-/// use saltus::{Hybrid, Simulation};
-/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
-/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
-/// let pieces: Vec<_> = run.trajectory.pieces(0).collect();
-/// let last = pieces.last().unwrap();
-/// assert!((last.start().seconds() + last.span() - 1.0).abs() < 1e-15);
-/// assert!((last.at(last.span()) - (-1.0_f64).exp()).abs() < 1e-9);
-/// # Ok::<(), saltus::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Piece<'a, S> {
-    start: Time,
-    span: f64,
-    scale: f64,
-    coefficients: &'a [S],
-}
-
-impl<'a, S: State> Piece<'a, S> {
-    pub(crate) fn new(start: Time, span: f64, scale: f64, coefficients: &'a [S]) -> Self {
-        Self { start, span, scale, coefficients }
-    }
-
-    /// When the piece starts.
-    #[must_use]
-    pub const fn start(&self) -> Time {
-        self.start
-    }
-
-    /// How long it lasts, in seconds.
-    #[must_use]
-    pub const fn span(&self) -> f64 {
-        self.span
-    }
-
-    /// The state a time `s` after the start, for 0 ≤ s ≤ span.
-    #[inline]
-    #[must_use]
-    pub fn at(&self, s: f64) -> S {
-        horner(self.coefficients, s / self.scale)
-    }
-
-    /// The coefficients cₖ of x = Σ cₖ ((t - start)/scale)ᵏ.
-    #[must_use]
-    pub const fn coefficients(&self) -> &'a [S] {
-        self.coefficients
-    }
-
-    /// The time unit of the coefficients, in seconds: the step's size, or 1 where the flow is solved exactly.
-    #[must_use]
-    pub const fn scale(&self) -> f64 {
-        self.scale
-    }
-}
-
-/// Why a jump happened.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Cause<E> {
-    /// An edge was taken.
-    Edge(E),
-    /// Jumps accumulated here, and the model said what lies beyond.
-    Zeno,
-}
-
-/// A jump, with both its limits.
-///
-/// ```
-/// use saltus::{Cause, Hybrid, Simulation};
-/// let heater = Hybrid::new()
-///     .mode("on", |_t, _x: &f64| 1.0)
-///     .mode("off", |_t, _x| -1.0)
-///     .edge("on", "off", |_t, x| 22.0 - x, |_t, x| x - 0.5);
-/// let run = Simulation::of(&heater).run("on", 20.0, 0.0..3.0)?;
-/// let jump = run.trajectory.jumps()[0];
-/// assert!((jump.t() - 2.0).abs() < 1e-12 && (jump.before - 22.0).abs() < 1e-12);
-/// assert_eq!((jump.from, jump.to, jump.j), ("on", "off", 1));
-/// assert_eq!(jump.after, jump.before - 0.5);
-/// assert!(matches!(jump.cause, Cause::Edge(edge) if Some(edge) == jump.edge()));
-/// # Ok::<(), saltus::Error>(())
-/// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Jump<A: Automaton> {
-    /// When.
-    pub time: Time,
-    /// How many jumps there have been, this one included: the j of hybrid time just after it.
-    pub j: usize,
-    /// Why.
-    pub cause: Cause<A::Edge>,
-    /// The mode before.
-    pub from: A::Mode,
-    /// The state just before, x⁻; inside the domain of the mode before.
-    pub before: A::State,
-    /// The mode after.
-    pub to: A::Mode,
-    /// The state just after, x⁺.
-    pub after: A::State,
-}
-
-copied!(Jump, Arc);
-
-impl<A: Automaton> fmt::Debug for Jump<A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { time, j, cause, from, before, to, after } = self;
-        write!(f, "(t = {}, j = {j}) by {cause:?}: {from:?} {before:?} -> {to:?} {after:?}", time.seconds())
-    }
-}
-
-impl<A: Automaton> Jump<A> {
-    /// When, to the nearest double, in seconds.
-    #[must_use]
-    pub const fn t(&self) -> f64 {
-        self.time.seconds()
-    }
-
-    /// The edge taken, if one was.
-    #[must_use]
-    pub fn edge(&self) -> Option<A::Edge> {
-        match self.cause {
-            Cause::Edge(edge) => Some(edge),
-            Cause::Zeno => None,
-        }
-    }
-}
 
 /// An arc: the stay in one mode between two jumps. Between two jumps at one time it has no duration.
 ///
@@ -188,6 +41,8 @@ pub struct Arc<A: Automaton> {
     j: usize,
     first_piece: usize,
 }
+
+copied!(Arc);
 
 impl<A: Automaton> fmt::Debug for Arc<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -312,10 +167,11 @@ impl<A: Automaton> Trajectory<A> {
 
     pub(crate) fn push_piece(&mut self, piece: &Piece<'_, A::State>) {
         let first = self.coefficients.len();
-        self.coefficients.extend_from_slice(piece.coefficients);
-        let len = piece.coefficients.len();
-        self.pieces.push(Stored { start: piece.start, span: piece.span, scale: piece.scale, first, len });
-        self.end = piece.start.after(piece.span);
+        let (start, span, scale) = (piece.start(), piece.span(), piece.scale());
+        self.coefficients.extend_from_slice(piece.coefficients());
+        let len = piece.coefficients().len();
+        self.pieces.push(Stored { start, span, scale, first, len });
+        self.end = start.after(span);
         self.doubts.settle(self.end);
     }
 
@@ -442,6 +298,22 @@ impl<A: Automaton> Trajectory<A> {
 
     fn piece(&self, stored: &Stored) -> Piece<'_, A::State> {
         let coefficients = &self.coefficients[stored.first..stored.first + stored.len];
-        Piece { start: stored.start, span: stored.span, scale: stored.scale, coefficients }
+        Piece::new(stored.start, stored.span, stored.scale, coefficients)
+    }
+}
+
+impl<A: Automaton> Observer<A> for Trajectory<A> {
+    fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.push_piece(piece);
+        ControlFlow::Continue(())
+    }
+    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+        self.push_jump(*jump);
+        ControlFlow::Continue(())
+    }
+    fn inspection(&mut self, inspection: &Inspection<A>) {
+        if inspection.evidence.is_doubtful() {
+            self.push_doubt(inspection);
+        }
     }
 }

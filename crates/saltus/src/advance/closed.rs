@@ -3,19 +3,19 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
+use crate::automaton::solution::Formula;
 use crate::cross::{Undefined, chebyshev};
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
-use crate::solution::Formula;
+use crate::piece::{Piece, horner};
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{LAST, Time};
-use crate::trajectory::{Piece, horner};
+use crate::time::{LAST, Span, Time};
 
 use super::crossing::Close;
 use super::exact::natural;
-use super::{Advance, ArcEnd, Span};
+use super::{Advance, ArcEnd};
 
 /// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
 const AS_GOOD_AS_EXACT: f64 = 1e-12;

@@ -6,12 +6,13 @@ use crate::cross::{
     Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::{Inspection, Observer};
+use crate::inspection::Inspection;
+use crate::observe::Observer;
+use crate::piece::{LONG, horner};
 use crate::poly::{Bernstein, MAX_DEGREE, value_and_slope};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
-use crate::trajectory::{LONG, horner};
 
 use super::Advance;
 use super::grazing::Step;

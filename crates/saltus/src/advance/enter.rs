@@ -2,9 +2,9 @@
 
 use std::cell::Cell;
 
+use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
 use crate::error::{Error, ErrorKind, Place};
-use crate::solution::Fall;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};

@@ -3,20 +3,20 @@
 use std::cell::LazyCell;
 
 use crate::automaton::Automaton;
+use crate::automaton::solution::Polynomial;
 use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
 use crate::ending::Stop;
 use crate::error::Error;
 use crate::observe::Observer;
+use crate::piece::{Piece, horner};
 use crate::poly::{quadratic_fall, quadratic_touch};
-use crate::solution::Polynomial;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{LAST, Time, resolution};
-use crate::trajectory::{Piece, horner};
+use crate::time::{LAST, Span, Time, resolution};
 
 use super::crossing::{Close, less_constant, only_touched, unlevelled};
 use super::solved::First;
-use super::{Advance, ArcEnd, Span};
+use super::{Advance, ArcEnd};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]

@@ -3,9 +3,9 @@
 
 use crate::automaton::Automaton;
 use crate::cross::Evidence;
+use crate::piece::horner;
 use crate::step::Stepper;
 use crate::time::Time;
-use crate::trajectory::horner;
 
 use super::Advance;
 use super::noise::{PROBE, STEP_ERROR};

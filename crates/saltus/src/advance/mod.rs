@@ -14,26 +14,17 @@ pub(crate) use series::Held;
 
 use std::ops::ControlFlow;
 
+use crate::automaton::solution::Solution;
 use crate::automaton::{Automaton, Entry};
 use crate::control::Controller;
 use crate::cross::Start;
+use crate::ending::Options;
 use crate::ending::{Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::series::Tape;
-use crate::simulation::Options;
-use crate::solution::Solution;
 use crate::step::Stepper;
-use crate::time::Time;
-
-/// The span of a run and where it stands.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Span {
-    pub(crate) start: Time,
-    pub(crate) now: Time,
-    pub(crate) end: Time,
-}
+use crate::time::{Span, Time};
 
 /// How an arc ended.
 pub(crate) enum ArcEnd<A: Automaton> {

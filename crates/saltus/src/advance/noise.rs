@@ -3,10 +3,10 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{AT_START, Crossing};
+use crate::piece::horner;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
-use crate::trajectory::horner;
 
 use super::{Advance, Spent, Wall};
 

@@ -1,22 +1,23 @@
 //! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and exact to the tolerance all along.
 
 use crate::automaton::Automaton;
+use crate::automaton::solution::Flow;
 use crate::control::Tolerance;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::{Inspection, Observer};
+use crate::inspection::Inspection;
+use crate::observe::Observer;
+use crate::piece::Piece;
 use crate::poly::MAX_DEGREE;
 use crate::series::{MOST_COEFFICIENTS, NextKink, RECIPROCALS, Series};
-use crate::solution::Flow;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{Time, resolution};
-use crate::trajectory::Piece;
+use crate::time::{Span, Time, resolution};
 
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
 use super::stepped::{evened, remaining, searched, wrong_dimension};
-use super::{Advance, ArcEnd, Span};
+use super::{Advance, ArcEnd};
 
 /// The lowest and the highest order: no higher than guards along it can be bounded.
 const LOWEST: usize = 6;

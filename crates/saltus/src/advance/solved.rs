@@ -1,10 +1,11 @@
 //! The first crossing on a solution that is known, and the end of the arc there.
 
 use crate::automaton::Automaton;
+use crate::automaton::solution::Fall;
 use crate::cross::{Crossing, Evidence, Searched, Start, settle};
 use crate::error::Error;
-use crate::observe::{Inspection, Observer};
-use crate::solution::Fall;
+use crate::inspection::Inspection;
+use crate::observe::Observer;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, grace};

@@ -8,15 +8,16 @@ use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
-use crate::observe::{Inspection, Observer};
+use crate::inspection::Inspection;
+use crate::observe::Observer;
+use crate::piece::{Piece, horner};
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{LAST, Time, grace, resolution};
-use crate::trajectory::{Piece, horner};
+use crate::time::{LAST, Span, Time, grace, resolution};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
 use super::noise::PROBE;
-use super::{Advance, ArcEnd, Span};
+use super::{Advance, ArcEnd};
 
 /// The shortest step, in spacings of time.
 const SHORTEST: f64 = 2.0;

@@ -12,9 +12,9 @@ use std::sync::OnceLock;
 
 use self::names::kept;
 use crate::automaton::Entry;
-use crate::clocks::Clock;
+use crate::automaton::clocks::Clock;
+use crate::automaton::solution::Polynomial;
 use crate::series::{Jet, Series};
-use crate::solution::Polynomial;
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;

@@ -1,13 +1,13 @@
 //! What the engine asks of an automaton of closures.
 
 use super::{Hybrid, Link, Mode};
+use crate::analysis::reverse::Invertible;
+use crate::automaton::clocks::Clocks;
+use crate::automaton::edges::Edges;
+use crate::automaton::solution::Solution;
 use crate::automaton::{About, Automaton, Limit};
-use crate::clocks::Clocks;
-use crate::edges::Edges;
 use crate::error::Refusal;
-use crate::reverse::Invertible;
 use crate::series::Series;
-use crate::solution::Solution;
 use crate::state::State;
 
 impl<S: State> Automaton for Hybrid<'_, S> {

@@ -212,7 +212,7 @@ fn closing<S: State>(x: &S, end: &S, first: &S, higher: &[S]) -> S {
 #[cfg(test)]
 mod testing {
     use super::Stepper;
-    use crate::trajectory::horner;
+    use crate::piece::horner;
 
     /// x' = x cos t, x(0) = 1, so x = exp(sin t): the largest errors over `0..=1` with steps of `h`, at their ends and inside them.
     pub(super) fn errors_with(stepper: impl Stepper, h: f64) -> (f64, f64) {

@@ -336,8 +336,8 @@ impl System<'_> {
 mod tests {
     use super::super::testing::{error_order, errors_with, orders};
     use super::*;
+    use crate::piece::horner;
     use crate::state::Coords;
-    use crate::trajectory::horner;
 
     /// One step from `x` at `t`: its end, and its dense output half way.
     fn step<S: State>(mut flow: impl FnMut(f64, &S) -> S, t: f64, x: S, h: f64) -> (S, S) {

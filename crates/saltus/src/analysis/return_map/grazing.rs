@@ -4,8 +4,8 @@ use num_dual::Dual64;
 
 use super::Section;
 use super::continuation::{Continuation, Here};
+use crate::analysis::linearize::{Lift, Linearize};
 use crate::automaton::Automaton;
-use crate::linearize::{Lift, Linearize};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::trajectory::Trajectory;
@@ -94,7 +94,7 @@ fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 /// The speed of each crossing, in units of the guard's largest value before it and of the period.
 fn slow_crossings<A: Linearize>(automaton: &A, run: &Trajectory<A>, period: f64) -> Vec<(A::Edge, f64)> {
     let p = automaton.parameters();
-    let crossing = |(index, jump): (usize, &crate::trajectory::Jump<A>)| {
+    let crossing = |(index, jump): (usize, &crate::jump::Jump<A>)| {
         let taken = jump.edge()?;
         let Along { largest, .. } = guards(automaton, run, index).into_iter().find(|along| along.edge == taken)?;
         let flow = automaton.flow(jump.from, jump.t(), &jump.before);

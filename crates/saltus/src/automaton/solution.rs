@@ -204,7 +204,7 @@ impl<S: state::State> Polynomial<S> {
     /// The state a time `s` after the start.
     #[must_use]
     pub fn at(&self, s: f64) -> S {
-        crate::trajectory::horner(self.coefficients(), s)
+        crate::piece::horner(self.coefficients(), s)
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::newton::{Equation, newton};
 use super::{FixedPoint, MapError, ReturnMap, Section};
-use crate::linearize::{Linearize, Wrt};
+use crate::analysis::linearize::{Linearize, Wrt};
 use crate::state::State;
 use crate::step::Stepper;
 

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector, SMatrix};
 
 use super::newton::{Equation, newton};
 use super::{Linear, MapError, ReturnMap, Section};
-use crate::linearize::Linearize;
+use crate::analysis::linearize::Linearize;
 use crate::step::Stepper;
 
 /// A fixed point P(q) = q of a return map: a periodic run.

@@ -10,7 +10,7 @@ use nalgebra::SVector;
 use num_dual::{Dual64, DualNum};
 
 use crate::automaton::Automaton;
-use crate::solution::{Polynomial, Solution};
+use crate::automaton::solution::{Polynomial, Solution};
 use crate::state::{Coords, State};
 
 /// A number that a model may be written over: `f64`, or a dual number that carries derivatives along.

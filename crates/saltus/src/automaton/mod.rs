@@ -2,10 +2,14 @@
 
 use std::fmt::Debug;
 
-use crate::clocks::Clocks;
-use crate::edges::Edges;
+pub(crate) mod clocks;
+pub(crate) mod edges;
+pub(crate) mod solution;
+
+use self::clocks::Clocks;
+use self::edges::Edges;
+use self::solution::{Fall, Solution};
 use crate::error::Refusal;
-use crate::solution::{Fall, Solution};
 use crate::state::State;
 
 /// A hybrid automaton: in each mode a flow x' = f(t, x); out of each mode edges, each with a guard and a reset.

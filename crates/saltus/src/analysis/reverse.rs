@@ -2,14 +2,16 @@
 
 use std::ops::Range;
 
+use crate::automaton::edges::Edges;
+use crate::automaton::solution::Solution;
 use crate::automaton::{About, Automaton, Entry};
-use crate::edges::Edges;
 use crate::error::Refusal;
-use crate::observe::Inspection;
-use crate::solution::Solution;
+use crate::inspection::Inspection;
+use crate::jump::Jump;
+use crate::piece::Piece;
 use crate::state::State;
 use crate::time::Time;
-use crate::trajectory::{Arc, Jump, Piece, Trajectory};
+use crate::trajectory::{Arc, Trajectory};
 
 /// An automaton whose jumps can be undone.
 ///

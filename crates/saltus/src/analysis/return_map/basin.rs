@@ -1,7 +1,7 @@
 //! Basins of attraction, by sampling.
 
 use super::{FixedPoint, MapError, ReturnMap, Section};
-use crate::linearize::Linearize;
+use crate::analysis::linearize::Linearize;
 use crate::step::Stepper;
 
 /// What becomes of a start on the section.

@@ -2,11 +2,10 @@
 
 use std::fmt::Debug;
 
-use super::{Clock, Clocks, Source, Times};
-use crate::advance::Span;
 use crate::automaton::Automaton;
+use crate::automaton::clocks::{Clock, Clocks, Source, Times};
 use crate::error::{Error, ErrorKind, Place};
-use crate::time::{self, Time, resolution};
+use crate::time::{self, Span, Time, resolution};
 
 /// The ticks of a run near the present time.
 #[derive(Clone, Debug)]

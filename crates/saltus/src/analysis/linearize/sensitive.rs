@@ -4,13 +4,13 @@ use num_dual::Dual64;
 
 use super::passage::Passage;
 use super::{Linearize, moving, moving_in, velocity};
+use crate::automaton::clocks::Clocks;
+use crate::automaton::edges::Edges;
+use crate::automaton::solution::{Fall, Polynomial, Solution};
 use crate::automaton::{About, Automaton, Entry, Limit};
-use crate::clocks::Clocks;
-use crate::edges::Edges;
 use crate::error::{ErrorKind, Refusal};
-use crate::solution::{Fall, Polynomial, Solution};
+use crate::jump::Jump;
 use crate::state::State;
-use crate::trajectory::Jump;
 
 /// What a derivative is taken with respect to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,13 +34,13 @@ use std::ops::ControlFlow;
 use nalgebra::{DMatrix, SMatrix};
 use num_dual::Dual64;
 
+use crate::analysis::linearize::{Lift, Linearize, Number, Over, Sensitive, Wrt};
 use crate::automaton::Automaton;
-use crate::linearize::{Lift, Linearize, Number, Over, Sensitive, Wrt};
+use crate::jump::Jump;
 use crate::observe::Observer;
 use crate::simulation::Simulation;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
-use crate::trajectory::Jump;
 
 /// A Poincaré section of `A`: an edge, and K coordinates q for the states just after it.
 ///

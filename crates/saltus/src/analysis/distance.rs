@@ -1,9 +1,10 @@
 //! How far apart two runs are, as curves in hybrid time, where the difference at one time means nothing.
 
 use crate::automaton::Automaton;
+use crate::piece::Piece;
 use crate::state::State;
 use crate::time::Time;
-use crate::trajectory::{Arc, Piece, Trajectory};
+use crate::trajectory::{Arc, Trajectory};
 
 /// How closeness of two hybrid arcs is measured: the scales of time and state, and up to when.
 ///

@@ -1,11 +1,7 @@
 //! Clocks: edges that are taken at given times.
 
-mod ticks;
-
 use std::fmt;
 use std::sync::Arc;
-
-pub(crate) use ticks::Ticks;
 
 type Function = dyn Fn(f64) -> Option<f64> + Send + Sync;
 
@@ -31,14 +27,14 @@ type Function = dyn Fn(f64) -> Option<f64> + Send + Sync;
 /// ```
 #[derive(Clone)]
 pub struct Clock {
-    times: Times,
+    pub(crate) times: Times,
     from_start: bool,
     /// Why it cannot tick.
     flaw: Option<Arc<str>>,
 }
 
 #[derive(Clone)]
-enum Times {
+pub(crate) enum Times {
     /// k·period for each integer k; with a phase, phase + k·period for k ≥ 0.
     Every {
         period: f64,
@@ -300,7 +296,7 @@ impl<'a, E: Copy> Clocks<'a, E> {
         self.len() == 0
     }
 
-    fn get(&self, place: usize) -> Option<(Source<'_>, E)> {
+    pub(crate) fn get(&self, place: usize) -> Option<(Source<'_>, E)> {
         match &self.list {
             List::Kept(list) => list.get(place).map(|(clock, edge)| (Source::Clock(clock), *edge)),
             List::Made(list) => list.get(place).map(|(clock, edge)| (Source::Clock(clock), *edge)),
@@ -324,14 +320,14 @@ impl<E: fmt::Debug + Copy> fmt::Debug for Clocks<'_, E> {
 
 /// Where ticks come from.
 #[derive(Clone, Copy)]
-enum Source<'s> {
+pub(crate) enum Source<'s> {
     Clock(&'s Clock),
     Asked(&'s dyn Ticking),
 }
 
 impl Source<'_> {
     /// Whether it is one and the same clock.
-    fn is(&self, other: &Source<'_>) -> bool {
+    pub(crate) fn is(&self, other: &Source<'_>) -> bool {
         match (self, other) {
             (Self::Clock(a), Source::Clock(b)) => a == b,
             (Self::Asked(a), Source::Asked(b)) => std::ptr::addr_eq(*a, *b),
@@ -340,12 +336,12 @@ impl Source<'_> {
     }
 
     /// Whether it ticks at the very start of a run.
-    fn starts(&self) -> bool {
+    pub(crate) fn starts(&self) -> bool {
         matches!(self, Self::Clock(clock) if clock.from_start)
     }
 
     /// The first tick at `from` or later, where that follows without asking; or whom to ask.
-    fn next(&self, from: f64) -> Result<Option<f64>, Ask<'_>> {
+    pub(crate) fn next(&self, from: f64) -> Result<Option<f64>, Ask<'_>> {
         let clock = match self {
             Self::Clock(clock) => clock,
             Self::Asked(ticking) => return Err(Ask::Of(*ticking)),
@@ -359,13 +355,13 @@ impl Source<'_> {
 }
 
 /// Whom to ask for a tick.
-enum Ask<'s> {
+pub(crate) enum Ask<'s> {
     Of(&'s dyn Ticking),
     To(&'s Function),
 }
 
 impl Ask<'_> {
-    fn after(&self, t: f64) -> Option<f64> {
+    pub(crate) fn after(&self, t: f64) -> Option<f64> {
         match self {
             Self::Of(ticking) => ticking.after(t),
             Self::To(next) => next(t),

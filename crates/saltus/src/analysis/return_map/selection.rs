@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use super::{MapError, Section};
-use crate::linearize::{Lift, Linearize, Number, Over};
+use crate::analysis::linearize::{Lift, Linearize, Number, Over};
 use crate::state::State;
 
 /// How far a coordinate may be off that the section holds, relative to the largest.

@@ -2,14 +2,16 @@
 
 use std::ops::Range;
 
-use crate::advance::Span;
 use crate::automaton::{Automaton, Entry};
-use crate::clocks::Ticks;
 use crate::ending::{Limits, Run, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, listed};
+use crate::jump::{Cause, Jump};
+use crate::piece::Piece;
 use crate::state::State;
+use crate::ticks::Ticks;
+use crate::time::Span;
 use crate::time::Time;
-use crate::trajectory::{Cause, Jump, Piece, Trajectory};
+use crate::trajectory::Trajectory;
 
 /// How many edges are taken at the end of one frame.
 const MOST_AT_ONCE: usize = 16;

@@ -1,0 +1,219 @@
+//! How the guard of an edge was searched over a step, and what is in doubt.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::automaton::Automaton;
+use crate::copies::copied;
+use crate::cross::Evidence;
+use crate::time::Time;
+
+/// How the guard of one edge was searched over one step, or over one exact arc.
+///
+/// ```
+/// use saltus::cross::Evidence;
+/// use saltus::{Hybrid, Simulation};
+///
+/// // A guard that swings more than a million times a second is too fast to be followed through a step.
+/// let fast = Hybrid::new()
+///     .mode("wait", |_t, _x: &f64| 1.0)
+///     .terminal("wait", |t, _x| 1.5 + (1e7 * t).sin());
+/// let run = Simulation::of(&fast).run("wait", 0.0, 0.0..1.0)?;
+///
+/// let doubt = run.trajectory.doubts().last().unwrap();
+/// assert!(matches!(doubt.evidence, Evidence::Unresolved { .. }));
+/// assert_eq!(doubt.doubt().map(|when| when.end), Some(1.0));
+/// assert!(doubt.to_string().contains("varies too fast"));
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
+#[non_exhaustive]
+pub struct Inspection<A: Automaton> {
+    /// The mode.
+    pub mode: A::Mode,
+    /// The edge.
+    pub edge: A::Edge,
+    /// Where the step starts.
+    pub start: Time,
+    /// How far the search went, in seconds; infinite on an exact arc of a run without an end.
+    pub span: f64,
+    /// What is known: no crossing, one that was isolated, or where rounding or haste hides one. Times count from `start`.
+    pub evidence: Evidence,
+}
+
+copied!(Inspection);
+
+impl<A: Automaton> Inspection<A> {
+    /// Between which times, in seconds, a crossing may have been missed; `None` where the search leaves no doubt.
+    #[must_use]
+    pub fn doubt(&self) -> Option<Range<f64>> {
+        let (from, to) = when(self.evidence)?;
+        Some(self.start.after(from).seconds()..self.start.after(to).seconds())
+    }
+
+    /// The same doubt up to `end`; `None` if it lies after that.
+    pub(crate) fn until(self, end: Time) -> Option<Self> {
+        let span = self.span.min(end.since(self.start));
+        let (from, to) = when(self.evidence)?;
+        (from < span).then(|| Self { span, evidence: between(self.evidence, from, to.min(span)), ..self })
+    }
+
+    /// Takes in a later doubt of the same kind that follows without a gap; says whether it did.
+    pub(crate) fn extended_by(&mut self, later: &Self) -> bool {
+        let (Some((from, to)), Some((next, end))) = (when(self.evidence), when(later.evidence)) else {
+            return false;
+        };
+        let after = later.start.since(self.start);
+        let same = std::mem::discriminant(&self.evidence) == std::mem::discriminant(&later.evidence);
+        let follows = same && after + next <= to + 4.0 * f64::EPSILON * to.abs();
+        if follows {
+            self.span = after + later.span;
+            self.evidence = between(self.evidence, from, to.max(after + end));
+        }
+        follows
+    }
+
+    /// The same with time running the other way.
+    pub(crate) fn turned(&self, negative: impl Fn(Time) -> Time) -> Self {
+        let &Self { start, span, evidence, .. } = self;
+        let evidence = when(evidence).map_or(evidence, |(from, to)| between(evidence, span - to, span - from));
+        Self { start: negative(start.after(span)), evidence, ..*self }
+    }
+}
+
+/// From when to when a doubt lasts.
+const fn when(evidence: Evidence) -> Option<(f64, f64)> {
+    match evidence {
+        Evidence::Grazing { from, to }
+        | Evidence::Rounding { from, to }
+        | Evidence::Unresolved { from, to }
+        | Evidence::Discontinuous { from, to } => Some((from, to)),
+        Evidence::Excluded | Evidence::Isolated => None,
+    }
+}
+
+/// The same doubt, from another time to another.
+const fn between(evidence: Evidence, from: f64, to: f64) -> Evidence {
+    match evidence {
+        Evidence::Grazing { .. } => Evidence::Grazing { from, to },
+        Evidence::Rounding { .. } => Evidence::Rounding { from, to },
+        Evidence::Unresolved { .. } => Evidence::Unresolved { from, to },
+        Evidence::Discontinuous { .. } => Evidence::Discontinuous { from, to },
+        known => known,
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Inspection<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, edge, start, span, evidence } = self;
+        write!(f, "{mode:?} edge {edge:?} from t = {} for {span} s: {evidence:?}", start.seconds())
+    }
+}
+
+impl<A: Automaton> fmt::Display for Inspection<A> {
+    /// What is known, where, and, of a doubt, what to do.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mode, edge, start, span, evidence } = self;
+        let Range { start: from, end: to } =
+            self.doubt().unwrap_or_else(|| start.seconds()..start.after(*span).seconds());
+        write!(f, "edge {edge:?} in mode {mode:?}, t = {from} to {to}: ")?;
+        f.write_str(match evidence {
+            Evidence::Excluded => "not crossed; bounds on its guard leave no room",
+            Evidence::Isolated => "searched until no part had room for more than one crossing",
+            Evidence::Grazing { .. } => {
+                "its guard comes as close to zero as the error of the step, and turns: whether it is crossed there \
+                 is not decided. If that matters, lower Simulation::tolerance"
+            }
+            Evidence::Rounding { .. } => {
+                "its guard is zero but for rounding and was taken for a touch; two crossings may hide there. \
+                 If that matters, write the guard so that it does not cancel"
+            }
+            Evidence::Unresolved { .. } => {
+                "its guard varies too fast to be followed, and a crossing may have been missed. \
+                 Shorten Simulation::longest_step, or give the guard a slower form"
+            }
+            Evidence::Discontinuous { .. } => {
+                "its guard changes sign without coming near zero: a pole is no crossing, a leap is taken for one. \
+                 Write the guard so that it is continuous"
+            }
+        })
+    }
+}
+
+/// The doubts of a run: first those that stand, then those of the step in progress, whose end is not known yet.
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
+        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Doubts<A: Automaton> {
+    list: Vec<Inspection<A>>,
+    settled: usize,
+}
+
+impl<A: Automaton> Doubts<A> {
+    pub(crate) const fn new() -> Self {
+        Self { list: Vec::new(), settled: 0 }
+    }
+
+    pub(crate) fn list(&self) -> &[Inspection<A>] {
+        &self.list
+    }
+
+    pub(crate) fn add(&mut self, inspection: &Inspection<A>) {
+        self.list.push(*inspection);
+    }
+
+    /// The step in progress ends here, and what lies after it was not gone through.
+    #[inline]
+    pub(crate) fn settle(&mut self, end: Time) {
+        while self.settle_next(end).is_some() {}
+    }
+
+    /// Settles one doubt, of the edge returned; says whether it stands.
+    #[inline]
+    pub(crate) fn settle_next(&mut self, end: Time) -> Option<(A::Edge, bool)> {
+        let doubt = *self.list.get(self.settled)?;
+        let edge = doubt.edge;
+        match doubt.until(end) {
+            None => {
+                self.list.remove(self.settled);
+                Some((edge, false))
+            }
+            Some(doubt) => {
+                // The last of this edge, among as many as a step is likely to raise.
+                let (stand, _) = self.list.split_at_mut(self.settled);
+                let last = stand.iter_mut().rev().take(16).find(|last| last.edge == edge && last.mode == doubt.mode);
+                if last.is_some_and(|last| last.extended_by(&doubt)) {
+                    self.list.remove(self.settled);
+                } else {
+                    self.list[self.settled] = doubt;
+                    self.settled += 1;
+                }
+                Some((edge, true))
+            }
+        }
+    }
+}
+
+impl<A: Automaton> Clone for Doubts<A> {
+    fn clone(&self) -> Self {
+        Self { list: self.list.clone(), settled: self.settled }
+    }
+}
+
+impl<A: Automaton> fmt::Debug for Doubts<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.list.fmt(f)
+    }
+}

@@ -1,0 +1,75 @@
+//! A stretch of an arc on which the state is one polynomial in time.
+
+use crate::poly::value_and_slope;
+use crate::state::State;
+use crate::time::Time;
+
+/// Σ cₖ sᵏ, coordinate by coordinate.
+#[inline]
+pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
+    match coefficients {
+        [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
+        _ if coefficients.len() > LONG => coefficients[0].with(|i| value_and_slope(coefficients, |c| c.get(i), s).0),
+        _ => coefficients[0].with(|i| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c.get(i))),
+    }
+}
+
+/// More coefficients than any stepper's dense output has.
+pub(crate) const LONG: usize = 9;
+
+/// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
+///
+/// ```
+/// use saltus::{Hybrid, Simulation};
+/// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+/// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
+/// let pieces: Vec<_> = run.trajectory.pieces(0).collect();
+/// let last = pieces.last().unwrap();
+/// assert!((last.start().seconds() + last.span() - 1.0).abs() < 1e-15);
+/// assert!((last.at(last.span()) - (-1.0_f64).exp()).abs() < 1e-9);
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<'a, S> {
+    start: Time,
+    span: f64,
+    scale: f64,
+    coefficients: &'a [S],
+}
+
+impl<'a, S: State> Piece<'a, S> {
+    pub(crate) fn new(start: Time, span: f64, scale: f64, coefficients: &'a [S]) -> Self {
+        Self { start, span, scale, coefficients }
+    }
+
+    /// When the piece starts.
+    #[must_use]
+    pub const fn start(&self) -> Time {
+        self.start
+    }
+
+    /// How long it lasts, in seconds.
+    #[must_use]
+    pub const fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// The state a time `s` after the start, for 0 ≤ s ≤ span.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, s: f64) -> S {
+        horner(self.coefficients, s / self.scale)
+    }
+
+    /// The coefficients cₖ of x = Σ cₖ ((t - start)/scale)ᵏ.
+    #[must_use]
+    pub const fn coefficients(&self) -> &'a [S] {
+        self.coefficients
+    }
+
+    /// The time unit of the coefficients, in seconds: the step's size, or 1 where the flow is solved exactly.
+    #[must_use]
+    pub const fn scale(&self) -> f64 {
+        self.scale
+    }
+}
