@@ -112,8 +112,7 @@ impl Fit {
     }
 
     /// The cheapest next measurement for a report that is in doubt, or whose interval is longer than `want`: five drops by the simplest way that halves
-    /// the interval, or else the one that brings the shortest. `None` for what is trusted, or cannot be told, and
-    /// where heights and times disagree: the explanation that fits names what finds out.
+    /// the interval, or else the one that brings the shortest. `None` for what is trusted, or cannot be told.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -130,8 +129,7 @@ impl Fit {
     /// Those of [`Fit::run`].
     pub fn next(&self, table: &Table, report: &Report) -> Result<Option<Planned>, FitError> {
         let Some((expected, cor)) = Expected::of(table, report).zip(report.cor()) else { return Ok(None) };
-        // More drops do not tell a fault that all of them share; an explanation that was tried names what does.
-        if report.verdict() == Verdict::Trusted || !report.hypotheses().is_empty() {
+        if report.verdict() == Verdict::Trusted {
             return Ok(None);
         }
         let half = 0.25 * (cor.high - cor.low);
