@@ -112,7 +112,8 @@ impl Fit {
     }
 
     /// The cheapest next measurement for a report that is in doubt, or whose interval is longer than `want`: five drops by the simplest way that halves
-    /// the interval, or else the one that brings the shortest. `None` for what is trusted, or cannot be told.
+    /// the interval, or else the one that brings the shortest. Where an explanation fits whose fault is in one kind of reading, the other kind is
+    /// measured. `None` for what is trusted, or cannot be told.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -133,8 +134,9 @@ impl Fit {
             return Ok(None);
         }
         let half = 0.25 * (cor.high - cor.low);
+        let fault = report.hypotheses().first().filter(|hypothesis| hypothesis.fits()).and_then(|h| h.name.at_fault());
         let mut best: Option<Planned> = None;
-        for way in Way::ALL {
+        for way in Way::ALL.into_iter().filter(|way| Some(way.readings()) != fault) {
             let Some(bounces) = expected.bounces(way).last() else { continue };
             let Some(planned) = self.planned(half, expected, Trial { way, drops: NEXT, bounces })? else { continue };
             if planned.enough {

@@ -214,6 +214,18 @@ words! {
     }
 }
 
+impl Explanation {
+    /// The readings that are at fault where it holds, and would be again; `None` where the ball is.
+    #[must_use]
+    pub const fn at_fault(self) -> Option<Readings> {
+        match self {
+            Self::HeightZero => Some(Readings::Heights),
+            Self::ClockLag | Self::MissedContact => Some(Readings::Times),
+            Self::CorPerBounce | Self::AirDrag | Self::CorOfSpeed => None,
+        }
+    }
+}
+
 words! {
     /// A ball of a sport, by its rules: what it weighs and measures tells its drag.
     pub enum Ball {

@@ -101,6 +101,9 @@ fn a_doubt_is_settled_by_what_comes_next() {
     let fit = Fit::new().gravity(9.8);
     let report = fit.run(&table).unwrap();
     let next = fit.next(&table, &report).unwrap().expect("a next measurement");
+    // A zero of the heights that is off explains the table, and more heights would share it.
+    assert_eq!(report.hypotheses()[0].name.at_fault(), Some(Readings::Heights), "{report}");
+    assert_eq!(next.way.readings(), Readings::Times, "{next}");
     let (cor, mut noise) = (*report.cor().unwrap(), Noise(5));
     assert!(next.enough && next.drops == 5 && next.half_width < 0.25 * (cor.high - cor.low), "{next}");
     let text = made(&next, cor.value, &mut noise);

@@ -11,6 +11,10 @@ use crate::solve::joint::{Joint, Suppose, run, slope};
 use crate::solve::successive::Fitted;
 use crate::statistics::{REJECT, chi_square_p};
 
+/// An explanation fits readings worth less than was stated where chance alone gives its chi-square this often: the usual level, above [`REJECT`],
+/// since larger errors let almost any explanation pass.
+const GENEROUS: f64 = 0.05;
+
 /// How well heights and times go together under free flight with one COR.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -134,6 +138,12 @@ impl Hypothesis {
             settle: String::new(),
             overlooked_after: None,
         }
+    }
+
+    /// Whether it fits, if need be with the readings worth less than was stated.
+    pub(crate) fn fits(&self) -> bool {
+        let generous = self.generous.as_ref().and_then(|generous| generous.p);
+        self.p.is_some_and(|p| p >= REJECT) || generous.is_some_and(|p| p >= GENEROUS)
     }
 }
 

@@ -281,11 +281,8 @@ fn in_words(list: &[String]) -> String {
 
 /// Hypotheses: the one worth a measurement in full, the others in a line.
 fn explanations(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
-    let promising = |h: &Hypothesis| {
-        h.p.is_some_and(|p| p >= REJECT) || h.generous.as_ref().is_some_and(|g| g.p.is_some_and(|p| p >= 0.05))
-    };
     // The best one may still be rejected at the errors stated; any other must not be.
-    let good = report.hypotheses.iter().enumerate().take_while(|(n, h)| *n == 0 && promising(h) || h.p >= Some(REJECT));
+    let good = report.hypotheses.iter().enumerate().take_while(|(n, h)| *n == 0 && h.fits() || h.p >= Some(REJECT));
     let (good, poor) = report.hypotheses.split_at(good.count());
     if report.hypotheses.is_empty() {
         return Ok(());
