@@ -110,7 +110,7 @@ pub struct Checkpoint<A: Automaton> {
     recent: Recent<A::Edge>,
     ticks: Ticks<A::Mode>,
     limits: Limits,
-    memory: Memory<A::Edge>,
+    memory: Memory<A::Mode, A::Edge, A::State>,
     stop: Option<Stop<A::Edge>>,
 }
 
@@ -124,7 +124,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 3;
+    const NUMBER: u32 = 4;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -145,7 +145,7 @@ mod format {
 }
 
 impl<A: Automaton> Checkpoint<A> {
-    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Edge>) -> Self {
+    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Mode, A::Edge, A::State>) -> Self {
         let start = Time::new(span.start);
         let span = Span { start, now: start, end: Time::new(span.end) };
         Self {

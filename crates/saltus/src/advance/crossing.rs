@@ -175,7 +175,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.automaton.guard(edge, t, end);
         let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < 65536.0 * self.guard_rounding(edge, t, end, g, 0.0) + 64.0 * by_time
+        rise < 65536.0 * self.guard_rounding(edge, t, end, g, end) + 64.0 * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that rounding does not matter: such a fall, on an arc so short

@@ -71,12 +71,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if !spent && g == 0.0 {
                 *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
                 self.memory.at_wall(edge, g);
-            } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, 0.0) {
+            } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, x) {
                 self.memory.at_wall(edge, g);
             }
             return Ok(false);
         }
-        let still = self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, 1.0);
+        let sizes = self.sizes(x);
+        let still = self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes);
         let slope = self.guard_slope(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };

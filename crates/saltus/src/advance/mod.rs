@@ -75,11 +75,22 @@ const FELL_ON: &str = "goes on falling after its own reset, out of the mode";
 /// An arc this small a part of the longest one is short.
 const SHORT: f64 = 1e-4;
 
+/// An arc as far as it shows what the coordinates at its end were summed up from.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Past<M, S> {
+    mode: M,
+    began: f64,
+    state: S,
+}
+
 /// What is kept from arc to arc.
 #[derive(Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Memory<E> {
+pub(crate) struct Memory<M, E, S> {
     pub(crate) stats: Stats,
+    /// The last arc that took time.
+    past: Option<Past<M, S>>,
     controller: Controller,
     step: Option<f64>,
     spent: Option<Spent<E>>,
@@ -104,10 +115,11 @@ pub(crate) struct Memory<E> {
     pub(crate) spurious: bool,
 }
 
-impl<E: Copy + PartialEq> Memory<E> {
+impl<M, E: Copy + PartialEq, S> Memory<M, E, S> {
     pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
+            past: None,
             controller: Controller::new(stepper),
             step: first_step,
             spent: None,
@@ -200,7 +212,7 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) automaton: &'a A,
     pub(crate) stepper: M,
     pub(crate) options: &'a Options,
-    pub(crate) memory: &'a mut Memory<A::Edge>,
+    pub(crate) memory: &'a mut Memory<A::Mode, A::Edge, A::State>,
     pub(crate) tape: &'a mut Tape,
     pub(crate) held: &'a mut Held<A>,
 }
@@ -232,6 +244,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         if let Some(duration) = duration {
+            self.memory.past = Some(Past { mode, began, state: *x });
             self.memory.last_duration = duration;
             if duration > self.memory.longest_duration {
                 self.memory.longest_duration = duration;

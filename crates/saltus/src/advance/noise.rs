@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::{Advance, Spent, Wall};
+use super::{Advance, Past, Spent, Wall};
 
 /// How many times what the tolerance allows in a step a state on its dense output may be off.
 ///
@@ -21,32 +21,49 @@ pub(super) const STEP_ERROR: f64 = 16.0;
 pub(super) const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// How far rounding each coordinate, taken for no smaller than `least`, may move the guard: Σ |∂g/∂xᵢ| max(|xᵢ|, `least`) units in the last place.
-    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, least: f64) -> f64 {
+    /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place, with the size sᵢ that the coordinate was summed up from.
+    pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
         const NUDGE: f64 = 1.0 / (1 << 20) as f64;
-        self.moved(edge, t, x, g, |x| NUDGE * x.abs().max(least)) * (f64::EPSILON / NUDGE)
+        self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
+    }
+
+    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of the last arc, |xᵢ'| there times its duration).
+    ///
+    /// A coordinate that is a rounding of what it was has the rounding of what it was. At the start of a run, where
+    /// nothing was summed up, a coordinate is no smaller than where the two tolerances are equal.
+    #[cold]
+    pub(super) fn sizes(&mut self, x: &A::State) -> A::State {
+        let Some(Past { mode, began, state }) = self.memory.past else {
+            let tolerance = self.options.tolerance;
+            let least = tolerance.absolute / tolerance.relative;
+            return x.with(|i| x.get(i).abs().max(least));
+        };
+        let (slope, duration) = (self.flow(mode, began, &state), self.memory.last_duration);
+        let way = |i: usize| if i < slope.len() { (slope.get(i) * duration).abs() } else { 0.0 };
+        x.with(|i| if i < state.len() { x.get(i).abs().max(state.get(i).abs()).max(way(i)) } else { x.get(i).abs() })
     }
 
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const STEPS: f64 = 1024.0;
-        let rounding = self.guard_rounding(edge, t, x, g, 1.0) + self.time_rounding(edge, t, x, g);
+        let sizes = self.sizes(x);
+        let rounding = self.guard_rounding(edge, t, x, g, &sizes) + self.time_rounding(edge, t, x, g);
         let tolerance = self.options.tolerance;
-        STEPS * (rounding + self.moved(edge, t, x, g, |x| tolerance.allowed(x, x)))
+        STEPS * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
     }
 
     /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
     pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let tolerance = self.options.tolerance;
-        STEP_ERROR * self.moved(edge, t, x, g, |x| tolerance.allowed(x, x))
+        STEP_ERROR * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
-    /// How far the guard, `g` at `x`, moves with each coordinate that is moved `by` so much, all together.
-    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(f64) -> f64) -> f64 {
+    /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all together.
+    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(usize) -> f64) -> f64 {
         let mut sum = 0.0;
         for k in 0..x.len() {
             self.memory.stats.guards += 1;
-            let nudged = x.with(|i| if i == k { x.get(i) + by(x.get(i)) } else { x.get(i) });
+            let nudged = x.with(|i| if i == k { x.get(i) + by(i) } else { x.get(i) });
             let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
             sum += if change.is_finite() { change } else { 0.0 };
         }
@@ -104,7 +121,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn rate_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
         self.memory.stats.guards += 1;
         let g = self.automaton.guard(edge, t, x);
-        ROUNDINGS * (self.guard_rounding(edge, t, x, g, 0.0) + self.time_rounding(edge, t, x, g)) / by
+        ROUNDINGS * (self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)) / by
     }
 
     /// Where the flow carries the guard of `edge` at `x`: the sign of n·f + ∂g/∂t, beyond what rounding

@@ -284,7 +284,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
                 let g = self.automaton.guard(edge, t, x);
-                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, 0.0))
+                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, x))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
