@@ -145,7 +145,12 @@ mod format {
 }
 
 impl<A: Automaton> Checkpoint<A> {
-    pub(crate) fn start(mode: A::Mode, state: A::State, span: Range<f64>, memory: Memory<A::Mode, A::Edge, A::State>) -> Self {
+    pub(crate) fn start(
+        mode: A::Mode,
+        state: A::State,
+        span: Range<f64>,
+        memory: Memory<A::Mode, A::Edge, A::State>,
+    ) -> Self {
         let start = Time::new(span.start);
         let span = Span { start, now: start, end: Time::new(span.end) };
         Self {

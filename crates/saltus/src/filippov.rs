@@ -278,35 +278,6 @@ impl<T: TwoSided> Filippov<T> {
     fn onto(&self, t: f64, x: &T::State) -> T::State {
         self.moved_to(0.0, t, &self.moved_to(0.0, t, x))
     }
-
-    /// To the given side of the surface by the fewest of these distances that make the side's own guard not negative.
-    fn beside(&self, sign: f64, distances: [f64; 3], t: f64, x: &T::State) -> T::State {
-        let mut moved = distances.into_iter().map(|distance| self.moved_to(sign * distance, t, x));
-        moved.find(|y| sign * self.system.surface(t, y) >= 0.0).unwrap_or(*x)
-    }
-
-    fn entered(&self, side: Side, t: f64, x: &T::State) -> (Side, T::State) {
-        let sign = if side == Side::Above { 1.0 } else { -1.0 };
-        let x = if side == Side::Sliding {
-            self.onto(t, x)
-        } else if sign * self.system.surface(t, x) < 0.0 {
-            let rounding = self.rounding(t, x);
-            self.beside(sign, [0.0, 0.25 * rounding, rounding], t, x)
-        } else {
-            *x
-        };
-        (side, x)
-    }
-
-    /// A slide is left tangentially: which side of the surface the state is on, is for a while below the rounding of its coordinates and of time.
-    /// Of the states that rounding cannot tell from the one on the surface, the reset gives one on the side to which it leaves.
-    fn left(&self, side: Side, t: f64, x: &T::State) -> (Side, T::State) {
-        let x = self.onto(t, x);
-        let gap = self.system.hold_above(t, &x).abs().max(self.system.hold_below(t, &x).abs());
-        let rounding = self.rounding(t, &x) + f64::EPSILON * gap * t.abs();
-        let sign = if side == Side::Above { 1.0 } else { -1.0 };
-        (side, self.beside(sign, [rounding, 2.0 * rounding, 4.0 * rounding], t, &x))
-    }
 }
 
 impl<T: TwoSided> Automaton for Filippov<T> {
@@ -345,11 +316,11 @@ impl<T: TwoSided> Automaton for Filippov<T> {
 
     fn reset(&self, _: Side, edge: Passage, t: f64, x: &T::State) -> Result<(Side, T::State), Refusal> {
         Ok(match edge {
-            Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => self.entered(Side::Below, t, x),
-            Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => self.entered(Side::Above, t, x),
-            Passage::FromAbove | Passage::FromBelow => self.entered(Side::Sliding, t, x),
-            Passage::LeaveAbove => self.left(Side::Above, t, x),
-            Passage::LeaveBelow => self.left(Side::Below, t, x),
+            Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => (Side::Below, *x),
+            Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => (Side::Above, *x),
+            Passage::FromAbove | Passage::FromBelow => (Side::Sliding, self.onto(t, x)),
+            Passage::LeaveAbove => (Side::Above, self.onto(t, x)),
+            Passage::LeaveBelow => (Side::Below, self.onto(t, x)),
             Passage::Undecided | Passage::Unpushed => (Side::Sliding, *x),
         })
     }

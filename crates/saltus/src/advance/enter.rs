@@ -71,13 +71,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if !spent && g == 0.0 {
                 *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
                 self.memory.at_wall(edge, g);
-            } else if !spent && g <= 4.0 * self.guard_rounding(edge, t, x, g, x) {
+            } else if !spent && g <= 4.0 * self.still(edge, t, x, g) {
                 self.memory.at_wall(edge, g);
             }
             return Ok(false);
         }
-        let sizes = self.sizes(x);
-        let still = self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes);
+        let still = self.still(edge, t, x, g);
         let slope = self.guard_slope(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };

@@ -43,11 +43,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         x.with(|i| if i < state.len() { x.get(i).abs().max(state.get(i).abs()).max(way(i)) } else { x.get(i).abs() })
     }
 
+    /// How far rounding the coordinates and the time may move the guard of `edge`, `g` at `x`.
+    pub(super) fn still(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        let sizes = self.sizes(x);
+        self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes)
+    }
+
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const STEPS: f64 = 1024.0;
-        let sizes = self.sizes(x);
-        let rounding = self.guard_rounding(edge, t, x, g, &sizes) + self.time_rounding(edge, t, x, g);
+        let rounding = self.still(edge, t, x, g);
         let tolerance = self.options.tolerance;
         STEPS * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
     }
