@@ -49,7 +49,7 @@ impl<T: Real> At<T> {
         if value >= SMALLEST {
             Ok(value)
         } else if value > 0.0 {
-            Err(self.fault(format!("{value} is too small for {what}: give {SMALLEST:e} or more")))
+            Err(self.fault(format!("{value:e} is too small for {what}: give {SMALLEST:e} or more")))
         } else {
             Err(self.fault(format!("{value} is not {what}: give a finite number above zero")))
         }
