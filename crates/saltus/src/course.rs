@@ -369,12 +369,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         Ok(if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
-        } else if at.cascade.jumps() >= options.longest_cascade {
+        } else if at.cascade.contracts(options.longest_cascade) && {
             // Collisions that go on at one time: where they contract, what lies beyond them is the model's to say.
             let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
-            if at.cascade.contracts() && at.recent.cycle().with(beyond).is_some() {
-                return Ok(Next::Limit { remaining: 0.0, certified: true });
-            }
+            at.recent.cycle().with(beyond).is_some()
+        } {
+            Next::Limit { remaining: 0.0, certified: true }
+        } else if at.cascade.jumps() >= options.longest_cascade {
             Next::Stop(Stop::Cascade { edge })
         } else if at.memory.stats.evaluations() >= options.most_evaluations {
             Next::Stop(Stop::Evaluations { most: options.most_evaluations })

@@ -16,8 +16,8 @@ use super::noise::ROUNDINGS;
 const SMALL: f64 = 1e-12;
 /// A guard that changes by this many roundings at a glance is sure to rise or fall.
 const SURELY: f64 = 64.0;
-/// A fall this small a part of another is rounding beside it.
-const DRIVEN: f64 = 4096.0 * f64::EPSILON;
+/// A guard that falls this many times as fast as its own reset left it was driven on since.
+const DRIVEN: f64 = 2.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
@@ -71,16 +71,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if !spent && g == 0.0 {
                 *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
                 self.memory.at_wall(edge, g);
-            } else if !spent && g <= 4.0 * self.still(edge, t, x, g) {
+            } else if !spent && g <= ROUNDINGS * self.still(edge, t, x, g) {
                 self.memory.at_wall(edge, g);
             }
             return Ok(false);
         }
-        let still = self.still(edge, t, x, g);
+        let still = self.entry_error(edge, t, x, g);
         let slope = self.guard_slope(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };
-        if -g <= 4.0 * rounding {
+        if -g <= ROUNDINGS * rounding {
             let unsure = slope.is_nan() || slope.abs() * self.glance() <= SURELY * rounding;
             if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
@@ -104,7 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
         let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
         let then = idle.find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
-        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) * DRIVEN < then)
+        then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) < DRIVEN * then)
     }
 
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.

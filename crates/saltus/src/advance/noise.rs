@@ -29,15 +29,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of the last arc, |xᵢ'| there times its duration).
     ///
-    /// A coordinate that is a rounding of what it was has the rounding of what it was. At the start of a run, where
-    /// nothing was summed up, a coordinate is no smaller than where the two tolerances are equal.
+    /// A coordinate that is a rounding of what it was has the rounding of what it was. At the start of a run
+    /// nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&mut self, x: &A::State) -> A::State {
-        let Some(Past { mode, began, state }) = self.memory.past else {
-            let tolerance = self.options.tolerance;
-            let least = tolerance.absolute / tolerance.relative;
-            return x.with(|i| x.get(i).abs().max(least));
-        };
+        let Some(Past { mode, began, state }) = self.memory.past else { return *x };
         let (slope, duration) = (self.flow(mode, began, &state), self.memory.last_duration);
         let way = |i: usize| if i < slope.len() { (slope.get(i) * duration).abs() } else { 0.0 };
         x.with(|i| if i < state.len() { x.get(i).abs().max(state.get(i).abs()).max(way(i)) } else { x.get(i).abs() })
@@ -47,6 +43,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn still(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let sizes = self.sizes(x);
         self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes)
+    }
+
+    /// How far a guard below zero may be off: by rounding, and at the start of a run, which is stated to
+    /// within the absolute tolerance, by that.
+    pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        let absolute = self.options.tolerance.absolute;
+        let stated = if self.memory.past.is_none() { self.moved(edge, t, x, g, |_| absolute) } else { 0.0 };
+        self.still(edge, t, x, g) + stated
     }
 
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
@@ -219,5 +223,6 @@ enum Carried {
 /// A guard that moves by so many times what rounding leaves of it leaves its wall.
 const LEAVES: f64 = (1_u64 << 20) as f64;
 
-/// How many roundings of a guard's value the difference of two such values may be off.
-pub(super) const ROUNDINGS: f64 = 8.0;
+/// How many times what rounding its coordinates and the time may move a guard by, its value may be off: its own arithmetic
+/// rounds as well, a dozen times or so, and so did that of the jumps before at the same time.
+pub(super) const ROUNDINGS: f64 = 16.0;
