@@ -23,6 +23,7 @@ use crate::ending::{Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::series::Tape;
+use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Span, Time};
 
@@ -91,6 +92,8 @@ pub(crate) struct Memory<M, E, S> {
     pub(crate) stats: Stats,
     /// The last arc that took time.
     past: Option<Past<M, S>>,
+    /// The largest value of each coordinate so far, at the starts of such arcs.
+    largest: Option<S>,
     controller: Controller,
     step: Option<f64>,
     spent: Option<Spent<E>>,
@@ -120,6 +123,7 @@ impl<M, E: Copy + PartialEq, S> Memory<M, E, S> {
         Self {
             stats: Stats::default(),
             past: None,
+            largest: None,
             controller: Controller::new(stepper),
             step: first_step,
             spent: None,
@@ -245,6 +249,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         if let Some(duration) = duration {
             self.memory.past = Some(Past { mode, began, state: *x });
+            self.memory.largest = Some(match self.memory.largest {
+                Some(largest) if largest.len() == x.len() => x.with(|i| x.get(i).abs().max(largest.get(i))),
+                _ => x.with(|i| x.get(i).abs()),
+            });
             self.memory.last_duration = duration;
             if duration > self.memory.longest_duration {
                 self.memory.longest_duration = duration;

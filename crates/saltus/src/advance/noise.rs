@@ -27,16 +27,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
     }
 
-    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of the last arc, |xᵢ'| there times its duration).
+    /// What the coordinates of `x` were summed up from: the largest value that each has had, or |xᵢ'| at the start of the last arc
+    /// times its duration.
     ///
-    /// A coordinate that is a rounding of what it was has the rounding of what it was. At the start of a run
-    /// nothing was summed up: |xᵢ|.
+    /// A coordinate that is a rounding of what it was has the rounding of what it was, until it is as large again. At the
+    /// start of a run nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&mut self, x: &A::State) -> A::State {
-        let Some(Past { mode, began, state }) = self.memory.past else { return *x };
+        let (Some(Past { mode, began, state }), Some(largest)) = (self.memory.past, self.memory.largest) else {
+            return *x;
+        };
         let (slope, duration) = (self.flow(mode, began, &state), self.memory.last_duration);
-        let way = |i: usize| if i < slope.len() { (slope.get(i) * duration).abs() } else { 0.0 };
-        x.with(|i| if i < state.len() { x.get(i).abs().max(state.get(i).abs()).max(way(i)) } else { x.get(i).abs() })
+        let way = x.with(|i| if i < slope.len() { (slope.get(i) * duration).abs() } else { 0.0 });
+        x.with(|i| {
+            let largest = if i < largest.len() { largest.get(i) } else { 0.0 };
+            x.get(i).abs().max(way.get(i)).max(largest)
+        })
     }
 
     /// How far rounding the coordinates and the time may move the guard of `edge`, `g` at `x`.
