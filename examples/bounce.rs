@@ -39,6 +39,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let worst = (1_u32..).zip(&impacts).map(|(n, t)| (t - exact.impact_time(n)).abs()).fold(0.0, f64::max);
     let rest = trajectory.jumps().last().map_or(0.0, |jump| jump.t());
     println!("{} impacts, none more than {worst:.1e} s off; at rest after {rest:.6} s: see bounce.svg", impacts.len());
-    assert!(worst < 1e-12 && run.mode == "rest");
+    assert!(worst < 1e-12 && run.end.mode == "rest");
     Ok(())
 }

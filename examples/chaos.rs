@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
-use saltus::{About, Automaton, Edges, Entry, Jump, Limit, Observer, Refusal, Simulation, Solution};
+use saltus::{About, Automaton, Edges, Entry, JumpOf, Limit, Observer, Refusal, Simulation, Solution};
 use saltus_examples::{Figure, gallery};
 
 const G: f64 = 9.81; // m/s²
@@ -83,7 +83,7 @@ impl Observer<Table> for Phases {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<Table>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Table>) -> ControlFlow<()> {
         if jump.j > self.skip && jump.from == Ball::Flies {
             self.found.push((jump.t() * OMEGA / TAU + 0.25).rem_euclid(1.0) - 0.25);
         }

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use saltus::{Hybrid, Run, Simulation};
+use saltus::{Hybrid, RunOf, Simulation};
 use saltus_examples::{Figure, gallery};
 
 /// Where the small block is, how far the big one is from it, and the velocities of both.
@@ -26,7 +26,7 @@ fn blocks(mass: f64) -> Hybrid<'static, Blocks> {
         .affine("slide", "slide")
 }
 
-fn collide(blocks: &Hybrid<'static, Blocks>) -> Result<Run<Hybrid<'static, Blocks>>, saltus::Error> {
+fn collide(blocks: &Hybrid<'static, Blocks>) -> Result<RunOf<Hybrid<'static, Blocks>>, saltus::Error> {
     Ok(Simulation::of(blocks).run("slide", [1.0, 1.0, 0.0, -1.0], 0.0..1e4)?)
 }
 
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut counts = Vec::new();
     for digits in 0..=4 {
         let pair = blocks(100_f64.powi(digits));
-        counts.push(collide(&pair)?.stats.jumps);
+        counts.push(collide(&pair)?.end.stats.jumps);
     }
     println!("{counts:?} collisions: see docs/gallery/pi.svg");
     assert_eq!(counts, [3, 31, 314, 3141, 31415]);

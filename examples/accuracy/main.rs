@@ -9,7 +9,7 @@ mod systems;
 use std::error::Error;
 use std::process::Command;
 
-use saltus::{Automaton, Run, Simulation, WorkPrecision};
+use saltus::{Automaton, RunOf, Simulation, WorkPrecision};
 
 use page::Section;
 
@@ -20,7 +20,7 @@ const TOLERANCES: [f64; 11] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 
 fn sweep<A, Q, M>(work: &mut WorkPrecision<A, Q>, name: &str, simulation: Simulation<'_, A, M>)
 where
     A: Automaton,
-    Q: Fn(&Run<A>) -> Vec<f64>,
+    Q: Fn(&RunOf<A>) -> Vec<f64>,
     M: saltus::step::Stepper,
 {
     for tolerance in TOLERANCES {

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use saltus::nalgebra::{self, Vector2, Vector4, vector};
-use saltus::{Automaton, Dop853, Hybrid, Rodas5P, Run, Simulation, State, Tsit5, WorkPrecision};
+use saltus::{Dop853, Hybrid, Rodas5P, Run, RunOf, Simulation, State, Tsit5, WorkPrecision};
 use saltus_bounce::contact::Hertz;
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Ball, Compliant, Cor, Drop, Mode, Phase};
@@ -15,13 +15,13 @@ use crate::sweep;
 type Answer = Result<Section, Box<dyn Error>>;
 
 /// When it jumps.
-fn jump_times<A: Automaton>(run: &Run<A>) -> Vec<f64> {
+fn jump_times<M: Copy, E, S: State>(run: &Run<M, E, S>) -> Vec<f64> {
     run.trajectory.jumps().iter().map(|jump| jump.t()).collect()
 }
 
 /// Where it ends.
-fn last_state<A: Automaton>(run: &Run<A>) -> Vec<f64> {
-    (0..run.state.len()).map(|i| run.state.get(i)).collect()
+fn last_state<M: Copy, E, S: State>(run: &Run<M, E, S>) -> Vec<f64> {
+    (0..run.end.state.len()).map(|i| run.end.state.get(i)).collect()
 }
 
 /// Ten impacts of a ball under gravity alone.
@@ -52,7 +52,7 @@ pub(crate) fn drag() -> Answer {
     let flight = QuadraticDragFlight::new(gravity, k)?;
     let ball = Ball::of(flight, Cor::new(e)?);
     let x = Ball::dropped_from(height);
-    let impacts = |run: &Run<Ball<QuadraticDragFlight>>| {
+    let impacts = |run: &RunOf<Ball<QuadraticDragFlight>>| {
         let floor = run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(saltus_bounce::Turn::Floor));
         floor.take(20).map(|jump| jump.t()).collect::<Vec<f64>>()
     };
@@ -65,7 +65,7 @@ pub(crate) fn drag() -> Answer {
     sweep(&mut work, "Dop853", simulation.stepped().stepper(Dop853));
     let mut points = work.points().to_vec();
 
-    let floor = |run: &Run<Dragged>| {
+    let floor = |run: &RunOf<Dragged>| {
         let jumps = run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(Turn::Floor));
         jumps.take(20).map(|jump| jump.t()).collect::<Vec<f64>>()
     };
@@ -158,7 +158,8 @@ pub(crate) fn table() -> Answer {
             move |t, x| vector![x[0], amplitude * omega * (omega * t).cos() * (1.0 + e) - e * x[1]],
         );
     let start = ("flight", vector![0.1, 0.0], 0.0..1.0);
-    let jumps = |run: &Run<_>| -> Vec<f64> { run.trajectory.jumps().iter().take(8).map(|jump| jump.t()).collect() };
+    let jumps =
+        |run: &Run<_, _, _>| -> Vec<f64> { run.trajectory.jumps().iter().take(8).map(|jump| jump.t()).collect() };
     let simulation = Simulation::of(&table);
     let mut work = WorkPrecision::against(&simulation.stepped().stepper(Dop853).tolerance(1e-14), start, jumps)?;
     work.measure("exact arcs", &simulation)?;

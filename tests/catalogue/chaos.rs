@@ -29,7 +29,7 @@ fn sinai(case: &mut Report) {
     let ball = Flyer::new((), walls, Cor::new(1.0).unwrap()).unwrap();
     let start = start(case);
     let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..200.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let impacts = run.trajectory.jumps();
     for n in [5, 10, 20, 30] {
         let impact = &impacts[n - 1];
@@ -39,7 +39,7 @@ fn sinai(case: &mut Report) {
     }
     // What is kept for ever, however wrong the places are.
     let (mut drift, speed) = (0.0_f64, start.velocity.norm());
-    let mut watch = Samples::new(&[], &[], |jump: &Jump<_>| {
+    let mut watch = Samples::new(&[], &[], |jump: &Jump<_, _, _>| {
         let x: &Moving<2> = &jump.after;
         drift = drift.max((x.velocity.norm() / speed - 1.0).abs());
         assert!(x.position.amax() <= 1.0 + 1e-12 && x.position.norm() >= 0.4 - 1e-12, "{x:?}");
@@ -53,8 +53,8 @@ fn sinai(case: &mut Report) {
     let there = impacts[29];
     let back = Moving::new(there.before.position, -there.before.velocity);
     let run = Simulation::of(&ball).run(Stance::FLIGHT, back, 0.0..there.t()).unwrap();
-    case.ran(&run.stats);
-    let off = (run.state.position - start.position).norm();
+    case.ran(&run.end.stats);
+    let off = (run.end.state.position - start.position).norm();
     let returned = run.trajectory.jumps().len() == 29 && off < 100.0 * f64::EPSILON * 9.5e9;
     let accepted = "back at the start within 100*eps*amplification(n) after n forward and n reversed collisions";
     case.outcome("reversal", if returned { accepted.into() } else { format!("{off:e} away") });
@@ -75,7 +75,7 @@ fn parabola(case: &mut Report) {
     case.check("energy", energy);
     case.check("beta", beta);
     let (mut drift, numbers) = ([0.0_f64; 2], [1, 10, 100, 1000]);
-    let mut watch = Samples::new(&numbers, &[], |jump: &Jump<_>| {
+    let mut watch = Samples::new(&numbers, &[], |jump: &Jump<_, _, _>| {
         for (drift, (now, start)) in drift.iter_mut().zip(invariants(g, &jump.after).into_iter().zip([energy, beta])) {
             *drift = drift.max((now / start - 1.0).abs());
         }
@@ -98,7 +98,7 @@ fn doubling_map(case: &mut Report) {
         .edge("run", "run", |_t, x| 1.0 - x[0], |_t, x| [0.0, (2.0 * x[1]).rem_euclid(1.0)])
         .affine("run", "run");
     let run = Simulation::of(&map).run("run", [0.0, case.param("x0")], 0.0..60.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     for n in [10, 40, 52, 60] {
         case.check(&format!("x_{n}"), jumps[n - 1].after[1]);

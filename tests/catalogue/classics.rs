@@ -1,7 +1,7 @@
 //! Known test problems for event location: orbits, Bessel functions, limits, stiff oscillators, chemistry.
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
-use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, Run, Simulation};
+use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, RunOf, Simulation};
 use saltus_tests::watched::watched;
 
 use crate::report::Report;
@@ -27,12 +27,12 @@ fn two_rate_switch(case: &mut Report) {
         .edge("grow", "decay", move |_t, y| high - y, |_t, y| *y)
         .edge("decay", "grow", |_t, y| y - 1.0, |_t, y| *y);
     let run = tight(&automaton).run("grow", 1.0, 0.0..10.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     for (n, t) in (1..).zip(times(&run)) {
         case.check(&format!("t_{n}"), t);
     }
     case.check("n(10)", times(&run).len() as f64);
-    case.check("y(10)", run.state);
+    case.check("y(10)", run.end.state);
 }
 
 /// Position and velocity on the orbit, from pericentre, with a watched guard.
@@ -40,7 +40,7 @@ fn kepler(
     case: &mut Report,
     guard: impl Fn(&Vector4<f64>) -> f64 + Send + Sync + Copy + 'static,
     end: f64,
-) -> Run<Hybrid<'static, Vector4<f64>>> {
+) -> RunOf<Hybrid<'static, Vector4<f64>>> {
     let flow = |_t: f64, x: &Vector4<f64>| {
         let r3 = (x[0] * x[0] + x[1] * x[1]).powf(1.5);
         vector![x[2], x[3], -x[0] / r3, -x[1] / r3]
@@ -50,7 +50,7 @@ fn kepler(
     case.check("v0", speed);
     let automaton = watched(flow, move |_t, x| guard(x));
     let run = tight(&automaton).run("run", vector![1.0 - ec, 0.0, 0.0, speed], 0.0..end).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
@@ -72,7 +72,7 @@ fn bessel_zeros(case: &mut Report) {
     let [a, b] = case.params(["a", "b"]);
     let automaton = watched(|t, x: &Vector2<f64>| vector![x[1], -x[1] / t - x[0]], |_t, x| x[0]);
     let run = tight(&automaton).run("run", vector![a, b], 1.0..314.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let t = times(&run);
     case.check("n(314)", t.len() as f64);
     for n in [1, 2, 10, 50, 99] {
@@ -92,7 +92,7 @@ fn limiter(case: &mut Report) {
         .edge("top", "free", move |t, _x| rate(t), |_t, x| *x)
         .edge("bottom", "free", move |t, _x| -rate(t), |_t, x| *x);
     let run = tight(&automaton).run("free", 0.0, 0.0..20.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     let hits: Vec<f64> = jumps.iter().filter(|jump| jump.from == "free").map(Jump::t).collect();
     let releases: Vec<f64> = jumps.iter().filter(|jump| jump.to == "free").map(Jump::t).collect();
@@ -116,10 +116,10 @@ fn sticking(case: &mut Report) {
         .edge("A", "B", move |_t, y| s - y, |_t, y| *y)
         .edge("B", "A", move |_t, y| y - s, |_t, y| *y);
     let run = Simulation::of(&automaton).run("A", 0.0, 0.0..2.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     case.check("n_transitions", times(&run).len() as f64);
     case.check("t_1", times(&run)[0]);
-    case.check("y(2)", run.state);
+    case.check("y(2)", run.end.state);
 }
 
 fn bang_bang_oscillator(case: &mut Report) {
@@ -133,7 +133,7 @@ fn bang_bang_oscillator(case: &mut Report) {
         .affine("right", "left")
         .affine("left", "right");
     let run = Simulation::of(&automaton).run("right", vector![x0, 0.0], 0.0..14143.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     case.check("n(14143)", jumps.len() as f64);
     for n in [1, 2, 5000] {
@@ -155,7 +155,7 @@ fn chebyshev_roots(case: &mut Report) {
     };
     let automaton = watched(move |t, _x: &f64| slope(t), |_t, x| *x);
     let run = tight(&automaton).longest_step(2.0).run("run", 1.0, -1.0..1.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let t = times(&run);
     case.check("n_events", t.len() as f64);
     for n in [1, 2, 8, 9, 16] {
@@ -170,7 +170,7 @@ fn van_der_pol(case: &mut Report) {
     let automaton = watched(flow, |_t, x| x[0]).affine("run", "run");
     let run = Simulation::of(&automaton).stepper(Dop853).tolerance(1e-13).run("run", vector![2.0, 0.0], 0.0..330.0);
     let run = run.unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     for (n, jump) in (1..=3).zip(run.trajectory.jumps()) {
         case.check(&format!("t_{n}"), jump.t());
         case.check(&format!("z_{n}"), jump.before[1]);
@@ -191,7 +191,7 @@ fn robertson(case: &mut Report) {
         .affine("run", "run");
     let simulation = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-12).absolute_tolerance(1e-20);
     let run = simulation.run("run", vector![1.0, 0.0, 0.0], 0.0..1e8).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let [first, second] = run.trajectory.jumps() else { panic!("{:?}", run.trajectory.jumps()) };
     case.check("t_y3", first.t());
     case.check("y1_at_y3", first.before[0]);

@@ -1,7 +1,7 @@
 //! Contact that takes time: each run by steps or by its exact flow, and each law's own closed form.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Dop853, Run, Simulation, Stop};
+use saltus::{Dop853, Run, RunOf, Simulation, Stop};
 use saltus_bounce::Compliant;
 use saltus_bounce::compliant::{Contact, Moment, Stage};
 use saltus_bounce::contact::{ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
@@ -27,15 +27,15 @@ fn tight<L: ContactLaw>(
     ball: &Compliant<L>,
     (stage, start): (Stage, Vector2<f64>),
     end: f64,
-) -> Run<Compliant<L>> {
+) -> RunOf<Compliant<L>> {
     let simulation = Simulation::of(ball).stepper(Dop853).tolerance(1e-14).absolute_tolerance(1e-20);
     let run = simulation.run(stage, start, 0.0..end).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
 /// A ball without gravity that touches the floor at t = 0, for a second.
-fn hit<L: ContactLaw>(case: &mut Report, law: L) -> (Run<Compliant<L>>, Contact) {
+fn hit<L: ContactLaw>(case: &mut Report, law: L) -> (RunOf<Compliant<L>>, Contact) {
     let [mass, speed] = case.params(["m", "v"]);
     let ball = Compliant::new(mass, 0.0, law).unwrap();
     let run = tight(case, &ball, (Stage::Compression, vector![0.0, -speed]), 1.0);
@@ -44,7 +44,7 @@ fn hit<L: ContactLaw>(case: &mut Report, law: L) -> (Run<Compliant<L>>, Contact)
 }
 
 /// The height and speed at lift-off.
-fn released<L: ContactLaw>(run: &Run<Compliant<L>>) -> Vector2<f64> {
+fn released(run: &Run<Stage, Moment, Vector2<f64>>) -> Vector2<f64> {
     run.trajectory.jumps().iter().find(|jump| jump.edge() == Some(Moment::LiftOff)).unwrap().before
 }
 
@@ -52,10 +52,10 @@ fn hertz(case: &mut Report) {
     let [m, k, v] = case.params(["m", "k", "v"]);
     let law = Hertz::new(k).unwrap();
     let (run, contact) = hit(case, law);
-    assert!(run.stats.steps < 500, "{:?}", run.stats);
+    assert!(run.end.stats.steps < 500, "{:?}", run.end.stats);
     let closed = law.collision(m, v).unwrap();
     let duration = contact.duration.unwrap();
-    case.check("separation(1)", run.state[0]);
+    case.check("separation(1)", run.end.state[0]);
     case.check("separation(1)", (1.0 - closed.duration) * closed.cor.rebound(v));
     case.check("u_out", -released(&run)[1]);
     case.check("u_out", -closed.cor.rebound(v));
@@ -97,7 +97,7 @@ fn hertz_gravity(case: &mut Report) {
     case.check("t_contact_4", contacts[3].touch);
     let apexes: Vec<_> = jumps.iter().filter(|jump| jump.edge() == Some(Moment::Apex)).collect();
     case.check("apex_3", apexes[2].before[0]);
-    assert!(run.stats.steps < 500 * contacts.len() as u64, "{:?}", run.stats);
+    assert!(run.end.stats.steps < 500 * contacts.len() as u64, "{:?}", run.end.stats);
 }
 
 /// (B) without tension and (A) with it.
@@ -106,7 +106,7 @@ fn kelvin_voigt(case: &mut Report) {
     let law = KelvinVoigt::new(k, c).unwrap();
     case.check("zeta", law.damping_ratio(m));
     let (run, contact) = hit(case, law);
-    assert_eq!((run.stats.steps, run.mode), (0, Stage::Rise));
+    assert_eq!((run.end.stats.steps, run.end.mode), (0, Stage::Rise));
     let closed = law.collision(m, v).unwrap();
     case.check("B_d_release", -released(&run)[0]);
     case.check("B_d_release", law.after(closed.duration, [0.0, v], m, 0.0)[0]);
@@ -122,7 +122,7 @@ fn kelvin_voigt(case: &mut Report) {
     let (run, contact) = hit(case, law.with_tension());
     let closed = law.with_tension().collision(m, v);
     if case.case.id == "kv-critical" {
-        assert_eq!(run.mode, Stage::Restitution);
+        assert_eq!(run.end.mode, Stage::Restitution);
         case.check("A_n_release", f64::from(u8::from(contact.duration.is_some())));
         case.check("A_n_release", f64::from(u8::from(closed.is_some())));
     } else {
@@ -153,7 +153,7 @@ fn kelvin_voigt_settles(case: &mut Report) {
     let ball = Compliant::new(m, g, KelvinVoigt::new(k, c).unwrap().with_tension()).unwrap();
     let (stage, start) = ball.released(h, 0.0);
     let run = Simulation::of(&ball).run(stage, start, 0.0..5.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let contacts = ball.contacts(&run.trajectory);
     case.check("n_contacts", contacts.len() as f64);
     case.check("t_contact_1", contacts[0].touch);
@@ -162,9 +162,9 @@ fn kelvin_voigt_settles(case: &mut Report) {
     case.check("t_contact_2", contacts[1].touch);
     case.check("t_contact_5", contacts[4].touch);
     case.check("t_contact_last", contacts[6].touch);
-    case.check("x(5)", run.state[0]);
-    case.check("x_static", run.state[0]);
-    assert_eq!((run.mode, run.stop, run.stats.steps), (Stage::Lying, Stop::Time, 0));
+    case.check("x(5)", run.end.state[0]);
+    case.check("x_static", run.end.state[0]);
+    assert_eq!((run.end.mode, run.end.stop, run.end.stats.steps), (Stage::Lying, Stop::Time, 0));
     assert_eq!((contacts[6].cor, contacts[6].duration), (None, None));
     // The first upswing of the last contact, within a period of a fifteenth of a second.
     let after = (100..700).filter_map(|n| run.trajectory.at(contacts[6].touch + 1e-4 * f64::from(n)));
@@ -175,7 +175,7 @@ fn hunt_crossley(case: &mut Report) {
     let [m, k, chi, v] = case.params(["m", "k", "chi", "v"]);
     let law = HuntCrossley::new(k, chi).unwrap();
     let (run, contact) = hit(case, law);
-    assert!(run.stats.steps < 500, "{:?}", run.stats);
+    assert!(run.end.stats.steps < 500, "{:?}", run.end.stats);
     let closed = law.collision(m, v).unwrap();
     case.check("dim_less_damping", chi * v / k);
     case.check("u_out", -released(&run)[1]);

@@ -1,7 +1,7 @@
 //! Balls in air: by the closed forms of their flights, and by steps.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Hybrid, Jump, Rodas5P, Run, Simulation, Stop};
+use saltus::{Dop853, Hybrid, Jump, Rodas5P, Run, RunOf, Simulation, State, Stop};
 use saltus_bounce::effects::{Gravity, QuadraticDrag};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight};
 use saltus_bounce::walls::Plane;
@@ -18,12 +18,12 @@ cases! {
 }
 
 /// The jumps by which the ball meets the floor.
-fn impacts<A: Automaton>(run: &Run<A>, floor: A::Edge) -> Vec<Jump<A>> {
+fn impacts<M: Copy, E: Copy + PartialEq, S: State>(run: &Run<M, E, S>, floor: E) -> Vec<Jump<M, E, S>> {
     run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
 }
 
 /// When the bounces are over: the last jump.
-fn rest<A: Automaton>(run: &Run<A>) -> f64 {
+fn rest<M: Copy, E: Copy + PartialEq + std::fmt::Debug, S: State>(run: &Run<M, E, S>) -> f64 {
     let last = run.trajectory.jumps().last().unwrap();
     assert_eq!(last.edge(), None, "the bounces accumulate");
     last.t()
@@ -34,8 +34,8 @@ fn quadratic(case: &mut Report, end: f64, last: usize) {
     let [g, k, e, h] = case.params(["g", "k", "e", "h"]);
     let ball = Ball::of(QuadraticDragFlight::new(g, k).unwrap(), Cor::new(e).unwrap());
     let run = Simulation::of(&ball).run(Phase::Falling, vector![h, 0.0], 0.0..end).unwrap();
-    case.ran(&run.stats);
-    assert_eq!((run.mode, run.stop, run.stats.steps), (Phase::Rest, Stop::Time, 0));
+    case.ran(&run.end.stats);
+    assert_eq!((run.end.mode, run.end.stop, run.end.stats.steps), (Phase::Rest, Stop::Time, 0));
     let impacts = impacts(&run, Turn::Floor);
     for n in [1, last] {
         case.check(&format!("t_{n}"), impacts[n - 1].t());
@@ -61,9 +61,9 @@ fn parted(case: &Report) -> Hybrid<'static, Vector2<f64>> {
         .beyond("up", "rest", |_t, _x| vector![0.0, 0.0])
 }
 
-fn check_parted(case: &mut Report, run: &Run<Hybrid<'_, Vector2<f64>>>, last: usize) {
-    case.ran(&run.stats);
-    assert_eq!((run.mode, run.stop), ("rest", Stop::Time));
+fn check_parted(case: &mut Report, run: &RunOf<Hybrid<'_, Vector2<f64>>>, last: usize) {
+    case.ran(&run.end.stats);
+    assert_eq!((run.end.mode, run.end.stop), ("rest", Stop::Time));
     let jumps = run.trajectory.jumps();
     let impacts: Vec<_> = jumps.iter().filter(|jump| jump.to == "up").collect();
     for n in [1, last] {
@@ -94,8 +94,8 @@ fn linear(case: &mut Report) {
     let [g, c, e, h] = case.params(["g", "c", "e", "h"]);
     let ball = Ball::of(LinearDragFlight::new(g, c).unwrap(), Cor::new(e).unwrap());
     let run = Simulation::of(&ball).run(Mode::Flight, vector![h, 0.0], 0.0..20.0).unwrap();
-    case.ran(&run.stats);
-    assert_eq!((run.mode, run.stop, run.stats.steps), (Mode::Rest, Stop::Time, 0));
+    case.ran(&run.end.stats);
+    assert_eq!((run.end.mode, run.end.stop, run.end.stats.steps), (Mode::Rest, Stop::Time, 0));
     let impacts = impacts(&run, Floor);
     for n in [1, 2, 6] {
         case.check(&format!("t_{n}"), impacts[n - 1].t());
@@ -121,12 +121,12 @@ fn projectile(case: &mut Report) {
     let ball = Flyer::gripped(effects, floor, Cor::new(e).unwrap(), Keeps::new(mu).unwrap()).unwrap();
     let start = Moving::new(vector![0.0, 0.0], vector![s, s]);
     let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(Stance::FLIGHT, start, 0.0..20.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps().iter();
     for (n, impact) in (1..=3).zip(jumps.filter(|jump| matches!(jump.edge(), Some(Event::Meet(_))))) {
         case.check(&format!("t_{n}"), impact.t());
         case.check(&format!("x_{n}"), impact.before.position[0]);
         case.check(&format!("w_pre_{n}"), impact.before.velocity[1]);
     }
-    assert!(matches!(run.mode, Stance::Slide { .. }), "{:?}", run.mode);
+    assert!(matches!(run.end.mode, Stance::Slide { .. }), "{:?}", run.end.mode);
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Dop853, Filippov, Hybrid, Jump, Polynomial, Run, Side, Sides, Simulation, Stop, TwoSided};
+use saltus::{Dop853, Filippov, Hybrid, Jump, Polynomial, Run, RunOf, Side, Sides, Simulation, State, Stop, TwoSided};
 
 use crate::report::Report;
 
@@ -18,15 +18,15 @@ cases! {
     fuller = "fuller";
 }
 
-fn run<T: TwoSided>(case: &mut Report, system: &Filippov<T>, x: T::State, end: f64) -> Run<Filippov<T>> {
+fn run<T: TwoSided>(case: &mut Report, system: &Filippov<T>, x: T::State, end: f64) -> RunOf<Filippov<T>> {
     let mode = system.side(0.0, &x).unwrap();
     let run = Simulation::of(system).stepper(Dop853).tolerance(1e-13).run(mode, x, 0.0..end).unwrap();
-    assert_eq!(run.stop, Stop::Time);
-    case.ran(&run.stats);
+    assert_eq!(run.end.stop, Stop::Time);
+    case.ran(&run.end.stats);
     run
 }
 
-fn into<T: TwoSided>(run: &Run<Filippov<T>>, side: Side) -> Vec<Jump<Filippov<T>>> {
+fn into<E: Copy, S: State>(run: &Run<Side, E, S>, side: Side) -> Vec<Jump<Side, E, S>> {
     run.trajectory.jumps().iter().filter(|jump| jump.to == side).copied().collect()
 }
 
@@ -36,9 +36,9 @@ fn relay(case: &mut Report) {
     let run = run(case, &relay, x0, 10.0);
     case.check("t_reach", run.trajectory.jumps()[0].t());
     case.check("x(1)", run.trajectory.at(1.0).unwrap());
-    case.check("x(10)", run.state);
+    case.check("x(10)", run.end.state);
     assert_eq!(run.trajectory.jumps().len(), 1);
-    assert!(run.stats.steps < 20, "{:?}", run.stats);
+    assert!(run.end.stats.steps < 20, "{:?}", run.end.stats);
 }
 
 fn relay_sine(case: &mut Report) {
@@ -59,13 +59,13 @@ fn relay_sine(case: &mut Report) {
         for (n, exit) in (1..=2).zip(&exits) {
             case.check(&format!("t_exit_{n}"), exit.t());
         }
-        case.check("x(20)", run.state);
+        case.check("x(20)", run.end.state);
         // The lowest point is where the flow below turns: sin t = -1/A, rising.
         let lowest = TAU - (1.0 / a).asin();
         assert!(exits[0].t() < lowest && lowest < slides[1].t());
         case.check("x_min", run.trajectory.at(lowest).unwrap());
         // A slide and a way out each half period of the sine.
-        assert_eq!(run.trajectory.jumps().len(), 2 * slides.len() - usize::from(run.mode == Side::Sliding));
+        assert_eq!(run.trajectory.jumps().len(), 2 * slides.len() - usize::from(run.end.mode == Side::Sliding));
         assert_eq!(slides.len(), 6);
     }
 }
@@ -89,8 +89,8 @@ fn friction_oscillator(case: &mut Report) {
     assert_eq!(stop.to, Side::Sliding);
     case.check("t_stop", stop.t());
     case.check("x_stop", stop.after[0]);
-    case.check("x(10)", run.state[0]);
-    assert_eq!(run.state[1], 0.0);
+    case.check("x(10)", run.end.state[0]);
+    assert_eq!(run.end.state[1], 0.0);
     let quarter = run.trajectory.at(FRAC_PI_2 / (k / m).sqrt()).unwrap();
     assert!((quarter[0] - m * drag / k).abs() < 1e-12);
     case.check("v_1", quarter[1]);
@@ -169,8 +169,8 @@ fn water_tanks(case: &mut Report) {
         .beyond("second", "dry", |_, _| vector![0.0, 0.0]);
     let simulation = Simulation::of(&tanks).stepper(Dop853).tolerance(1e-13);
     let run = simulation.run("first", vector![1.0, 1.0], 0.0..8.0).unwrap();
-    case.ran(&run.stats);
-    assert_eq!((run.stop, run.mode), (Stop::Time, "dry"));
+    case.ran(&run.end.stats);
+    assert_eq!((run.end.stop, run.end.mode), (Stop::Time, "dry"));
     let jumps = run.trajectory.jumps();
     for n in [1, 2, 10] {
         case.check(&format!("t_{n}"), jumps[n - 1].t());
@@ -179,8 +179,8 @@ fn water_tanks(case: &mut Report) {
     let level = |n: usize| jumps[n].after[0].max(jumps[n].after[1]);
     case.check("n_level_1e-9", ((0..).position(|n| level(n) < 1e-9).unwrap() + 1) as f64);
     case.check("ratio_per_cycle", level(12) / level(10));
-    case.check("x1_at_zeno", run.state[0]);
-    case.check("x2_at_zeno", run.state[1]);
+    case.check("x1_at_zeno", run.end.state[0]);
+    case.check("x2_at_zeno", run.end.state[1]);
 }
 
 /// Levels fall like squares and never below zero, so a margin that falls through zero is their root; the root is the better coordinate anyway:
@@ -195,7 +195,7 @@ fn torricelli(case: &mut Report) {
         .edge("second", "empty", |_, u| u[1], |_, _| vector![0.0, 0.0]);
     let simulation = Simulation::of(&tanks).stepper(Dop853).tolerance(1e-13);
     let run = simulation.run("both", vector![h1.sqrt(), h2.sqrt()], 0.0..20.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     case.check("t_empty_1", jumps[0].t());
     case.check("h2(t_empty_1)", jumps[0].after[1].powi(2));
@@ -203,8 +203,8 @@ fn torricelli(case: &mut Report) {
     let levels = run.trajectory.at(2.0).unwrap().map(|u| u * u);
     case.check("h1(2)", levels[0]);
     case.check("h2(2)", levels[1]);
-    case.check("h1(20)", run.state[0].powi(2));
-    case.check("h2(20)", run.state[1].powi(2));
+    case.check("h1(20)", run.end.state[0].powi(2));
+    case.check("h2(20)", run.end.state[1].powi(2));
 }
 
 fn thermostat(case: &mut Report) {
@@ -218,7 +218,7 @@ fn thermostat(case: &mut Report) {
         .affine("cooling", "heating");
     let simulation = Simulation::of(&thermostat).stepper(Dop853).tolerance(1e-13).most_jumps(100_003);
     let run = simulation.run("heating", 20.0, 0.0..5e5).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let t = |n: usize| run.trajectory.jumps()[n - 1].t();
     for n in [1, 2, 3, 100_001] {
         case.check(&format!("t_{n}"), t(n));
@@ -240,8 +240,8 @@ fn fuller(case: &mut Report) {
         .beyond("left", "rest", |_t, _x| vector![0.0, 0.0])
         .beyond("right", "rest", |_t, _x| vector![0.0, 0.0]);
     let run = Simulation::of(&system).run("left", vector![1.0, 0.0], 0.0..5.0).unwrap();
-    case.ran(&run.stats);
-    assert_eq!((run.stop, run.mode), (Stop::Time, "rest"));
+    case.ran(&run.end.stats);
+    assert_eq!((run.end.stop, run.end.mode), (Stop::Time, "rest"));
     let jumps = run.trajectory.jumps();
     for n in [1, 2, 5] {
         case.check(&format!("t_{n}"), jumps[n - 1].t());
@@ -252,8 +252,8 @@ fn fuller(case: &mut Report) {
     let speed = |n: usize| jumps[n - 1].before[1].abs();
     case.check("ratio", speed(6) / speed(5));
     case.check("n_v_1e-6", (1..).find(|&n| speed(n) < 1e-6).unwrap() as f64);
-    case.check("x(5)", run.state[0]);
-    case.check("v(5)", run.state[1]);
+    case.check("x(5)", run.end.state[0]);
+    case.check("v(5)", run.end.state[1]);
     // J = ∫ x² over the parabolas.
     let cost = jumps.iter().enumerate().map(|(n, jump)| {
         let from = &run.trajectory.arcs()[n];

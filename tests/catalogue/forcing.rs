@@ -22,7 +22,7 @@ fn square_wave(case: &mut Report) {
         .clock("down", "up", Clock::every(period), |_t, x| *x);
     let simulation = Simulation::of(&oscillator).tolerance(1e-13).absolute_tolerance(1e-14);
     let run = simulation.run("up", vector![0.0, 0.0], 0.0..71.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     for n in [1, 10, 100] {
         let jump = &run.trajectory.jumps()[n - 1];
         assert_eq!(jump.t(), n as f64 * period);
@@ -42,14 +42,14 @@ fn coincident(case: &mut Report) {
         .edge("soft", "soft", |_t, x| x[0], move |_t, x| vector![0.0, -e2 * x[1]])
         .clock("hard", "soft", Clock::at([1.0]), |_t, x| *x);
     let run = Simulation::of(&ball).run("hard", vector![h, 0.0], 0.0..1.2).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     case.check("n_events", jumps.len() as f64);
     for jump in jumps {
         case.check("t_both", jump.t());
     }
     case.outcome("which", if jumps[0].to == "hard" { "state_first" } else { "time_first" });
-    case.check("x(1.2)_state_first", run.state[0]);
+    case.check("x(1.2)_state_first", run.end.state[0]);
     case.absent("x(1.2)_time_first", "the other order; here the crossing is first, as model.md says");
 }
 
@@ -63,9 +63,9 @@ fn pulse(case: &mut Report) {
         .clock("before", "pulse", Clock::at([t1]), |_t, x| *x)
         .clock("pulse", "after", Clock::at([t2]), |_t, x| *x);
     let run = Simulation::of(&automaton).run("before", 0.0, 0.0..1.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     assert_eq!(run.trajectory.jumps().iter().map(saltus::Jump::t).collect::<Vec<_>>(), [t1, t2]);
-    case.check("x(1)", run.state);
+    case.check("x(1)", run.end.state);
 }
 
 /// By the clock, and as crossings of a clock that is part of the state.
@@ -78,10 +78,10 @@ fn kicked(case: &mut Report) {
         |_t, x| vector![x[0], x[1] + 1.0],
     );
     let run = tight(&automaton).run("run", vector![0.0, 0.0], 0.0..100.5).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     case.check("n_kicks", run.trajectory.jumps().len() as f64);
-    case.check("x(100.5)", run.state[0]);
-    case.check("v(100.5)", run.state[1]);
+    case.check("x(100.5)", run.end.state[0]);
+    case.check("v(100.5)", run.end.state[1]);
 
     let automaton = Hybrid::new().mode("run", move |_t, x: &Vector3<f64>| vector![x[1], -w * w * x[0], 1.0]).edge(
         "run",
@@ -90,8 +90,8 @@ fn kicked(case: &mut Report) {
         |_t, x| vector![x[0], x[1] + 1.0, 0.0],
     );
     let run = tight(&automaton).run("run", vector![0.0, 0.0, 0.0], 0.0..100.5).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     case.check("n_kicks", run.trajectory.jumps().len() as f64);
-    case.check("x(100.5)", run.state[0]);
-    case.check("v(100.5)", run.state[1]);
+    case.check("x(100.5)", run.end.state[0]);
+    case.check("v(100.5)", run.end.state[1]);
 }

@@ -2,7 +2,7 @@
 
 use saltus::nalgebra::vector;
 use saltus::return_map::{ReturnMap, Section, Selection};
-use saltus::{Automaton, Coords, Dop853, Hybrid, Jump, Linearize, Run, Simulation, Stop};
+use saltus::{Automaton, Coords, Dop853, Hybrid, JumpOf, Linearize, RunOf, Simulation, Stop};
 
 use crate::report::Report;
 
@@ -35,9 +35,9 @@ fn walks<A: Automaton>(
     x: A::State,
     edge: A::Edge,
     end: f64,
-) -> Vec<Jump<A>> {
-    let run: Run<A> = Simulation::of(walker).stepper(Dop853).tolerance(1e-13).run(mode, x, 0.0..end).unwrap();
-    case.ran(&run.stats);
+) -> Vec<JumpOf<A>> {
+    let run: RunOf<A> = Simulation::of(walker).stepper(Dop853).tolerance(1e-13).run(mode, x, 0.0..end).unwrap();
+    case.ran(&run.end.stats);
     run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(edge)).copied().collect()
 }
 
@@ -76,8 +76,8 @@ fn vertical_hopper(case: &mut Report) {
         .edge("stance", "flight", move |_, x| l0 - x[0], |_, x| [x[0], x[1]].into());
     let simulation = Simulation::of(&hopper).stepper(Dop853).tolerance(1e-14);
     let run = simulation.run("flight", [h, 0.0].into(), 0.0..800.0).unwrap();
-    case.ran(&run.stats);
-    assert_eq!(run.stop, Stop::Time);
+    case.ran(&run.end.stats);
+    assert_eq!(run.end.stop, Stop::Time);
     let jumps = run.trajectory.jumps();
     case.check("t_touchdown_1", jumps[0].t());
     case.check("stance_time", jumps[1].t() - jumps[0].t());

@@ -1,7 +1,7 @@
 //! Crossings that are hard to find, hard to tell apart, or not there.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, Simulation};
+use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, RunOf, Simulation, State};
 use saltus_tests::watched::watched;
 
 use crate::report::Report;
@@ -23,7 +23,7 @@ cases! {
     grazing_impact = "grazing-impact";
 }
 
-pub(crate) fn times<A: Automaton>(run: &Run<A>) -> Vec<f64> {
+pub(crate) fn times<M: Copy, E, S: State>(run: &Run<M, E, S>) -> Vec<f64> {
     run.trajectory.jumps().iter().map(Jump::t).collect()
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn tight<A: Automaton>(automaton: &A) -> Simulation<'_, A, Dop853> {
 fn clock(case: &mut Report, guard: impl Fn(f64) -> f64 + Send + Sync + Copy + 'static) -> Vec<f64> {
     let automaton = watched(|_t, _x: &f64| 1.0, move |_t, x| guard(*x)).exact("run", |_t, x| [*x, 1.0].into());
     let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     times(&run)
 }
 
@@ -43,11 +43,11 @@ fn clock(case: &mut Report, guard: impl Fn(f64) -> f64 + Send + Sync + Copy + 's
 fn swing(
     case: &mut Report,
     guard: impl Fn(&Vector2<f64>) -> f64 + Send + Sync + Copy + 'static,
-) -> Run<Hybrid<'static, Vector2<f64>>> {
+) -> RunOf<Hybrid<'static, Vector2<f64>>> {
     let automaton = watched(|_t, x: &Vector2<f64>| vector![x[1], -x[0]], move |_t, x| guard(x));
     // A touch is a touch only for a solution that does not overshoot it.
     let run = tight(&automaton).tolerance(1e-15).run("run", vector![0.0, 1.0], 0.0..3.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
@@ -60,15 +60,15 @@ fn graze_touch(case: &mut Report) {
         Some(&t) => case.check("t_event_if_reported", t),
         None => case.absent("t_event_if_reported", "none is reported"),
     }
-    case.check("x(3)", run.state[0]);
-    case.check("v(3)", run.state[1]);
+    case.check("x(3)", run.end.state[0]);
+    case.check("v(3)", run.end.state[1]);
 }
 
 fn graze_miss(case: &mut Report) {
     let c = case.param("c");
     let run = swing(case, move |x| x[0] - c);
     case.check("n_events", times(&run).len() as f64);
-    case.check("x(3)", run.state[0]);
+    case.check("x(3)", run.end.state[0]);
     // The greatest x is where v falls through zero.
     let run = swing(case, |x| x[1]);
     case.check("x_max", run.trajectory.jumps()[0].before[0]);
@@ -96,7 +96,7 @@ fn double_cross(case: &mut Report) {
     let arcs = || steps().exact("run", move |_t, x| Polynomial::from([*x, vector![x[1], a], vector![0.5 * a, 0.0]]));
     for automaton in [steps(), arcs(), arcs().affine("run", "run")] {
         let run = Simulation::of(&automaton).run("run", vector![x0, v0], 0.0..1.0).unwrap();
-        case.ran(&run.stats);
+        case.ran(&run.end.stats);
         let t = times(&run);
         case.check("n_events", t.len() as f64);
         case.check("t_1", t[0]);
@@ -134,7 +134,7 @@ fn guard_nan(case: &mut Report) {
     let automaton =
         Hybrid::new().exact("run", |_t, x: &f64| [*x, 1.0].into()).terminal("run", move |_t, x| (q - x).sqrt() - 0.1);
     let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     case.check("b_n", times(&run).len() as f64);
     case.check("b_t_event", times(&run)[0]);
 }
@@ -153,7 +153,7 @@ fn event_at_the_start(case: &mut Report) {
         .edge("run", "run", |_t, x| 0.5 - x, |_t, x| *x)
         .entry("run", "run", Entry::Wait);
     let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let of =
         |place: usize| run.trajectory.jumps().iter().filter(move |j| j.edge().unwrap().place == place).map(Jump::t);
     assert!(of(0).all(|t| t == 0.0));
@@ -168,11 +168,11 @@ fn event_at_a_step_end(case: &mut Report) {
         let automaton = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).edge("run", "run", |_t, x| 0.5 - x, |_t, _x| 0.0);
         let automaton = if exact { automaton.exact("run", |_t, x| [*x, 1.0].into()) } else { automaton };
         let run = Simulation::of(&automaton).first_step(0.125).longest_step(0.125).run("run", 0.0, 0.0..4.0).unwrap();
-        case.ran(&run.stats);
+        case.ran(&run.end.stats);
         case.check("n_events", times(&run).len() as f64);
         if exact {
             case.check("t_8", times(&run)[7]);
-            case.check("x(4)", run.state);
+            case.check("x(4)", run.end.state);
         }
     }
 }
@@ -206,12 +206,12 @@ fn grazing_impact(case: &mut Report) {
         move |_t, x| vector![x[0], -e * x[1]],
     );
     let run = tight(&automaton).run("run", vector![0.0, 1.0], 0.0..20.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     case.check("n(20)", times(&run).len() as f64);
     for (n, jump) in (1..).zip(run.trajectory.jumps()) {
         case.check(&format!("t_{n}"), jump.t());
         case.check(&format!("v_pre_{n}"), jump.before[1]);
     }
-    case.check("x(20)", run.state[0]);
-    case.check("v(20)", run.state[1]);
+    case.check("x(20)", run.end.state[0]);
+    case.check("v(20)", run.end.state[1]);
 }

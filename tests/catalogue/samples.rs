@@ -2,27 +2,27 @@
 
 use std::ops::ControlFlow;
 
-use saltus::{Automaton, Jump, Observer, Piece, Time};
+use saltus::{Automaton, JumpOf, Observer, Piece, Time};
 
 /// Keeps the jumps of certain numbers and the states at certain times, and looks at each jump.
 pub(crate) struct Samples<'a, A: Automaton, F> {
     numbers: &'a [usize],
     times: &'a [f64],
     look: F,
-    jumps: Vec<Jump<A>>,
+    jumps: Vec<JumpOf<A>>,
     /// The state at each time, and how many jumps came before it.
     states: Vec<(A::State, usize)>,
     count: usize,
 }
 
-impl<'a, A: Automaton, F: FnMut(&Jump<A>)> Samples<'a, A, F> {
+impl<'a, A: Automaton, F: FnMut(&JumpOf<A>)> Samples<'a, A, F> {
     /// Of the jumps of these numbers and the states at these times, both rising.
     pub(crate) fn new(numbers: &'a [usize], times: &'a [f64], look: F) -> Self {
         Self { numbers, times, look, jumps: Vec::new(), states: Vec::new(), count: 0 }
     }
 
     /// The jump of this number.
-    pub(crate) fn jump(&self, number: usize) -> &Jump<A> {
+    pub(crate) fn jump(&self, number: usize) -> &JumpOf<A> {
         self.jumps.iter().find(|jump| jump.j == number).unwrap()
     }
 
@@ -32,7 +32,7 @@ impl<'a, A: Automaton, F: FnMut(&Jump<A>)> Samples<'a, A, F> {
     }
 }
 
-impl<A: Automaton, F: FnMut(&Jump<A>)> Observer<A> for Samples<'_, A, F> {
+impl<A: Automaton, F: FnMut(&JumpOf<A>)> Observer<A> for Samples<'_, A, F> {
     fn wants_pieces(&self) -> bool {
         self.states.len() < self.times.len()
     }
@@ -46,7 +46,7 @@ impl<A: Automaton, F: FnMut(&Jump<A>)> Observer<A> for Samples<'_, A, F> {
         }
         ControlFlow::Continue(())
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.count = jump.j;
         if self.numbers.get(self.jumps.len()) == Some(&jump.j) {
             self.jumps.push(*jump);

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use saltus::nalgebra::vector;
-use saltus::{Automaton, Dop853, Jump, Linearize, Run, Sensitive, Simulation, Wrt, saltation};
+use saltus::{Dop853, Jump, Linearize, Run, RunOf, Sensitive, Simulation, State, Wrt, saltation};
 
 use crate::report::Report;
 
@@ -26,14 +26,14 @@ fn run<'a, A: Linearize, const K: usize>(
     mode: A::Mode,
     x: A::State,
     end: f64,
-) -> Run<Sensitive<'a, A, K>> {
+) -> RunOf<Sensitive<'a, A, K>> {
     let simulation = Simulation::of(sensitive).stepper(Dop853).tolerance(1e-13).most_steps(100_000);
     let run = simulation.run(mode, sensitive.start(0.0, x), 0.0..end).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
-fn impact<A: Automaton>(run: &Run<A>, n: usize) -> &Jump<A> {
+fn impact<M: Copy, E: Copy, S: State>(run: &Run<M, E, S>, n: usize) -> &Jump<M, E, S> {
     run.trajectory.jumps().iter().filter(|jump| jump.edge().is_some()).nth(n - 1).unwrap()
 }
 
@@ -76,7 +76,7 @@ fn saltation_on_a_table(case: &mut Report) {
     let sensitive = Sensitive::of(&ball, [Initial(0), Initial(1)]);
     let start = sensitive.start(t, vector![height, rebound]);
     let run = Simulation::of(&sensitive).tolerance(1e-12).run(Phase::Flight, start, t..t + 1.5 * period).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let back = impact(&run, 1);
     assert!((back.t() - t - period).abs() < 1e-13);
     let [first, second] = back.after.columns;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use saltus::nalgebra::vector;
 use saltus::{
-    About, Automaton, Cause, Edges, Entry, Hybrid, Jump, Polynomial, Refusal, Run, Simulation, Solution, Stop,
+    About, Automaton, Cause, Edges, Entry, Hybrid, JumpOf, Polynomial, Refusal, RunOf, Simulation, Solution, Stop,
 };
 use saltus_bounce::line::{Lying, Row};
 use saltus_bounce::walls::Plane;
@@ -45,12 +45,12 @@ fn corner(case: &mut Report) {
             ball.edge("run", "run", move |_t, x| x[k], reset)
         });
         let run = Simulation::of(&ball).run("run", [1.0, 1.0, -1.0, -1.0], 0.0..3.0).unwrap();
-        case.ran(&run.stats);
+        case.ran(&run.end.stats);
         case.check("n_resets", run.trajectory.jumps().len() as f64);
         for jump in run.trajectory.jumps() {
             case.check("t_event", jump.t());
         }
-        for (name, ours) in ["x(3)", "y(3)", "u(3)", "w(3)"].into_iter().zip(run.state) {
+        for (name, ours) in ["x(3)", "y(3)", "u(3)", "w(3)"].into_iter().zip(run.end.state) {
             case.check(name, ours);
         }
     }
@@ -71,11 +71,11 @@ fn wedge(case: &mut Report, aside: f64) -> Result<Out, String> {
     let (sin, cos) = (0.5 * alpha).sin_cos();
     let start = Moving::new(vector![cos - aside * sin, sin + aside * cos], vector![-cos, -sin]);
     let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..3.0).map_err(|failed| failed.error.to_string())?;
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     Ok(Out {
         reflections: jumps.len(),
-        direction: run.state.velocity[1].atan2(run.state.velocity[0]),
+        direction: run.end.state.velocity[1].atan2(run.end.state.velocity[0]),
         at_once: jumps.windows(2).any(|pair| pair[0].t() == pair[1].t()),
     })
 }
@@ -109,9 +109,9 @@ fn wedge_generic(case: &mut Report) {
     case.outcome("offset0", outcome);
 }
 
-fn on_line<const N: usize>(case: &mut Report, line: &Line<N>, start: Row<N>, end: f64) -> Run<Line<N>> {
+fn on_line<const N: usize>(case: &mut Report, line: &Line<N>, start: Row<N>, end: f64) -> RunOf<Line<N>> {
     let run = Simulation::of(line).run(Lying::NONE, start, 0.0..end).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
@@ -122,7 +122,7 @@ fn cradle<const N: usize>(case: &mut Report) {
     let line = Line::new([1.0; N], Cor::new(case.param("e")).unwrap()).unwrap();
     let run = on_line(case, &line, start, 2.0);
     case.check("n_pair", run.trajectory.jumps().len() as f64);
-    for (i, v) in (1..).zip(run.state.velocities) {
+    for (i, v) in (1..).zip(run.end.state.velocities) {
         case.check(&format!("v_{i}"), v);
     }
     assert!(run.trajectory.jumps().iter().all(|jump| jump.t() == 1.0));
@@ -159,7 +159,7 @@ fn chain(case: &mut Report) {
     case.check("n_collisions", jumps.len() as f64);
     case.check("t_first", jumps[0].t());
     case.check("t_last", jumps[jumps.len() - 1].t());
-    for (i, v) in (1..).zip(run.state.velocities) {
+    for (i, v) in (1..).zip(run.end.state.velocities) {
         case.check(&format!("v_{i}"), v);
     }
 }
@@ -171,13 +171,13 @@ fn inelastic_collapse(case: &mut Report) {
     let limit = jumps.iter().find(|jump| jump.cause == Cause::Zeno).unwrap();
     case.check("t_collapse", limit.t());
     case.check("x_collapse", limit.after.positions()[0]);
-    let close = |jump: &&Jump<Line<3>>| jump.after.gaps[1] < 1e-6 && jump.after.gaps[2] < 1e-6;
+    let close = |jump: &&JumpOf<Line<3>>| jump.after.gaps[1] < 1e-6 && jump.after.gaps[2] < 1e-6;
     case.check("n_gap_1e-6", jumps.iter().find(close).unwrap().j as f64);
-    for (x, v) in run.state.positions().into_iter().zip(run.state.velocities) {
+    for (x, v) in run.end.state.positions().into_iter().zip(run.end.state.velocities) {
         case.check("x_i(5)", x);
         case.check("v_i(5)", v);
     }
-    assert_eq!((run.state.gaps[1], run.state.gaps[2]), (0.0, 0.0));
+    assert_eq!((run.end.state.gaps[1], run.end.state.gaps[2]), (0.0, 0.0));
 }
 
 fn galperin(case: &mut Report) {
@@ -186,7 +186,7 @@ fn galperin(case: &mut Report) {
     let quarter = ((PI * 10.0_f64.powi(power)) as usize / 4).max(1);
     let (mut first, mut last, mut spacing) = (None, saltus::Time::new(0.0), f64::INFINITY);
     let numbers = [quarter];
-    let mut samples = Samples::new(&numbers, &[], |jump: &Jump<Line<2>>| {
+    let mut samples = Samples::new(&numbers, &[], |jump: &JumpOf<Line<2>>| {
         if first.is_some() {
             spacing = spacing.min(jump.time.since(last));
         }
@@ -240,9 +240,9 @@ fn noncommuting_resets(case: &mut Report) {
         };
         let automaton = if a_first { b(a(clock)) } else { a(b(clock)) }.entry("run", "run", Entry::Wait);
         let run = Simulation::of(&automaton).run("run", [1.0, 0.0], 0.0..2.0).unwrap();
-        case.ran(&run.stats);
+        case.ran(&run.end.stats);
         case.check("n_resets", run.trajectory.jumps().len() as f64);
-        case.outcome(if a_first { "x(2)_A_first" } else { "x(2)_B_first" }, run.state[0]);
+        case.outcome(if a_first { "x(2)_A_first" } else { "x(2)_B_first" }, run.end.state[0]);
     }
 }
 
@@ -276,7 +276,7 @@ impl Automaton for Cascade {
 
 fn cascade(case: &mut Report) {
     let run = Simulation::of(&Cascade).run(0, 0.0, 0.0..2.0).unwrap();
-    case.ran(&run.stats);
-    case.check("j(2)", run.mode as f64);
+    case.ran(&run.end.stats);
+    case.check("j(2)", run.end.mode as f64);
     case.check("t_last_event", run.trajectory.jumps().last().unwrap().t());
 }

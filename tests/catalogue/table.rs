@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{Continuation, Kind, ReturnMap};
-use saltus::{Jump, Run, Simulation};
+use saltus::{JumpOf, RunOf, Simulation};
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::walls::{Face, Table};
 use saltus_bounce::{Cor, Event, Flyer, Moving, Stance};
@@ -36,15 +36,15 @@ fn ball(case: &Report) -> OnTable {
 }
 
 /// Thrown up from the table at the case's speed.
-fn thrown(case: &mut Report, end: f64) -> Run<OnTable> {
+fn thrown(case: &mut Report, end: f64) -> RunOf<OnTable> {
     let start = Moving::new(vector![0.0], vector![case.param("v0")]);
     let run = Simulation::of(&ball(case)).run(Stance::FLIGHT, start, 0.0..end).unwrap();
-    assert_eq!(run.stats.steps, 0);
-    case.ran(&run.stats);
+    assert_eq!(run.end.stats.steps, 0);
+    case.ran(&run.end.stats);
     run
 }
 
-fn meetings(run: &Run<OnTable>) -> Vec<Jump<OnTable>> {
+fn meetings(run: &RunOf<OnTable>) -> Vec<JumpOf<OnTable>> {
     run.trajectory.jumps().iter().filter(|jump| matches!(jump.edge(), Some(Event::Meet(_)))).copied().collect()
 }
 
@@ -168,7 +168,7 @@ fn chatter(case: &mut Report) {
     case.mark("n_vrel_1e-9", 0.5..40.5, absolute);
     case.mark("t_stick", 3e-12..1e-8, absolute);
     let [a, w] = case.params(["A", "w"]);
-    let relative = |jump: &&Jump<OnTable>| jump.after.velocity[0] - a * w * (w * jump.t()).cos();
+    let relative = |jump: &&JumpOf<OnTable>| jump.after.velocity[0] - a * w * (w * jump.t()).cos();
     let fast = impacts.iter().take_while(|jump| relative(jump) >= 1e-9);
     case.check("n_vrel_1e-9", 1.0 + fast.count() as f64);
     let stick = jumps.iter().find(|jump| matches!(jump.to, Stance::Slide { .. })).unwrap();
@@ -182,7 +182,7 @@ fn liftoff(case: &mut Report) {
     let (stance, start) = ball.lying(Face { cell: 0, index: 0 }, 0.0, lying);
     assert!(matches!(stance, Stance::Slide { .. }));
     let run = Simulation::of(&ball).run(stance, start, 0.0..0.3).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     assert!(matches!(jumps[0].edge(), Some(Event::Leave(_))));
     case.check("t_liftoff", jumps[0].t());

@@ -1,7 +1,7 @@
 //! Very short after very long, and late.
 
 use saltus::nalgebra::vector;
-use saltus::{Hybrid, Jump, Simulation};
+use saltus::{Hybrid, Jump, JumpOf, Simulation};
 use saltus_bounce::Ball;
 
 use crate::report::Report;
@@ -39,7 +39,7 @@ fn ticks(p: f64) -> Hybrid<'static, f64> {
 
 fn clock(case: &mut Report) {
     let (clock, numbers) = (ticks(case.param("p")), [1000, 1_000_000]);
-    let mut samples = Samples::new(&numbers, &[], |_: &Jump<_>| {});
+    let mut samples = Samples::new(&numbers, &[], |_: &Jump<_, _, _>| {});
     let end = Simulation::of(&clock).most_jumps(1_000_000).drive("tick", 0.0, 0.0..1e6, &mut samples).unwrap();
     case.ran(&end.stats);
     for n in numbers {
@@ -67,7 +67,7 @@ fn a_billion_ticks() {
 fn start_at_a_billion(case: &mut Report) {
     let start = vector![0.0, case.param("v0")];
     let run = run(case, start, 1e9..1e9 + 1e-6);
-    let since = |jump: &Jump<Ball>| jump.time.since(run.trajectory.start());
+    let since = |jump: &JumpOf<Ball>| jump.time.since(run.trajectory.start());
     case.check("t_1-t0", since(impact(&run, 1)));
     case.check("t_10-t0", since(impact(&run, 10)));
     case.check("t_zeno-t0", since(comes_to_rest(&run)));

@@ -1,7 +1,7 @@
 //! Impacts that accumulate, rest, and what only seems to accumulate.
 
 use saltus::nalgebra::{Vector2, Vector3, vector};
-use saltus::{ErrorKind, Hybrid, Jump, Polynomial, Run, Simulation, Stop};
+use saltus::{ErrorKind, Hybrid, JumpOf, Polynomial, RunOf, Simulation, Stop};
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::walls::{Face, Plane};
 use saltus_bounce::{Ball, Cor, Event, Flyer, Mode, Moving, Stance};
@@ -31,31 +31,31 @@ pub(crate) fn ball(case: &Report) -> Ball {
 }
 
 /// Lets it go.
-pub(crate) fn run(case: &mut Report, start: Vector2<f64>, span: std::ops::Range<f64>) -> Run<Ball> {
+pub(crate) fn run(case: &mut Report, start: Vector2<f64>, span: std::ops::Range<f64>) -> RunOf<Ball> {
     let run = Simulation::of(&ball(case)).run(Mode::Flight, start, span).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     run
 }
 
 /// Drops it from the case's height.
-pub(crate) fn dropped(case: &mut Report, end: f64) -> Run<Ball> {
+pub(crate) fn dropped(case: &mut Report, end: f64) -> RunOf<Ball> {
     let start = vector![case.param("h"), 0.0];
     run(case, start, 0.0..end)
 }
 
-pub(crate) fn impact(run: &Run<Ball>, n: usize) -> &Jump<Ball> {
+pub(crate) fn impact(run: &RunOf<Ball>, n: usize) -> &JumpOf<Ball> {
     &run.trajectory.jumps()[n - 1]
 }
 
-pub(crate) fn comes_to_rest(run: &Run<Ball>) -> &Jump<Ball> {
+pub(crate) fn comes_to_rest(run: &RunOf<Ball>) -> &JumpOf<Ball> {
     run.trajectory.jumps().iter().find(|jump| jump.to == Mode::Rest).unwrap()
 }
 
-fn impacts_until(run: &Run<Ball>, t: f64) -> f64 {
+fn impacts_until(run: &RunOf<Ball>, t: f64) -> f64 {
     run.trajectory.jumps().iter().filter(|jump| jump.t() <= t && jump.edge().is_some()).count() as f64
 }
 
-fn first_slower(run: &Run<Ball>, speed: f64) -> f64 {
+fn first_slower(run: &RunOf<Ball>, speed: f64) -> f64 {
     run.trajectory.jumps().iter().find(|jump| jump.after[1] < speed).unwrap().j as f64
 }
 
@@ -71,8 +71,8 @@ fn e_half(case: &mut Report) {
     case.check("x(4.2)", x[0]);
     case.check("v(4.2)", x[1]);
     case.check("n(4.2)", impacts_until(&run, 4.2));
-    case.check("x(10)", run.state[0]);
-    case.check("v(10)", run.state[1]);
+    case.check("x(10)", run.end.state[0]);
+    case.check("v(10)", run.end.state[1]);
 }
 
 fn e_nine_tenths(case: &mut Report) {
@@ -87,14 +87,14 @@ fn e_nine_tenths(case: &mut Report) {
     case.check("x(8)", x[0]);
     case.check("v(8)", x[1]);
     case.check("n(8)", impacts_until(&run, 8.0));
-    case.check("x(20)", run.state[0]);
-    case.check("v(20)", run.state[1]);
+    case.check("x(20)", run.end.state[0]);
+    case.check("v(20)", run.end.state[1]);
 }
 
 fn e_almost_one(case: &mut Report) {
     let (ball, numbers, times) = (ball(case), [1, 1000, 1_000_000], [500_000.0]);
     let (mut slow, mut rest) = (0, f64::NAN);
-    let mut samples = Samples::new(&numbers, &times, |jump: &Jump<Ball>| {
+    let mut samples = Samples::new(&numbers, &times, |jump: &JumpOf<Ball>| {
         if slow == 0 && jump.after[1] < 1e-3 {
             slow = jump.j;
         }
@@ -122,16 +122,16 @@ fn plastic(case: &mut Report) {
     let run = dropped(case, 3.0);
     case.check("t_1", impact(&run, 1).t());
     case.check("n_impacts", run.trajectory.jumps().len() as f64);
-    case.check("x(3)", run.state[0]);
-    case.check("v(3)", run.state[1]);
-    assert_eq!(run.mode, Mode::Rest);
+    case.check("x(3)", run.end.state[0]);
+    case.check("v(3)", run.end.state[1]);
+    assert_eq!(run.end.mode, Mode::Rest);
 }
 
 /// A million impacts without loss: neither time nor energy drifts.
 fn elastic_million(case: &mut Report) {
     let ([g, h], numbers, times) = (case.params(["g", "h"]), [1, 1000, 1_000_000], [451_523.5]);
     let mut drift = 0.0_f64;
-    let mut samples = Samples::new(&numbers, &times, |jump: &Jump<Ball>| {
+    let mut samples = Samples::new(&numbers, &times, |jump: &JumpOf<Ball>| {
         drift = drift.max((jump.after[1] * jump.after[1] / (2.0 * g * h) - 1.0).abs());
     });
     let end = Simulation::of(&ball(case)).drive(Mode::Flight, vector![h, 0.0], 0.0..9.0305e5, &mut samples).unwrap();
@@ -160,10 +160,10 @@ fn tiny_height(case: &mut Report) {
 
 fn rest_on_floor(case: &mut Report) {
     let run = run(case, vector![0.0, 0.0], 0.0..10.0);
-    case.check("x(10)", run.state[0]);
-    case.check("v(10)", run.state[1]);
+    case.check("x(10)", run.end.state[0]);
+    case.check("v(10)", run.end.state[1]);
     case.outcome("events", run.trajectory.jumps().len());
-    assert_eq!(run.mode, Mode::Rest);
+    assert_eq!(run.end.mode, Mode::Rest);
 }
 
 fn floor_start_up(case: &mut Report) {
@@ -173,7 +173,7 @@ fn floor_start_up(case: &mut Report) {
     case.check("t_2", impact(&run, 2).t());
     case.check("t_zeno", comes_to_rest(&run).t());
     case.check("x(0.3)", run.trajectory.at(0.3).unwrap()[0]);
-    case.check("x(2)", run.state[0]);
+    case.check("x(2)", run.end.state[0]);
 }
 
 fn below_floor(case: &mut Report) {
@@ -182,7 +182,7 @@ fn below_floor(case: &mut Report) {
     assert_eq!(refused.error.kind(), ErrorKind::Entry);
     case.outcome("a_outcome", "error");
     let still = run(case, vector![-1e-18, 0.0], 0.0..1.0);
-    case.check("b_x(1)", still.state[0]);
+    case.check("b_x(1)", still.end.state[0]);
     let up = run(case, vector![-1e-18, 1.0], 0.0..1.0);
     case.check("c_t_1", impact(&up, 1).t());
 }
@@ -190,10 +190,10 @@ fn below_floor(case: &mut Report) {
 fn without_gravity(case: &mut Report) {
     let down = run(case, vector![1.0, -1.0], 0.0..5.0);
     case.check("run1_t_1", impact(&down, 1).t());
-    case.check("run1_x(5)", down.state[0]);
+    case.check("run1_x(5)", down.end.state[0]);
     case.check("run1_n", down.trajectory.jumps().len() as f64);
     let still = run(case, vector![1.0, 0.0], 0.0..5.0);
-    case.check("run2_x(5)", still.state[0]);
+    case.check("run2_x(5)", still.end.state[0]);
     case.check("run2_n", still.trajectory.jumps().len() as f64);
 }
 
@@ -205,7 +205,7 @@ fn incline(case: &mut Report) {
     let ball = Flyer::new(Gravity::new(g).unwrap(), slope, Cor::new(e).unwrap()).unwrap();
     let start = Moving::new(normal * n0, vector![0.0, 0.0]);
     let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..10.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     let impacts: Vec<_> = jumps.iter().filter(|jump| matches!(jump.edge(), Some(Event::Meet(_)))).collect();
     case.check("t_1", impacts[0].t());
@@ -213,11 +213,11 @@ fn incline(case: &mut Report) {
     let slides = jumps.iter().find(|jump| jump.edge().is_none()).unwrap();
     case.check("t_zeno", slides.t());
     case.check("s(t_zeno)", slides.after.position.dot(&down));
-    case.check("s(10)", run.state.position.dot(&down));
-    case.check("u(10)", run.state.velocity.dot(&down));
-    case.check("n(10)", run.state.position.dot(&normal));
-    case.check("w(10)", run.state.velocity.dot(&normal));
-    assert_eq!(run.mode, Stance::Slide { face: Face { cell: 0, index: 0 }, along: vector![0.0, 0.0] });
+    case.check("s(10)", run.end.state.position.dot(&down));
+    case.check("u(10)", run.end.state.velocity.dot(&down));
+    case.check("n(10)", run.end.state.position.dot(&normal));
+    case.check("w(10)", run.end.state.velocity.dot(&normal));
+    assert_eq!(run.end.mode, Stance::Slide { face: Face { cell: 0, index: 0 }, along: vector![0.0, 0.0] });
 
     let (along, across) = (g * a.sin(), g * a.cos());
     let ball = Hybrid::new()
@@ -229,13 +229,13 @@ fn incline(case: &mut Report) {
         .beyond("flight", "slide", |_t, x| [x[0], 0.0, x[2], 0.0])
         .exact("slide", move |_t, x| Polynomial::from([*x, [x[2], 0.0, along, 0.0], [0.5 * along, 0.0, 0.0, 0.0]]));
     let run = Simulation::of(&ball).run("flight", [0.0, n0, 0.0, 0.0], 0.0..10.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
     case.check("t_1", jumps[0].t());
     case.check("t_20", jumps[19].t());
     case.check("t_zeno", jumps.last().unwrap().t());
     case.check("s(t_zeno)", jumps.last().unwrap().after[0]);
-    for (name, ours) in ["s(10)", "n(10)", "u(10)", "w(10)"].into_iter().zip(run.state) {
+    for (name, ours) in ["s(10)", "n(10)", "u(10)", "w(10)"].into_iter().zip(run.end.state) {
         case.check(name, ours);
     }
 }
@@ -272,9 +272,9 @@ fn closing_wall(case: &mut Report) {
         .affine("between", "between");
     let simulation = Simulation::of(&ball).most_jumps(20_001);
     let run = simulation.run("between", vector![0.0, v0, 1.0], 0.0..8.0).unwrap();
-    case.ran(&run.stats);
+    case.ran(&run.end.stats);
     // It ends by the limit asked for, and says so.
-    assert_eq!(run.stop, Stop::Jumps { most: 20_001 });
+    assert_eq!(run.end.stop, Stop::Jumps { most: 20_001 });
     let hits: Vec<_> = run.trajectory.jumps().iter().filter(|jump| jump.edge().unwrap().place == 1).collect();
     for n in [1, 2, 10, 1000, 10_000] {
         case.check(&format!("t_{n}"), hits[n - 1].t());

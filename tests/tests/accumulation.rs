@@ -26,7 +26,7 @@ fn meets_the_limit(cases: &[Case]) {
             .affine("second", "first");
         for tanks in [stepped(), exact] {
             let run = Simulation::of(&tanks).most_jumps(1000).run("first", start, 0.0..2.0 * limit).unwrap();
-            let Stop::Zeno { limit: found } = run.stop else { panic!("{}", run.stop) };
+            let Stop::Zeno { limit: found } = run.end.stop else { panic!("{}", run.end.stop) };
             assert!((found - limit).abs() < 1e-12 * limit, "{found} {limit}");
             assert!(run.trajectory.doubts().is_empty());
             for jump in run.trajectory.jumps() {
@@ -38,7 +38,7 @@ fn meets_the_limit(cases: &[Case]) {
                 move |_t, _x| marks.map(|mark| mark + 1.0),
             );
             let run = Simulation::of(&tanks).run("first", start, 0.0..limit * (1.0 + 1e-9)).unwrap();
-            assert_eq!((run.stop, run.mode), (Stop::Time, "second"));
+            assert_eq!((run.end.stop, run.end.mode), (Stop::Time, "second"));
             assert_eq!(run.trajectory.jumps().last().map(|jump| jump.cause), Some(Cause::Zeno));
         }
     }
@@ -70,7 +70,7 @@ fn a_floor_above_zero() {
             move |_t, x| [floor, -0.5 * x[1]],
         );
         let run = Simulation::of(&ball).most_jumps(1000).run("flight", [floor + 1.0, 0.0], 0.0..3.0).unwrap();
-        let Stop::Zeno { limit } = run.stop else { panic!("floor at {floor}: {}", run.stop) };
+        let Stop::Zeno { limit } = run.end.stop else { panic!("floor at {floor}: {}", run.end.stop) };
         assert!((limit - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-6 * floor.max(1e-6).sqrt(), "{limit}");
     }
 }
@@ -99,9 +99,9 @@ fn no_ball_is_lost_at_the_end_of_a_chatter() {
             let start = late + random(0.0, 1.0);
             let x = vector![random(0.02, 0.12), 0.0];
             let run = Simulation::of(&table).most_jumps(5000).run("flight", x, start..start + 5.0).unwrap();
-            let gap = run.state[0] - a * (omega * run.trajectory.end().seconds()).sin();
-            assert!(gap > -1e-4, "lost at {start}: a = {a}, omega = {omega}, e = {e}: {gap} m, {:?}", run.stop);
-            limits += usize::from(matches!(run.stop, Stop::Zeno { .. }));
+            let gap = run.end.state[0] - a * (omega * run.trajectory.end().seconds()).sin();
+            assert!(gap > -1e-4, "lost at {start}: a = {a}, omega = {omega}, e = {e}: {gap} m, {:?}", run.end.stop);
+            limits += usize::from(matches!(run.end.stop, Stop::Zeno { .. }));
         }
     }
     assert!(limits > 450, "{limits} of 600");

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{About, Automaton, Edges, Fall, Jump, Limit, Refusal, Run, Simulation, Solution, Stats};
+use saltus::{About, Automaton, Edges, Fall, Jump, Limit, Refusal, Run, Simulation, Solution, State, Stats};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
 use saltus_bounce::restitution::{Knots, Linear, Plastic, Viscoelastic};
 use saltus_bounce::{Ball, Cor, Floor, Mode, Phase, Restitution, Turn};
@@ -13,7 +13,7 @@ fn cor(e: f64) -> Cor {
 }
 
 /// The jumps by which the ball meets the floor.
-fn impacts<A: Automaton>(run: &Run<A>, floor: A::Edge) -> Vec<Jump<A>> {
+fn impacts<M: Copy, E: Copy + PartialEq, S: State>(run: &Run<M, E, S>, floor: E) -> Vec<Jump<M, E, S>> {
     run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
 }
 
@@ -25,7 +25,7 @@ fn every_flight_rests() {
             let quadratic = QuadraticDragFlight::new(9.81, drag).unwrap();
             let ball = Ball::of(quadratic, cor(e));
             let run = Simulation::of(&ball).run(Phase::Falling, vector![2.0, 0.0], 0.0..1e4).unwrap();
-            assert_eq!((run.mode, run.stats.steps), (Phase::Rest, 0), "e = {e}, drag {drag}");
+            assert_eq!((run.end.mode, run.end.stats.steps), (Phase::Rest, 0), "e = {e}, drag {drag}");
             let expected = limit(&quadratic, e, 2.0);
             let got = run.trajectory.jumps().last().unwrap().t();
             assert!(
@@ -38,7 +38,7 @@ fn every_flight_rests() {
             let run = Simulation::of(&ball).run(Mode::Flight, vector![2.0, 0.0], 0.0..1e6).unwrap();
             let expected = limit(&linear, e, 2.0);
             let got = run.trajectory.jumps().last().unwrap().t();
-            assert_eq!((run.mode, run.stats.steps), (Mode::Rest, 0), "e = {e}, drag {drag}");
+            assert_eq!((run.end.mode, run.end.stats.steps), (Mode::Rest, 0), "e = {e}, drag {drag}");
             assert!((got / expected - 1.0).abs() < 1e-13, "linear, e = {e}, drag {drag}: {got} instead of {expected}");
         }
     }
@@ -60,10 +60,10 @@ fn limit(flight: &impl saltus_bounce::flight::VerticalFlight, e: f64, height: f6
 fn no_rebound_rests_at_once() {
     let ball = Ball::of(QuadraticDragFlight::new(9.81, 0.1).unwrap(), cor(0.0));
     let run = Simulation::of(&ball).run(Phase::Falling, vector![2.0, 0.0], 0.0..9.0).unwrap();
-    assert_eq!((run.mode, run.trajectory.jumps().len()), (Phase::Rest, 1));
+    assert_eq!((run.end.mode, run.trajectory.jumps().len()), (Phase::Rest, 1));
     let ball = Ball::of(LinearDragFlight::new(9.81, 0.1).unwrap(), cor(0.0));
     let run = Simulation::of(&ball).run(Mode::Flight, vector![0.0, 3.0], 0.0..9.0).unwrap();
-    assert_eq!((run.mode, run.trajectory.jumps().len()), (Mode::Rest, 1));
+    assert_eq!((run.end.mode, run.trajectory.jumps().len()), (Mode::Rest, 1));
 }
 
 /// A start on the floor, below it by a rounding, in the wrong phase, and thrown up.
@@ -71,8 +71,8 @@ fn no_rebound_rests_at_once() {
 fn starts() {
     let ball = Ball::of(QuadraticDragFlight::new(9.81, 0.1).unwrap(), cor(0.5));
     let run = |phase, x| Simulation::of(&ball).run(phase, x, 0.0..30.0).unwrap();
-    assert_eq!(run(Phase::Falling, vector![0.0, 0.0]).mode, Phase::Rest);
-    assert_eq!(run(Phase::Falling, vector![-1e-18, 0.0]).mode, Phase::Rest);
+    assert_eq!(run(Phase::Falling, vector![0.0, 0.0]).end.mode, Phase::Rest);
+    assert_eq!(run(Phase::Falling, vector![-1e-18, 0.0]).end.mode, Phase::Rest);
     let wrong = impacts(&run(Phase::Rising, vector![2.0, -1.0]), Turn::Floor)[0].t();
     assert_eq!(wrong, impacts(&run(Phase::Falling, vector![2.0, -1.0]), Turn::Floor)[0].t());
     let thrown = impacts(&run(Phase::Rising, vector![0.0, 9.0]), Turn::Floor)[0].t();
@@ -92,7 +92,7 @@ fn restitution_that_depends_on_the_speed() {
         for jump in impacts(&run, Floor) {
             assert_eq!(jump.after[1], law.rebound((-jump.before[1]).max(0.0)));
         }
-        assert_eq!(run.mode == Mode::Rest, rests);
+        assert_eq!(run.end.mode == Mode::Rest, rests);
     }
     check(Linear::new(cor(0.8), -0.02, 0.0, 10.0).unwrap(), true);
     check(Knots::new(&[(0.5, cor(0.9)), (5.0, cor(0.6))]).unwrap(), true);
@@ -151,17 +151,17 @@ fn what_is_not_named_costs_nothing() {
         let (ball, plain) = (Ball::new(9.8, cor(e)).unwrap(), Plain { g: 9.8, e });
         let run = Simulation::of(&ball).run(Mode::Flight, vector![1.0, 0.5], 0.0..200.0).unwrap();
         let other = Simulation::of(&plain).run(Mode::Flight, vector![1.0, 0.5], 0.0..200.0).unwrap();
-        assert_eq!(run.stats, other.stats);
+        assert_eq!(run.end.stats, other.end.stats);
         for (a, b) in run.trajectory.jumps().iter().zip(other.trajectory.jumps()) {
             assert_eq!((a.time, a.before, a.after), (b.time, b.before, b.after));
         }
-        assert_eq!(size_of_val(&run.state), 16, "two coordinates");
+        assert_eq!(size_of_val(&run.end.state), 16, "two coordinates");
     }
     // The counts of e = 0.5, as they were before there was anything else to name.
     let run =
         Simulation::of(&Ball::new(9.8, cor(0.5)).unwrap()).run(Mode::Flight, vector![1.0, 0.0], 0.0..4.0).unwrap();
-    assert_eq!((run.stats.flows, run.stats.steps, run.stats.exact), (0, 0, 53));
-    let Stats { jumps, steps, rejected, exact, flows, jacobians, .. } = run.stats;
+    assert_eq!((run.end.stats.flows, run.end.stats.steps, run.end.stats.exact), (0, 0, 53));
+    let Stats { jumps, steps, rejected, exact, flows, jacobians, .. } = run.end.stats;
     assert_eq!((jumps, exact, steps, rejected, flows, jacobians), (53, 53, 0, 0, 0, 0));
 }
 
@@ -171,8 +171,8 @@ fn a_floor_at_any_height() {
     let ball = Ball::new(9.81, cor(0.9)).unwrap();
     let high = ball.with_floor(8848.86).unwrap();
     let [a, b] = [ball, high].map(|ball| Simulation::of(&ball).run(Mode::Flight, vector![1.0, 0.0], 0.0..9.0).unwrap());
-    assert_eq!(a.stats, b.stats);
+    assert_eq!(a.end.stats, b.end.stats);
     assert!(a.trajectory.jumps().iter().zip(b.trajectory.jumps()).all(|(a, b)| a.time == b.time && a.after == b.after));
-    assert_eq!((high.height(&b.state), high.floor()), (8848.86, 8848.86));
+    assert_eq!((high.height(&b.end.state), high.floor()), (8848.86, 8848.86));
     assert!(ball.with_floor(f64::NAN).is_err());
 }

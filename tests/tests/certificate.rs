@@ -5,8 +5,8 @@
 use saltus::cross::Evidence;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    Automaton, Certificate, Edges, Hybrid, Invertible, Jump, Polynomial, Refusal, Reversed, Simulation, Stop,
-    Trajectory,
+    Automaton, Certificate, Edges, Hybrid, Invertible, Jump, JumpOf, Polynomial, Refusal, Reversed, Simulation, Stop,
+    TrajectoryOf,
 };
 
 fn ball() -> Hybrid<'static, Vector2<f64>> {
@@ -42,7 +42,7 @@ fn a_smooth_guard_leaves_no_doubt() {
 fn a_guard_too_fast_to_follow_is_doubted_where_it_was_not_followed() {
     let fast = watched(|t| 1.0 + 0.5 * (1e7 * t).sin());
     let run = Simulation::of(&fast).run("go", 0.0, 0.0..1.0).unwrap();
-    assert_eq!(run.stop, Stop::Time);
+    assert_eq!(run.end.stop, Stop::Time);
     let doubts = run.trajectory.doubts();
     assert!(!doubts.is_empty());
     for doubt in doubts {
@@ -160,7 +160,7 @@ fn doubts_are_written_read_and_turned_round() {
     let run = Simulation::of(&Touch).run((), 0.0, 0.0..1.0).unwrap();
     assert_eq!((run.trajectory.jumps().len(), run.trajectory.doubts().len()), (0, 1), "{run:?}");
     let written = serde_json::to_string(&run.trajectory).unwrap();
-    let read: Trajectory<Touch> = serde_json::from_str(&written).unwrap();
+    let read: TrajectoryOf<Touch> = serde_json::from_str(&written).unwrap();
     assert_eq!(read.doubts()[0].doubt(), run.trajectory.doubts()[0].doubt());
 
     let reversed = Reversed::of(&Touch);
@@ -172,7 +172,8 @@ fn doubts_are_written_read_and_turned_round() {
 
     let mut certificate = Certificate::new();
     Simulation::of(&Touch).drive((), 0.0, 0.0..1.0, &mut certificate).unwrap();
-    let read: Certificate<Touch> = serde_json::from_str(&serde_json::to_string(&certificate).unwrap()).unwrap();
+    let read: saltus::CertificateOf<Touch> =
+        serde_json::from_str(&serde_json::to_string(&certificate).unwrap()).unwrap();
     assert_eq!((read.total(), read.doubts().len()), (certificate.total(), 1));
 }
 
@@ -213,7 +214,7 @@ fn a_certificate_beside_a_trajectory() {
     let mut times = Vec::new();
     struct Times<'a>(&'a mut Vec<f64>);
     impl<A: Automaton> saltus::Observer<A> for Times<'_> {
-        fn jump(&mut self, jump: &Jump<A>) -> std::ops::ControlFlow<()> {
+        fn jump(&mut self, jump: &JumpOf<A>) -> std::ops::ControlFlow<()> {
             self.0.push(jump.t());
             std::ops::ControlFlow::Continue(())
         }

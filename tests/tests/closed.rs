@@ -63,7 +63,7 @@ fn three_ways_agree() {
         let ball = Ball { flight: QuadraticDragFlight::new(G, K).unwrap(), path };
         let run =
             Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(false, vector![10.0, 0.0], 0.0..9.0).unwrap();
-        assert_eq!(run.stop, Stop::Time);
+        assert_eq!(run.end.stop, Stop::Time);
         for arc in 0..run.trajectory.arcs().len() {
             for piece in run.trajectory.pieces(arc) {
                 let (start, s) = (piece.at(0.0), 0.7 * piece.span());
@@ -74,7 +74,7 @@ fn three_ways_agree() {
         let heights = (0..900).map(|k| run.trajectory.at(0.01 * f64::from(k)).unwrap()[0]);
         assert!(heights.clone().all(|y| y > -1e-12), "{:?}", heights.fold(0.0, f64::min));
         let times: Vec<_> = run.trajectory.jumps().iter().map(Jump::t).collect();
-        (times, run.state, run.stats)
+        (times, run.end.state, run.end.stats)
     };
     let [steps, searched, formula] = [Path::Steps, Path::Searched, Path::Formula].map(times);
     assert_eq!((searched.2.steps, formula.2.steps), (0, 0));

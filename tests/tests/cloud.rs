@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{Ending, Simulation, Stop};
+use saltus::{EndingOf, Simulation, Stop};
 use saltus_bounce::cloud::{Swarm, Touch};
 use saltus_bounce::line::{Lying, Row};
 use saltus_bounce::{Cloud, Cor, Line};
@@ -22,7 +22,7 @@ fn grid<const D: usize>(columns: usize) -> ([[f64; D]; 64], [[f64; D]; 64]) {
     )
 }
 
-fn gas<const D: usize>(columns: usize, gravity: f64, end: f64) -> (Cloud<D, 64>, Swarm<D, 64>, Ending<Cloud<D, 64>>) {
+fn gas<const D: usize>(columns: usize, gravity: f64, end: f64) -> (Cloud<D, 64>, Swarm<D, 64>, EndingOf<Cloud<D, 64>>) {
     let masses = std::array::from_fn(|n| 1.0 + (n % 5) as f64);
     let radii = std::array::from_fn(|n| 0.2 + 0.05 * (n % 4) as f64);
     let pull = std::array::from_fn(|k| if k + 1 == D { -gravity } else { 0.0 });
@@ -131,14 +131,14 @@ fn simultaneous() {
     let run = Simulation::of(&cloud).run((), start, 0.0..2.0).unwrap();
     let jumps = run.trajectory.jumps();
     assert_eq!((jumps.len(), jumps[0].t(), jumps[1].t()), (2, 1.0, 1.0));
-    assert_eq!(run.state.velocities, [[1.0, 1.0]]);
+    assert_eq!(run.end.state.velocities, [[1.0, 1.0]]);
 
     let cloud = Cloud::new([1.0; 3], [0.5; 3], cor(1.0)).unwrap();
     let start = cloud.placed([[0.0, 0.0], [2.0, 0.5], [2.0, -0.5]], [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]).unwrap();
     let run = Simulation::of(&cloud).run((), start, 0.0..4.0).unwrap();
     let jumps = run.trajectory.jumps();
     assert!(jumps.len() >= 2 && jumps.iter().all(|jump| (jump.t() - jumps[0].t()).abs() < 1e-15));
-    let (before, after) = (cloud.momentum(&start), cloud.momentum(&run.state));
+    let (before, after) = (cloud.momentum(&start), cloud.momentum(&run.end.state));
     assert!((before[0] - after[0]).abs() < 1e-15 && (before[1] - after[1]).abs() < 1e-15);
 }
 

@@ -7,19 +7,19 @@ use std::fmt::Debug;
 use proptest::prelude::*;
 use saltus::nalgebra::Vector2;
 use saltus::step::Stepper;
-use saltus::{Dop853, Rodas5P, Run, Simulation, Stop, Tsit5};
+use saltus::{Dop853, Rodas5P, Run, RunOf, Simulation, Stop, Tsit5};
 use saltus_bounce::compliant::{Moment, Stage};
 use saltus_bounce::contact::{ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
 use saltus_bounce::{Compliant, Cor, Drop};
 
 /// A run by steps that are as exact as they get.
-fn tight<L: ContactLaw>(ball: &Compliant<L>, stage: Stage, start: Vector2<f64>, end: f64) -> Run<Compliant<L>> {
+fn tight<L: ContactLaw>(ball: &Compliant<L>, stage: Stage, start: Vector2<f64>, end: f64) -> RunOf<Compliant<L>> {
     let simulation = Simulation::of(ball).stepper(Dop853).tolerance(1e-14).absolute_tolerance(1e-20);
     simulation.run(stage, start, 0.0..end).unwrap()
 }
 
 /// The speed and deformation at lift-off.
-fn released<L: ContactLaw>(run: &Run<Compliant<L>>) -> Vector2<f64> {
+fn released(run: &Run<Stage, Moment, Vector2<f64>>) -> Vector2<f64> {
     run.trajectory.jumps().iter().find(|jump| jump.edge() == Some(Moment::LiftOff)).unwrap().before
 }
 
@@ -31,7 +31,7 @@ fn stiffest<L: ContactLaw>(law: L, stepper: impl Stepper, tolerance: f64) -> (u6
     let run = simulation.run(stage, start, 0.0..0.21).unwrap();
     let contact = ball.contacts(&run.trajectory)[0];
     let announced = ball.law().collision(0.1, contact.speed).unwrap();
-    (run.stats.steps, (contact.cor.unwrap() - announced.cor.value()).abs())
+    (run.end.stats.steps, (contact.cor.unwrap() - announced.cor.value()).abs())
 }
 
 /// Every law at 10¹² in its own unit of stiffness: fewer than 500 steps a contact, and the announced COR.

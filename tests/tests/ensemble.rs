@@ -17,7 +17,7 @@ fn last_impact(k: usize) -> Result<[u64; 3], Error> {
         .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.8 * x[1]]);
     let run = Simulation::of(&ball).run("flight", vector![height, 0.0], 0.0..1.5).map_err(|failed| failed.error)?;
     let last = run.trajectory.jumps().last().unwrap();
-    Ok([last.t().to_bits(), run.state[0].to_bits(), run.stats.flows])
+    Ok([last.t().to_bits(), run.end.state[0].to_bits(), run.end.stats.flows])
 }
 
 fn on<T: Send>(threads: usize, f: impl FnOnce() -> T + Send) -> T {

@@ -6,7 +6,7 @@ use std::ops::{ControlFlow, Range};
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    Automaton, Clock, Coords, Edges, Entry, Error, ErrorKind, Hybrid, Jump, Linearize, Number, Observer, Refusal,
+    Automaton, Clock, Coords, Edges, Entry, Error, ErrorKind, Hybrid, JumpOf, Linearize, Number, Observer, Refusal,
     Reversed, Simulation, saltation,
 };
 
@@ -191,9 +191,9 @@ fn a_way_back_that_is_not_there() {
     let thermostat = thermostat.inverse("heat", "cool", |_t, x| 22.0 - x, |_t, x| *x);
     let there = Simulation::of(&thermostat).run("heat", 20.5, 0.0..10.0).unwrap();
     let reversed = Reversed::of(&thermostat);
-    let back = Simulation::of(&reversed).run(there.mode, there.state, Reversed::span(10.0, 0.0)).unwrap();
-    assert_eq!((back.mode, back.trajectory.jumps().len()), ("heat", there.trajectory.jumps().len()));
-    assert!((back.state - 20.5).abs() < 1e-9, "{}", back.state);
+    let back = Simulation::of(&reversed).run(there.end.mode, there.end.state, Reversed::span(10.0, 0.0)).unwrap();
+    assert_eq!((back.end.mode, back.trajectory.jumps().len()), ("heat", there.trajectory.jumps().len()));
+    assert!((back.end.state - 20.5).abs() < 1e-9, "{}", back.end.state);
 }
 
 #[test]
@@ -303,7 +303,7 @@ fn a_crossing_without_speed_has_no_derivative() {
 fn every_ending_is_a_sentence() {
     let ball = ball();
     let stop = |simulation: Simulation<'_, Planar>, end: f64| {
-        simulation.run("flight", DROPPED, 0.0..end).unwrap().stop.to_string()
+        simulation.run("flight", DROPPED, 0.0..end).unwrap().end.stop.to_string()
     };
     insta::assert_snapshot!(stop(Simulation::of(&ball), 1.0), @"the end of the span was reached");
     insta::assert_snapshot!(stop(Simulation::of(&ball).most_jumps(3), 1.3), @"the limit of 3 jumps was reached: raise Simulation::most_jumps to go on");
@@ -315,21 +315,32 @@ fn every_ending_is_a_sentence() {
     insta::assert_snapshot!(rest.trim_start_matches(char::is_numeric), @": say what lies there, to go on, by Automaton::beyond or Hybrid::beyond, in each mode of the jumps (and for derivatives by Linearize::beyond_over)");
 
     let heater = heater().terminal("heat", |_t, x| 22.0 - x);
-    insta::assert_snapshot!(Simulation::of(&heater).run("heat", 20.0, 0.0..5.0).unwrap().stop, @"the terminal edge heat -> heat (edge 0) was taken");
+    insta::assert_snapshot!(Simulation::of(&heater).run("heat", 20.0, 0.0..5.0).unwrap().end.stop, @"the terminal edge heat -> heat (edge 0) was taken");
     let circle = self::heater().edge("heat", "cool", |_t, x| 22.0 - x, |_t, x| x - 2.0).edge(
         "cool",
         "heat",
         |_t, x| x - 20.0,
         |_t, x| x + 2.0,
     );
-    insta::assert_snapshot!(Simulation::of(&circle).run("heat", 20.0, 0.0..5.0).unwrap().stop, @"too many jumps at one time, the last by edge heat -> cool (edge 0): let a reset lead away from the guards it meets; where the flows of two modes push against each other, give them a mode that slides between (Filippov)");
+    insta::assert_snapshot!(Simulation::of(&circle).run("heat", 20.0, 0.0..5.0).unwrap().end.stop, @"too many jumps at one time, the last by edge heat -> cool (edge 0): let a reset lead away from the guards it meets; where the flows of two modes push against each other, give them a mode that slides between (Filippov)");
 
     struct Enough;
     impl<A: Automaton> Observer<A> for Enough {
-        fn jump(&mut self, _: &Jump<A>) -> ControlFlow<()> {
+        fn jump(&mut self, _: &JumpOf<A>) -> ControlFlow<()> {
             ControlFlow::Break(())
         }
     }
     let end = Simulation::of(&ball).drive("flight", DROPPED, 0.0..5.0, &mut Enough).unwrap();
     insta::assert_snapshot!(end.stop, @"the observer ended the run");
+}
+
+/// A run, and a failure, outlive the automaton that they came from, and what that borrows.
+#[test]
+fn what_a_run_hands_out_borrows_nothing() {
+    fn grown(rate: f64) -> Result<saltus::Run<&'static str, saltus::Link, f64>, Box<dyn std::error::Error>> {
+        let growth = Hybrid::new().mode("grow", |_t, x: &f64| rate * x * x);
+        Ok(Simulation::of(&growth).run("grow", 1.0, 0.0..2.0)?)
+    }
+    assert!((grown(0.25).unwrap().end.state - 2.0).abs() < 1e-8);
+    assert!(grown(1.0).unwrap_err().to_string().starts_with("the flow"));
 }

@@ -3,22 +3,22 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Hybrid, Jump, Run, Simulation, Stop};
+use saltus::{Hybrid, JumpOf, RunOf, Simulation, Stop};
 use saltus_bounce::{Ball, Cor, Drop, Mode};
 
 fn ball(g: f64, e: f64) -> Ball {
     Ball::new(g, Cor::new(e).unwrap()).unwrap()
 }
 
-fn run(ball: &Ball, start: Vector2<f64>, end: f64) -> Run<Ball> {
+fn run(ball: &Ball, start: Vector2<f64>, end: f64) -> RunOf<Ball> {
     Simulation::of(ball).run(Mode::Flight, start, 0.0..end).unwrap()
 }
 
-fn impact(run: &Run<Ball>, n: usize) -> &Jump<Ball> {
+fn impact(run: &RunOf<Ball>, n: usize) -> &JumpOf<Ball> {
     &run.trajectory.jumps()[n - 1]
 }
 
-fn rest_time(run: &Run<Ball>) -> f64 {
+fn rest_time(run: &RunOf<Ball>) -> f64 {
     run.trajectory.jumps().iter().find(|jump| jump.to == Mode::Rest).unwrap().t()
 }
 
@@ -34,7 +34,7 @@ fn impacts_until_rest() {
         let run = run(&ball(9.8, e), vector![1.0, 0.0], 100.0);
         assert_eq!(run.trajectory.jumps().len(), impacts + 1, "e = {e}");
         assert!((rest_time(&run) - limit).abs() <= 4e-15 * limit, "e = {e}: {}", rest_time(&run));
-        assert_eq!((run.mode, run.stop), (Mode::Rest, Stop::Time));
+        assert_eq!((run.end.mode, run.end.stop), (Mode::Rest, Stop::Time));
         for k in 0..=100_000_u32 {
             let x = run.trajectory.at(f64::from(k) * 1e-3).unwrap();
             assert!(x[0] >= 0.0, "e = {e}: {x:?} at step {k}");
@@ -100,6 +100,6 @@ fn every_path_gives_the_same_impacts() {
         }
     }
     // What it costs: the exact arc takes no step, and excluding or finding a crossing takes no more flow than the step it lies in, twice.
-    assert_eq!((arcs.stats.steps, arcs.stats.flows), (0, 0));
-    assert_eq!((affine.stats.steps, affine.stats.rejected), (general.stats.steps, 0));
+    assert_eq!((arcs.end.stats.steps, arcs.end.stats.flows), (0, 0));
+    assert_eq!((affine.end.stats.steps, affine.end.stats.rejected), (general.end.stats.steps, 0));
 }

@@ -37,7 +37,7 @@ fn a_full_hit_on_a_table() {
         Flying::new(&[rolling, still]),
         0.0..3.0,
     );
-    let state = run.unwrap().state;
+    let state = run.unwrap().end.state;
     for (n, share) in [(0, 2.0 / 7.0), (1, 5.0 / 7.0)] {
         let (v, w) = (state.ball(n).velocity, state.ball(n).spin);
         assert!((v - vector![0.7 * share, 0.0, 0.0]).norm() < 1e-9, "{n}: {v}");
@@ -211,5 +211,5 @@ fn by_type() {
     let at = |up: f64| Moving::new(vector![0.0, 0.0, up], Vector3::zeros()).spinning(Vector3::zeros());
     let start = Flying::new(&[at(0.1), at(0.3)]);
     let run = Simulation::of(&flock).run(start.stances(), start, 0.0..5.0).unwrap();
-    assert!(matches!(run.stop, Stop::Zeno { .. }), "{:?}", run.stop);
+    assert!(matches!(run.end.stop, Stop::Zeno { .. }), "{:?}", run.end.stop);
 }

@@ -36,15 +36,15 @@ fn a_block_shot_up_an_incline() {
         let ball = Flyer::gripped(gravity(g), Plane::incline(angle).unwrap(), cor(0.5), block).unwrap();
         let (stance, x) = ball.lying(FLOOR, 0.0, Moving::new(vector![0.0, 0.0], up * v));
         let run = Simulation::of(&ball).run(stance, x, 0.0..3.0).unwrap();
-        assert_eq!(run.stats.steps, 0);
+        assert_eq!(run.end.stats.steps, 0);
         let (rise, hold) = (g * (angle.sin() + mu * angle.cos()), g * (angle.sin() - mu * angle.cos()));
         let stops = v / rise;
         let top = 0.5 * v * stops;
         let down = if hold > 0.0 { 0.5 * hold * (3.0 - stops).powi(2) } else { 0.0 };
-        assert!((run.state.position.dot(&up) - (top - down)).abs() < 1e-13, "mu = {mu}: {run:?}");
+        assert!((run.end.state.position.dot(&up) - (top - down)).abs() < 1e-13, "mu = {mu}: {run:?}");
         if mu > 0.0 {
             assert!((run.trajectory.jumps()[0].t() - stops).abs() < 1e-15);
-            assert_eq!(matches!(run.mode, Stance::Hold { .. }), hold <= 0.0, "mu = {mu}");
+            assert_eq!(matches!(run.end.mode, Stance::Hold { .. }), hold <= 0.0, "mu = {mu}");
         }
     }
 }
@@ -59,8 +59,8 @@ fn from_sliding_to_rolling() {
     let run = Simulation::of(&ball).run(stance, x, 0.0..3.0).unwrap();
     let rolls = &run.trajectory.jumps()[0];
     assert!((rolls.t() - 2.0 / (mu * g)).abs() < 1e-15);
-    assert!((run.state.velocity[0] - 5.0).abs() < 1e-14 && (run.state.spin + 5.0 / radius).abs() < 1e-12);
-    assert_eq!((run.mode, run.stats.steps), (Stance::Hold { face: FLOOR }, 0));
+    assert!((run.end.state.velocity[0] - 5.0).abs() < 1e-14 && (run.end.state.spin + 5.0 / radius).abs() < 1e-12);
+    assert_eq!((run.end.mode, run.end.stats.steps), (Stance::Hold { face: FLOOR }, 0));
 
     for (angle, rolls) in [(0.5_f64, true), (0.9, false)] {
         // It rolls where (2/7) tan α ≤ μ.
@@ -68,8 +68,8 @@ fn from_sliding_to_rolling() {
         let (stance, x) = ball.lying(FLOOR, 0.0, Moving::new(vector![0.0, 0.0], vector![0.0, 0.0]).spinning(0.0));
         let run = Simulation::of(&ball).run(stance, x, 0.0..1.0).unwrap();
         let a = if rolls { 5.0 / 7.0 * g * angle.sin() } else { g * (angle.sin() - mu * angle.cos()) };
-        assert_eq!(matches!(run.mode, Stance::Hold { .. }), rolls);
-        assert!((run.state.velocity.norm() - a).abs() < 1e-14, "{:?}", run.state);
+        assert_eq!(matches!(run.end.mode, Stance::Hold { .. }), rolls);
+        assert!((run.end.state.velocity.norm() - a).abs() < 1e-14, "{:?}", run.end.state);
     }
 }
 
@@ -84,11 +84,11 @@ fn a_billiard_ball_with_side_spin() {
     let run = Simulation::of(&ball).tolerance(1e-12).run(stance, x, 0.0..3.0).unwrap();
     // The slip keeps its direction, so the path is a parabola; v ends as (5 v + 2 R n×ω... )/7 of the start.
     let rolls = vector![2.0 * 5.0 / 7.0, 40.0 * radius * 2.0 / 7.0, 0.0];
-    assert_eq!(run.mode, Stance::Hold { face: FLOOR });
-    assert!((run.state.velocity - rolls).norm() < 1e-9, "{:?}", run.state);
+    assert_eq!(run.end.mode, Stance::Hold { face: FLOOR });
+    assert!((run.end.state.velocity - rolls).norm() < 1e-9, "{:?}", run.end.state);
     let slip = vector![2.0, -40.0 * radius, 0.0].norm();
     assert!((run.trajectory.jumps()[0].t() - slip * 2.0 / 7.0 / (mu * g)).abs() < 1e-9);
-    assert_eq!(run.state.spin[2], 5.0);
+    assert_eq!(run.end.state.spin[2], 5.0);
 }
 
 /// A ball in a bowl slides for ever; one on a hilltop slides off, and leaves a sphere at the height 2R/3 (cos = 2/3).
@@ -109,8 +109,8 @@ fn curved_ground() {
     let bowl = Flyer::new(gravity(g), Round::bowl(vector![0.0, 0.0], radius).unwrap(), cor(0.5)).unwrap();
     let start = Moving::new(vector![0.3, 0.0], vector![0.0, 0.0]);
     let run = Simulation::of(&bowl).stepper(Dop853).tolerance(1e-11).run(Stance::FLIGHT, start, 0.0..20.0).unwrap();
-    assert!(matches!(run.mode, Stance::Slide { .. }), "{:?}", run.mode);
-    assert!((run.state.position.norm() - radius).abs() < 1e-8);
+    assert!(matches!(run.end.mode, Stance::Slide { .. }), "{:?}", run.end.mode);
+    assert!((run.end.state.position.norm() - radius).abs() < 1e-8);
 }
 
 /// On curved ground in space the normal turns on the way: what rolls goes on rolling, spinning or not.
@@ -134,14 +134,14 @@ fn rolling_in_a_bowl() {
         let (stance, x) = ball.lying(FLOOR, 0.0, start);
         assert_eq!(stance, Stance::Hold { face: FLOOR });
         let run = Simulation::of(&ball).tolerance(1e-12).run(stance, x, 0.0..3.0).unwrap();
-        assert_eq!(run.mode, stance, "{:?}", run.trajectory.jumps());
-        let n = -run.state.position / size;
-        let slip = run.state.velocity - run.state.spin.cross(&n) * radius;
+        assert_eq!(run.end.mode, stance, "{:?}", run.trajectory.jumps());
+        let n = -run.end.state.position / size;
+        let slip = run.end.state.velocity - run.end.state.spin.cross(&n) * radius;
         assert!(slip.norm() < 1e-8, "slips by {} m/s, spinning by {about}", slip.norm());
-        assert!((energy(&run.state) - energy(&x)).abs() < 1e-9, "{}", energy(&run.state) - energy(&x));
-        assert!((run.state.position.norm() - size).abs() < 1e-9);
+        assert!((energy(&run.end.state) - energy(&x)).abs() < 1e-9, "{}", energy(&run.end.state) - energy(&x));
+        assert!((run.end.state.position.norm() - size).abs() < 1e-9);
         // It has not stayed level, where the normal would turn about the vertical only.
-        assert!((run.state.position[2] + 0.4).abs() > 1e-3);
+        assert!((run.end.state.position[2] + 0.4).abs() > 1e-3);
     }
 }
 
@@ -175,21 +175,35 @@ fn a_ball_that_rolls_off_a_hill() {
     };
     assert!((when("Slip") - flat("Slip")).abs() < 1e-10 && (when("Leave") - flat("Leave")).abs() < 1e-10);
     assert!(when("Slip") < when("Veer") && when("Veer") < when("Leave"));
-    assert!((run.state.velocity.dot(&down) - plane.state.velocity[0]).abs() < 1e-9);
-    assert!((run.state.velocity[2] - plane.state.velocity[1]).abs() < 1e-9);
-    assert!((run.state.spin.norm() - plane.state.spin.abs()).abs() < 1e-7, "{:?}", run.state.spin);
+    assert!((run.end.state.velocity.dot(&down) - plane.end.state.velocity[0]).abs() < 1e-9);
+    assert!((run.end.state.velocity[2] - plane.end.state.velocity[1]).abs() < 1e-9);
+    assert!((run.end.state.spin.norm() - plane.end.state.spin.abs()).abs() < 1e-7, "{:?}", run.end.state.spin);
 
     // Across the hill the push turns on the way.
     let (stance, x) = across(vector![0.6, 0.0, 0.8], vector![-0.3, 0.9, 0.225]);
     let best = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..0.8).unwrap();
-    assert!(matches!(best.mode, Stance::Flight { .. }) && best.trajectory.jumps().len() == 3, "{:?}", best.mode);
+    assert!(
+        matches!(best.end.mode, Stance::Flight { .. }) && best.trajectory.jumps().len() == 3,
+        "{:?}",
+        best.end.mode
+    );
     let off = |x: &Moving<3, Vector3<f64>>| {
-        (x.velocity - best.state.velocity).norm() + (x.spin - best.state.spin).norm() * radius
+        (x.velocity - best.end.state.velocity).norm() + (x.spin - best.end.state.spin).norm() * radius
     };
     let explicit = Simulation::of(&ball).stepper(Tsit5).tolerance(1e-10).run(stance, x, 0.0..0.8).unwrap();
     let stiff = Simulation::of(&ball).stepper(Rodas5P).tolerance(1e-8).run(stance, x, 0.0..0.8).unwrap();
-    assert!(off(&explicit.state) < 1e-8 && off(&stiff.state) < 1e-6, "{} {}", off(&explicit.state), off(&stiff.state));
-    assert!(explicit.stats.steps < 2000 && stiff.stats.steps < 2000, "{} {}", explicit.stats.steps, stiff.stats.steps);
+    assert!(
+        off(&explicit.end.state) < 1e-8 && off(&stiff.end.state) < 1e-6,
+        "{} {}",
+        off(&explicit.end.state),
+        off(&stiff.end.state)
+    );
+    assert!(
+        explicit.end.stats.steps < 2000 && stiff.end.stats.steps < 2000,
+        "{} {}",
+        explicit.end.stats.steps,
+        stiff.end.stats.steps
+    );
 }
 
 /// Wind presses a block on a table that shakes: it holds while μ(g + h'' + k h') > k w, slips from where that ends, and not before.
@@ -235,14 +249,18 @@ fn stairs() {
             let ball = Flyer::new(gravity(9.81), stairs.clone(), cor(e)).unwrap();
             let start = Moving::new(vector![0.1, 1.4], vector![u, 0.0]);
             let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..40.0).unwrap();
-            assert_eq!((run.stop, run.stats.steps), (Stop::Time, 0));
+            assert_eq!((run.end.stop, run.end.stats.steps), (Stop::Time, 0));
             for k in 0..1200 {
                 let x = run.trajectory.at(0.01 * f64::from(k)).unwrap();
                 assert!(!inside(&x.position), "e = {e}, u = {u}: {x:?}");
             }
             if u > 0.0 {
-                assert_eq!(run.mode.cell(), 5, "e = {e}, u = {u}: down to the last");
-                assert!((run.state.velocity - vector![u, 0.0]).norm() < 1e-9, "e = {e}, u = {u}: {:?}", run.state);
+                assert_eq!(run.end.mode.cell(), 5, "e = {e}, u = {u}: down to the last");
+                assert!(
+                    (run.end.state.velocity - vector![u, 0.0]).norm() < 1e-9,
+                    "e = {e}, u = {u}: {:?}",
+                    run.end.state
+                );
             }
         }
     }
@@ -252,7 +270,7 @@ fn stairs() {
     let (stance, x) = ball.lying(tread, 0.0, Moving::new(vector![0.8, 0.6], vector![-1.0, 0.0]));
     let run = Simulation::of(&ball).run(stance, x, 0.0..0.5).unwrap();
     assert!((run.trajectory.jumps()[0].t() - 0.2).abs() < 1e-14);
-    assert!((run.state.velocity - vector![0.5, 0.0]).norm() < 1e-14 && run.mode == stance);
+    assert!((run.end.state.velocity - vector![0.5, 0.0]).norm() < 1e-14 && run.end.mode == stance);
     let ball = Flyer::new(gravity(10.0), Stairs::new(vec![0.0], vec![0.0, -1.0]).unwrap(), cor(0.5)).unwrap();
     let run = Simulation::of(&ball).most_jumps(1).run(
         Stance::FLIGHT,
@@ -276,8 +294,8 @@ fn lifts() {
     assert!((edges[0].0 - 1.0).abs() < 2e-16 && matches!(edges[0].1, Event::Leave(_)), "{edges:?}");
     let lands = edges.last().unwrap().0;
     assert!((lands - 2.0 - 0.5_f64.sqrt()).abs() < 1e-14, "{edges:?}");
-    assert_eq!(run.mode, Stance::Slide { face: FLOOR, along: vector![0.0] });
-    assert!((run.state.position[0] + 2.5 + 10.0 * 2.5).abs() < 1e-13);
+    assert_eq!(run.end.mode, Stance::Slide { face: FLOOR, along: vector![0.0] });
+    assert!((run.end.state.position[0] + 2.5 + 10.0 * 2.5).abs() < 1e-13);
 }
 
 /// On a floor that rises a ball that hardly rebounds soon does so by less than its velocity can tell: it has come to lie there.
@@ -321,9 +339,9 @@ fn a_shaken_table_from_any_hour() {
             let span = late..late + turns * TAU / omega;
             let run = Simulation::of(&ball).most_jumps(5000).run(Stance::FLIGHT, start, span).unwrap();
             let says = format!("omega {omega}, strength {strength}, e {e}, mean {mean}, phase {phase}, from {late} s");
-            assert_eq!(run.stop, Stop::Time, "{says}");
+            assert_eq!(run.end.stop, Stop::Time, "{says}");
             assert!(
-                table.margin(FLOOR, run.trajectory.end().seconds(), &run.state.position) > -1e-12 * (1.0 + mean),
+                table.margin(FLOOR, run.trajectory.end().seconds(), &run.end.state.position) > -1e-12 * (1.0 + mean),
                 "{says}"
             );
             let jumps = run.trajectory.jumps();
@@ -347,8 +365,12 @@ fn a_corner() {
         let ball = Flyer::new(gravity(9.81), walls, cor(e)).unwrap();
         let start = Moving::new(vector![0.6, 1.0], vector![0.5, 0.0]);
         let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..60.0).unwrap();
-        assert_eq!(run.mode, Stance::Corner { cell: 0, faces: 3 }, "e = {e}");
-        assert!(run.state.position.norm() < 1e-9 && run.state.velocity.norm() == 0.0, "e = {e}: {:?}", run.state);
+        assert_eq!(run.end.mode, Stance::Corner { cell: 0, faces: 3 }, "e = {e}");
+        assert!(
+            run.end.state.position.norm() < 1e-9 && run.end.state.velocity.norm() == 0.0,
+            "e = {e}: {:?}",
+            run.end.state
+        );
     }
 }
 
@@ -361,10 +383,10 @@ fn floors_far_away() {
         let start = Moving::new(vector![0.0, height + 1.0], vector![1.0, 0.0]);
         let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..9.0).unwrap();
         let rest = run.trajectory.jumps().last().unwrap();
-        assert!(matches!(run.mode, Stance::Slide { .. }), "{height}: {:?}", run.mode);
+        assert!(matches!(run.end.mode, Stance::Slide { .. }), "{height}: {:?}", run.end.mode);
         let limit = (2.0 / g).sqrt() * (1.0 + e) / (1.0 - e);
         assert!((rest.t() - limit).abs() < 4e-15 * (1.0 + height.abs()), "{height}: {} {limit}", rest.t());
-        assert!((run.state.position[0] - 9.0).abs() < 1e-12);
+        assert!((run.end.state.position[0] - 9.0).abs() < 1e-12);
     }
 }
 

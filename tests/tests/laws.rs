@@ -4,10 +4,10 @@
 
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Run, Simulation};
+use saltus::{RunOf, Simulation};
 use saltus_bounce::{Ball, Cor, Mode};
 
-fn run(g: f64, e: f64, start: Vector2<f64>, span: std::ops::Range<f64>) -> Run<Ball> {
+fn run(g: f64, e: f64, start: Vector2<f64>, span: std::ops::Range<f64>) -> RunOf<Ball> {
     let ball = Ball::new(g, Cor::new(e).unwrap()).unwrap();
     Simulation::of(&ball).most_jumps(2000).run(Mode::Flight, start, span).unwrap()
 }
@@ -50,10 +50,10 @@ proptest! {
     fn splitting_the_span_changes_nothing(e in 0.1..0.95_f64, h in 0.1..5.0_f64, cut in 0.01..3.0_f64) {
         let whole = run(9.81, e, vector![h, 0.0], 0.0..3.0);
         let first = run(9.81, e, vector![h, 0.0], 0.0..cut);
-        prop_assume!(first.mode == Mode::Flight);
+        prop_assume!(first.end.mode == Mode::Flight);
         let ball = Ball::new(9.81, Cor::new(e).unwrap()).unwrap();
-        let second = Simulation::of(&ball).run(first.mode, first.state, cut..3.0).unwrap();
-        let (x, y) = (whole.state, second.state);
+        let second = Simulation::of(&ball).run(first.end.mode, first.end.state, cut..3.0).unwrap();
+        let (x, y) = (whole.end.state, second.end.state);
         // A split flight rounds its start; the difference grows with each flight that remains.
         prop_assert!((x - y).norm() < 1e-9, "{x:?} {y:?}");
     }

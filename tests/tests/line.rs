@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{Run, Simulation, Stop};
+use saltus::{RunOf, Simulation, Stop};
 use saltus_bounce::line::{Contact, Lying, Row};
 use saltus_bounce::{Cor, Drop, Line};
 
@@ -11,7 +11,7 @@ fn cor(e: f64) -> Cor {
     Cor::new(e).unwrap()
 }
 
-fn run<const N: usize>(line: &Line<N>, start: Row<N>, end: f64) -> Run<Line<N>> {
+fn run<const N: usize>(line: &Line<N>, start: Row<N>, end: f64) -> RunOf<Line<N>> {
     Simulation::of(line).run(Lying::NONE, start, 0.0..end).unwrap()
 }
 
@@ -27,7 +27,7 @@ fn one_ball_bounces_and_rests() {
     }
     let rest = run.trajectory.jumps().last().unwrap();
     assert!((rest.t() - drop.rest_time().unwrap()).abs() < 1e-15);
-    assert_eq!((run.mode, run.state), (Lying::balls(1), Row { gaps: [0.0], velocities: [0.0] }));
+    assert_eq!((run.end.mode, run.end.state), (Lying::balls(1), Row { gaps: [0.0], velocities: [0.0] }));
 }
 
 /// A stack of lossy balls comes to rest on the floor, all of it, and lies until it is hit.
@@ -36,8 +36,8 @@ fn a_stack_comes_to_rest() {
     for e in [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8] {
         let line = Line::new([1.0, 0.7, 0.5], cor(e)).unwrap().with_gravity(9.81).unwrap().on_floor();
         let run = run(&line, Row { gaps: [1.0, 0.3, 0.2], velocities: [0.0; 3] }, 60.0);
-        assert_eq!((run.stop, run.mode), (Stop::Time, Lying::balls(3)), "e = {e}");
-        assert_eq!(run.state, Row { gaps: [0.0; 3], velocities: [0.0; 3] });
+        assert_eq!((run.end.stop, run.end.mode), (Stop::Time, Lying::balls(3)), "e = {e}");
+        assert_eq!(run.end.state, Row { gaps: [0.0; 3], velocities: [0.0; 3] });
     }
 }
 
@@ -91,7 +91,7 @@ proptest! {
         let line = Line::new(logs.map(|log| 10.0_f64.powf(log)), cor(e)).unwrap().with_gravity(9.81).unwrap().on_floor();
         let start = Row { gaps, velocities: [0.0; 4] };
         let run = Simulation::of(&line).most_jumps(2_000_000).run(Lying::NONE, start, 0.0..30.0).unwrap();
-        prop_assert_eq!((run.stop, run.mode, run.state.velocities), (Stop::Time, Lying::balls(4), [0.0; 4]));
+        prop_assert_eq!((run.end.stop, run.end.mode, run.end.state.velocities), (Stop::Time, Lying::balls(4), [0.0; 4]));
         let mut last = line.energy(&start);
         for jump in run.trajectory.jumps() {
             let energy = line.energy(&jump.after);
@@ -111,7 +111,7 @@ proptest! {
         let mirror = Line::new(mirrored, cor(e)).unwrap();
         let one = run(&line, Row { gaps: [0.0, gaps[0], gaps[1], gaps[2]], velocities: v }, 2.0);
         let two = run(&mirror, Row { gaps: [0.0, gaps[2], gaps[1], gaps[0]], velocities: [-v[3], -v[2], -v[1], -v[0]] }, 2.0);
-        let of = |run: &Run<Line<4>>, flip: bool| -> Vec<(Contact, f64)> {
+        let of = |run: &RunOf<Line<4>>, flip: bool| -> Vec<(Contact, f64)> {
             let edges = run.trajectory.jumps().iter().map(|jump| (jump.edge().unwrap(), jump.t()));
             edges.map(|(Contact(i), t)| (Contact(if flip { 4 - i } else { i }), t)).collect()
         };

@@ -5,7 +5,7 @@
 use allocation_counter::measure;
 use saltus::nalgebra::vector;
 use saltus::step::Stepper;
-use saltus::{Automaton, Dop853, Jump, Simulation};
+use saltus::{Automaton, Dop853, JumpOf, Simulation};
 use saltus_bounce::effects::{Gravity, QuadraticDrag};
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::walls::{Cuboid, Plane, Table};
@@ -43,7 +43,7 @@ fn check<A: Automaton, M: Stepper>(
     for rate in [24.0, 30.0, 60.0, 240.0, 1.0, 0.0] {
         let times = frames(rate, end);
         let mut live = Live::start(automaton, simulation, mode, x, 0.0..end).unwrap();
-        let mut met: Vec<Jump<A>> = Vec::new();
+        let mut met: Vec<JumpOf<A>> = Vec::new();
         for &t in &times {
             let before = met.len();
             let frame = live.advance_to(t, |jump| met.push(*jump)).unwrap();

@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    About, Automaton, Checkpoint, Coords, Edges, Jump, Observer, Piece, Refusal, Simulation, State, Stop, Trajectory,
+    About, Automaton, CheckpointOf, Coords, Edges, Jump, JumpOf, Observer, Piece, Refusal, Simulation, State, Stop,
+    TrajectoryOf,
 };
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +98,7 @@ fn quadratic_drag_to_the_last_digits() {
 struct Bits(Vec<[u64; 3]>);
 
 impl Observer<Drag> for Bits {
-    fn jump(&mut self, jump: &Jump<Drag>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Drag>) -> ControlFlow<()> {
         self.0.push([jump.t().to_bits(), jump.after[0].to_bits(), jump.after[1].to_bits()]);
         ControlFlow::Continue(())
     }
@@ -116,7 +117,7 @@ fn resumed_to_the_bit() {
             course.advance(&mut pieced).unwrap();
         }
         let written = serde_json::to_string(&course.checkpoint()).unwrap();
-        let checkpoint: Checkpoint<Drag> = serde_json::from_str(&written).unwrap();
+        let checkpoint: CheckpointOf<Drag> = serde_json::from_str(&written).unwrap();
         let resumed = simulation.resume(checkpoint).finish(&mut pieced).unwrap();
         assert_eq!(whole, pieced, "paused after {pause}");
         assert_eq!((end.stats, end.stop), (resumed.stats, resumed.stop));
@@ -132,14 +133,14 @@ fn another_format_is_refused() {
     let format = written["format"].as_u64().unwrap();
     for other in [format - 1, format + 1, u64::from(u32::MAX)] {
         written["format"] = other.into();
-        let refused = serde_json::from_value::<Checkpoint<Drag>>(written.clone()).unwrap_err().to_string();
+        let refused = serde_json::from_value::<CheckpointOf<Drag>>(written.clone()).unwrap_err().to_string();
         assert!(
             refused.contains(&format!("of format {other}, and this version of saltus reads format {format}")),
             "{refused}"
         );
     }
     written.as_object_mut().unwrap().remove("format");
-    let refused = serde_json::from_value::<Checkpoint<Drag>>(written).unwrap_err().to_string();
+    let refused = serde_json::from_value::<CheckpointOf<Drag>>(written).unwrap_err().to_string();
     assert!(refused.contains("missing field `format`"), "{refused}");
 }
 
@@ -147,7 +148,7 @@ fn another_format_is_refused() {
 fn a_trajectory_written_and_read_back() {
     let run = Simulation::of(&Drag).run(Mode::Falling, START, 0.0..5.0).unwrap();
     let written = serde_json::to_string(&run.trajectory).unwrap();
-    let read: Trajectory<Drag> = serde_json::from_str(&written).unwrap();
+    let read: TrajectoryOf<Drag> = serde_json::from_str(&written).unwrap();
     for k in 0..=500_u32 {
         let t = f64::from(k) / 100.0;
         assert_eq!(run.trajectory.at(t), read.at(t));
@@ -238,12 +239,12 @@ fn both_limits() {
 fn limits_are_endings() {
     let simulation = Simulation::of(&Drag);
     let jumps = simulation.most_jumps(5).run(Mode::Falling, START, 0.0..10.0).unwrap();
-    assert_eq!((jumps.stop, jumps.trajectory.jumps().len()), (Stop::Jumps { most: 5 }, 5));
+    assert_eq!((jumps.end.stop, jumps.trajectory.jumps().len()), (Stop::Jumps { most: 5 }, 5));
     let steps = simulation.most_steps(20).run(Mode::Falling, START, 0.0..10.0).unwrap();
-    assert_eq!((steps.stop, steps.stats.steps), (Stop::Steps { most: 20 }, 20));
+    assert_eq!((steps.end.stop, steps.end.stats.steps), (Stop::Steps { most: 20 }, 20));
     let evaluations = simulation.most_evaluations(200).run(Mode::Falling, START, 0.0..10.0).unwrap();
-    assert_eq!(evaluations.stop, Stop::Evaluations { most: 200 });
-    assert!((200..300).contains(&evaluations.stats.evaluations()), "{:?}", evaluations.stats);
+    assert_eq!(evaluations.end.stop, Stop::Evaluations { most: 200 });
+    assert!((200..300).contains(&evaluations.end.stats.evaluations()), "{:?}", evaluations.end.stats);
     struct Enough;
     impl Observer<Drag> for Enough {
         fn piece(&mut self, _: Mode, piece: &Piece<'_, Vector2<f64>>) -> ControlFlow<()> {
@@ -258,8 +259,8 @@ fn limits_are_endings() {
 fn runs_can_be_shared_between_threads() {
     fn shared<T: Send + Sync>() {}
     shared::<Simulation<'_, Drag>>();
-    shared::<Trajectory<Drag>>();
-    shared::<Checkpoint<Drag>>();
-    shared::<saltus::Certificate<Drag>>();
+    shared::<TrajectoryOf<Drag>>();
+    shared::<CheckpointOf<Drag>>();
+    shared::<saltus::CertificateOf<Drag>>();
     shared::<saltus::Hybrid<'_, Vector2<f64>>>();
 }

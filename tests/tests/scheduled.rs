@@ -8,7 +8,7 @@ use saltus::{Clock, Hybrid, Polynomial, Simulation};
 fn a_schedule_starts_after_the_start_and_ends_with_the_span() {
     let count =
         Hybrid::new().mode("count", |_t, _x: &f64| 0.0).clock("count", "count", Clock::every(0.25), |_t, x| x + 1.0);
-    let run = |from: f64, to: f64| Simulation::of(&count).run("count", 0.0, from..to).unwrap().state;
+    let run = |from: f64, to: f64| Simulation::of(&count).run("count", 0.0, from..to).unwrap().end.state;
     assert_eq!(run(0.0, 1.0), 4.0);
     assert_eq!(run(0.25, 1.0), 3.0, "a tick at the very start is over");
     assert_eq!(run(0.3, 0.4), 0.0);
@@ -25,7 +25,7 @@ fn many_ticks() {
         |_t, x| x + 1.0,
     );
     let run = Simulation::of(&count).run("count", 0.0, 0.0..10.0).unwrap();
-    assert_eq!(run.state, 10_000.0);
+    assert_eq!(run.end.state, 10_000.0);
     assert!(run.trajectory.jumps().iter().all(|jump| jump.t() == jump.j as f64 * 1e-3));
 }
 
@@ -42,5 +42,5 @@ fn moments_by_guards() {
         .edge("pulse", "after", move |t, _x| to - t, |_t, x| *x);
     let run = Simulation::of(&automaton).run("before", 0.0, 0.0..1.0).unwrap();
     assert_eq!(run.trajectory.jumps().iter().map(saltus::Jump::t).collect::<Vec<_>>(), [from, to]);
-    assert!((run.state - 1e6 * (to - from)).abs() < 1e-13, "{}", run.state);
+    assert!((run.end.state - 1e6 * (to - from)).abs() < 1e-13, "{}", run.end.state);
 }

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{ReturnMap, Selection};
 use saltus::step::{Dop853, Stepper};
-use saltus::{Coords, ErrorKind, Linearize, Run, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt, saltation};
+use saltus::{Coords, ErrorKind, Linearize, RunOf, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt, saltation};
 
 use Wrt::{Initial, Parameter};
 
@@ -20,7 +20,7 @@ fn run<'a, A: Linearize, const K: usize>(
     mode: A::Mode,
     x: A::State,
     end: f64,
-) -> Run<Sensitive<'a, A, K>> {
+) -> RunOf<Sensitive<'a, A, K>> {
     let simulation = Simulation::of(sensitive).stepper(stepper).tolerance(1e-13).most_steps(100_000);
     simulation.run(mode, sensitive.start(0.0, x), 0.0..end).unwrap()
 }
@@ -31,14 +31,14 @@ fn by_the_time_of_an_event_and_of_it() {
     let switch = Coin { at: 0.75 };
     let sensitive = Sensitive::of(&switch, [Parameter(0)]);
     let run = run(&sensitive, Tsit5, models::Side::Ramp, 0.0, 2.0);
-    assert!((run.state.x - 0.75).abs() < 1e-15);
-    assert_eq!((run.state.columns[0], run.state.dt[0]), (1.0, 1.0));
+    assert!((run.end.state.x - 0.75).abs() < 1e-15);
+    assert_eq!((run.end.state.columns[0], run.end.state.dt[0]), (1.0, 1.0));
 
     let drop = Bounce { ends: true, ..Bounce::new(9.8, 0.5) };
     let sensitive = Sensitive::of(&drop, [Initial(0)]);
     let run = self::run(&sensitive, Tsit5, Phase::Flight, vector![1.0, 0.0], 2.0);
-    assert!(matches!(run.stop, Stop::Terminal { .. }));
-    assert!((run.state.dt[0] - 0.225_876_975_726_312_81).abs() < 1e-15);
+    assert!(matches!(run.end.stop, Stop::Terminal { .. }));
+    assert!((run.end.state.dt[0] - 0.225_876_975_726_312_81).abs() < 1e-15);
 }
 
 /// What the clock does moves nobody's time: a dose each second, and the level that repeats itself.
@@ -52,11 +52,11 @@ fn edges_of_the_clock() {
     // x(3.5) = x₀ q^3.5 + dose (q^2.5 + q^1.5 + q^0.5), q = exp(-rate).
     let after = |s: f64| (-rate * s).exp();
     let (by_dose, by_rate) = ([0.5, 1.5, 2.5].map(after), [0.5, 1.5, 2.5].map(|s| -s * after(s)));
-    assert!((run.state.x - (x0 * after(3.5) + dose * by_dose.iter().sum::<f64>())).abs() < 1e-12);
-    assert!((run.state.columns[0] - after(3.5)).abs() < 1e-12);
-    assert!((run.state.columns[1] - (-3.5 * x0 * after(3.5) + dose * by_rate.iter().sum::<f64>())).abs() < 1e-12);
-    assert!((run.state.columns[2] - by_dose.iter().sum::<f64>()).abs() < 1e-12);
-    assert_eq!(run.state.dt, [0.0; 3]);
+    assert!((run.end.state.x - (x0 * after(3.5) + dose * by_dose.iter().sum::<f64>())).abs() < 1e-12);
+    assert!((run.end.state.columns[0] - after(3.5)).abs() < 1e-12);
+    assert!((run.end.state.columns[1] - (-3.5 * x0 * after(3.5) + dose * by_rate.iter().sum::<f64>())).abs() < 1e-12);
+    assert!((run.end.state.columns[2] - by_dose.iter().sum::<f64>()).abs() < 1e-12);
+    assert_eq!(run.end.state.dt, [0.0; 3]);
 
     let jump = saltation(&dosed, (), (), 1.0, &0.8).unwrap();
     assert_eq!((jump.state[(0, 0)], jump.time_by_state[0]), (1.0, 0.0));
@@ -101,11 +101,11 @@ fn two_events_at_one_instant() {
     assert_eq!((first.after.dt, second.after.dt), ([1.0, 0.0], [1.0, 0.0]));
     // x' = x; at p first x + p, then its square: x(T) = (a exp(p) + p)² exp(T - p).
     let (between, decay) = (a * p.exp() + p, (end - p).exp());
-    assert!((run.state.x - between * between * decay).abs() < 1e-11);
+    assert!((run.end.state.x - between * between * decay).abs() < 1e-11);
     let by_p = (2.0 * between * (a * p.exp() + 1.0) - between * between) * decay;
     let by_a = 2.0 * between * p.exp() * decay;
-    assert!((run.state.columns[0] - by_p).abs() < 1e-10, "{} {by_p}", run.state.columns[0]);
-    assert!((run.state.columns[1] - by_a).abs() < 1e-10, "{} {by_a}", run.state.columns[1]);
+    assert!((run.end.state.columns[0] - by_p).abs() < 1e-10, "{} {by_p}", run.end.state.columns[0]);
+    assert!((run.end.state.columns[1] - by_a).abs() < 1e-10, "{} {by_a}", run.end.state.columns[1]);
 }
 
 /// An edge that fires on entry moves with the jump that led there.
@@ -117,8 +117,8 @@ fn an_edge_that_fires_on_entry() {
     let [first, second] = run.trajectory.jumps() else { panic!("two jumps") };
     assert_eq!((first.t(), second.t(), second.after.dt[0]), (0.75, 0.75, 1.0));
     // x' = 1 until p, then -10, at once x/2 and still: (0.25 + p - 20)/2.
-    assert!((run.state.x - 0.5 * (0.25 + 0.75 - 20.0)).abs() < 1e-14);
-    assert!((run.state.columns[0] - 0.5).abs() < 1e-14);
+    assert!((run.end.state.x - 0.5 * (0.25 + 0.75 - 20.0)).abs() < 1e-14);
+    assert!((run.end.state.columns[0] - 0.5).abs() < 1e-14);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn zeno_limits(exact: bool, balls: &[(f64, f64)]) {
         let t0 = (2.0 * h / g).sqrt();
         let limit = t0 * (1.0 + e) / (1.0 - e);
         let run = run(&sensitive, Dop853, Phase::Flight, vector![floor + h, 0.0], 2.0 * limit);
-        assert_eq!(run.mode, Phase::Rest);
+        assert_eq!(run.end.mode, Phase::Rest);
         let rest = run.trajectory.jumps().last().unwrap();
         let known = [2.0 * t0 / ((1.0 - e) * (1.0 - e)), -0.5 * limit / g, 0.5 * limit / h];
         for (k, known) in known.into_iter().enumerate() {
@@ -156,7 +156,7 @@ fn zeno_limits(exact: bool, balls: &[(f64, f64)]) {
             let rounding = run.trajectory.jumps().len() as f64 * each * f64::EPSILON;
             assert!(error < rounding * known.abs(), "e = {e}, {exact}, column {k}: off by {error:e} of {known}");
             // It lies where it lies, whatever q.
-            assert!(run.state.columns[k].norm() < 1e-15);
+            assert!(run.end.state.columns[k].norm() < 1e-15);
             assert!(sensitive.before(rest)[k].norm() < 1e-13 * (1.0 + g * known.abs()));
         }
     }
@@ -168,8 +168,8 @@ fn at_a_zeno_limit_without_beyond() {
     let ball = Bounce { lies: false, ..Bounce::new(9.8, 0.5) };
     let sensitive = Sensitive::of(&ball, [Parameter(1)]);
     let run = run(&sensitive, Tsit5, Phase::Flight, vector![1.0, 0.0], 4.0);
-    assert!(matches!(run.stop, Stop::Zeno { .. }));
-    assert!((run.state.dt[0] - 8.0 * (2.0 / 9.8_f64).sqrt()).abs() < 1e-12);
+    assert!(matches!(run.end.stop, Stop::Zeno { .. }));
+    assert!((run.end.state.dt[0] - 8.0 * (2.0 / 9.8_f64).sqrt()).abs() < 1e-12);
 }
 
 /// A ball that keeps no speed lands once and lies there: no grazing, and what moves is when.
@@ -179,8 +179,8 @@ fn landing_without_rebound() {
         let ball = Bounce { lies, ..Bounce::new(9.8, 0.0) };
         let sensitive = Sensitive::of(&ball, [Initial(0), Parameter(0)]);
         let run = run(&sensitive, Tsit5, Phase::Flight, vector![1.0, 0.0], 4.0);
-        assert!((run.state.dt[0] - 0.225_876_975_726_312_81).abs() < 1e-15);
-        assert_eq!(run.state.x, vector![0.0, 0.0]);
+        assert!((run.end.state.dt[0] - 0.225_876_975_726_312_81).abs() < 1e-15);
+        assert_eq!(run.end.state.x, vector![0.0, 0.0]);
     }
 }
 
@@ -265,6 +265,7 @@ fn a_jump_between_dimensions() {
             .tolerance(1e-13)
             .run(models::Gait::Flight, start, 0.0..2.0)
             .unwrap()
+            .end
             .state
     };
     let d = 1e-5;
@@ -277,7 +278,7 @@ fn a_jump_between_dimensions() {
         let (ahead, behind) = (beside(d), beside(-d));
         for i in 0..ahead.len() {
             let difference = (ahead.get(i) - behind.get(i)) / (2.0 * d);
-            let column = run.state.columns[k].get(i);
+            let column = run.end.state.columns[k].get(i);
             assert!((difference - column).abs() < 1e-6 * column.abs().max(1.0), "{k} {i}: {difference} {column}");
         }
     }
@@ -324,7 +325,7 @@ proptest! {
         let run = simulation.run(models::Way::Down, sensitive.start(0.0, vector![h, 0.0]), 0.0..end);
         prop_assume!(run.is_ok()); // a ball that comes to rest on the table goes beyond the model
         let run = run.unwrap();
-        prop_assume!(run.stop == Stop::Time);
+        prop_assume!(run.end.stop == Stop::Time);
         prop_assume!(run.trajectory.jumps().last().is_some_and(|jump| jump.t() < end - 1e-2));
         // Near a grazing impact, and after many, runs part too fast for differences.
         let gentle = run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(models::Turn::Floor))
@@ -348,8 +349,8 @@ proptest! {
             let (ahead, behind) = (beside(d), beside(-d));
             prop_assume!(ahead.trajectory.jumps().len() == run.trajectory.jumps().len());
             prop_assume!(behind.trajectory.jumps().len() == run.trajectory.jumps().len());
-            let difference = (ahead.state - behind.state) / (2.0 * d);
-            let column = run.state.columns[q];
+            let difference = (ahead.end.state - behind.end.state) / (2.0 * d);
+            let column = run.end.state.columns[q];
             prop_assert!((difference - column).norm() < 1e-5 * column.norm().max(1.0), "{q}: {difference} {column}");
             let (a, b) = (ahead.trajectory.jumps().last().unwrap(), behind.trajectory.jumps().last().unwrap());
             let dt = run.trajectory.jumps().last().unwrap().after.dt[q];

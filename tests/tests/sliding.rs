@@ -67,7 +67,7 @@ fn a_curved_surface_is_kept_to_and_left() {
         let w = 0.3 + 0.043 * f64::from(k);
         let rim = windy_circle(w);
         let run = Simulation::of(&rim).run(Side::Sliding, vector![1.0, 0.0], 0.0..30.0).unwrap();
-        assert_eq!(run.stop, Stop::Time);
+        assert_eq!(run.end.stop, Stop::Time);
         let jumps = run.trajectory.jumps();
         assert!(jumps.len() as f64 <= 2.0 * (30.0 * w / std::f64::consts::PI + 1.0), "{k}: {} jumps", jumps.len());
         for jump in jumps {
@@ -87,8 +87,8 @@ fn a_curved_surface_is_kept_to_and_left() {
 fn a_long_slide_does_not_drift() {
     let rim = windy_circle(0.0);
     let run = Simulation::of(&rim).run(Side::Sliding, vector![1.0, 0.0], 0.0..1000.0).unwrap();
-    assert!((run.state.norm() - 1.0).abs() < 1e-10, "{:e}", run.state.norm() - 1.0);
-    assert_eq!(run.stats.jumps, 0);
+    assert!((run.end.state.norm() - 1.0).abs() < 1e-10, "{:e}", run.end.state.norm() - 1.0);
+    assert_eq!(run.end.stats.jumps, 0);
 }
 
 /// Where both flows lead away, the future is the model's to choose.
@@ -100,7 +100,7 @@ fn an_escaping_surface_is_a_decision() {
     assert_eq!(failed.error.kind(), ErrorKind::Entry);
     for (side, end) in [(Side::Above, 1.0), (Side::Below, -1.0)] {
         let run = Simulation::of(&hill).run(side, 0.0, 0.0..1.0).unwrap();
-        assert!((run.state - end).abs() < 1e-15 && run.stats.jumps == 0);
+        assert!((run.end.state - end).abs() < 1e-15 && run.end.stats.jumps == 0);
     }
 }
 
@@ -118,7 +118,7 @@ fn the_wrong_side_is_refused() {
 fn a_refracting_surface_is_crossed() {
     let glass = Filippov::of(Sides::new(|_, _: &f64| -2.0, |_, _| -1.0, |_, x| x - 0.1, |_, _| 1.0));
     let run = Simulation::of(&glass).run(Side::Above, 1.0, 0.0..1.0).unwrap();
-    assert_eq!((run.mode, run.stats.jumps), (Side::Below, 1));
+    assert_eq!((run.end.mode, run.end.stats.jumps), (Side::Below, 1));
     assert!((run.trajectory.jumps()[0].t() - 0.45).abs() < 1e-15);
-    assert!((run.state + 0.45).abs() < 1e-14);
+    assert!((run.end.state + 0.45).abs() < 1e-14);
 }

@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 
-use saltus::{Simulation, Trajectory};
+use saltus::{Simulation, TrajectoryOf};
 use saltus_bounce::{Ball, Cor, Drop, Mode};
 use saltus_examples::study::equations::{
     Apex, Total, early_by_radius, flights, height_of, impact_speed, rise, turns_at, whole_bounce,
@@ -14,7 +14,7 @@ use saltus_examples::study::stages::Start;
 use saltus_examples::study::trials::{Plan, of_mean_heights};
 use saltus_examples::study::{CONTACTS, DROP, EARLY, GRAVITY, MODELLED, RADIUS, REBOUNDS, report};
 
-type Path = Trajectory<Ball>;
+type Path = TrajectoryOf<Ball>;
 
 const STUDY: Start = Start { drop: DROP, gravity: GRAVITY, early: EARLY };
 

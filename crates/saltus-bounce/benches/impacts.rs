@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Hybrid, Jump, Observer, Polynomial, Simulation};
+use saltus::{Automaton, Hybrid, JumpOf, Observer, Polynomial, Simulation};
 use saltus_bounce::effects::{Gravity, QuadraticDrag};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VerticalFlight};
 use saltus_bounce::walls::Plane;
@@ -31,7 +31,7 @@ impl<A: Automaton> Observer<A> for Last {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.0 = jump.t();
         ControlFlow::Continue(())
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::{ControlFlow, Range};
 
 use saltus::step::Stepper;
-use saltus::{Automaton, Checkpoint, Error, Jump, Observer, Piece, Simulation, State, Stop, Time};
+use saltus::{Automaton, CheckpointOf, Error, JumpOf, Observer, Piece, Simulation, State, Stop, Time};
 
 /// How many pieces of a stepped arc are kept.
 const PIECES: usize = 64;
@@ -38,12 +38,12 @@ pub struct Live<'a, A: Automaton, M> {
     automaton: &'a A,
     simulation: Simulation<'a, A, M>,
     /// The start of the present arc.
-    from: Checkpoint<A>,
+    from: CheckpointOf<A>,
     mode: A::Mode,
     state: A::State,
     /// What follows the present arc, if it is known.
-    next: Option<Checkpoint<A>>,
-    jumps: [Option<Jump<A>>; 2],
+    next: Option<CheckpointOf<A>>,
+    jumps: [Option<JumpOf<A>>; 2],
     pieces: Vec<Kept<A::State>>,
     /// How many pieces of the present arc came before those kept.
     before: usize,
@@ -91,7 +91,7 @@ struct Kept<S> {
 struct Ahead<'p, A: Automaton> {
     pieces: Option<&'p mut Vec<Kept<A::State>>>,
     skip: usize,
-    jumps: [Option<Jump<A>>; 2],
+    jumps: [Option<JumpOf<A>>; 2],
 }
 
 impl<A: Automaton> Observer<A> for Ahead<'_, A> {
@@ -113,7 +113,7 @@ impl<A: Automaton> Observer<A> for Ahead<'_, A> {
         pieces.push(Kept { start: piece.start(), span: piece.span(), scale: piece.scale(), coefficients, len });
         ControlFlow::Continue(())
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         let place = usize::from(self.jumps[0].is_some());
         self.jumps[place] = Some(*jump);
         ControlFlow::Continue(())
@@ -170,7 +170,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
     ///
     /// # Errors
     /// See [`Error`].
-    pub fn advance(&mut self, dt: f64, event: impl FnMut(&Jump<A>)) -> Result<Frame<A>, Error> {
+    pub fn advance(&mut self, dt: f64, event: impl FnMut(&JumpOf<A>)) -> Result<Frame<A>, Error> {
         self.now = self.now.after(dt.max(0.0));
         self.show(event)
     }
@@ -179,14 +179,14 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
     ///
     /// # Errors
     /// See [`Error`].
-    pub fn advance_to(&mut self, t: f64, event: impl FnMut(&Jump<A>)) -> Result<Frame<A>, Error> {
+    pub fn advance_to(&mut self, t: f64, event: impl FnMut(&JumpOf<A>)) -> Result<Frame<A>, Error> {
         if t > self.now.seconds() {
             self.now = Time::new(t);
         }
         self.show(event)
     }
 
-    fn show(&mut self, mut event: impl FnMut(&Jump<A>)) -> Result<Frame<A>, Error> {
+    fn show(&mut self, mut event: impl FnMut(&JumpOf<A>)) -> Result<Frame<A>, Error> {
         if self.now > self.end {
             self.now = self.end;
         }
@@ -196,7 +196,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
             match self.jumps {
                 [Some(jump), later] if jump.time <= self.now => {
                     if count == self.most_jumps {
-                        let t = last.map_or(self.now.seconds(), |jump: Jump<A>| jump.t());
+                        let t = last.map_or(self.now.seconds(), |jump: JumpOf<A>| jump.t());
                         return Ok(Frame { t, mode: self.mode, state: self.state, late: true });
                     }
                     count += 1;

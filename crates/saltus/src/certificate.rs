@@ -4,10 +4,9 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::copies::shown;
 use crate::cross::Evidence;
-use crate::inspection::{Doubts, Inspection};
-use crate::jump::Jump;
+use crate::inspection::{Doubts, Inspection, InspectionOf};
+use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::time::Time;
@@ -37,19 +36,16 @@ use crate::time::Time;
 /// println!("{certificate}"); // a table
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Certificate<A: Automaton> {
-    rows: Vec<(A::Edge, Tally)>,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug)]
+pub struct Certificate<M, E> {
+    rows: Vec<(E, Tally)>,
     others: Tally,
-    doubts: Doubts<A>,
+    doubts: Doubts<M, E>,
 }
+
+/// A certificate of the automaton `A`.
+pub type CertificateOf<A> = Certificate<<A as Automaton>::Mode, <A as Automaton>::Edge>;
 
 /// How the searches for an edge came out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,7 +67,7 @@ const MOST_ROWS: usize = 64;
 /// The doubts that a table lists.
 const LISTED: usize = 10;
 
-impl<A: Automaton> Certificate<A> {
+impl<M: Copy + PartialEq, E: Copy + PartialEq> Certificate<M, E> {
     /// Without searches yet.
     #[must_use]
     pub const fn new() -> Self {
@@ -80,7 +76,7 @@ impl<A: Automaton> Certificate<A> {
     }
 
     /// The edges searched for or taken, in the order in which they were met, and what came out.
-    pub fn edges(&self) -> impl Iterator<Item = (A::Edge, Tally)> {
+    pub fn edges(&self) -> impl Iterator<Item = (E, Tally)> {
         self.rows.iter().copied()
     }
 
@@ -97,11 +93,11 @@ impl<A: Automaton> Certificate<A> {
 
     /// Where a crossing may have been missed, in the order of the run; empty where none was.
     #[must_use]
-    pub fn doubts(&self) -> &[Inspection<A>] {
+    pub fn doubts(&self) -> &[Inspection<M, E>] {
         self.doubts.list()
     }
 
-    fn row(&mut self, edge: A::Edge) -> &mut Tally {
+    fn row(&mut self, edge: E) -> &mut Tally {
         let found = self.rows.iter().position(|row| row.0 == edge);
         let place = found.unwrap_or_else(|| {
             if self.rows.len() < MOST_ROWS {
@@ -122,27 +118,19 @@ impl<A: Automaton> Certificate<A> {
     }
 }
 
-impl<A: Automaton> Default for Certificate<A> {
+impl<M: Copy + PartialEq, E: Copy + PartialEq> Default for Certificate<M, E> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<A: Automaton> Clone for Certificate<A> {
-    fn clone(&self) -> Self {
-        Self { rows: self.rows.clone(), others: self.others, doubts: self.doubts.clone() }
-    }
-}
-
-shown!(Certificate { rows, others, doubts });
-
-impl<A: Automaton> Observer<A> for Certificate<A> {
+impl<A: Automaton> Observer<A> for Certificate<A::Mode, A::Edge> {
     fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         self.settle(piece.start().after(piece.span()));
         ControlFlow::Continue(())
     }
 
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.settle(jump.time);
         if let Some(edge) = jump.edge() {
             self.row(edge).taken += 1;
@@ -150,7 +138,7 @@ impl<A: Automaton> Observer<A> for Certificate<A> {
         ControlFlow::Continue(())
     }
 
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         match inspection.evidence {
             Evidence::Excluded => self.row(inspection.edge).excluded += 1,
             Evidence::Isolated => self.row(inspection.edge).isolated += 1,
@@ -164,7 +152,7 @@ impl<A: Automaton> Observer<A> for Certificate<A> {
     }
 }
 
-impl<A: Automaton> fmt::Display for Certificate<A> {
+impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq + fmt::Debug> fmt::Display for Certificate<M, E> {
     /// A row per edge, then the doubts.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows: Vec<_> = self.rows.iter().map(|(edge, tally)| (format!("{edge:?}"), *tally)).collect();

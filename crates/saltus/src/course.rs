@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::advance::{Advance, ArcEnd, Held, Memory};
 use crate::automaton::{Automaton, Limit};
 use crate::ending::Options;
-use crate::ending::{Ending, Limits, Stats, Stop};
+use crate::ending::{Ending, EndingOf, Limits, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::jump::{Cause, Jump};
 use crate::observe::Observer;
@@ -43,7 +43,7 @@ pub struct Course<'a, A: Automaton, M = Auto> {
     automaton: &'a A,
     stepper: M,
     options: Options,
-    at: Checkpoint<A>,
+    at: CheckpointOf<A>,
     tape: Tape,
     held: Held<A>,
 }
@@ -88,30 +88,24 @@ enum Next<A: Automaton> {
 /// assert_eq!((end.stop, end.jumps), (Stop::Time, 5));
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Checkpoint<A: Automaton> {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone)]
+pub struct Checkpoint<M, E, S> {
     #[cfg_attr(not(feature = "serde"), allow(dead_code))] // what is written and read
     format: Format,
-    mode: A::Mode,
-    state: A::State,
+    mode: M,
+    state: S,
     span: Span,
     jumps: usize,
     /// The time of the last jump that was not at once after another.
     instant: Time,
     cascade: Cascade,
-    contraction: Contraction<A::State>,
-    recent: Recent<A::Edge>,
-    ticks: Ticks<A::Mode>,
+    contraction: Contraction<S>,
+    recent: Recent<E>,
+    ticks: Ticks<M>,
     limits: Limits,
-    memory: Memory<A::Mode, A::Edge, A::State>,
-    stop: Option<Stop<A::Edge>>,
+    memory: Memory<E, S>,
+    stop: Option<Stop<E>>,
 }
 
 /// The format of a checkpoint that is written: a number, raised whenever a field is added, removed or
@@ -124,7 +118,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 4;
+    const NUMBER: u32 = 5;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -144,13 +138,11 @@ mod format {
     }
 }
 
-impl<A: Automaton> Checkpoint<A> {
-    pub(crate) fn start(
-        mode: A::Mode,
-        state: A::State,
-        span: Range<f64>,
-        memory: Memory<A::Mode, A::Edge, A::State>,
-    ) -> Self {
+/// A checkpoint of the automaton `A`.
+pub type CheckpointOf<A> = Checkpoint<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
+
+impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq, S: State> Checkpoint<M, E, S> {
+    pub(crate) fn start(mode: M, state: S, span: Range<f64>, memory: Memory<E, S>) -> Self {
         let start = Time::new(span.start);
         let span = Span { start, now: start, end: Time::new(span.end) };
         Self {
@@ -183,13 +175,7 @@ impl<A: Automaton> Checkpoint<A> {
     }
 }
 
-impl<A: Automaton> Clone for Checkpoint<A> {
-    fn clone(&self) -> Self {
-        Self { contraction: self.contraction.clone(), ticks: self.ticks.clone(), ..*self }
-    }
-}
-
-impl<A: Automaton> fmt::Debug for Checkpoint<A> {
+impl<M: fmt::Debug, E, S: State> fmt::Debug for Checkpoint<M, E, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mode, state, span, jumps, .. } = self;
         write!(f, "{mode:?} {state:?} at (t = {}, j = {jumps})", span.now.seconds())
@@ -203,7 +189,7 @@ impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
 }
 
 impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
-    pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, at: Checkpoint<A>) -> Self {
+    pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, at: CheckpointOf<A>) -> Self {
         Self { automaton, stepper, options, at, tape: Tape::new(), held: Held::default() }
     }
 
@@ -239,7 +225,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     /// What it takes to go on from here.
     #[must_use]
-    pub fn checkpoint(&self) -> Checkpoint<A> {
+    pub fn checkpoint(&self) -> CheckpointOf<A> {
         self.at.clone()
     }
 
@@ -247,7 +233,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     ///
     /// # Errors
     /// See [`Error`]; the observer has been told of everything before it, and the course stays where it was.
-    pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<Ending<A>, Error> {
+    pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
         let stop = match self.at.stop {
             Some(stop) => stop,
             None => {

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
-use crate::copies::shown;
 use crate::error::{Error, ErrorKind, Place};
+use crate::state::State;
 use crate::time::Time;
 use crate::trajectory::Trajectory;
 
@@ -44,9 +44,9 @@ impl Options {
 /// use saltus::{Hybrid, Simulation, Stop};
 /// let drain = Hybrid::new().mode("drain", |_t, _x: &f64| -1.0).terminal("drain", |_t, x| *x);
 /// let run = Simulation::of(&drain).run("drain", 2.0, 0.0..3.0)?;
-/// assert!(matches!(run.stop, Stop::Terminal { edge } if edge.from == "drain"));
+/// assert!(matches!(run.end.stop, Stop::Terminal { edge } if edge.from == "drain"));
 /// let run = Simulation::of(&drain).most_steps(0).run("drain", 2.0, 0.0..3.0)?;
-/// assert_eq!(run.stop.to_string(), "the limit of 0 steps was reached: raise Simulation::most_steps to go on");
+/// assert_eq!(run.end.stop.to_string(), "the limit of 0 steps was reached: raise Simulation::most_steps to go on");
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,8 +209,8 @@ impl Stats {
 ///     .mode("rest", |_t, _x| [0.0, 0.0])
 ///     .beyond("flight", "rest", |_t, _x| [0.0, 0.0]);
 /// let run = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..4.0)?;
-/// assert_eq!(run.limits.count, 1);
-/// assert!((run.limits.last.unwrap() - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-12);
+/// assert_eq!(run.end.limits.count, 1);
+/// assert!((run.end.limits.last.unwrap() - 3.0 * (2.0_f64 / 9.8).sqrt()).abs() < 1e-12);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -229,27 +229,23 @@ pub struct Limits {
 /// use saltus::{Hybrid, Simulation, Stop};
 /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
 /// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
-/// assert_eq!((run.stop, run.mode), (Stop::Time, "decay"));
-/// assert_eq!(Some(run.state), run.trajectory.at(1.0));
-/// assert!(run.stats.flows > 6 && run.trajectory.doubts().is_empty());
+/// assert_eq!((run.end.stop, run.end.mode), (Stop::Time, "decay"));
+/// assert_eq!(Some(run.end.state), run.trajectory.at(1.0));
+/// assert!(run.end.stats.flows > 6 && run.trajectory.doubts().is_empty());
 /// # Ok::<(), saltus::Error>(())
 /// ```
-pub struct Run<A: Automaton> {
+#[derive(Clone)]
+pub struct Run<M, E, S> {
     /// The hybrid arc.
-    pub trajectory: Trajectory<A>,
-    /// Why it ended.
-    pub stop: Stop<A::Edge>,
-    /// What it cost.
-    pub stats: Stats,
-    /// The mode at the end.
-    pub mode: A::Mode,
-    /// The state at the end.
-    pub state: A::State,
-    /// Which limits of jumps that accumulate it went beyond.
-    pub limits: Limits,
+    pub trajectory: Trajectory<M, E, S>,
+    /// How it ended.
+    pub end: Ending<M, E, S>,
 }
 
-impl<A: Automaton> Run<A> {
+/// A run of the automaton `A`.
+pub type RunOf<A> = Run<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
+
+impl<M: fmt::Debug, E: fmt::Debug, S: State> Run<M, E, S> {
     /// The run, if it came to an end that was asked for: that of the span, or at a terminal edge. What
     /// ended before, by a limit or where jumps accumulate, has the state of another time.
     ///
@@ -267,18 +263,19 @@ impl<A: Automaton> Run<A> {
     ///
     /// # Errors
     /// [`Failed`], of [`ErrorKind::Unfinished`], with the trajectory.
-    pub fn complete(self) -> Result<Self, Box<Failed<A>>> {
-        if self.stop.is_asked() {
-            return Ok(self);
+    pub fn complete(self) -> Result<Self, Box<Failed<M, E, S>>> {
+        let Self { trajectory, end } = self;
+        let Ending { stop, stats, time, mode, state, .. } = &end;
+        if stop.is_asked() {
+            return Ok(Self { trajectory, end });
         }
-        let Self { trajectory, stop, stats, mode, state, .. } = self;
-        let place = Place::new(trajectory.end().seconds(), mode, None::<A::Edge>, &state);
+        let place = Place::new(time.seconds(), mode, None::<E>, state);
         let error = Error::new(ErrorKind::Unfinished, place).noting(Some(stop.to_string()));
-        Err(Box::new(Failed { error, trajectory, stats }))
+        Err(Box::new(Failed { error, trajectory, stats: *stats }))
     }
 }
 
-/// How a driven run ended.
+/// How a run ended.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation, Stop};
@@ -290,9 +287,10 @@ impl<A: Automaton> Run<A> {
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[non_exhaustive]
-pub struct Ending<A: Automaton> {
+#[derive(Clone)]
+pub struct Ending<M, E, S> {
     /// Why it ended.
-    pub stop: Stop<A::Edge>,
+    pub stop: Stop<E>,
     /// What it cost.
     pub stats: Stats,
     /// When it ended.
@@ -300,12 +298,15 @@ pub struct Ending<A: Automaton> {
     /// How many jumps were made.
     pub jumps: usize,
     /// The mode at the end.
-    pub mode: A::Mode,
+    pub mode: M,
     /// The state at the end.
-    pub state: A::State,
+    pub state: S,
     /// Which limits of jumps that accumulate it went beyond.
     pub limits: Limits,
 }
+
+/// How a run of the automaton `A` ended.
+pub type EndingOf<A> = Ending<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
 /// A run that failed, and what it had until then.
 ///
@@ -317,35 +318,57 @@ pub struct Ending<A: Automaton> {
 /// assert_eq!(failed.error.kind(), ErrorKind::Flow);
 /// assert!((failed.trajectory.at(0.5).unwrap() - 2.0).abs() < 1e-6);
 /// ```
-pub struct Failed<A: Automaton> {
+pub struct Failed<M, E, S> {
     /// What went wrong.
     pub error: Error,
     /// The trajectory up to the failure.
-    pub trajectory: Trajectory<A>,
+    pub trajectory: Trajectory<M, E, S>,
     /// What it cost.
     pub stats: Stats,
 }
 
-shown!(Run { stop, mode, state, limits, stats, trajectory });
-shown!(Ending { stop, time, jumps, mode, state, limits, stats });
+/// A run of the automaton `A` that failed.
+pub type FailedOf<A> = Failed<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
-impl<A: Automaton> From<Box<Failed<A>>> for Error {
-    fn from(failed: Box<Failed<A>>) -> Self {
+impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for Run<M, E, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { trajectory, end } = self;
+        f.debug_struct("Run").field("end", end).field("trajectory", trajectory).finish()
+    }
+}
+
+impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for Ending<M, E, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stop, stats, time, jumps, mode, state, limits } = self;
+        f.debug_struct("Ending")
+            .field("stop", stop)
+            .field("time", time)
+            .field("jumps", jumps)
+            .field("mode", mode)
+            .field("state", state)
+            .field("limits", limits)
+            .field("stats", stats)
+            .finish()
+    }
+}
+
+impl<M, E, S> From<Box<Failed<M, E, S>>> for Error {
+    fn from(failed: Box<Failed<M, E, S>>) -> Self {
         failed.error
     }
 }
 
-impl<A: Automaton> fmt::Display for Failed<A> {
+impl<M, E, S> fmt::Display for Failed<M, E, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.error.fmt(f)
     }
 }
 
 /// The sentence, which is what a `main` shows that returns the error.
-impl<A: Automaton> fmt::Debug for Failed<A> {
+impl<M, E, S> fmt::Debug for Failed<M, E, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Debug::fmt(&self.error, f)
     }
 }
 
-impl<A: Automaton> std::error::Error for Failed<A> {}
+impl<M, E, S> std::error::Error for Failed<M, E, S> {}

@@ -48,8 +48,8 @@ use crate::state::State;
 /// let block = Filippov::of(Block);
 /// let run = Simulation::of(&block).run(Side::Below, vector![0.1, 0.0], 0.0..10.0)?;
 /// // Each half cycle takes 6 cm off: from 10 cm it swings to -4 cm and then to -2 cm, where the spring pulls with less than 3 N.
-/// assert_eq!(run.mode, Side::Sliding);
-/// assert!((run.state[0] + 0.02).abs() < 1e-9 && run.state[1].abs() < 1e-15);
+/// assert_eq!(run.end.mode, Side::Sliding);
+/// assert!((run.end.state[0] + 0.02).abs() < 1e-9 && run.end.state[1].abs() < 1e-15);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub trait TwoSided {
@@ -194,7 +194,7 @@ pub enum Passage {
 /// // A relay: x' = -sign(x).
 /// let relay = Filippov::of(Sides::new(|_, _: &f64| -1.0, |_, _| 1.0, |_, x| *x, |_, _| 1.0));
 /// let run = Simulation::of(&relay).run(Side::Above, 1.5, 0.0..10.0)?;
-/// assert_eq!((run.mode, run.state), (Side::Sliding, 0.0));
+/// assert_eq!((run.end.mode, run.end.state), (Side::Sliding, 0.0));
 /// assert_eq!(run.trajectory.jumps().len(), 1);
 /// assert!((run.trajectory.jumps()[0].t() - 1.5).abs() < 1e-15);
 /// # Ok::<(), saltus::Error>(())
@@ -353,8 +353,8 @@ impl<T: TwoSided> Automaton for Filippov<T> {
 /// let start = vector![1.0, 0.0];
 /// assert_eq!(rim.side(0.0, &start), Some(Side::Sliding));
 /// let run = Simulation::of(&rim).run(Side::Sliding, start, 0.0..100.0)?;
-/// assert!((run.state - vector![100.0_f64.cos(), 100.0_f64.sin()]).norm() < 1e-6);
-/// assert!((run.state.norm() - 1.0).abs() < 1e-9);
+/// assert!((run.end.state - vector![100.0_f64.cos(), 100.0_f64.sin()]).norm() < 1e-6);
+/// assert!((run.end.state.norm() - 1.0).abs() < 1e-9);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[derive(Clone, Copy)]

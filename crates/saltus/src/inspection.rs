@@ -4,7 +4,6 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::automaton::Automaton;
-use crate::copies::copied;
 use crate::cross::Evidence;
 use crate::time::Time;
 
@@ -26,20 +25,14 @@ use crate::time::Time;
 /// assert!(doubt.to_string().contains("varies too fast"));
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Inspection<A: Automaton> {
+#[derive(Clone, Copy)]
+pub struct Inspection<M, E> {
     /// The mode.
-    pub mode: A::Mode,
+    pub mode: M,
     /// The edge.
-    pub edge: A::Edge,
+    pub edge: E,
     /// Where the step starts.
     pub start: Time,
     /// How far the search went, in seconds; infinite on an exact arc of a run without an end.
@@ -48,9 +41,10 @@ pub struct Inspection<A: Automaton> {
     pub evidence: Evidence,
 }
 
-copied!(Inspection);
+/// An inspection of the automaton `A`.
+pub type InspectionOf<A> = Inspection<<A as Automaton>::Mode, <A as Automaton>::Edge>;
 
-impl<A: Automaton> Inspection<A> {
+impl<M: Copy, E: Copy> Inspection<M, E> {
     /// Between which times, in seconds, a crossing may have been missed; `None` where the search leaves no doubt.
     #[must_use]
     pub fn doubt(&self) -> Option<Range<f64>> {
@@ -110,14 +104,14 @@ const fn between(evidence: Evidence, from: f64, to: f64) -> Evidence {
     }
 }
 
-impl<A: Automaton> fmt::Debug for Inspection<A> {
+impl<M: fmt::Debug, E: fmt::Debug> fmt::Debug for Inspection<M, E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mode, edge, start, span, evidence } = self;
         write!(f, "{mode:?} edge {edge:?} from t = {} for {span} s: {evidence:?}", start.seconds())
     }
 }
 
-impl<A: Automaton> fmt::Display for Inspection<A> {
+impl<M: Copy + fmt::Debug, E: Copy + fmt::Debug> fmt::Display for Inspection<M, E> {
     /// What is known, where, and, of a doubt, what to do.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mode, edge, start, span, evidence } = self;
@@ -148,29 +142,25 @@ impl<A: Automaton> fmt::Display for Inspection<A> {
 }
 
 /// The doubts of a run: first those that stand, then those of the step in progress, whose end is not known yet.
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub(crate) struct Doubts<A: Automaton> {
-    list: Vec<Inspection<A>>,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone)]
+pub(crate) struct Doubts<M, E> {
+    list: Vec<Inspection<M, E>>,
     settled: usize,
 }
 
-impl<A: Automaton> Doubts<A> {
+impl<M, E> Doubts<M, E> {
+    pub(crate) fn list(&self) -> &[Inspection<M, E>] {
+        &self.list
+    }
+}
+
+impl<M: Copy + PartialEq, E: Copy + PartialEq> Doubts<M, E> {
     pub(crate) const fn new() -> Self {
         Self { list: Vec::new(), settled: 0 }
     }
 
-    pub(crate) fn list(&self) -> &[Inspection<A>] {
-        &self.list
-    }
-
-    pub(crate) fn add(&mut self, inspection: &Inspection<A>) {
+    pub(crate) fn add(&mut self, inspection: &Inspection<M, E>) {
         self.list.push(*inspection);
     }
 
@@ -182,7 +172,7 @@ impl<A: Automaton> Doubts<A> {
 
     /// Settles one doubt, of the edge returned; says whether it stands.
     #[inline]
-    pub(crate) fn settle_next(&mut self, end: Time) -> Option<(A::Edge, bool)> {
+    pub(crate) fn settle_next(&mut self, end: Time) -> Option<(E, bool)> {
         let doubt = *self.list.get(self.settled)?;
         let edge = doubt.edge;
         match doubt.until(end) {
@@ -206,13 +196,7 @@ impl<A: Automaton> Doubts<A> {
     }
 }
 
-impl<A: Automaton> Clone for Doubts<A> {
-    fn clone(&self) -> Self {
-        Self { list: self.list.clone(), settled: self.settled }
-    }
-}
-
-impl<A: Automaton> fmt::Debug for Doubts<A> {
+impl<M: fmt::Debug, E: fmt::Debug> fmt::Debug for Doubts<M, E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.list.fmt(f)
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::automaton::Automaton;
-use crate::copies::copied;
+use crate::state::State;
 use crate::time::Time;
 
 /// Why a jump happened.
@@ -33,41 +33,36 @@ pub enum Cause<E> {
 /// assert!(matches!(jump.cause, Cause::Edge(edge) if Some(edge) == jump.edge()));
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Jump<A: Automaton> {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy)]
+pub struct Jump<M, E, S> {
     /// When.
     pub time: Time,
     /// How many jumps there have been, this one included: the j of hybrid time just after it.
     pub j: usize,
     /// Why.
-    pub cause: Cause<A::Edge>,
+    pub cause: Cause<E>,
     /// The mode before.
-    pub from: A::Mode,
+    pub from: M,
     /// The state just before, x⁻; inside the domain of the mode before.
-    pub before: A::State,
+    pub before: S,
     /// The mode after.
-    pub to: A::Mode,
+    pub to: M,
     /// The state just after, x⁺.
-    pub after: A::State,
+    pub after: S,
 }
 
-copied!(Jump);
+/// A jump of the automaton `A`.
+pub type JumpOf<A> = Jump<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
-impl<A: Automaton> fmt::Debug for Jump<A> {
+impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for Jump<M, E, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { time, j, cause, from, before, to, after } = self;
         write!(f, "(t = {}, j = {j}) by {cause:?}: {from:?} {before:?} -> {to:?} {after:?}", time.seconds())
     }
 }
 
-impl<A: Automaton> Jump<A> {
+impl<M, E, S> Jump<M, E, S> {
     /// When, to the nearest double, in seconds.
     #[must_use]
     pub const fn t(&self) -> f64 {
@@ -76,7 +71,10 @@ impl<A: Automaton> Jump<A> {
 
     /// The edge taken, if one was.
     #[must_use]
-    pub fn edge(&self) -> Option<A::Edge> {
+    pub fn edge(&self) -> Option<E>
+    where
+        E: Copy,
+    {
         match self.cause {
             Cause::Edge(edge) => Some(edge),
             Cause::Zeno => None,

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::inspection::Inspection;
-use crate::jump::Jump;
+use crate::inspection::InspectionOf;
+use crate::jump::JumpOf;
 use crate::piece::Piece;
 
 /// Is told of each piece and each jump of a run, in order; may end the run.
@@ -16,12 +16,12 @@ use crate::piece::Piece;
 ///
 /// ```
 /// use std::ops::ControlFlow;
-/// use saltus::{Automaton, Jump, Observer};
+/// use saltus::{Automaton, JumpOf, Observer};
 ///
 /// /// Ends the run at the third jump.
 /// struct Third(u32);
 /// impl<A: Automaton> Observer<A> for Third {
-///     fn jump(&mut self, _: &Jump<A>) -> ControlFlow<()> {
+///     fn jump(&mut self, _: &JumpOf<A>) -> ControlFlow<()> {
 ///         self.0 += 1;
 ///         if self.0 == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 ///     }
@@ -48,13 +48,13 @@ pub trait Observer<A: Automaton> {
     }
 
     /// A jump was made. `Break` ends the run just after it.
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         let _ = jump;
         ControlFlow::Continue(())
     }
 
     /// The guard of an edge was searched for a crossing, over the whole step: also beyond a crossing of another edge that ends it.
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         let _ = inspection;
     }
 }
@@ -73,10 +73,10 @@ impl<A: Automaton, O: Observer<A> + ?Sized> Observer<A> for &mut O {
     fn wants_pieces(&self) -> bool {
         (**self).wants_pieces()
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         (**self).jump(jump)
     }
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         (**self).inspection(inspection);
     }
 }
@@ -89,11 +89,11 @@ impl<A: Automaton, O: Observer<A>, P: Observer<A>> Observer<A> for (O, P) {
     fn wants_pieces(&self) -> bool {
         self.0.wants_pieces() || self.1.wants_pieces()
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         let (first, second) = (self.0.jump(jump), self.1.jump(jump));
         if first.is_break() { first } else { second }
     }
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         self.0.inspection(inspection);
         self.1.inspection(inspection);
     }

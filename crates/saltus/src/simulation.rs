@@ -6,17 +6,17 @@ use std::ops::{ControlFlow, Range};
 use crate::advance::Memory;
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
-use crate::course::{Checkpoint, Course};
-use crate::ending::{Ending, Failed, Options, Run, Stats, Stop};
+use crate::course::{Checkpoint, CheckpointOf, Course};
+use crate::ending::{Ending, EndingOf, Failed, FailedOf, Options, Run, RunOf, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
-use crate::inspection::Inspection;
-use crate::jump::Jump;
+use crate::inspection::InspectionOf;
+use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::time::{LAST, Time};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Trajectory, TrajectoryOf};
 
 /// How to run an automaton: its stepper, tolerances and limits.
 ///
@@ -31,7 +31,7 @@ use crate::trajectory::Trajectory;
 ///
 /// // The impacts accumulate at t = sqrt(2 h / g) (1 + e) / (1 - e); nobody had to say so.
 /// let limit = (2.0_f64 / 9.81).sqrt() * 1.8 / 0.2;
-/// assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-9));
+/// assert!(matches!(run.end.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-9));
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub struct Simulation<'a, A, M = Auto> {
@@ -57,28 +57,30 @@ impl<A, M: fmt::Debug> fmt::Debug for Simulation<'_, A, M> {
 
 /// Records until so many bytes are taken.
 struct Bounded<'t, A: Automaton> {
-    trajectory: &'t mut Trajectory<A>,
+    trajectory: &'t mut TrajectoryOf<A>,
     most: usize,
 }
 
 impl<A: Automaton> Bounded<'_, A> {
     #[inline]
-    fn full(&self, told: ControlFlow<()>) -> ControlFlow<()> {
-        if self.trajectory.bytes() < self.most { told } else { ControlFlow::Break(()) }
+    fn full(&self) -> ControlFlow<()> {
+        if self.trajectory.bytes() < self.most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }
 
 impl<A: Automaton> Observer<A> for Bounded<'_, A> {
-    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
-        let told = self.trajectory.piece(mode, piece);
-        self.full(told)
+    fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.trajectory.push_piece(piece);
+        self.full()
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
-        let told = self.trajectory.jump(jump);
-        self.full(told)
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
+        self.trajectory.push_jump(*jump);
+        self.full()
     }
-    fn inspection(&mut self, inspection: &Inspection<A>) {
-        self.trajectory.inspection(inspection);
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
+        if inspection.evidence.is_doubtful() {
+            self.trajectory.push_doubt(inspection);
+        }
     }
 }
 
@@ -162,8 +164,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// use saltus::{Hybrid, Simulation, Stop};
     /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
     /// let run = Simulation::of(&decay).most_evaluations(100).run("decay", 1.0, 0.0..1e6)?;
-    /// assert_eq!(run.stop, Stop::Evaluations { most: 100 });
-    /// assert!((100..120).contains(&run.stats.evaluations()));
+    /// assert_eq!(run.end.stop, Stop::Evaluations { most: 100 });
+    /// assert!((100..120).contains(&run.end.stats.evaluations()));
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -179,7 +181,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// use saltus::{Hybrid, Simulation, Stop};
     /// let swing = Hybrid::new().mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]]);
     /// let run = Simulation::of(&swing).most_bytes(10_000).run("swing", [1.0, 0.0], 0.0..f64::INFINITY)?;
-    /// assert_eq!(run.stop, Stop::Bytes { most: 10_000 });
+    /// assert_eq!(run.end.stop, Stop::Bytes { most: 10_000 });
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -203,7 +205,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// use saltus::{Hybrid, Simulation};
     /// let rest = Hybrid::new().mode("rest", |_t, _x: &Vector2<f64>| vector![0.0, 0.0]);
     /// let run = Simulation::of(&rest).stepped().run("rest", vector![1.0, 2.0], 0.0..3.0)?;
-    /// assert!(run.stats.steps > 0 && run.stats.exact == 0);
+    /// assert!(run.end.stats.steps > 0 && run.end.stats.exact == 0);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -219,7 +221,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     ///
     /// # Errors
     /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`] where a function returns that.
-    pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Run<A>, Box<Failed<A>>> {
+    pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<RunOf<A>, Box<FailedOf<A>>> {
         let mut trajectory = Trajectory::starting(mode, state, Time::new(span.start));
         let mut course = match self.start(mode, state, span) {
             Ok(course) => course,
@@ -227,11 +229,11 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         };
         let most = self.options.most_bytes;
         match course.finish(&mut Bounded { trajectory: &mut trajectory, most }) {
-            Ok(Ending { stop, stats, time, mode, state, limits, .. }) => {
-                trajectory.finish(time);
+            Ok(end) => {
+                trajectory.finish(end.time);
                 // Nobody else observes.
-                let stop = if stop == Stop::Observer { Stop::Bytes { most } } else { stop };
-                Ok(Run { trajectory, stop, stats, mode, state, limits })
+                let stop = if end.stop == Stop::Observer { Stop::Bytes { most } } else { end.stop };
+                Ok(Run { trajectory, end: Ending { stop, ..end } })
             }
             Err(error) => {
                 trajectory.settle(Time::new(error.t()));
@@ -250,7 +252,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         state: A::State,
         span: Range<f64>,
         observer: &mut impl Observer<A>,
-    ) -> Result<Ending<A>, Error> {
+    ) -> Result<EndingOf<A>, Error> {
         self.start(mode, state, span)?.finish(observer)
     }
 
@@ -270,7 +272,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     ///
     /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
     #[must_use]
-    pub fn resume(&self, checkpoint: Checkpoint<A>) -> Course<'a, A, M> {
+    pub fn resume(&self, checkpoint: CheckpointOf<A>) -> Course<'a, A, M> {
         Course::new(self.automaton, self.fitted(), self.options, checkpoint.under(&self.options))
     }
 

@@ -4,11 +4,11 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::copies::{copied, shown};
-use crate::inspection::{Doubts, Inspection};
-use crate::jump::Jump;
+use crate::inspection::{Doubts, Inspection, InspectionOf};
+use crate::jump::{Jump, JumpOf};
 use crate::observe::Observer;
 use crate::piece::Piece;
+use crate::state::State;
 use crate::time::Time;
 
 /// An arc: the stay in one mode between two jumps. Between two jumps at one time it has no duration.
@@ -26,35 +26,27 @@ use crate::time::Time;
 /// assert_eq!(arcs[1].j(), 1);
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Arc<A: Automaton> {
-    mode: A::Mode,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy)]
+pub struct Arc<M, S> {
+    mode: M,
     start: Time,
-    state: A::State,
+    state: S,
     j: usize,
     first_piece: usize,
 }
 
-copied!(Arc);
-
-impl<A: Automaton> fmt::Debug for Arc<A> {
+impl<M: fmt::Debug, S: State> fmt::Debug for Arc<M, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mode, start, state, j, .. } = self;
         write!(f, "{mode:?} from (t = {}, j = {j}) at {state:?}", start.seconds())
     }
 }
 
-impl<A: Automaton> Arc<A> {
+impl<M: Copy, S> Arc<M, S> {
     /// The mode.
     #[must_use]
-    pub fn mode(&self) -> A::Mode {
+    pub const fn mode(&self) -> M {
         self.mode
     }
 
@@ -66,7 +58,7 @@ impl<A: Automaton> Arc<A> {
 
     /// The state it starts from.
     #[must_use]
-    pub const fn state(&self) -> &A::State {
+    pub const fn state(&self) -> &S {
         &self.state
     }
 
@@ -107,40 +99,32 @@ struct Stored {
 /// assert_eq!(hybrid_arc.arcs().len(), hybrid_arc.jumps().len() + 1);
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(bound(
-        serialize = "A::Mode: serde::Serialize, A::State: serde::Serialize, A::Edge: serde::Serialize",
-        deserialize = "A::Mode: serde::Deserialize<'de>, A::State: serde::Deserialize<'de>, A::Edge: serde::Deserialize<'de>"
-    ))
-)]
-pub struct Trajectory<A: Automaton> {
-    arcs: Vec<Arc<A>>,
-    jumps: Vec<Jump<A>>,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone)]
+pub struct Trajectory<M, E, S> {
+    arcs: Vec<Arc<M, S>>,
+    jumps: Vec<Jump<M, E, S>>,
     pieces: Vec<Stored>,
-    coefficients: Vec<A::State>,
-    doubts: Doubts<A>,
+    coefficients: Vec<S>,
+    doubts: Doubts<M, E>,
     end: Time,
 }
 
-impl<A: Automaton> Clone for Trajectory<A> {
-    fn clone(&self) -> Self {
-        let Self { arcs, jumps, pieces, coefficients, doubts, end } = self;
-        Self {
-            arcs: arcs.clone(),
-            jumps: jumps.clone(),
-            pieces: pieces.clone(),
-            coefficients: coefficients.clone(),
-            doubts: doubts.clone(),
-            end: *end,
-        }
+impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for Trajectory<M, E, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { arcs, jumps, doubts, .. } = self;
+        f.debug_struct("Trajectory")
+            .field("arcs", arcs)
+            .field("jumps", jumps)
+            .field("doubts", doubts)
+            .finish_non_exhaustive()
     }
 }
 
-shown!(Trajectory { arcs, jumps, doubts, .. });
+/// A trajectory of the automaton `A`.
+pub type TrajectoryOf<A> = Trajectory<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
-impl<A: Automaton> Trajectory<A> {
+impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
     /// Empty, from `state` in `mode` at `start`: for [`Simulation::drive`](crate::Simulation::drive), where others observe beside it.
     ///
     /// ```
@@ -153,7 +137,7 @@ impl<A: Automaton> Trajectory<A> {
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
-    pub fn starting(mode: A::Mode, state: A::State, start: Time) -> Self {
+    pub fn starting(mode: M, state: S, start: Time) -> Self {
         let arc = Arc { mode, start, state, j: 0, first_piece: 0 };
         Self {
             arcs: vec![arc],
@@ -165,7 +149,7 @@ impl<A: Automaton> Trajectory<A> {
         }
     }
 
-    pub(crate) fn push_piece(&mut self, piece: &Piece<'_, A::State>) {
+    pub(crate) fn push_piece(&mut self, piece: &Piece<'_, S>) {
         let first = self.coefficients.len();
         let (start, span, scale) = (piece.start(), piece.span(), piece.scale());
         self.coefficients.extend_from_slice(piece.coefficients());
@@ -175,7 +159,7 @@ impl<A: Automaton> Trajectory<A> {
         self.doubts.settle(self.end);
     }
 
-    pub(crate) fn push_jump(&mut self, jump: Jump<A>) {
+    pub(crate) fn push_jump(&mut self, jump: Jump<M, E, S>) {
         self.end = jump.time;
         let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
         self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
@@ -183,7 +167,7 @@ impl<A: Automaton> Trajectory<A> {
         self.doubts.settle(jump.time);
     }
 
-    pub(crate) fn push_doubt(&mut self, doubt: &Inspection<A>) {
+    pub(crate) fn push_doubt(&mut self, doubt: &Inspection<M, E>) {
         self.doubts.add(doubt);
     }
 
@@ -196,9 +180,9 @@ impl<A: Automaton> Trajectory<A> {
     /// How much memory what is recorded takes.
     #[inline]
     pub(crate) fn bytes(&self) -> usize {
-        self.arcs.len() * (size_of::<Arc<A>>() + size_of::<Jump<A>>())
+        self.arcs.len() * (size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>())
             + self.pieces.len() * size_of::<Stored>()
-            + self.coefficients.len() * size_of::<A::State>()
+            + self.coefficients.len() * size_of::<S>()
             + size_of_val(self.doubts.list())
     }
 
@@ -206,21 +190,23 @@ impl<A: Automaton> Trajectory<A> {
     pub(crate) fn settle(&mut self, end: Time) {
         self.doubts.settle(end);
     }
+}
 
+impl<M: Copy, E, S: State> Trajectory<M, E, S> {
     /// The jumps in order.
     #[must_use]
-    pub fn jumps(&self) -> &[Jump<A>] {
+    pub fn jumps(&self) -> &[Jump<M, E, S>] {
         &self.jumps
     }
 
     /// The arcs in order, one more than the jumps.
     #[must_use]
-    pub fn arcs(&self) -> &[Arc<A>] {
+    pub fn arcs(&self) -> &[Arc<M, S>] {
         &self.arcs
     }
 
     /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no duration or there is no such arc.
-    pub fn pieces(&self, index: usize) -> impl Iterator<Item = Piece<'_, A::State>> {
+    pub fn pieces(&self, index: usize) -> impl Iterator<Item = Piece<'_, S>> {
         self.pieces[self.piece_range(index)].iter().map(|p| self.piece(p))
     }
 
@@ -228,7 +214,7 @@ impl<A: Automaton> Trajectory<A> {
     ///
     /// Each says for people which edge, when, why and what to do; see [`Inspection`]. [`Certificate`](crate::Certificate) has all searches.
     #[must_use]
-    pub fn doubts(&self) -> &[Inspection<A>] {
+    pub fn doubts(&self) -> &[Inspection<M, E>] {
         self.doubts.list()
     }
 
@@ -246,14 +232,14 @@ impl<A: Automaton> Trajectory<A> {
 
     /// The state x⁺(t), after any jumps at `t`; `None` outside the trajectory.
     #[must_use]
-    pub fn at(&self, t: f64) -> Option<A::State> {
+    pub fn at(&self, t: f64) -> Option<S> {
         let index = self.arc_at(t)?;
         Some(self.state_in(index, t))
     }
 
     /// The state x⁻(t), before any jumps at `t`; the same as [`at`](Self::at) where there is none.
     #[must_use]
-    pub fn before(&self, t: f64) -> Option<A::State> {
+    pub fn before(&self, t: f64) -> Option<S> {
         let first = self.jumps.partition_point(|jump| jump.t() < t);
         match self.jumps.get(first) {
             Some(jump) if jump.t() == t => Some(jump.before),
@@ -263,7 +249,7 @@ impl<A: Automaton> Trajectory<A> {
 
     /// The mode at `t`, after any jumps.
     #[must_use]
-    pub fn mode_at(&self, t: f64) -> Option<A::Mode> {
+    pub fn mode_at(&self, t: f64) -> Option<M> {
         self.arc_at(t).map(|index| self.arcs[index].mode)
     }
 
@@ -274,7 +260,7 @@ impl<A: Automaton> Trajectory<A> {
         self.arcs.partition_point(|arc| arc.start.seconds() <= t).checked_sub(1)
     }
 
-    fn state_in(&self, index: usize, t: f64) -> A::State {
+    fn state_in(&self, index: usize, t: f64) -> S {
         // At its own time an arc starts from x⁺, though the double may lie a rounding after the moment.
         if t == self.arcs[index].start.seconds() {
             return self.arcs[index].state;
@@ -296,22 +282,22 @@ impl<A: Automaton> Trajectory<A> {
         start..end
     }
 
-    fn piece(&self, stored: &Stored) -> Piece<'_, A::State> {
+    fn piece(&self, stored: &Stored) -> Piece<'_, S> {
         let coefficients = &self.coefficients[stored.first..stored.first + stored.len];
         Piece::new(stored.start, stored.span, stored.scale, coefficients)
     }
 }
 
-impl<A: Automaton> Observer<A> for Trajectory<A> {
+impl<A: Automaton> Observer<A> for TrajectoryOf<A> {
     fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         self.push_piece(piece);
         ControlFlow::Continue(())
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.push_jump(*jump);
         ControlFlow::Continue(())
     }
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         if inspection.evidence.is_doubtful() {
             self.push_doubt(inspection);
         }

@@ -65,12 +65,12 @@ fn a_ball_returns_to_where_it_was_dropped() {
         let ball = Ball { exact };
         let start = vector![1.0, 0.0];
         let there = Simulation::of(&ball).stepper(Dop853).tolerance(1e-14).run((), start, 0.0..2.3).unwrap();
-        assert_eq!(there.stop, Stop::Time);
+        assert_eq!(there.end.stop, Stop::Time);
         let backwards = Reversed::of(&ball);
         let simulation = Simulation::of(&backwards).stepper(Dop853).tolerance(1e-14);
-        let back = simulation.run((), there.state, Reversed::span(2.3, 0.0)).unwrap();
-        assert_eq!(back.stop, Stop::Time);
-        assert!((back.state - start).norm() < 1e-12, "exact {exact}: {:?}", back.state - start);
+        let back = simulation.run((), there.end.state, Reversed::span(2.3, 0.0)).unwrap();
+        assert_eq!(back.end.stop, Stop::Time);
+        assert!((back.end.state - start).norm() < 1e-12, "exact {exact}: {:?}", back.end.state - start);
 
         // The same jumps, turned round.
         let again = backwards.forwards(&back.trajectory);
@@ -130,9 +130,9 @@ fn a_thermostat_runs_backwards() {
     let there = Simulation::of(&Thermostat).stepper(Dop853).tolerance(1e-14).run(true, 21.0, 0.0..3.0).unwrap();
     let backwards = Reversed::of(&Thermostat);
     let simulation = Simulation::of(&backwards).stepper(Dop853).tolerance(1e-14);
-    let back = simulation.run(there.mode, there.state, Reversed::span(3.0, 0.0)).unwrap();
-    assert!(back.mode);
-    assert!((back.state - 21.0).abs() < 1e-12, "{}", back.state - 21.0);
+    let back = simulation.run(there.end.mode, there.end.state, Reversed::span(3.0, 0.0)).unwrap();
+    assert!(back.end.mode);
+    assert!((back.end.state - 21.0).abs() < 1e-12, "{}", back.end.state - 21.0);
     assert_eq!(back.trajectory.jumps().len(), there.trajectory.jumps().len());
     for (one, other) in there.trajectory.jumps().iter().rev().zip(back.trajectory.jumps()) {
         assert!((one.t() + other.t()).abs() < 1e-13);
@@ -188,7 +188,7 @@ fn close_marks_in_order_both_ways() {
     }
     // Starting exactly on a mark is no error either.
     let on = Simulation::of(&backwards).run(1, 0.0, Reversed::span(0.0, -1.0)).unwrap();
-    assert_eq!((on.mode, on.trajectory.jumps()[0].t()), (0, 0.0));
+    assert_eq!((on.end.mode, on.trajectory.jumps()[0].t()), (0, 0.0));
 }
 
 #[test]

@@ -173,7 +173,7 @@ proptest! {
         }
         // An empty span is a run of no duration.
         let run = simulation.run(Mode::Fill, [0.0, 1.0], start..start).unwrap();
-        prop_assert_eq!((run.stop, run.state, run.trajectory.end().seconds()), (Stop::Time, [0.0, 1.0], start));
+        prop_assert_eq!((run.end.stop, run.end.state, run.trajectory.end().seconds()), (Stop::Time, [0.0, 1.0], start));
     }
 }
 
@@ -197,7 +197,7 @@ fn beyond_a_limit_lies_no_number() {
 #[test]
 fn from_no_edges_to_a_million() {
     let run = Simulation::of(&Hybrid::new().mode("stay", |_t, _x: &f64| 1.0)).run("stay", 0.0, 0.0..2.0).unwrap();
-    assert_eq!((run.stop, run.state), (Stop::Time, 2.0));
+    assert_eq!((run.end.stop, run.end.state), (Stop::Time, 2.0));
 
     struct Many;
     impl Automaton for Many {

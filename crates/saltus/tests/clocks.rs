@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use proptest::prelude::*;
-use saltus::{About, Automaton, Clock, Clocks, Edges, Entry, ErrorKind, Hybrid, Jump, Observer, Refusal, Simulation};
+use saltus::{About, Automaton, Clock, Clocks, Edges, Entry, ErrorKind, Hybrid, JumpOf, Observer, Refusal, Simulation};
 
 /// Clocks that count, and one guard of time.
 struct Clocked {
@@ -63,7 +63,7 @@ impl Observer<Clocked> for Taken {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<Clocked>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Clocked>) -> ControlFlow<()> {
         self.0.extend(jump.edge().map(|edge| (edge, jump.t())));
         ControlFlow::Continue(())
     }

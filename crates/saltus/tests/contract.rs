@@ -130,7 +130,7 @@ fn a_limit_says_whose_jumps_accumulated() {
     let rest = |height: f64| 3.0 * (2.0 * height / 9.8_f64).sqrt();
     for heights in [[1.0, 7.0], [7.0, 1.0], [1.0, 1.3]] {
         let run = Simulation::of(&Two).run([false; 2], [heights[0], 0.0, heights[1], 0.0], 0.0..9.0).unwrap();
-        assert_eq!((run.stop, run.mode, run.state), (Stop::Time, [true; 2], [0.0; 4]));
+        assert_eq!((run.end.stop, run.end.mode, run.end.state), (Stop::Time, [true; 2], [0.0; 4]));
         let limits = run.trajectory.jumps().iter().filter(|jump| jump.edge().is_none());
         let limits: Vec<_> = limits.map(|jump| (jump.t(), jump.to)).collect();
         let first = usize::from(heights[1] < heights[0]);
@@ -251,19 +251,19 @@ mod derivatives {
         for duty in [0.1, 0.3, 0.75] {
             let run = |duty: f64| {
                 let supply = Supply::new(duty, true);
-                Simulation::of(&supply).tolerance(1e-13).run(true, 0.0, 0.0..9.999_999).unwrap().state
+                Simulation::of(&supply).tolerance(1e-13).run(true, 0.0, 0.0..9.999_999).unwrap().end.state
             };
             let supply = Supply::new(duty, true);
             let sensitive = Sensitive::of(&supply, [Wrt::Parameter(0), Wrt::Initial(0)]);
             let simulation = Simulation::of(&sensitive).tolerance(1e-13);
             let end = simulation.run(true, sensitive.start(0.0, 0.0), 0.0..10.0).unwrap();
             let (x, by_duty) = supply.after(10);
-            assert!((end.state.x - x).abs() < 1e-10, "{} {x}", end.state.x);
-            assert!((end.state.columns[0] - by_duty).abs() < 1e-10, "{} {by_duty}", end.state.columns[0]);
-            assert!((end.state.columns[1] - (-10.0_f64).exp()).abs() < 1e-10);
+            assert!((end.end.state.x - x).abs() < 1e-10, "{} {x}", end.end.state.x);
+            assert!((end.end.state.columns[0] - by_duty).abs() < 1e-10, "{} {by_duty}", end.end.state.columns[0]);
+            assert!((end.end.state.columns[1] - (-10.0_f64).exp()).abs() < 1e-10);
             let h = 1e-5;
             let difference = (run(duty + h) - run(duty - h)) / (2.0 * h);
-            assert!((end.state.columns[0] - difference).abs() < 1e-5, "{} {difference}", end.state.columns[0]);
+            assert!((end.end.state.columns[0] - difference).abs() < 1e-5, "{} {difference}", end.end.state.columns[0]);
             // The tick moves with the duty, and the saltation says so.
             let jump = saltation(&supply, true, false, 2.0 + duty, &0.5).unwrap();
             assert_eq!((jump.time_by_parameters[0], jump.time_by_state[0]), (1.0, 0.0));
@@ -283,7 +283,7 @@ mod derivatives {
         // The start moves no clock.
         let by_start = Sensitive::of(&supply, [Wrt::Initial(0)]);
         let end = Simulation::of(&by_start).run(true, by_start.start(0.0, 0.0), 0.0..3.0).unwrap();
-        assert!((end.state.columns[0] - (-3.0_f64).exp()).abs() < 1e-8);
+        assert!((end.end.state.columns[0] - (-3.0_f64).exp()).abs() < 1e-8);
     }
 }
 
@@ -339,7 +339,7 @@ fn edges_alike_differ() {
                     assert_eq!(failed.error.kind(), ErrorKind::Entry);
                     assert!(failed.error.edge().unwrap().ends_with(&format!("(edge {place})")), "{}", failed.error);
                 }
-                (outcome, refused) => panic!("{:?} {refused:?}", outcome.map(|run| run.stop)),
+                (outcome, refused) => panic!("{:?} {refused:?}", outcome.map(|run| run.end.stop)),
             }
         }
     }
@@ -355,9 +355,9 @@ fn names_made_as_a_program_runs() {
         });
         let start = ring.name("room 0").unwrap();
         let run = Simulation::of(&ring).run(start, 0.0, 0.0..40.5).unwrap();
-        assert_eq!((run.mode, run.stats.jumps), (format!("room {}", 40 % count).as_str(), 40));
+        assert_eq!((run.end.mode, run.end.stats.jumps), (format!("room {}", 40 % count).as_str(), 40));
         // A name written down is the same one.
-        assert_eq!(Simulation::of(&ring).run("room 0", 0.0, 0.0..40.5).unwrap().mode, run.mode);
+        assert_eq!(Simulation::of(&ring).run("room 0", 0.0, 0.0..40.5).unwrap().end.mode, run.end.mode);
         assert_eq!(ring.name("room 99"), None);
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Closeness, Dop853, Hybrid, Polynomial, Run, Simulation};
+use saltus::{Closeness, Dop853, Hybrid, Polynomial, RunOf, Simulation};
 
 type Ball = Hybrid<'static, Vector2<f64>>;
 
@@ -16,7 +16,7 @@ fn ball(g: f64, e: f64) -> Ball {
     )
 }
 
-fn run(ball: &Ball, height: f64, end: f64) -> Run<Ball> {
+fn run(ball: &Ball, height: f64, end: f64) -> RunOf<Ball> {
     Simulation::of(ball).stepper(Dop853).tolerance(1e-13).run("flight", vector![height, 0.0], 0.0..end).unwrap()
 }
 
@@ -98,7 +98,7 @@ fn the_distance_is_what_brute_force_finds() {
     let (a, b) = (run(&a, 1.0, 1.2).trajectory, run(&b, 1.05, 1.2).trajectory);
     let (tau, scales) = (0.3, [1.0, 4.0]);
     let apart = Closeness::new(tau, scales).distance(&a, &b);
-    let samples = |run: &saltus::Trajectory<Ball>| -> Vec<Vec<(f64, Vector2<f64>)>> {
+    let samples = |run: &saltus::TrajectoryOf<Ball>| -> Vec<Vec<(f64, Vector2<f64>)>> {
         (0..run.arcs().len())
             .map(|index| {
                 let pieces = run.pieces(index);

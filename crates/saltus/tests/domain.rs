@@ -1,7 +1,7 @@
 //! A flow that is no number beyond its guard: the run comes to the crossing from inside.
 
 use proptest::prelude::*;
-use saltus::{Dop853, ErrorKind, Failed, Hybrid, Rodas5P, Run, Simulation, Stop, Tsit5};
+use saltus::{Dop853, ErrorKind, FailedOf, Hybrid, Rodas5P, RunOf, Simulation, Stop, Tsit5};
 
 type Ball<'a> = Hybrid<'a, [f64; 2]>;
 
@@ -18,7 +18,7 @@ fn ball<'a>(stiffness: f64, power: f64, cut_off: bool) -> Ball<'a> {
         .edge("contact", "flight", |_t, x| -x[0], |_t, x| *x)
 }
 
-fn run<'a>(ball: &'a Ball<'a>, method: usize, tolerance: f64) -> Result<Run<Ball<'a>>, Box<Failed<Ball<'a>>>> {
+fn run<'a>(ball: &'a Ball<'a>, method: usize, tolerance: f64) -> Result<RunOf<Ball<'a>>, Box<FailedOf<Ball<'a>>>> {
     let simulation = Simulation::of(ball).tolerance(tolerance);
     match method {
         0 => simulation.stepper(Tsit5).run("flight", [1.0, 0.0], 0.0..4.0),
@@ -43,7 +43,7 @@ proptest! {
         let [undefined, defined] = [false, true].map(|cut_off| {
             let ball = ball(stiffness, power, cut_off);
             let run = run(&ball, method, tolerance).unwrap();
-            assert_eq!(run.stop, Stop::Time);
+            assert_eq!(run.end.stop, Stop::Time);
             run.trajectory.jumps().iter().map(|jump| jump.time.seconds()).collect::<Vec<_>>()
         });
         prop_assert_eq!(undefined.len(), defined.len());

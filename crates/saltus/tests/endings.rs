@@ -166,7 +166,7 @@ fn what_lasts_for_ever() {
     // A mode without edges, moving.
     let drift = Hybrid::new().exact("drift", |_t, x: &f64| [*x, 2.0].into());
     let run = Simulation::of(&drift).run("drift", 1.0, 0.0..f64::INFINITY).unwrap();
-    assert_eq!((run.stop, run.trajectory.end().seconds()), (Stop::Forever, f64::INFINITY));
+    assert_eq!((run.end.stop, run.trajectory.end().seconds()), (Stop::Forever, f64::INFINITY));
     assert_eq!(run.trajectory.at(1e9), Some(1.0 + 2e9));
 }
 
@@ -205,7 +205,7 @@ impl Automaton for Decay {
 fn a_formula_recorded_over_long_spans() {
     for end in SPANS {
         let run = Simulation::of(&Decay).run((), 1.0, 0.0..end).unwrap();
-        assert_eq!(run.stop, if end == f64::INFINITY { Stop::Forever } else { Stop::Time });
+        assert_eq!(run.end.stop, if end == f64::INFINITY { Stop::Forever } else { Stop::Time });
         for t in [0.0_f64, 1e-3, 0.5, 1.0, 7.0, 100.0, 700.0] {
             let exact = (-t).exp();
             let off = run.trajectory.at(t.min(end)).unwrap() - if t <= end { exact } else { (-end).exp() };
@@ -220,7 +220,7 @@ fn a_record_is_bounded() {
     for kind in KINDS.into_iter().filter(|kind| !matches!(kind, Endless::Still | Endless::SolvedStill)) {
         for most in [1, 1000, 100_000] {
             let run = Simulation::of(&kind).most_bytes(most).run((), [0.0, 0.5], 0.0..f64::INFINITY).unwrap();
-            assert_eq!(run.stop, Stop::Bytes { most }, "{kind:?}");
+            assert_eq!(run.end.stop, Stop::Bytes { most }, "{kind:?}");
             let pieces: usize = (0..run.trajectory.arcs().len()).map(|arc| run.trajectory.pieces(arc).count()).sum();
             assert!(pieces * 32 <= most + 2000, "{kind:?}: {pieces} pieces");
             assert_eq!(
@@ -244,14 +244,15 @@ fn limits_are_reported() {
         let end = 10.0 * f64::from(passes) - 5.0;
         let run = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..end).unwrap();
         let last = end - 5.0 + 3.0 * (2.0_f64 / 9.8).sqrt();
-        assert_eq!((run.limits.count, run.stop), (passes as usize, Stop::Time));
+        assert_eq!((run.end.limits.count, run.end.stop), (passes as usize, Stop::Time));
         // One that comes less than a rounding early is at one instant.
         assert!(
-            (run.limits.last.unwrap() - (last - 5.0)).abs() < 1e-9 || (run.limits.last.unwrap() - last).abs() < 6.0
+            (run.end.limits.last.unwrap() - (last - 5.0)).abs() < 1e-9
+                || (run.end.limits.last.unwrap() - last).abs() < 6.0
         );
     }
     let run = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..1.0).unwrap();
-    assert_eq!((run.limits.count, run.limits.last), (0, None));
+    assert_eq!((run.end.limits.count, run.end.limits.last), (0, None));
 }
 
 fn decided<F: Fn(f64, &[f64; 2]) -> [f64; 2], G: Fn(f64, &[f64; 2]) -> [f64; 2]>(
@@ -311,8 +312,8 @@ fn chattering_is_advised() {
         .edge("up", "down", |_t, x| 1.0 - x, |_t, x| *x)
         .edge("down", "up", |_t, x| x - 1.0, |_t, x| *x);
     let run = Simulation::of(&relay).longest_cascade(100).run("up", 0.0, 0.0..3.0).unwrap();
-    assert!(matches!(run.stop, Stop::Cascade { .. }), "{:?}", run.stop);
-    assert!(run.stop.to_string().contains("Filippov"));
+    assert!(matches!(run.end.stop, Stop::Cascade { .. }), "{:?}", run.end.stop);
+    assert!(run.end.stop.to_string().contains("Filippov"));
 }
 
 /// A ball that hardly bounces, on a table that shakes, late in a run: after one or two bounces rounding hides the next. That is
@@ -333,7 +334,7 @@ fn what_rounding_hides_is_no_limit() {
             },
         );
         let run = Simulation::of(&ball).run("flight", [0.1, 0.0], start..start + 3.0).unwrap();
-        match run.stop {
+        match run.end.stop {
             Stop::Resolution { limit } => {
                 hidden += 1;
                 assert!(limit > start && limit < start + 3.0 && restitution < 0.3, "{restitution}: {limit}");

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::step::Stepper;
-use saltus::{Dop853, Hybrid, Jump, Observer, Rodas5P, Simulation, Stop, Tsit5};
+use saltus::{Dop853, Hybrid, JumpOf, Observer, Rodas5P, Simulation, Stop, Tsit5};
 
 const GRAVITY: f64 = 9.81;
 
@@ -33,13 +33,13 @@ fn bounces_as_it_should(ball: &Ball, stepper: impl Stepper, e: f64, height: f64,
     let run = Simulation::of(ball).stepper(stepper).most_jumps(60).most_steps(100_000);
     let run = run.run("flight", vector![height, 0.0], 0.0..end).unwrap();
     let whole = if end == f64::INFINITY { Stop::Forever } else { Stop::Time };
-    assert!(run.stop == whole || matches!(run.stop, Stop::Jumps { .. }), "{}", run.stop);
+    assert!(run.end.stop == whole || matches!(run.end.stop, Stop::Jumps { .. }), "{}", run.end.stop);
     let limit = impact(20_000, e, height);
     for (n, jump) in run.trajectory.jumps().iter().enumerate() {
         let exact = if jump.edge().is_some() { impact(n as i32, e, height) } else { limit };
         assert!((jump.t() - exact).abs() < 1e-9 * exact, "e = {e} to {end}: {jump:?} instead of {exact}");
     }
-    assert!(run.stop != whole || end < limit || run.mode == "rest", "e = {e} to {end}");
+    assert!(run.end.stop != whole || end < limit || run.end.mode == "rest", "e = {e} to {end}");
 }
 
 proptest! {
@@ -65,7 +65,7 @@ proptest! {
 struct Energies(Vec<f64>, usize);
 
 impl Observer<Ball> for Energies {
-    fn jump(&mut self, jump: &Jump<Ball>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Ball>) -> ControlFlow<()> {
         self.1 += 1;
         if [1, 10, 100, 1000, 10_000, 100_000].contains(&self.1) {
             self.0.push(0.5 * jump.after[1] * jump.after[1] + GRAVITY * jump.after[0]);
@@ -102,11 +102,11 @@ fn every_limit_ends_a_run_over_an_endless_span() {
     let tank = Hybrid::new().mode("fill", |_t, _x: &f64| 1.0).edge("fill", "fill", |_t, x| 1.0 - x, |_t, _x| 0.0);
     let endless = 0.0..f64::INFINITY;
     let run = Simulation::of(&tank).most_jumps(50).run("fill", 0.0, endless.clone()).unwrap();
-    assert_eq!(run.stop, Stop::Jumps { most: 50 });
+    assert_eq!(run.end.stop, Stop::Jumps { most: 50 });
     assert!((run.trajectory.jumps()[49].t() - 50.0).abs() < 1e-12);
     let run = Simulation::of(&tank).most_steps(50).run("fill", 0.0, endless.clone()).unwrap();
-    assert_eq!(run.stop, Stop::Steps { most: 50 });
+    assert_eq!(run.end.stop, Stop::Steps { most: 50 });
     let still = Hybrid::new().mode("still", |_t, _x: &f64| 0.0).edge("still", "still", |_t, x| *x, |_t, x| *x);
     let run = Simulation::of(&still).run("still", 1.0, endless).unwrap();
-    assert_eq!((run.stop, run.state), (Stop::Forever, 1.0));
+    assert_eq!((run.end.stop, run.end.state), (Stop::Forever, 1.0));
 }

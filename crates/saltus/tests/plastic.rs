@@ -72,7 +72,7 @@ impl Floor {
             .most_jumps(10_000)
             .run("flight", drop.x, drop.start..drop.start + 3.0)
             .unwrap_or_else(|failed| panic!("{self:?}, {drop:?}: {failed}"));
-        assert_eq!(run.stop, Stop::Time, "{self:?}, {drop:?}");
+        assert_eq!(run.end.stop, Stop::Time, "{self:?}, {drop:?}");
         let above = |t: f64, x: &[f64; 2], stood: f64| {
             let (gap, least) = (x[0] - self.height(t), self.rounding(t, x[0]) + stood * self.amplitude * self.omega);
             assert!(gap >= -least, "{self:?}, {drop:?}: {gap:e} at {t}");

@@ -17,7 +17,7 @@ fn counter<'a>() -> Counter<'a> {
 /// The edges taken, in order.
 fn taken(counter: &Counter, stepper: impl Stepper) -> Vec<usize> {
     let run = Simulation::of(counter).stepper(stepper).run("run", 0.0, 0.0..1.0).unwrap();
-    assert_eq!(run.stop, Stop::Time);
+    assert_eq!(run.end.stop, Stop::Time);
     run.trajectory.jumps().iter().filter_map(saltus::Jump::edge).map(|edge| edge.place).collect()
 }
 
@@ -40,7 +40,7 @@ fn a_guard_is_not_asked_in_another_mode() {
             .edge("flight", "held", fall, move |_t, _x| [held].into())
             .edge("held", "flight", hold, |_t, _x| [0.0, 4.0].into());
         let run = Simulation::of(&ball).run("flight", [1.0, 0.0].into(), 0.0..5.0).unwrap();
-        assert_eq!(run.stop, Stop::Time);
+        assert_eq!(run.end.stop, Stop::Time);
         assert_eq!(run.trajectory.jumps().len(), 12, "held for {held} s");
     }
 }
@@ -58,7 +58,7 @@ proptest! {
             .edge("run", "run", move |t, _x| (omega * t + phase).sin(), |_t, x| *x)
             .entry("run", "run", Entry::Wait);
         let run = Simulation::of(&wave).run("run", 0.0, 0.0..end).unwrap();
-        prop_assert_eq!(run.stop, Stop::Time);
+        prop_assert_eq!(run.end.stop, Stop::Time);
         prop_assert_eq!(run.trajectory.jumps().len() as f64, turns(end) - turns(0.0));
     }
 
@@ -83,7 +83,7 @@ proptest! {
         prop_assert!((refused.t() - impact).abs() < 1e-6 * impact, "{refused}");
         let waiting = ball(Entry::Wait);
         let run = Simulation::of(&waiting).run("flight", start, 0.0..3.0 * impact).unwrap();
-        prop_assert_eq!((run.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
+        prop_assert_eq!((run.end.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
     }
 
     /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other: each once, the earlier one first.

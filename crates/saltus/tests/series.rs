@@ -77,7 +77,7 @@ impl Ball {
             run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(false)).map(saltus::Jump::t).collect();
         assert_eq!(times.len(), 20);
         let error = times.iter().zip(self.impacts(10.0)).map(|(t, exact)| (t - exact).abs()).fold(0.0, f64::max);
-        (error, run.stats)
+        (error, run.end.stats)
     }
 }
 
@@ -126,9 +126,9 @@ fn kinks_of_all_kinds() {
             let simulation = Simulation::of(&swing).tolerance(1e-11).absolute_tolerance(1e-13);
             let run = simulation.run("swing", [shift + x, v, 0.0, 0.0], 0.0..100.0).unwrap();
             let energy = |x: f64, v: f64| 0.5 * v * v + (x - shift).abs().powi(3) / 3.0;
-            let off = energy(run.state[0], run.state[1]) - energy(shift + x, v);
+            let off = energy(run.end.state[0], run.end.state[1]) - energy(shift + x, v);
             assert!(off.abs() <= 1e-9, "{x} {v} {shift}: {off:e}");
-            assert!(run.stats.rejected <= 4, "{x} {v} {shift}: {:?}", run.stats);
+            assert!(run.end.stats.rejected <= 4, "{x} {v} {shift}: {:?}", run.end.stats);
         }
     }
 }
@@ -141,8 +141,8 @@ fn two_kinks_at_once() {
         .series("part", |_t, [x, y]| [-1.0 - 0.1 * x.abs(), 1.0 + 0.1 * y.abs()]);
     let run = Simulation::of(&apart).tolerance(1e-12).run("part", [1e-17, 0.0], 0.0..1.0).unwrap();
     let end = 10.0 * 0.1_f64.exp_m1();
-    assert!((run.state[0] + end).abs() < 1e-14 && (run.state[1] - end).abs() < 1e-14, "{:?}", run.state);
-    assert_eq!((run.stats.steps, run.stats.rejected), (1, 0), "{:?}", run.stats);
+    assert!((run.end.state[0] + end).abs() < 1e-14 && (run.end.state[1] - end).abs() < 1e-14, "{:?}", run.end.state);
+    assert_eq!((run.end.stats.steps, run.end.stats.rejected), (1, 0), "{:?}", run.end.stats);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn where_there_is_no_series_steps_go_on() {
     // t = 2 (√x - 0.1 ln(√x + 0.1)) from 0 to 1
     let full = 2.0 * (1.0 - 0.1 * (1.1_f64 / 0.1).ln());
     assert!((run.trajectory.jumps()[0].t() - full).abs() < 1e-8);
-    assert_eq!(run.stop, Stop::Time);
+    assert_eq!(run.end.stop, Stop::Time);
 }
 
 #[test]
@@ -190,8 +190,12 @@ fn any_unit_of_time_will_do() {
             .series("swing", move |_t, [x, v]| [rate * v, -rate * x]);
         let end = std::f64::consts::TAU / rate;
         let run = Simulation::of(&swing).tolerance(1e-12).run("swing", [1.0, 0.0], 0.0..end).unwrap();
-        assert!((run.state[0] - 1.0).abs() < 1e-11 && run.state[1].abs() < 1e-11, "{rate:e}: {:?}", run.state);
-        assert!(run.stats.steps <= 5, "{rate:e}: {} steps", run.stats.steps);
+        assert!(
+            (run.end.state[0] - 1.0).abs() < 1e-11 && run.end.state[1].abs() < 1e-11,
+            "{rate:e}: {:?}",
+            run.end.state
+        );
+        assert!(run.end.stats.steps <= 5, "{rate:e}: {} steps", run.end.stats.steps);
     }
 }
 
@@ -212,7 +216,11 @@ fn infinitely_many_impacts_have_their_limit() {
     let ball = Ball { cor: 0.5, ..BALL };
     let run = Simulation::of(&ball).tolerance(1e-12).run(false, [1.0, 0.0], 0.0..10.0).unwrap();
     let limit = ball.impacts(1.0).nth(60).unwrap();
-    assert!(matches!(run.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-10), "{:?}, {limit}", run.stop);
+    assert!(
+        matches!(run.end.stop, Stop::Zeno { limit: t } if (t - limit).abs() < 1e-10),
+        "{:?}, {limit}",
+        run.end.stop
+    );
 }
 
 proptest! {

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, Vector3, vector};
-use saltus::{Dop853, Failed, Hybrid, Rodas5P, Run, Simulation, State, Stop, Tsit5};
+use saltus::{Dop853, FailedOf, Hybrid, Rodas5P, RunOf, Simulation, State, Stop, Tsit5};
 
 /// Runs by one of three methods.
 fn run<'a, X: State>(
@@ -12,7 +12,7 @@ fn run<'a, X: State>(
     tolerance: f64,
     start: (&'static str, X),
     end: f64,
-) -> Result<Run<Hybrid<'a, X>>, Box<Failed<Hybrid<'a, X>>>> {
+) -> Result<RunOf<Hybrid<'a, X>>, Box<FailedOf<Hybrid<'a, X>>>> {
     let simulation = Simulation::of(model).tolerance(tolerance).most_steps(100_000);
     let (mode, x) = start;
     match method {
@@ -57,7 +57,7 @@ proptest! {
         let far = if outside { 1.8 } else { 0.4 };
         let start = vector![far * a * angle.cos(), far * b * angle.sin()];
         let run = run(&model, method, 10_f64.powf(-digits), ("in", start), 30.0 / w).unwrap();
-        prop_assert_eq!((run.trajectory.jumps().len(), run.mode), (1, "orbit"), "{:?}", run.stop);
+        prop_assert_eq!((run.trajectory.jumps().len(), run.end.mode), (1, "orbit"), "{:?}", run.end.stop);
     }
 
     /// On a sphere, about an axis, until the flow leaves it at t₀ as (t - t₀)ᵐ⁺¹: one jump, or two.
@@ -81,7 +81,7 @@ proptest! {
         let tolerance = 10_f64.powf(-digits);
         let run = run(&model, method, tolerance, ("in", vector![3.0, 2.0, -1.0]), 12.0).unwrap();
         let jumps = run.trajectory.jumps();
-        prop_assert_eq!(jumps.len(), if leaves { 2 } else { 1 }, "{:?}", run.stop);
+        prop_assert_eq!(jumps.len(), if leaves { 2 } else { 1 }, "{:?}", run.end.stop);
         if leaves {
             let late = jumps[1].time.seconds() - leaving;
             prop_assert!(late.abs() < lateness(tolerance, power), "late by {late:e}");
@@ -100,7 +100,7 @@ proptest! {
             .edge("bead", "bead", move |_t, x| radius - x[0].hypot(x[1]), |_t, x| vector![x[0], x[1], 1.0]);
         let start = vector![0.1 * radius, 0.2 * radius, 0.0];
         let run = run(&model, method, 10_f64.powf(-digits), ("bead", start), 40.0).unwrap();
-        prop_assert_eq!((run.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
+        prop_assert_eq!((run.end.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
     }
 
     /// A ball that lies on a lift, until its floor falls away faster: exact zeros for long, then a fall
@@ -116,7 +116,7 @@ proptest! {
         let tolerance = 10_f64.powf(-digits);
         let run = run(&model, method, tolerance, ("flight", vector![1.0, 0.0]), 12.0).unwrap();
         let jumps = run.trajectory.jumps();
-        prop_assert_eq!((jumps.len(), run.mode), (2, "under"), "{:?}", run.stop);
+        prop_assert_eq!((jumps.len(), run.end.mode), (2, "under"), "{:?}", run.end.stop);
         let late = jumps[1].time.seconds() - pulled;
         prop_assert!(late.abs() < lateness(tolerance, 2), "late by {late:e}");
     }

@@ -6,7 +6,7 @@
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::step::{Dop853, Rodas5P, Stepper, Trial, Tsit5};
-use saltus::{Coords, Entry, Hybrid, Run, Simulation, State, Stop};
+use saltus::{Coords, Entry, Hybrid, RunOf, Simulation, State, Stop};
 
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
 fn run<'b, S: State>(
@@ -15,16 +15,16 @@ fn run<'b, S: State>(
     tolerance: f64,
     x: S,
     end: f64,
-) -> Run<Hybrid<'b, S>> {
+) -> RunOf<Hybrid<'b, S>> {
     let simulation = Simulation::of(system).stepper(stepper).tolerance(tolerance).absolute_tolerance(tolerance);
     let run = simulation.run("flow", x, 0.0..end).unwrap();
-    assert_eq!(run.stop, Stop::Time);
+    assert_eq!(run.end.stop, Stop::Time);
     run
 }
 
 /// Steps accepted, steps rejected, flow evaluations.
-fn cost<S: State>(run: &Run<Hybrid<'_, S>>) -> (u64, u64, u64) {
-    (run.stats.steps, run.stats.rejected, run.stats.flows)
+fn cost<S: State>(run: &RunOf<Hybrid<'_, S>>) -> (u64, u64, u64) {
+    (run.end.stats.steps, run.end.stats.rejected, run.end.stats.flows)
 }
 
 // --- the Arenstorf orbit ---
@@ -57,7 +57,7 @@ fn arenstorf() -> (Hybrid<'static, Vector4<f64>>, Vector4<f64>) {
 fn orbit(stepper: impl Stepper, tolerance: f64) -> (f64, (u64, u64, u64)) {
     let (system, start) = arenstorf();
     let run = run(&system, stepper, tolerance, start, PERIOD);
-    ((run.state - start).norm(), cost(&run))
+    ((run.end.state - start).norm(), cost(&run))
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn rodas5p_on_van_der_pol() {
     let pinned = [(1e-4, 2e-4, (146, 20)), (1e-6, 2e-6, (357, 17)), (1e-8, 2e-8, (946, 13))];
     for (tolerance, bound, counts) in pinned {
         let run = run(&system, Rodas5P, tolerance, vector![2.0, 0.0], 2000.0);
-        let error = (run.state - exact).component_div(&exact).amax();
+        let error = (run.end.state - exact).component_div(&exact).amax();
         assert!(error < bound, "{tolerance:e}: {error:e}");
         let (steps, rejected, flows) = cost(&run);
         assert_eq!((steps, rejected), counts, "{tolerance:e}");
@@ -106,7 +106,7 @@ fn rodas5p_on_van_der_pol() {
     }
     // The rounding in the Jacobian does not yet show.
     let run = run(&system, Rodas5P, 1e-10, vector![2.0, 0.0], 2000.0);
-    assert!((run.state - exact).component_div(&exact).amax() < 2e-10, "{:?}", run.state);
+    assert!((run.end.state - exact).component_div(&exact).amax() < 2e-10, "{:?}", run.end.state);
 }
 
 #[test]
@@ -119,10 +119,10 @@ fn rodas5p_on_robertson() {
     let exact = vector![0.208_334_014_970_125_5e-7, 0.833_336_077_033_471_3e-13, 0.999_999_979_166_505];
     let simulation = Simulation::of(&system).stepper(Rodas5P).tolerance(1e-7).absolute_tolerance(1e-17);
     let run = simulation.run("flow", vector![1.0, 0.0, 0.0], 0.0..1e11).unwrap();
-    let error = (run.state - exact).component_div(&exact).amax();
+    let error = (run.end.state - exact).component_div(&exact).amax();
     assert!(error < 4e-8, "{error:e}");
-    assert!((run.state.sum() - 1.0).abs() < 1e-13, "no matter is lost: {:e}", run.state.sum() - 1.0);
-    assert_eq!((run.stats.steps, run.stats.rejected), (435, 6));
+    assert!((run.end.state.sum() - 1.0).abs() < 1e-13, "no matter is lost: {:e}", run.end.state.sum() - 1.0);
+    assert_eq!((run.end.stats.steps, run.end.stats.rejected), (435, 6));
 }
 
 #[test]
@@ -130,8 +130,13 @@ fn an_explicit_stepper_pays_for_stiffness() {
     // x' = -1e4 (x - cos t): after the first moment nothing happens fast any more.
     let system = Hybrid::new().mode("flow", |t, x: &f64| -1e4 * (x - t.cos()));
     let (implicit, explicit) = (run(&system, Rodas5P, 1e-6, 0.0, 10.0), run(&system, Tsit5, 1e-6, 0.0, 10.0));
-    assert!((implicit.state - explicit.state).abs() < 1e-5);
-    assert!(explicit.stats.steps > 100 * implicit.stats.steps, "{:?} {:?}", implicit.stats, explicit.stats);
+    assert!((implicit.end.state - explicit.end.state).abs() < 1e-5);
+    assert!(
+        explicit.end.stats.steps > 100 * implicit.end.stats.steps,
+        "{:?} {:?}",
+        implicit.end.stats,
+        explicit.end.stats
+    );
 }
 
 // --- what every stepper owes ---
@@ -161,8 +166,8 @@ fn modes_of_different_dimension_suit_every_stepper() {
         for (time, expected) in times.into_iter().zip(expected) {
             assert!((time - expected).abs() < 1e-8, "{time} {expected}");
         }
-        assert_eq!(run.state.len(), 3);
-        assert!((run.state[2] - (6.0 - 2.0 + 0.5)).abs() < 1e-8, "{:?}", run.state);
+        assert_eq!(run.end.state.len(), 3);
+        assert!((run.end.state[2] - (6.0 - 2.0 + 0.5)).abs() < 1e-8, "{:?}", run.end.state);
     }
     check(Tsit5);
     check(Dop853);
@@ -182,7 +187,7 @@ fn a_ball_comes_to_rest_on_every_stepper() {
                 .beyond("flight", "rest", |_t, _x| vector![0.0, 0.0]);
             let run = Simulation::of(&ball).stepper(stepper).run("flight", vector![1.0, 0.0], 0.0..10.0).unwrap();
             let rest = run.trajectory.jumps().last().unwrap();
-            assert_eq!(run.mode, "rest");
+            assert_eq!(run.end.mode, "rest");
             assert!((rest.t() - limit).abs() < 1e-8, "drag {drag}, {kept} kept: {}, not {limit}", rest.t());
         }
     }
@@ -266,6 +271,6 @@ fn a_dense_output_may_be_a_straight_line() {
         .entry("flight", "flight", Entry::Wait);
     let end = Simulation::of(&through).stepper(Heun).tolerance(1e-4).longest_step(1e-3).most_jumps(3);
     let end = end.run("flight", [1.0, 0.0], 0.0..0.6).unwrap();
-    assert_eq!((end.stop, end.trajectory.jumps().len()), (Stop::Time, 1));
-    assert!(end.state[0] < 0.0, "{:?}", end.state);
+    assert_eq!((end.end.stop, end.trajectory.jumps().len()), (Stop::Time, 1));
+    assert!(end.end.state[0] < 0.0, "{:?}", end.end.state);
 }

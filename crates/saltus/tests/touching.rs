@@ -27,7 +27,7 @@ fn a_cradle_swings_on_whatever_its_start() {
         start[0] = -1.5 + 0.005 * f64::from(k);
         let tolerance = [1e-8, 1e-10, 1e-12, 1e-13][k as usize % 4];
         let run = Simulation::of(&cradle).tolerance(tolerance).run("hang", start, 0.0..4.0 * PI).unwrap();
-        assert_eq!(run.stop, Stop::Time, "from {}", start[0]);
-        assert!((run.state - start).norm() < 1e-5, "from {}: {}", start[0], run.state);
+        assert_eq!(run.end.stop, Stop::Time, "from {}", start[0]);
+        assert!((run.end.state - start).norm() < 1e-5, "from {}: {}", start[0], run.end.state);
     }
 }

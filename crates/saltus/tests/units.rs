@@ -11,7 +11,7 @@ fn bounces(unit: f64, below: f64) -> Result<usize, ErrorKind> {
     let simulation = Simulation::of(&ball).absolute_tolerance(1e-12 * unit);
     match simulation.run("flight", vector![unit, 0.0], 0.0..6.0) {
         Ok(run) => {
-            assert_eq!(run.stop, Stop::Time);
+            assert_eq!(run.end.stop, Stop::Time);
             Ok(run.trajectory.jumps().len())
         }
         Err(failed) => Err(failed.error.kind()),

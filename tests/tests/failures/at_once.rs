@@ -15,6 +15,6 @@ fn a_rebound_too_short_to_time_is_a_rebound() {
         let run = Simulation::of(&automaton).run("run", vector![5.0, 0.0, 1.0], 0.0..1.2).unwrap();
         let edges: Vec<_> = run.trajectory.jumps().iter().map(|jump| jump.edge().unwrap().place).collect();
         assert_eq!(edges, [0, 1, 0], "{rebound:e}");
-        assert!(run.state[0] > 0.0, "{rebound:e}: {:?}", run.state);
+        assert!(run.end.state[0] > 0.0, "{rebound:e}: {:?}", run.end.state);
     }
 }

@@ -1,12 +1,12 @@
 //! Falling through the floor, accumulating impacts, plastic and resting contact.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Hybrid, Run, Simulation, Stop};
+use saltus::{Hybrid, RunOf, Simulation, Stop};
 use saltus_bounce::{Ball, Cor, Mode};
 
 use super::{Flight, G, PATHS, Path, ball, lowest, pieces};
 
-fn dropped(e: f64, end: f64, path: Path) -> Run<Hybrid<'static, Flight>> {
+fn dropped(e: f64, end: f64, path: Path) -> RunOf<Hybrid<'static, Flight>> {
     // The automaton outlives the run's record, which holds no reference to it.
     let automaton = ball(G, e, path);
     Simulation::of(&automaton).run("flight", vector![1.0, 0.0], 0.0..end).unwrap()
@@ -26,11 +26,11 @@ fn a_ball_comes_to_rest_on_every_path_on(paths: &[Path]) {
             let run = dropped(e, 20.0, path);
             let jumps = run.trajectory.jumps();
             let last = jumps.last().unwrap();
-            assert_eq!((last.to, run.stop), ("rest", Stop::Time), "{path:?}, e = {e}");
+            assert_eq!((last.to, run.end.stop), ("rest", Stop::Time), "{path:?}, e = {e}");
             assert_eq!(jumps.iter().filter(|jump| jump.to == "rest").count(), 1);
             let tolerance = if path == Path::ExactAffine { 4e-15 * rest } else { 1e-13 };
             assert!((last.t() - rest).abs() <= tolerance, "{path:?}, e = {e}: rest at {}", last.t());
-            assert_eq!(run.state, vector![0.0, 0.0]);
+            assert_eq!(run.end.state, vector![0.0, 0.0]);
             assert_eq!(run.trajectory.at(rest + 1e-9).unwrap(), vector![0.0, 0.0]);
             assert!(lowest(&run) >= 0.0, "{path:?}, e = {e}: {:e} below the floor", lowest(&run));
             if path == Path::ExactAffine && impacts > 0 {
@@ -74,7 +74,12 @@ fn a_floor_at_any_height_on(paths: &[Path]) {
                 .beyond("flight", "rest", move |_t, _x| vector![floor, 0.0]);
             let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
             let run = Simulation::of(&automaton).run("flight", vector![floor + 1.0, 0.0], 0.0..4.0).unwrap();
-            assert_eq!((run.mode, run.stop), ("rest", Stop::Time), "{path:?}, floor at {floor}: {:?}", run.stop);
+            assert_eq!(
+                (run.end.mode, run.end.stop),
+                ("rest", Stop::Time),
+                "{path:?}, floor at {floor}: {:?}",
+                run.end.stop
+            );
             let rest = run.trajectory.jumps().last().unwrap().t();
             // Heights are resolved to the spacing of numbers at the floor, and so are flights to its root.
             let resolved = 4.0 * (8.0 * f64::EPSILON * (1.0 + floor.abs()) / G).sqrt();
@@ -104,7 +109,7 @@ fn a_plastic_impact_happens_once() {
         let impact = &run.trajectory.jumps()[0];
         assert!((impact.t() - 0.451_753_951_452_625_6).abs() < 1e-14, "{path:?}: {}", impact.t());
         let impacts = run.trajectory.jumps().iter().filter(|jump| jump.edge().is_some()).count();
-        assert_eq!((impacts, run.mode, run.state), (1, "rest", vector![0.0, 0.0]), "{path:?}");
+        assert_eq!((impacts, run.end.mode, run.end.state), (1, "rest", vector![0.0, 0.0]), "{path:?}");
     }
     // With a contact mode of its own: one impact, and the floor carries m g.
     let mass = 0.058;
@@ -114,7 +119,7 @@ fn a_plastic_impact_happens_once() {
         .mode("contact", |_t, _x| vector![0.0, 0.0])
         .edge("contact", "flight", move |_t, _x| mass * G, |_t, x| *x);
     let run = Simulation::of(&automaton).run("flight", vector![1.0, 0.0], 0.0..1e4).unwrap();
-    assert_eq!((run.trajectory.jumps().len(), run.mode, run.state), (1, "contact", vector![0.0, 0.0]));
+    assert_eq!((run.trajectory.jumps().len(), run.end.mode, run.end.state), (1, "contact", vector![0.0, 0.0]));
 }
 
 /// Lifting the ball by a hair after each impact stores millions of points past the limit; the record is as long as the impacts are many.
@@ -176,10 +181,10 @@ fn a_wheel_that_rocks_comes_to_stand() {
         .mode("stand", |_t, _x| vector![0.0, 0.0])
         .beyond("roll", "stand", |_t, x| vector![x[0], 0.0]);
     let run = Simulation::of(&automaton).run("roll", vector![0.0, 0.5], 0.0..20.0).unwrap();
-    assert_eq!((run.mode, run.stop), ("stand", Stop::Time), "{:?}", run.state);
+    assert_eq!((run.end.mode, run.end.stop), ("stand", Stop::Time), "{:?}", run.end.state);
     assert!(run.trajectory.jumps().len() < 1000, "{} jumps", run.trajectory.jumps().len());
-    let on_leg = (run.state[0] - gamma).abs() - alpha;
-    assert!(on_leg.abs() < 1e-12 && run.state[1] == 0.0, "{:?}", run.state);
+    let on_leg = (run.end.state[0] - gamma).abs() - alpha;
+    assert!(on_leg.abs() < 1e-12 && run.end.state[1] == 0.0, "{:?}", run.end.state);
 }
 
 /// A ball at rest has a guard that stays at zero: no sign changes, so a search alone keeps it on the floor for ever or lets it fall.
@@ -192,9 +197,13 @@ fn a_resting_ball_is_pulled_off() {
         .mode("flight", |t, x| vector![x[1], G * (t - 1.0)])
         .edge("flight", "contact", |_t, x| x[0], |_t, _x| vector![0.0, 0.0]);
     let run = Simulation::of(&automaton).run("contact", vector![0.0, 0.0], 0.0..2.0).unwrap();
-    assert_eq!((run.trajectory.jumps().len(), run.mode), (1, "flight"), "{:?}", run.trajectory.jumps());
+    assert_eq!((run.trajectory.jumps().len(), run.end.mode), (1, "flight"), "{:?}", run.trajectory.jumps());
     assert_eq!(run.trajectory.jumps()[0].t(), 1.0);
-    assert!((run.state[0] - G / 6.0).abs() < 1e-12 && (run.state[1] - G / 2.0).abs() < 1e-12, "{:?}", run.state);
+    assert!(
+        (run.end.state[0] - G / 6.0).abs() < 1e-12 && (run.end.state[1] - G / 2.0).abs() < 1e-12,
+        "{:?}",
+        run.end.state
+    );
     assert!(lowest(&run) >= 0.0, "{:e}", lowest(&run));
 }
 
@@ -208,8 +217,8 @@ fn a_resting_ball_is_pulled_off_with_an_affine_floor() {
         .edge("flight", "contact", |_t, x| x[0], |_t, _x| vector![0.0, 0.0])
         .affine("flight", "contact");
     let run = Simulation::of(&automaton).run("contact", vector![0.0, 0.0], 0.0..2.0).unwrap();
-    assert_eq!((run.trajectory.jumps().len(), run.mode), (1, "flight"), "{:?}", run.trajectory.jumps());
-    assert!((run.state[0] - G / 6.0).abs() < 1e-12, "{:?}", run.state);
+    assert_eq!((run.trajectory.jumps().len(), run.end.mode), (1, "flight"), "{:?}", run.trajectory.jumps());
+    assert!((run.end.state[0] - G / 6.0).abs() < 1e-12, "{:?}", run.end.state);
 }
 
 /// A threshold on the impact speed swallows the last visible bounces; here the heights go down by e² each until far below one frame.
@@ -240,7 +249,7 @@ fn an_elastic_ball_keeps_its_height_on(paths: &[Path]) {
     for &path in paths {
         let automaton = ball(G, 1.0, path);
         let run = Simulation::of(&automaton).most_jumps(1000).run("flight", vector![10.0, 0.0], 0.0..1e5).unwrap();
-        assert_eq!(run.stop, Stop::Jumps { most: 1000 }, "{path:?}");
+        assert_eq!(run.end.stop, Stop::Jumps { most: 1000 }, "{path:?}");
         // Rounding alone, a walk of a thousand steps of one unit in the last place.
         let allowed = if path == Path::ExactAffine { 1e-13 } else { 1e-11 };
         for jump in run.trajectory.jumps() {
@@ -280,6 +289,6 @@ fn a_ball_let_go_on_the_floor_stays() {
     for path in PATHS {
         let automaton = ball(G, 0.5, path);
         let run = Simulation::of(&automaton).run("flight", vector![0.0, 0.0], 0.0..10.0).unwrap();
-        assert_eq!((run.mode, run.state, run.stop), ("rest", vector![0.0, 0.0], Stop::Time), "{path:?}");
+        assert_eq!((run.end.mode, run.end.state, run.end.stop), ("rest", vector![0.0, 0.0], Stop::Time), "{path:?}");
     }
 }

@@ -15,7 +15,7 @@ mod twice;
 use std::ops::Range;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Hybrid, Link, Polynomial, Run, Simulation, State};
+use saltus::{Hybrid, Link, Polynomial, Run, RunOf, Simulation, State};
 use saltus_tests::watched::watched;
 
 /// Gravity, m/s².
@@ -79,7 +79,7 @@ fn ball(g: f64, e: f64, path: Path) -> Hybrid<'static, Flight> {
 }
 
 /// The crossings of a watched guard in order.
-fn crossings<S: State>(run: &Run<Hybrid<'_, S>>) -> Vec<(f64, Way)> {
+fn crossings<S: State>(run: &RunOf<Hybrid<'_, S>>) -> Vec<(f64, Way)> {
     let way = |link: Link| if link.place == 0 { Down } else { Up };
     run.trajectory.jumps().iter().map(|jump| (jump.t(), way(jump.edge().unwrap()))).collect()
 }
@@ -106,7 +106,7 @@ fn assert_crossings(got: &[(f64, Way)], expected: &[(f64, Way)], tolerance: f64)
 }
 
 /// The lowest first coordinate anywhere on the recorded arcs, at their ends and between.
-fn lowest<A: Automaton>(run: &Run<A>) -> f64 {
+fn lowest<M: Copy, E, S: State>(run: &Run<M, E, S>) -> f64 {
     let mut low = f64::INFINITY;
     for arc in 0..run.trajectory.arcs().len() {
         for piece in run.trajectory.pieces(arc).filter(|piece| piece.span().is_finite()) {
@@ -119,6 +119,6 @@ fn lowest<A: Automaton>(run: &Run<A>) -> f64 {
 }
 
 /// The number of pieces a run recorded.
-fn pieces<A: Automaton>(run: &Run<A>) -> usize {
+fn pieces<M: Copy, E, S: State>(run: &Run<M, E, S>) -> usize {
     (0..run.trajectory.arcs().len()).map(|arc| run.trajectory.pieces(arc).count()).sum()
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use saltus::nalgebra::vector;
 use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
-use saltus::{Entry, Hybrid, Jump, Observer, Piece, Simulation};
+use saltus::{Entry, Hybrid, Jump, JumpOf, Observer, Piece, Simulation};
 
 use super::{Down, Flight, G, PATHS, Path, Up, Way, assert_crossings, ball, crossings, of_time, throw, watched};
 
@@ -118,7 +118,7 @@ fn a_flight_inside_one_step() {
             .unwrap();
         assert_eq!(run.trajectory.jumps().len(), 1, "{path:?}");
         assert!((run.trajectory.jumps()[0].t() - impact).abs() < 1e-13, "{path:?}: {:?}", run.trajectory.jumps());
-        assert!(run.stats.steps <= 1, "{path:?}: {:?}", run.stats);
+        assert!(run.end.stats.steps <= 1, "{path:?}: {:?}", run.end.stats);
     }
 }
 
@@ -164,7 +164,7 @@ fn a_short_condition_between_outputs() {
         .mode("done", |_t, _c| 0.0);
     let run = Simulation::of(&automaton).first_step(0.1).run("waiting", 0.0, 0.0..1.0).unwrap();
     let jumps = run.trajectory.jumps();
-    assert_eq!((jumps.len(), run.mode), (2, "done"));
+    assert_eq!((jumps.len(), run.end.mode), (2, "done"));
     assert!((jumps[0].t() - 0.45).abs() < 1e-15 && (jumps[1].t() - 0.55).abs() < 1e-15, "{jumps:?}");
 }
 
@@ -201,7 +201,7 @@ impl Observer<Hybrid<'static, Flight>> for Grid {
         }
         ControlFlow::Continue(())
     }
-    fn jump(&mut self, jump: &Jump<Hybrid<'static, Flight>>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Hybrid<'static, Flight>>) -> ControlFlow<()> {
         self.jumps.push((jump.t().to_bits(), jump.after[1].to_bits()));
         ControlFlow::Continue(())
     }

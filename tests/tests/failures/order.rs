@@ -56,7 +56,7 @@ fn the_earlier_crossing_is_first() {
                 .terminal("flight", move |_t, x| x[0] - levels[1]);
             let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
             let run = Simulation::of(&automaton).first_step(2.0).run("flight", vector![1.0, 0.0], 0.0..2.0).unwrap();
-            let Stop::Terminal { edge } = run.stop else { unreachable!("{:?}", run.stop) };
+            let Stop::Terminal { edge } = run.end.stop else { unreachable!("{:?}", run.end.stop) };
             assert_eq!(edge.place, usize::from(floor_first), "{path:?}");
             let t = run.trajectory.jumps()[0].t();
             assert!((t - 0.142_857_142_857_142_85).abs() < 1e-14, "{path:?}: {t}");
@@ -109,7 +109,7 @@ fn backwards_through_three_guards_close_together() {
         };
         let back = |start: f64| {
             let run = Simulation::of(&Reversed::of(&clock)).run("d", start, Reversed::span(start, -1.0)).unwrap();
-            assert_eq!((run.mode, run.stop), ("a", Stop::Time));
+            assert_eq!((run.end.mode, run.end.stop), ("a", Stop::Time));
             run.trajectory.jumps().iter().map(|jump| -jump.t()).collect::<Vec<_>>()
         };
         for start in [1.0, 2e-8] {
@@ -132,11 +132,11 @@ fn eight_balls_land_together() {
     assert!(jumps.iter().all(|jump| jump.t() == jumps[0].t()), "{jumps:?}");
     // The same but for rounding: each bounces from where the one before left the others.
     let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
-    let [height, speed] = [run.state[0], run.state[1]];
+    let [height, speed] = [run.end.state[0], run.end.state[1]];
     assert!(
-        speed > 0.0 && run.state.chunks(2).all(|ball| near(ball[0], height) && near(ball[1], speed)),
+        speed > 0.0 && run.end.state.chunks(2).all(|ball| near(ball[0], height) && near(ball[1], speed)),
         "{:?}",
-        run.state
+        run.end.state
     );
 }
 
@@ -208,7 +208,7 @@ fn both_walls_of_a_corner() {
             let times: Vec<f64> = run.trajectory.jumps().iter().map(saltus::Jump::t).collect();
             assert_eq!(times.len(), 2, "{times:?}");
             assert!(times[0] == times[1] && (times[0] - 0.5).abs() <= 1.2e-16, "{times:?}");
-            run.state
+            run.end.state
         });
         assert!((one - two).norm() < 1e-15, "{one:?} {two:?}");
         assert!((one - vector![-0.5 * vx, -0.5 * vy, -vx, -vy]).norm() < 1e-15, "{one:?}");
@@ -245,10 +245,10 @@ fn a_root_after_the_time_asked_for() {
     let simulation = Simulation::of(&automaton).first_step(1.0);
     // x = cos t falls through 0.5 at pi/3, rises at 5 pi/3, falls again at 7 pi/3.
     let early = simulation.run("run", vector![1.0, 0.0], 0.0..1.0).unwrap();
-    assert_eq!((early.stop, early.trajectory.jumps().len()), (Stop::Time, 0));
-    let next = simulation.run("run", early.state, 1.0..4.0).unwrap();
+    assert_eq!((early.end.stop, early.trajectory.jumps().len()), (Stop::Time, 0));
+    let next = simulation.run("run", early.end.state, 1.0..4.0).unwrap();
     assert!((next.trajectory.jumps()[0].t() - std::f64::consts::FRAC_PI_3).abs() < 1e-8);
-    let after = simulation.run("run", next.state, next.trajectory.end().seconds()..10.0).unwrap();
+    let after = simulation.run("run", next.end.state, next.trajectory.end().seconds()..10.0).unwrap();
     // A new run begins on the wall, falling: the first fall is the one it starts at, at most; no rise is taken.
     let times: Vec<f64> = after.trajectory.jumps().iter().map(saltus::Jump::t).collect();
     assert_eq!(times.len(), 1, "{times:?}");
@@ -267,8 +267,8 @@ fn a_state_changed_to_violate_a_guard() {
             .mode("full", |_t, _x| 0.0);
         let simulation = Simulation::of(&automaton);
         let first = simulation.run("filling", 0.0, 0.0..1.0).unwrap();
-        assert!((first.state - 1.0).abs() < 1e-14);
-        match (simulation.run("filling", first.state + 5.0, 1.0..2.0), outcome) {
+        assert!((first.end.state - 1.0).abs() < 1e-14);
+        match (simulation.run("filling", first.end.state + 5.0, 1.0..2.0), outcome) {
             (Err(failed), None) => assert_eq!(failed.error.kind(), ErrorKind::Entry),
             (Ok(run), Some(jumps)) => {
                 assert_eq!(run.trajectory.jumps().len(), jumps);

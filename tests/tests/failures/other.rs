@@ -14,7 +14,7 @@ fn largest_gap<M: Stepper>(stepper: M) -> f64 {
     let gap = |a: &Flight, b: &Flight| (0..2).map(|i| (a[i] - b[i]).abs() / b[i].abs().max(1.0)).fold(0.0, f64::max);
     let inner = pieces.windows(2).map(|pair| gap(&pair[0].at(pair[0].span()), &pair[1].at(0.0))).fold(0.0, f64::max);
     let end = pieces[pieces.len() - 1];
-    inner.max(gap(&end.at(end.span()), &run.state))
+    inner.max(gap(&end.at(end.span()), &run.end.state))
 }
 
 /// A dense output that is off near the ends of its steps; here it meets the step's own values to a rounding.
@@ -55,8 +55,8 @@ fn a_stiff_run_restarts_cheaply() {
             None => automaton,
         };
         let run = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-6).run("run", 1.0, 0.0..10.05).unwrap();
-        assert_eq!(run.stats.jumps, if kick.is_some() { 100 } else { 0 });
-        run.stats
+        assert_eq!(run.end.stats.jumps, if kick.is_some() { 100 } else { 0 });
+        run.end.stats
     };
     let [smooth, still, kicked] = [run(None), run(Some(0.0)), run(Some(1.0))];
     assert!(still.steps <= smooth.steps + 100, "{smooth:?} {still:?}");

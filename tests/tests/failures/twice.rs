@@ -1,7 +1,7 @@
 //! Events that fire twice, runs that get stuck or never end.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Entry, ErrorKind, Hybrid, Jump, Observer, Simulation, Stop};
+use saltus::{Entry, ErrorKind, Hybrid, Jump, JumpOf, Observer, Simulation, Stop};
 
 use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, crossings, of_time, watched};
 
@@ -51,7 +51,7 @@ fn a_sawtooth_with_a_crossing_at_the_output() {
     );
     let run = Simulation::of(&automaton).run("run", vector![0.0, 0.0], 0.0..10.0).unwrap();
     assert_eq!(run.trajectory.jumps().len(), 10);
-    assert!((run.state[1] - 5.0).abs() < 1e-14 && run.state[0] == 0.0, "{:?}", run.state);
+    assert!((run.end.state[1] - 5.0).abs() < 1e-14 && run.end.state[0] == 0.0, "{:?}", run.end.state);
     for (n, jump) in run.trajectory.jumps().iter().enumerate() {
         assert!((jump.t() - (n + 1) as f64).abs() <= 4e-15, "{jump:?}");
     }
@@ -71,7 +71,7 @@ fn two_identical_guards() {
         let places: Vec<usize> = run.trajectory.jumps().iter().map(|jump| jump.edge().unwrap().place).collect();
         assert_eq!(places, [0, 1], "{path:?}: {:?}", run.trajectory.jumps());
         assert_eq!(run.trajectory.jumps()[0].t(), run.trajectory.jumps()[1].t(), "{path:?}");
-        assert_eq!(run.stop, Stop::Time);
+        assert_eq!(run.end.stop, Stop::Time);
     }
 }
 
@@ -108,7 +108,7 @@ fn a_reset_that_trips_two_other_guards() {
     assert_eq!(taken, [0, 1, 2]);
     assert!(run.trajectory.jumps().iter().all(|jump| jump.t() == run.trajectory.jumps()[0].t()));
     assert!((run.trajectory.jumps()[0].t() - 0.5).abs() < 1e-15);
-    assert_eq!(run.stop, Stop::Time);
+    assert_eq!(run.end.stop, Stop::Time);
 }
 
 /// A reset flips the sign of its own guard while another root lies in the first half of the next search: no bracket breaks.
@@ -153,7 +153,7 @@ fn a_crossing_one_spacing_from_a_step_end() {
 struct Count(usize);
 
 impl Observer<Hybrid<'static, Flight>> for Count {
-    fn jump(&mut self, _: &Jump<Hybrid<'static, Flight>>) -> std::ops::ControlFlow<()> {
+    fn jump(&mut self, _: &JumpOf<Hybrid<'static, Flight>>) -> std::ops::ControlFlow<()> {
         self.0 += 1;
         std::ops::ControlFlow::Continue(())
     }
@@ -205,7 +205,7 @@ fn a_thermostat_with_a_hair_of_hysteresis() {
         .edge("heating", "cooling", move |_t, x| high - x, |_t, x| *x)
         .edge("cooling", "heating", move |_t, x| x - low, |_t, x| *x);
     let run = Simulation::of(&automaton).most_jumps(10_000).run("heating", 20.0, 0.0..1.0).unwrap();
-    assert_eq!(run.stop, Stop::Jumps { most: 10_000 });
+    assert_eq!(run.end.stop, Stop::Jumps { most: 10_000 });
     let jumps = run.trajectory.jumps();
     assert!(jumps.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].edge() != pair[1].edge()));
     // Up and down by 1e-9 at 10 degrees a second each; a temperature near 20 is resolved to 3.6e-15.

@@ -36,7 +36,7 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 /// let ball = Ball::new(9.8, Cor::new(0.5)?)?;
 /// let run = Simulation::of(&ball).run(Mode::Flight, Ball::dropped_from(1.0), 0.0..4.0)?;
 ///
-/// assert_eq!(run.mode, Mode::Rest);
+/// assert_eq!(run.end.mode, Mode::Rest);
 /// let rest = run.trajectory.jumps().last().unwrap();
 /// assert!((rest.t() - 1.355_261_854_357_877).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -52,7 +52,7 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 ///
 /// let ball = Ball::of(QuadraticDragFlight::new(9.81, 0.1)?, Linear::new(Cor::new(0.8)?, -0.01, 0.0, 20.0)?);
 /// let run = Simulation::of(&ball).run(Phase::Falling, Ball::dropped_from(20.0), 0.0..20.0)?;
-/// assert_eq!((run.mode, run.stats.steps), (Phase::Rest, 0));
+/// assert_eq!((run.end.mode, run.end.stats.steps), (Phase::Rest, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -40,7 +40,7 @@ pub use swarm::Swarm;
 /// let cloud = Cloud::new([1.0, 1.0], [0.5, 0.5], Cor::new(1.0)?)?;
 /// let start = cloud.placed([[0.0, 0.0], [2.0, 0.5]], [[1.0, 0.0], [0.0, 0.0]])?;
 /// let run = Simulation::of(&cloud).run((), start, 0.0..3.0)?;
-/// let [u, v] = run.state.velocities;
+/// let [u, v] = run.end.state.velocities;
 /// assert!((v[1] / v[0] - 0.5 / 0.75_f64.sqrt()).abs() < 1e-15);
 /// assert!((u[0] * v[0] + u[1] * v[1]).abs() < 1e-15); // at right angles
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,6 +1,6 @@
 //! What a recorded run says about its contacts.
 
-use saltus::{Piece, Trajectory};
+use saltus::{Piece, TrajectoryOf};
 
 use super::{Compliant, Moment, Stage};
 use crate::contact::ContactLaw;
@@ -31,7 +31,7 @@ impl<L: ContactLaw> Compliant<L> {
     ///
     /// The greatest force is searched for on the recorded pieces: to their twelve digits, or to the tolerance of the steps.
     #[must_use]
-    pub fn contacts(&self, run: &Trajectory<Self>) -> Vec<Contact> {
+    pub fn contacts(&self, run: &TrajectoryOf<Self>) -> Vec<Contact> {
         let mut contacts: Vec<Contact> = Vec::new();
         let mut open = false;
         for (index, arc) in run.arcs().iter().enumerate() {
@@ -79,7 +79,7 @@ impl<L: ContactLaw> Compliant<L> {
     ///
     /// The area of the loop, ∮ F dd, is the energy lost.
     #[must_use]
-    pub fn hysteresis(&self, run: &Trajectory<Self>, contact: &Contact, count: usize) -> Vec<[f64; 2]> {
+    pub fn hysteresis(&self, run: &TrajectoryOf<Self>, contact: &Contact, count: usize) -> Vec<[f64; 2]> {
         let point = |x: &Vector2<f64>| [-x[0], self.force(x)];
         let mut points = Vec::new();
         for index in contact.arcs[0]..=contact.arcs[1] {

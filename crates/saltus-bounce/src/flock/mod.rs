@@ -50,7 +50,7 @@ pub type Member<E, W, R, G> = (Sphere, Flyer<3, Vector3<f64>, E, W, R, G>);
 /// let at = |x: f64, u: f64| Moving::new(vector![x, 0.0, 0.1], vector![u, 0.0, 0.0]).spinning(Vector3::zeros());
 /// let start = Flying::new(&[at(0.0, 0.5), at(0.5, 0.0)]);
 /// let run = Simulation::of(&flock).run(start.stances(), start, 0.0..5.0)?;
-/// let [first, second] = [0, 1].map(|ball| run.state.ball(ball).position[0]);
+/// let [first, second] = [0, 1].map(|ball| run.end.state.ball(ball).position[0]);
 /// assert!(first < second - 0.06 && second > 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -56,8 +56,8 @@ pub use stance::{Event, Stance};
 /// let ball = Flyer::new(Gravity::new(9.81)?, slope, Cor::new(0.5)?)?;
 /// let start = Moving::new(vector![0.0, 1.0], vector![0.0, 0.0]);
 /// let run = Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..10.0)?;
-/// assert!(matches!(run.mode, Stance::Slide { .. }));
-/// assert_eq!(run.stats.steps, 0);
+/// assert!(matches!(run.end.mode, Stance::Slide { .. }));
+/// assert_eq!(run.end.stats.steps, 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -38,7 +38,7 @@ pub use row::Row;
 /// let cradle = Line::new([1.0; 5], Cor::new(1.0)?)?;
 /// let start = Row { gaps: [-1.0, 1.0, 0.0, 0.0, 0.0], velocities: [1.0, 0.0, 0.0, 0.0, 0.0] };
 /// let run = Simulation::of(&cradle).run(Lying::NONE, start, 0.0..2.0)?;
-/// assert_eq!(run.state.velocities, [0.0, 0.0, 0.0, 0.0, 1.0]);
+/// assert_eq!(run.end.state.velocities, [0.0, 0.0, 0.0, 0.0, 1.0]);
 /// assert!(run.trajectory.jumps().iter().all(|jump| jump.t() == 1.0));
 ///
 /// // A tennis ball on a basketball, both dropped from 1 m: nine times as high is the limit.

@@ -1,7 +1,7 @@
 //! One ball that moves up and down over a level floor: exact arcs and closed forms, no steps.
 
 use nalgebra::{Vector2, Vector3};
-use saltus::{Automaton, Jump};
+use saltus::{Automaton, JumpOf};
 
 use super::explain::Advance;
 use super::record::{Moment, With};
@@ -114,7 +114,7 @@ where
     fn rests(&self, mode: Mode, _: &Vector2<f64>) -> bool {
         mode == Mode::Rest
     }
-    fn scene_event(&self, _: &Ball<F, R>, _: &Jump<Ball<F, R>>, _: Floor) -> SceneEvent {
+    fn scene_event(&self, _: &Ball<F, R>, _: &JumpOf<Ball<F, R>>, _: Floor) -> SceneEvent {
         self.floor()
     }
     fn modes(&self, _: &Ball<F, R>) -> Vec<Mode> {
@@ -160,7 +160,7 @@ impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
     fn scene_event(
         &self,
         _: &Ball<QuadraticDragFlight, R>,
-        _: &Jump<Ball<QuadraticDragFlight, R>>,
+        _: &JumpOf<Ball<QuadraticDragFlight, R>>,
         turn: Turn,
     ) -> SceneEvent {
         match turn {

@@ -1,7 +1,7 @@
 //! Several smooth balls in the plane or in space, in a box or over a level floor.
 
 use nalgebra::Vector3;
-use saltus::Jump;
+use saltus::JumpOf;
 
 use super::explain::Advance;
 use super::record::{Moment, With};
@@ -147,7 +147,7 @@ impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
     fn rests(&self, (): (), _: &Swarm<3, N>) -> bool {
         false
     }
-    fn scene_event(&self, _: &Cloud<3, N, Law>, jump: &Jump<Cloud<3, N, Law>>, touch: Touch) -> SceneEvent {
+    fn scene_event(&self, _: &Cloud<3, N, Law>, jump: &JumpOf<Cloud<3, N, Law>>, touch: Touch) -> SceneEvent {
         let wall = |ball: usize, axis: usize, side: f64, end: usize| {
             let mut normal = [0.0; 3];
             normal[axis] = side;

@@ -1,7 +1,7 @@
 //! One ball that moves up and down and is deformed as it meets a level floor.
 
 use nalgebra::{Vector2, Vector3};
-use saltus::{Jump, Trajectory};
+use saltus::{JumpOf, TrajectoryOf};
 
 use super::explain::Advance;
 use super::record::{Impact, Moment, Press, With};
@@ -79,7 +79,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
     fn rests(&self, _: Stage, _: &Vector2<f64>) -> bool {
         false // it swings about its static deformation, ever less
     }
-    fn scene_event(&self, _: &Compliant<L>, _: &Jump<Compliant<L>>, edge: Edge) -> SceneEvent {
+    fn scene_event(&self, _: &Compliant<L>, _: &JumpOf<Compliant<L>>, edge: Edge) -> SceneEvent {
         let name = match edge {
             Edge::FirstContact => "first contact",
             Edge::GreatestDeformation => "greatest deformation",
@@ -113,7 +113,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
             }
         }
     }
-    fn contacts(&self, model: &Compliant<L>, run: &Trajectory<Compliant<L>>) -> Option<Vec<Impact>> {
+    fn contacts(&self, model: &Compliant<L>, run: &TrajectoryOf<Compliant<L>>) -> Option<Vec<Impact>> {
         let impact = |contact: saltus_bounce::compliant::Contact| Impact {
             t: contact.touch,
             ball: 0,
@@ -127,7 +127,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
     fn hysteresis(
         &self,
         model: &Compliant<L>,
-        run: &Trajectory<Compliant<L>>,
+        run: &TrajectoryOf<Compliant<L>>,
         contact: usize,
         count: usize,
     ) -> Vec<[f64; 2]> {

@@ -1,7 +1,7 @@
 //! Several balls that spin, rub, lie or fly in air, among whatever floors and walls a scene has.
 
 use nalgebra::Vector3;
-use saltus::{Automaton, Jump};
+use saltus::{Automaton, JumpOf};
 
 use super::explain::Advance;
 use super::flyer::{self, FloorsView, Grips, InWind, Laws, SpinEffects};
@@ -76,7 +76,7 @@ impl SceneView<Model> for FlockView {
         };
         (0..self.count).all(still) && !self.among.acts().1
     }
-    fn scene_event(&self, model: &Model, jump: &Jump<Model>, meeting: Meeting) -> SceneEvent {
+    fn scene_event(&self, model: &Model, jump: &JumpOf<Model>, meeting: Meeting) -> SceneEvent {
         match model.happens(meeting, &jump.from) {
             Happens::Balls(i, j) => {
                 let [first, second] = [i, j].map(|ball| {

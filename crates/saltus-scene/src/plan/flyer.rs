@@ -1,7 +1,7 @@
 //! One ball in one to three coordinates, among whatever floors and walls a scene has.
 
 use nalgebra::{SVector, Vector3};
-use saltus::Jump;
+use saltus::JumpOf;
 
 use super::explain::Advance;
 use super::record::{Moment, With};
@@ -370,7 +370,7 @@ where
     fn scene_event(
         &self,
         model: &SceneFlyer<N, S, E, G>,
-        jump: &Jump<SceneFlyer<N, S, E, G>>,
+        jump: &JumpOf<SceneFlyer<N, S, E, G>>,
         event: Event<N>,
     ) -> SceneEvent {
         self.event_of(model.walls(), 0, jump.t(), &jump.before.position, event)

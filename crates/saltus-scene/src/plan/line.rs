@@ -1,7 +1,7 @@
 //! Several balls on one line: stacked over a floor, or side by side without weight.
 
 use nalgebra::Vector3;
-use saltus::Jump;
+use saltus::JumpOf;
 
 use super::explain::Advance;
 use super::record::{Moment, With};
@@ -130,7 +130,7 @@ impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
     fn rests(&self, lying: Lying, _: &Row<N>) -> bool {
         lying.count() == N
     }
-    fn scene_event(&self, _: &Line<N, Law>, _: &Jump<Line<N, Law>>, Contact(contact): Contact) -> SceneEvent {
+    fn scene_event(&self, _: &Line<N, Law>, _: &JumpOf<Line<N, Law>>, Contact(contact): Contact) -> SceneEvent {
         let Some(&ball) = self.order.get(contact) else { return SceneEvent::of("wall") };
         match contact.checked_sub(1) {
             None => {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use saltus::{Automaton, Ending, Jump, Observer, Piece};
+use saltus::{Automaton, EndingOf, JumpOf, Observer, Piece};
 
 use super::record::{Apex, Cost, End, Moment, Record, Tops};
 use super::runner::{SceneView, impact, moment, segment};
@@ -86,7 +86,7 @@ impl<'a, A: Automaton, R: SceneView<A>> OutcomeObserver<'a, A, R> {
     /// With how it ended, at `until` in `state`.
     pub(super) fn outcome(
         self,
-        ending: &Ending<A>,
+        ending: &EndingOf<A>,
         end: End,
         until: f64,
         state: &A::State,
@@ -121,7 +121,7 @@ impl<A: Automaton, R: SceneView<A>> Observer<A> for OutcomeObserver<'_, A, R> {
         ControlFlow::Continue(())
     }
 
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         if self.view.apex_jump() == Some((jump.from, jump.to)) {
             if self.tops.take().is_some() {
                 let height = moment(self.view, &jump.before, 0).height();

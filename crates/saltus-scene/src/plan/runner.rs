@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 use saltus::cross::Evidence;
 use saltus::step::Stepper;
 use saltus::{
-    Automaton, Cause, Ending, Inspection, Jump, Observer, Piece, Run, Simulation, Solution, Time, Trajectory,
+    Automaton, Cause, EndingOf, InspectionOf, Jump, JumpOf, Observer, Piece, Run, RunOf, Simulation, Solution, Time,
+    Trajectory, TrajectoryOf,
 };
 
 use super::RunError;
@@ -106,7 +107,7 @@ pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
         None
     }
     /// A jump by an edge.
-    fn scene_event(&self, model: &A, jump: &Jump<A>, edge: A::Edge) -> SceneEvent;
+    fn scene_event(&self, model: &A, jump: &JumpOf<A>, edge: A::Edge) -> SceneEvent;
     /// The modes a run may enter, as far as they differ in how they are advanced.
     fn modes(&self, model: &A) -> Vec<A::Mode>;
     /// How an edge is listed.
@@ -118,11 +119,11 @@ pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     /// Why a mode is advanced as it is.
     fn why(&self, mode: A::Mode, advance: Advance) -> &'static str;
     /// Contacts that take time.
-    fn contacts(&self, model: &A, run: &Trajectory<A>) -> Option<Vec<Impact>> {
+    fn contacts(&self, model: &A, run: &TrajectoryOf<A>) -> Option<Vec<Impact>> {
         let _ = (model, run);
         None
     }
-    fn hysteresis(&self, model: &A, run: &Trajectory<A>, contact: usize, count: usize) -> Vec<[f64; 2]> {
+    fn hysteresis(&self, model: &A, run: &TrajectoryOf<A>, contact: usize, count: usize) -> Vec<[f64; 2]> {
         let _ = (model, run, contact, count);
         Vec::new()
     }
@@ -189,7 +190,7 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
         simulation: &Simulation<'_, A, R::Stepper>,
         until: f64,
         mut observer: &mut dyn Observer<A>,
-    ) -> Result<Ending<A>, saltus::Error> {
+    ) -> Result<EndingOf<A>, saltus::Error> {
         simulation.drive(self.mode, self.state, 0.0..until, &mut observer)
     }
 
@@ -215,18 +216,17 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
         let run = match options.frames {
             None => {
                 let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
-                let Ending { stop, stats, time, mode, state, limits, .. } =
-                    self.drive(&simulation, until, &mut trajectory)?;
-                trajectory.finish(time);
-                Run { trajectory, stop, stats, mode, state, limits }
+                let end = self.drive(&simulation, until, &mut trajectory)?;
+                trajectory.finish(end.time);
+                Run { trajectory, end }
             }
             Some(rate) => {
                 saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, options.most_jumps)?
             }
         };
-        let end = End::of(&run.stop);
+        let end = End::of(&run.end.stop);
         let last = run.trajectory.jumps().last().map_or(0.0, Jump::t);
-        let rest = (end == End::Time && self.view.rests(run.mode, &run.state)).then_some(last);
+        let rest = (end == End::Time && self.view.rests(run.end.mode, &run.end.state)).then_some(last);
         let until = options.shown(end, run.trajectory.end().seconds(), last, rest)?;
         let read = BoundRun { automaton: Arc::clone(&self.automaton), view: Arc::clone(&self.view), run };
         Ok(Recording { run: Box::new(read), until, end, rest })
@@ -280,7 +280,7 @@ impl<A: Automaton, R: SceneView<A>> Observer<A> for Resting<'_, R> {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         if self.view.rests(jump.to, &jump.after) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
@@ -310,7 +310,7 @@ pub(super) fn segment<A: Automaton>(
     Segment { start, span, mode: view.mode(mode, ball), flight: view.flies(mode, ball), coefficients }
 }
 
-fn scene_event<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &Jump<A>) -> SceneEvent {
+fn scene_event<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &JumpOf<A>) -> SceneEvent {
     match jump.cause {
         Cause::Edge(edge) => view.scene_event(model, jump, edge),
         _ => SceneEvent::of("zeno"),
@@ -318,7 +318,7 @@ fn scene_event<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &Jump<A>
 }
 
 /// The impact that a jump is; `None` if it is none.
-pub(super) fn impact<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &Jump<A>) -> Option<Impact> {
+pub(super) fn impact<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &JumpOf<A>) -> Option<Impact> {
     let scene_event = scene_event(model, view, jump);
     let Collision { with, normal, speed } = scene_event.collision?;
     let ball = scene_event.balls[0].unwrap_or(0);
@@ -345,7 +345,7 @@ pub(super) fn impact<A: Automaton>(model: &A, view: &impl SceneView<A>, jump: &J
 struct BoundRun<A: Automaton, R> {
     automaton: Arc<A>,
     view: Arc<R>,
-    run: Run<A>,
+    run: RunOf<A>,
 }
 
 impl<A: Automaton, R: SceneView<A>> BoundRun<A, R> {
@@ -378,7 +378,7 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
     }
 
     fn events(&self) -> Vec<Event> {
-        let event = |jump: &Jump<A>| {
+        let event = |jump: &JumpOf<A>| {
             let scene_event = scene_event(&*self.automaton, &*self.view, jump);
             let side = |ball: usize| Sides {
                 ball,
@@ -415,11 +415,11 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
     }
 
     fn cost(&self) -> Cost {
-        self.run.stats.into()
+        self.run.end.stats.into()
     }
 
     fn doubts(&self) -> Vec<String> {
-        let said = |doubt: &Inspection<A>| {
+        let said = |doubt: &InspectionOf<A>| {
             let edge = self.view.edge(&self.automaton, doubt.edge);
             // What follows a colon says what the edge is.
             let name = edge.split(':').next().unwrap_or(&edge);

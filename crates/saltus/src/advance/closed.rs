@@ -52,7 +52,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(ArcEnd::Stop { stop, time: now.after(reached), state: at(reached) });
         }
         let close = match &first {
-            Some(first) => self.close_on_solution(first, now, at, remaining),
+            Some(first) => {
+                self.memory.slope = Some(automaton.flow(mode, t, x));
+                self.close_on_solution(first, now, at, remaining)
+            }
             None => Close { span: remaining, time: clock.end, state: at(remaining.min(LAST)) },
         };
         if !close.state.is_finite() {

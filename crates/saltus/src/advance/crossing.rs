@@ -1,7 +1,6 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
-use crate::copies::copied;
 use crate::cross::{
     Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
@@ -258,7 +257,13 @@ pub(super) struct OnStep<A: Automaton> {
     pub(super) near: Option<Near<A::State>>,
 }
 
-copied!(OnStep);
+impl<A: Automaton> Clone for OnStep<A> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<A: Automaton> Copy for OnStep<A> {}
 
 impl<A: Automaton> OnStep<A> {
     /// The state after a time `s`, as the search saw it.

@@ -47,7 +47,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(ArcEnd::Stop { stop, time: now.after(cut), state: at(cut) });
         }
         let close = match &first {
-            Some(first) => self.close_on_solution(first, now, at, remaining),
+            Some(first) => {
+                self.memory.slope = c.get(1).copied();
+                self.close_on_solution(first, now, at, remaining)
+            }
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
         };
         let span = match &first {

@@ -76,24 +76,16 @@ const FELL_ON: &str = "goes on falling after its own reset, out of the mode";
 /// An arc this small a part of the longest one is short.
 const SHORT: f64 = 1e-4;
 
-/// An arc as far as it shows what the coordinates at its end were summed up from.
-#[derive(Clone, Copy)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Past<M, S> {
-    mode: M,
-    began: f64,
-    state: S,
-}
-
 /// What is kept from arc to arc.
 #[derive(Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Memory<M, E, S> {
+pub(crate) struct Memory<E, S> {
     pub(crate) stats: Stats,
-    /// The last arc that took time.
-    past: Option<Past<M, S>>,
-    /// The largest value of each coordinate so far, at the starts of such arcs.
+    /// What each coordinate was summed up from, over the arcs so far that took time, since it was last exactly zero: the
+    /// largest of |xᵢ| at the start of an arc and of |xᵢ'| times its duration.
     largest: Option<S>,
+    /// x' on the last piece of an arc that ends at a crossing.
+    slope: Option<S>,
     controller: Controller,
     step: Option<f64>,
     spent: Option<Spent<E>>,
@@ -118,12 +110,12 @@ pub(crate) struct Memory<M, E, S> {
     pub(crate) spurious: bool,
 }
 
-impl<M, E: Copy + PartialEq, S> Memory<M, E, S> {
+impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
-            past: None,
             largest: None,
+            slope: None,
             controller: Controller::new(stepper),
             step: first_step,
             spent: None,
@@ -183,6 +175,19 @@ impl<M, E: Copy + PartialEq, S> Memory<M, E, S> {
         self.step = self.step.map(|step| step.min(size));
     }
 
+    /// An arc from `x` that took time has ended.
+    #[inline]
+    fn went(&mut self, x: &S, duration: f64) {
+        let alike = |y: &S| y.len() == x.len();
+        let (largest, slope) = (self.largest.filter(alike), self.slope.take().filter(alike));
+        self.largest = Some(x.with(|i| {
+            let here = x.get(i).abs();
+            let before = largest.map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
+            let way = slope.map_or(0.0, |slope| (slope.get(i) * duration).abs());
+            here.max(before).max(way)
+        }));
+    }
+
     /// Whether an arc is so short beside the longest one that rounding may show in what guards do on it.
     #[inline]
     fn is_short(&self, duration: f64) -> bool {
@@ -216,7 +221,7 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) automaton: &'a A,
     pub(crate) stepper: M,
     pub(crate) options: &'a Options,
-    pub(crate) memory: &'a mut Memory<A::Mode, A::Edge, A::State>,
+    pub(crate) memory: &'a mut Memory<A::Edge, A::State>,
     pub(crate) tape: &'a mut Tape,
     pub(crate) held: &'a mut Held<A>,
 }
@@ -248,11 +253,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         if let Some(duration) = duration {
-            self.memory.past = Some(Past { mode, began, state: *x });
-            self.memory.largest = Some(match self.memory.largest {
-                Some(largest) if largest.len() == x.len() => x.with(|i| x.get(i).abs().max(largest.get(i))),
-                _ => x.with(|i| x.get(i).abs()),
-            });
+            self.memory.went(x, duration);
             self.memory.last_duration = duration;
             if duration > self.memory.longest_duration {
                 self.memory.longest_duration = duration;

@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::{Advance, Past, Spent, Wall};
+use super::{Advance, Spent, Wall};
 
 /// How many times what the tolerance allows in a step a state on its dense output may be off.
 ///
@@ -27,21 +27,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
     }
 
-    /// What the coordinates of `x` were summed up from: the largest value that each has had, or |xᵢ'| at the start of the last arc
-    /// times its duration.
+    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc, |xᵢ'| times its duration), over the
+    /// arcs since it was last exactly zero.
     ///
-    /// A coordinate that is a rounding of what it was has the rounding of what it was, until it is as large again. At the
+    /// A coordinate that is a rounding of what it was has the rounding of what it was, until a reset gives it anew. At the
     /// start of a run nothing was summed up: |xᵢ|.
     #[cold]
-    pub(super) fn sizes(&mut self, x: &A::State) -> A::State {
-        let (Some(Past { mode, began, state }), Some(largest)) = (self.memory.past, self.memory.largest) else {
-            return *x;
-        };
-        let (slope, duration) = (self.flow(mode, began, &state), self.memory.last_duration);
-        let way = x.with(|i| if i < slope.len() { (slope.get(i) * duration).abs() } else { 0.0 });
-        x.with(|i| {
-            let largest = if i < largest.len() { largest.get(i) } else { 0.0 };
-            x.get(i).abs().max(way.get(i)).max(largest)
+    pub(super) fn sizes(&self, x: &A::State) -> A::State {
+        let largest = self.memory.largest.filter(|largest| largest.len() == x.len());
+        x.with(|i| match x.get(i).abs() {
+            0.0 => 0.0,
+            here => largest.map_or(here, |largest| here.max(largest.get(i))),
         })
     }
 
@@ -55,7 +51,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// within the absolute tolerance, by that.
     pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let absolute = self.options.tolerance.absolute;
-        let stated = if self.memory.past.is_none() { self.moved(edge, t, x, g, |_| absolute) } else { 0.0 };
+        let stated = if self.memory.largest.is_none() { self.moved(edge, t, x, g, |_| absolute) } else { 0.0 };
         self.still(edge, t, x, g) + stated
     }
 

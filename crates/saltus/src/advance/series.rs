@@ -5,7 +5,7 @@ use crate::automaton::solution::Flow;
 use crate::control::Tolerance;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
-use crate::inspection::Inspection;
+use crate::inspection::InspectionOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::poly::MAX_DEGREE;
@@ -251,7 +251,7 @@ struct Believed<A: Automaton> {
 }
 
 /// Holds back what was seen of guards until the step is believed.
-pub(crate) struct Held<A: Automaton>(Vec<Inspection<A>>);
+pub(crate) struct Held<A: Automaton>(Vec<InspectionOf<A>>);
 
 impl<A: Automaton> Default for Held<A> {
     fn default() -> Self {
@@ -261,7 +261,7 @@ impl<A: Automaton> Default for Held<A> {
 
 impl<A: Automaton> Observer<A> for Held<A> {
     #[inline]
-    fn inspection(&mut self, inspection: &Inspection<A>) {
+    fn inspection(&mut self, inspection: &InspectionOf<A>) {
         self.0.push(*inspection);
     }
 }

@@ -133,6 +133,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
+        self.memory.slope = c.get(1).map(|c| c.with(|i| c.get(i) / scale));
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
         let told = if close.span > 0.0 {
             observer.piece(mode, &Piece::new(now, close.span, scale, c))

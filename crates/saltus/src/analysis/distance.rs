@@ -1,6 +1,5 @@
 //! How far apart two runs are, as curves in hybrid time, where the difference at one time means nothing.
 
-use crate::automaton::Automaton;
 use crate::piece::Piece;
 use crate::state::State;
 use crate::time::Time;
@@ -78,10 +77,11 @@ impl Closeness {
 
     /// The distance of two trajectories: the smallest ε for which they are ε-close; infinite where their jumps do not match.
     #[must_use]
-    pub fn distance<A, B>(&self, one: &Trajectory<A>, other: &Trajectory<B>) -> f64
+    pub fn distance<M, E, N, F, S>(&self, one: &Trajectory<M, E, S>, other: &Trajectory<N, F, S>) -> f64
     where
-        A: Automaton,
-        B: Automaton<State = A::State>,
+        M: Copy,
+        N: Copy,
+        S: State,
     {
         let (one, other) = (curves(one), curves(other));
         let there = self.from(&one, &other, 0.0);
@@ -293,10 +293,14 @@ impl<S: State> Placed<'_, S> {
     }
 }
 
-fn curves<A: Automaton>(trajectory: &Trajectory<A>) -> Vec<Curve<'_, A::State>> {
+fn curves<M, E, S>(trajectory: &Trajectory<M, E, S>) -> Vec<Curve<'_, S>>
+where
+    M: Copy,
+    S: State,
+{
     let arcs = trajectory.arcs();
     let ends = arcs.iter().skip(1).map(Arc::start).chain([trajectory.end()]);
-    let curve = |(index, (arc, end)): (usize, (&Arc<A>, Time))| {
+    let curve = |(index, (arc, end)): (usize, (&Arc<M, S>, Time))| {
         let mut pieces = Vec::new();
         for piece in trajectory.pieces(index) {
             pieces.push(Placed { from: piece.start().since(arc.start()), piece });

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::automaton::{Automaton, Entry};
-use crate::ending::{Limits, Run, Stats, Stop};
+use crate::ending::{Ending, Limits, Run, RunOf, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, listed};
 use crate::jump::{Cause, Jump};
 use crate::piece::Piece;
@@ -44,7 +44,7 @@ pub fn frame_by_frame<A: Automaton>(
     span: Range<f64>,
     rate: f64,
     most_jumps: usize,
-) -> Result<Run<A>, Error> {
+) -> Result<RunOf<A>, Error> {
     let place = |t: f64, edge: Option<A::Edge>, mode: A::Mode, x: &A::State| Place::new(t, mode, edge, x);
     if !(span.start.is_finite() && span.end.is_finite() && span.start <= span.end) {
         let note = Some(format!("{}..{}", span.start, span.end));
@@ -56,11 +56,15 @@ pub fn frame_by_frame<A: Automaton>(
     let start = Time::new(span.start);
     let mut run = Run {
         trajectory: Trajectory::starting(mode, state, start),
-        stop: Stop::Time,
-        stats: Stats::default(),
-        mode,
-        state,
-        limits: Limits::default(),
+        end: Ending {
+            stop: Stop::Time,
+            stats: Stats::default(),
+            time: start,
+            jumps: 0,
+            mode,
+            state,
+            limits: Limits::default(),
+        },
     };
     let mut now = start;
     let mut ticks = Ticks::new();
@@ -72,38 +76,39 @@ pub fn frame_by_frame<A: Automaton>(
         if h <= 0.0 {
             break;
         }
-        let (mode, x) = (run.mode, run.state);
+        let (mode, x) = (run.end.mode, run.end.state);
         if let Some(flaw) = automaton.edges(mode).flaw() {
             return Err(Error::new(ErrorKind::Model, place(now.seconds(), None, mode, &x)).noting(Some(flaw)));
         }
         // One that waits was negative before the frame; any other is taken as soon as it is.
-        held(automaton, mode, now.seconds(), &x, &mut run.stats, &mut may, |entry| entry != Entry::Wait);
+        held(automaton, mode, now.seconds(), &x, &mut run.end.stats, &mut may, |entry| entry != Entry::Wait);
         let (slope, end) = kutta(automaton, mode, now.seconds(), &x, h);
-        run.stats.flows += 4;
-        run.stats.steps += 1;
+        run.end.stats.flows += 4;
+        run.end.stats.steps += 1;
         if !end.is_finite() {
             return Err(Error::new(ErrorKind::Flow, place(now.seconds(), None, mode, &x)));
         }
         run.trajectory.push_piece(&Piece::new(now, h, h, &between(&x, &slope, &end, h)));
         let frame = Span { start, now, end: next };
         now = next;
-        run.state = end;
-        run.stop = jumps(automaton, &mut may, now, &mut run)?;
+        run.end.state = end;
+        run.end.stop = jumps(automaton, &mut may, now, &mut run)?;
         // Then the clocks that have ticked since the last frame.
-        while run.stop == Stop::Time
-            && let Some(due) = ticks.next(automaton, run.mode, &run.state, &frame)?
+        while run.end.stop == Stop::Time
+            && let Some(due) = ticks.next(automaton, run.end.mode, &run.end.state, &frame)?
         {
             ticks.take(&due, now.seconds());
-            run.stop = jump(automaton, due.edge, now, &mut run)?;
+            run.end.stop = jump(automaton, due.edge, now, &mut run)?;
         }
-        if run.stop == Stop::Time && run.stats.jumps >= most_jumps {
-            run.stop = Stop::Jumps { most: most_jumps };
+        if run.end.stop == Stop::Time && run.end.stats.jumps >= most_jumps {
+            run.end.stop = Stop::Jumps { most: most_jumps };
         }
-        if run.stop != Stop::Time {
+        if run.end.stop != Stop::Time {
             break;
         }
     }
     run.trajectory.finish(now);
+    (run.end.time, run.end.jumps) = (now, run.end.stats.jumps);
     Ok(run)
 }
 
@@ -129,14 +134,14 @@ fn jumps<A: Automaton>(
     automaton: &A,
     may: &mut Vec<bool>,
     now: Time,
-    run: &mut Run<A>,
+    run: &mut RunOf<A>,
 ) -> Result<Stop<A::Edge>, Error> {
     let t = now.seconds();
     for _ in 0..MOST_AT_ONCE {
-        let (mode, x) = (run.mode, run.state);
+        let (mode, x) = (run.end.mode, run.end.state);
         let mut crossed = None;
         for (edge, &may) in automaton.edges(mode).iter().zip(&*may) {
-            run.stats.guards += 1;
+            run.end.stats.guards += 1;
             let g = automaton.guard(edge, t, &x);
             if g.is_nan() {
                 return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), &x)));
@@ -152,23 +157,23 @@ fn jumps<A: Automaton>(
             return Ok(stop);
         }
         // What a reset leaves negative is not crossed again before the next frame.
-        held(automaton, run.mode, t, &run.state, &mut run.stats, may, |entry| entry == Entry::Fire);
+        held(automaton, run.end.mode, t, &run.end.state, &mut run.end.stats, may, |entry| entry == Entry::Fire);
     }
     Ok(Stop::Time)
 }
 
 /// Takes an edge.
-fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut Run<A>) -> Result<Stop<A::Edge>, Error> {
-    let (mode, x, t) = (run.mode, run.state, now.seconds());
+fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut RunOf<A>) -> Result<Stop<A::Edge>, Error> {
+    let (mode, x, t) = (run.end.mode, run.end.state, now.seconds());
     let place = || Place::new(t, mode, Some(edge), &x);
     let (to, after) = automaton.reset(mode, edge, t, &x).map_err(|refusal| refusal.at(place()))?;
     if !after.is_finite() {
         return Err(Error::new(ErrorKind::Reset, place()).noting(Some(listed(&after))));
     }
-    run.stats.jumps += 1;
-    let (j, cause) = (run.stats.jumps, Cause::Edge(edge));
+    run.end.stats.jumps += 1;
+    let (j, cause) = (run.end.stats.jumps, Cause::Edge(edge));
     run.trajectory.push_jump(Jump { time: now, j, cause, from: mode, before: x, to, after });
-    (run.mode, run.state) = (to, after);
+    (run.end.mode, run.end.state) = (to, after);
     Ok(if automaton.about(edge).terminal { Stop::Terminal { edge } } else { Stop::Time })
 }
 
@@ -205,7 +210,7 @@ mod tests {
         let error = |rate: f64, end: f64| {
             let exact = Simulation::of(&turning).tolerance(1e-13).run("turn", vector![1.0, 0.0], 0.0..end).unwrap();
             let framed = frame_by_frame(&turning, "turn", vector![1.0, 0.0], 0.0..end, rate, 100).unwrap();
-            (exact.state - framed.state).norm()
+            (exact.end.state - framed.end.state).norm()
         };
         let smooth = error(20.0, 1.5) / error(40.0, 1.5);
         assert!((14.0..18.0).contains(&smooth), "{smooth}");

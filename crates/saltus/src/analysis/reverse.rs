@@ -11,7 +11,7 @@ use crate::jump::Jump;
 use crate::piece::Piece;
 use crate::state::State;
 use crate::time::Time;
-use crate::trajectory::{Arc, Trajectory};
+use crate::trajectory::{Arc, Trajectory, TrajectoryOf};
 
 /// An automaton whose jumps can be undone.
 ///
@@ -64,8 +64,8 @@ use crate::trajectory::{Arc, Trajectory};
 ///
 /// let there = Simulation::of(&Ball).run((), vector![1.0, 0.0], 0.0..1.5)?;
 /// let backwards = Reversed::of(&Ball);
-/// let back = Simulation::of(&backwards).run((), there.state, Reversed::span(1.5, 0.0))?;
-/// assert!((back.state - vector![1.0, 0.0]).norm() < 1e-9);
+/// let back = Simulation::of(&backwards).run((), there.end.state, Reversed::span(1.5, 0.0))?;
+/// assert!((back.end.state - vector![1.0, 0.0]).norm() < 1e-9);
 /// assert_eq!(back.trajectory.jumps().len(), 2);
 /// # Ok::<(), saltus::Error>(())
 /// ```
@@ -153,7 +153,7 @@ impl<'a, A: Invertible> Reversed<'a, A> {
     ///
     /// The same arcs to rounding: pieces are expanded about their other end.
     #[must_use]
-    pub fn forwards(&self, backwards: &Trajectory<Self>) -> Trajectory<A> {
+    pub fn forwards(&self, backwards: &TrajectoryOf<Self>) -> TrajectoryOf<A> {
         let (arcs, jumps) = (backwards.arcs(), backwards.jumps());
         let last = arcs[jumps.len()]; // there is one more arc than jumps
         let end = backwards.pieces(jumps.len()).last().map_or(*last.state(), |piece| piece.at(piece.span()));

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::Instant;
 
 use crate::automaton::Automaton;
-use crate::ending::{Run, Stats};
+use crate::ending::{RunOf, Stats};
 use crate::error::Error;
 use crate::simulation::Simulation;
 use crate::step::Stepper;
@@ -82,7 +82,7 @@ pub struct WorkPoint {
 /// use saltus::{Hybrid, Run, Simulation, Tsit5, WorkPrecision};
 /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
 /// let start = ("decay", 1.0, 0.0..1.0);
-/// let mut work = WorkPrecision::known(start, |run: &Run<_>| vec![run.state], vec![(-1.0_f64).exp()]);
+/// let mut work = WorkPrecision::known(start, |run: &Run<_, _, _>| vec![run.end.state], vec![(-1.0_f64).exp()]);
 /// for tolerance in [1e-4, 1e-6, 1e-8] {
 ///     work.measure("Tsit5", &Simulation::of(&decay).stepper(Tsit5).tolerance(tolerance))?;
 /// }
@@ -100,7 +100,7 @@ pub struct WorkPrecision<A: Automaton, Q> {
     points: Vec<WorkPoint>,
 }
 
-impl<A: Automaton, Q: Fn(&Run<A>) -> Vec<f64>> WorkPrecision<A, Q> {
+impl<A: Automaton, Q: Fn(&RunOf<A>) -> Vec<f64>> WorkPrecision<A, Q> {
     /// Against the right answers, from a mode and a state over a span of time.
     pub const fn known(start: (A::Mode, A::State, Range<f64>), question: Q, reference: Vec<f64>) -> Self {
         Self { start, question, reference, doubt: 0.0, points: Vec::new() }
@@ -136,7 +136,7 @@ impl<A: Automaton, Q: Fn(&Run<A>) -> Vec<f64>> WorkPrecision<A, Q> {
         let error = farthest(&(self.question)(&run), &self.reference);
         let timing = Timing::of(|| simulation.drive(*mode, *state, span.clone(), &mut ()));
         let tolerance = simulation.relative_tolerance();
-        self.points.push(WorkPoint { method: method.to_owned(), tolerance, error, stats: run.stats, timing });
+        self.points.push(WorkPoint { method: method.to_owned(), tolerance, error, stats: run.end.stats, timing });
         Ok(&self.points[self.points.len() - 1])
     }
 
@@ -182,7 +182,7 @@ mod tests {
     fn a_reference_run_says_how_far_off_it_may_be() {
         let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
         let tight = Simulation::of(&decay).stepper(Tsit5).tolerance(1e-10);
-        let mut work = WorkPrecision::against(&tight, ("decay", 1.0, 0.0..1.0), |run| vec![run.state]).unwrap();
+        let mut work = WorkPrecision::against(&tight, ("decay", 1.0, 0.0..1.0), |run| vec![run.end.state]).unwrap();
         assert!(work.doubt() > 0.0 && work.doubt() < 1e-7);
         work.measure("Tsit5", &Simulation::of(&decay).stepper(Tsit5).tolerance(1e-4)).unwrap();
         assert!(work.points()[0].error > work.doubt());

@@ -22,7 +22,7 @@ type Function = dyn Fn(f64) -> Option<f64> + Send + Sync;
 ///     .clock("run", "run", Clock::every(0.01), |_t, x| [x[0] + 1.0, x[1]])
 ///     .clock("run", "run", Clock::every(0.03), |_t, x| [x[0], x[1] + 1.0]);
 /// let run = Simulation::of(&control).run("run", [0.0; 2], 0.0..0.3)?;
-/// assert_eq!(run.state, [30.0, 10.0]);
+/// assert_eq!(run.end.state, [30.0, 10.0]);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[derive(Clone)]
@@ -73,7 +73,7 @@ impl Clock {
     /// let kicked = Hybrid::new()
     ///     .mode("run", |_t, _x: &f64| 0.0)
     ///     .clock("run", "run", Clock::at([0.5, 0.75]), |t, x| x + t);
-    /// assert_eq!(Simulation::of(&kicked).run("run", 0.0, 0.0..1.0)?.state, 1.25);
+    /// assert_eq!(Simulation::of(&kicked).run("run", 0.0, 0.0..1.0)?.end.state, 1.25);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -148,7 +148,7 @@ impl Clock {
     /// let sampled = Hybrid::new()
     ///     .mode("run", |_t, _x: &f64| 0.0)
     ///     .clock("run", "run", Clock::every(0.5).from_start(), |_t, x| x + 1.0);
-    /// assert_eq!(Simulation::of(&sampled).run("run", 0.0, 0.0..1.0)?.state, 3.0);
+    /// assert_eq!(Simulation::of(&sampled).run("run", 0.0, 0.0..1.0)?.end.state, 3.0);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -238,7 +238,7 @@ pub trait Ticking {
 /// }
 ///
 /// let tank = Tank { clocks: [(Clock::every(1.0), ())] };
-/// assert_eq!(Simulation::of(&tank).run((), 0.0, 0.0..5.5)?.state, 5.0);
+/// assert_eq!(Simulation::of(&tank).run((), 0.0, 0.0..5.5)?.end.state, 5.0);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub struct Clocks<'a, E> {

@@ -242,7 +242,7 @@ impl<A: Automaton + ?Sized> Debug for Limit<'_, A> {
 ///     .edge("on", "off", |_t, x| 22.0 - x, |_t, x| *x)
 ///     .entry("on", "off", entry);
 /// // Switched on at 25 °C, which is too warm already.
-/// let mode = |entry| Simulation::of(&heater(entry)).run("on", 25.0, 0.0..1.0).map(|run| run.mode);
+/// let mode = |entry| Simulation::of(&heater(entry)).run("on", 25.0, 0.0..1.0).map(|run| run.end.mode);
 /// assert_eq!(mode(Entry::Refuse).unwrap_err().error.kind(), ErrorKind::Entry);
 /// assert_eq!(mode(Entry::Wait).unwrap(), "on");
 /// assert_eq!(mode(Entry::Fire).unwrap(), "off");

@@ -53,7 +53,7 @@ type State<A> = <A as Automaton>::State;
 ///
 /// let run = Simulation::of(&Weight).run((), vector![1.0, 0.0], 0.0..2.0)?;
 /// assert!((run.trajectory.jumps()[0].t() - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
-/// assert_eq!(run.stats.steps, 0);
+/// assert_eq!(run.end.stats.steps, 0);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[non_exhaustive]
@@ -119,7 +119,7 @@ pub enum Solution<A: Automaton + ?Sized> {
     /// for (k, jump) in run.trajectory.jumps().iter().enumerate() {
     ///     assert!((jump.t() - (2 * k + 1) as f64 * quarter).abs() < 1e-9);
     /// }
-    /// assert!(run.stats.steps < 25); // with Dop853 it takes 40
+    /// assert!(run.end.stats.steps < 25); // with Dop853 it takes 40
     /// # Ok::<(), saltus::Error>(())
     /// ```
     Series(Flow<A>),

@@ -106,8 +106,8 @@ impl<'a, S: State> Edge<'a, S> {
     ///     .inverse(|_t, x| x[0], |_t, x| vector![0.0, -x[1] / 0.7]);
     /// let ball = Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.81]).edge_with("flight", "flight", floor);
     /// let there = Simulation::of(&ball).run("flight", vector![1.0, 0.0], 0.0..1.5)?;
-    /// let back = Simulation::of(&Reversed::of(&ball)).run("flight", there.state, Reversed::span(1.5, 0.0))?;
-    /// assert!((back.state - vector![1.0, 0.0]).norm() < 1e-9);
+    /// let back = Simulation::of(&Reversed::of(&ball)).run("flight", there.end.state, Reversed::span(1.5, 0.0))?;
+    /// assert!((back.end.state - vector![1.0, 0.0]).norm() < 1e-9);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]

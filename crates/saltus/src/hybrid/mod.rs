@@ -146,8 +146,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| *x)
     ///     .affine("flight", "flight");
     /// let run = Simulation::of(&ball).tolerance(1e-13).most_jumps(1).run("flight", [h, 0.0], 0.0..9.0)?;
-    /// assert!((run.state[1] + (g / k * (1.0 - (-2.0 * k * h).exp())).sqrt()).abs() < 1e-14);
-    /// assert!(run.stats.steps <= 3);
+    /// assert!((run.end.state[1] + (g / k * (1.0 - (-2.0 * k * h).exp())).sqrt()).abs() < 1e-14);
+    /// assert!(run.end.stats.steps <= 3);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -173,7 +173,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]])
     ///     .affine("flight", "flight");
     /// let run = Simulation::of(&ball).run("flight", [4.9, 0.0], 0.0..1.5)?;
-    /// assert_eq!((run.trajectory.jumps()[0].t(), run.stats.steps), (1.0, 0));
+    /// assert_eq!((run.trajectory.jumps()[0].t(), run.end.stats.steps), (1.0, 0));
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -225,7 +225,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///     .mode("drift", |_t, _x: &f64| 0.0)
     ///     .clock("drift", "drift", Clock::every(0.1), |_t, x| x + 1.0);
     /// let run = Simulation::of(&kicked).run("drift", 0.0, 0.0..1.05)?;
-    /// assert_eq!(run.state, 10.0);
+    /// assert_eq!(run.end.state, 10.0);
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]
@@ -250,7 +250,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// use saltus::{Hybrid, Simulation, Stop};
     /// let tank = Hybrid::new().mode("drain", |_t, _x: &f64| -0.5).terminal("drain", |_t, x| *x);
     /// let run = Simulation::of(&tank).run("drain", 2.0, 0.0..f64::INFINITY)?;
-    /// assert!(matches!(run.stop, Stop::Terminal { .. }));
+    /// assert!(matches!(run.end.stop, Stop::Terminal { .. }));
     /// assert!((run.trajectory.end().seconds() - 4.0).abs() < 1e-12);
     /// # Ok::<(), saltus::Error>(())
     /// ```
@@ -321,7 +321,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// });
     /// let start = floors.name("floor 1").unwrap();
     /// let run = Simulation::of(&floors).run(start, 0.0, 0.0..4.5)?;
-    /// assert_eq!((run.mode, floors.name("cellar")), ("floor 2", None));
+    /// assert_eq!((run.end.mode, floors.name("cellar")), ("floor 2", None));
     /// # Ok::<(), saltus::Error>(())
     /// ```
     #[must_use]

@@ -23,7 +23,7 @@ use super::{MOST_COEFFICIENTS, Pass, Row};
 ///     .series("fall", move |_t, [v]| [drag(v, k) - g]);
 /// let run = Simulation::of(&fall).tolerance(1e-12).run("fall", 0.0, 0.0..2.0)?;
 /// // v = -√(g/k) tanh(√(g k) t)
-/// assert!((run.state + (g / k).sqrt() * ((g * k).sqrt() * 2.0).tanh()).abs() < 1e-11);
+/// assert!((run.end.state + (g / k).sqrt() * ((g * k).sqrt() * 2.0).tanh()).abs() < 1e-11);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 #[derive(Clone, Copy)]

@@ -9,7 +9,7 @@ use crate::automaton::edges::Edges;
 use crate::automaton::solution::{Fall, Polynomial, Solution};
 use crate::automaton::{About, Automaton, Entry, Limit};
 use crate::error::{ErrorKind, Refusal};
-use crate::jump::Jump;
+use crate::jump::JumpOf;
 use crate::state::State;
 
 /// What a derivative is taken with respect to.
@@ -104,8 +104,8 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 /// assert!((second.after.dt[1] - 2.6 * t1 / (2.0 * 2.0)).abs() < 1e-9);
 ///
 /// // It lies still at (1 + e)/(1 - e) t₁, and that moves by 2/(1 - e)² t₁ with e.
-/// assert!(matches!(run.stop, Stop::Zeno { limit } if (limit - 9.0 * t1).abs() < 1e-8));
-/// assert!((run.state.dt[0] - 50.0 * t1).abs() < 1e-6);
+/// assert!(matches!(run.end.stop, Stop::Zeno { limit } if (limit - 9.0 * t1).abs() < 1e-8));
+/// assert!((run.end.state.dt[0] - 50.0 * t1).abs() < 1e-6);
 /// # Ok::<(), saltus::Error>(())
 /// ```
 ///
@@ -147,12 +147,12 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
 
     /// How the state x⁻ just before the jump depends on each q as the jump moves in time, dx⁻/dq = S⁻ + f⁻ dt*/dq:
     /// the derivative of "the speed at the third impact", where the columns are that of the state at a fixed time.
-    pub fn before(&self, jump: &Jump<Self>) -> [A::State; K] {
+    pub fn before(&self, jump: &JumpOf<Self>) -> [A::State; K] {
         self.riding(jump.from, jump.t(), &jump.before, &jump.after.dt)
     }
 
     /// The same for the state x⁺ just after the jump, dx⁺/dq = S⁺ + f⁺ dt*/dq.
-    pub fn after(&self, jump: &Jump<Self>) -> [A::State; K] {
+    pub fn after(&self, jump: &JumpOf<Self>) -> [A::State; K] {
         self.riding(jump.to, jump.t(), &jump.after, &jump.after.dt)
     }
 

@@ -8,7 +8,7 @@ use crate::analysis::linearize::{Lift, Linearize};
 use crate::automaton::Automaton;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::trajectory::Trajectory;
+use crate::trajectory::TrajectoryOf;
 
 /// A guard is touched where it comes as near to zero, in units of its largest value on the arc, or is crossed as slowly.
 const TOUCH: f64 = 1e-3;
@@ -44,7 +44,7 @@ struct Along<E> {
 }
 
 /// The guards of arc `index` in turn.
-fn guards<A: Automaton>(automaton: &A, run: &Trajectory<A>, index: usize) -> Vec<Along<A::Edge>> {
+fn guards<A: Automaton>(automaton: &A, run: &TrajectoryOf<A>, index: usize) -> Vec<Along<A::Edge>> {
     const SAMPLES: u32 = 64;
     let pieces: Vec<_> = run.pieces(index).collect();
     let along = |edge| {
@@ -65,7 +65,7 @@ fn guards<A: Automaton>(automaton: &A, run: &Trajectory<A>, index: usize) -> Vec
 }
 
 /// The least of each guard's minima inside an arc, where it turned round without being crossed.
-fn touches<A: Automaton>(automaton: &A, run: &Trajectory<A>) -> Vec<(A::Edge, f64)> {
+fn touches<A: Automaton>(automaton: &A, run: &TrajectoryOf<A>) -> Vec<(A::Edge, f64)> {
     let mut all = Vec::new();
     for index in 0..run.arcs().len() {
         for Along { edge, samples, largest } in guards(automaton, run, index) {
@@ -92,9 +92,9 @@ fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 }
 
 /// The speed of each crossing, in units of the guard's largest value before it and of the period.
-fn slow_crossings<A: Linearize>(automaton: &A, run: &Trajectory<A>, period: f64) -> Vec<(A::Edge, f64)> {
+fn slow_crossings<A: Linearize>(automaton: &A, run: &TrajectoryOf<A>, period: f64) -> Vec<(A::Edge, f64)> {
     let p = automaton.parameters();
-    let crossing = |(index, jump): (usize, &crate::jump::Jump<A>)| {
+    let crossing = |(index, jump): (usize, &crate::jump::JumpOf<A>)| {
         let taken = jump.edge()?;
         let Along { largest, .. } = guards(automaton, run, index).into_iter().find(|along| along.edge == taken)?;
         let flow = automaton.flow(jump.from, jump.t(), &jump.before);

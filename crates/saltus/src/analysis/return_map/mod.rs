@@ -36,7 +36,7 @@ use num_dual::Dual64;
 
 use crate::analysis::linearize::{Lift, Linearize, Number, Over, Sensitive, Wrt};
 use crate::automaton::Automaton;
-use crate::jump::Jump;
+use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::simulation::Simulation;
 use crate::state::State;
@@ -282,7 +282,7 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         x: B::State,
         t: f64,
         edges: &mut Vec<A::Edge>,
-    ) -> Result<Jump<B>, MapError> {
+    ) -> Result<JumpOf<B>, MapError> {
         let mut until = Until { edge: self.section.edge(), left: self.returns, edges, back: None };
         let end = simulation.drive(mode, x, t..f64::INFINITY, &mut until)?;
         until.back.ok_or_else(|| MapError::NoReturn { why: end.stop.to_string(), t: end.time.seconds(), q: Vec::new() })
@@ -326,14 +326,14 @@ struct Until<'e, B: Automaton> {
     edge: B::Edge,
     left: usize,
     edges: &'e mut Vec<B::Edge>,
-    back: Option<Jump<B>>,
+    back: Option<JumpOf<B>>,
 }
 
 impl<B: Automaton> Observer<B> for Until<'_, B> {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<B>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<B>) -> ControlFlow<()> {
         self.edges.extend(jump.edge());
         if jump.edge() != Some(self.edge) {
             return ControlFlow::Continue(());
