@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Held, Memory};
+use crate::advance::{Advance, ArcEnd, Held, Memory, Smooth};
 use crate::automaton::{Automaton, Limit};
 use crate::ending::Options;
 use crate::ending::{Ending, EndingOf, Limits, Stats, Stop};
@@ -292,7 +292,15 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             span.end = due.time;
         }
         let memory = &mut at.memory;
-        let mut arc = Advance { automaton: *automaton, stepper: *stepper, options: &*options, memory, tape, held };
+        let mut arc = Advance {
+            automaton: *automaton,
+            stepper: *stepper,
+            options: &*options,
+            memory,
+            tape,
+            held,
+            smooth: Smooth::ALWAYS,
+        };
         let (edge, time, before, ticked) = match arc.arc(mode, &x, &span, observer)? {
             ArcEnd::Crossing { edge, time, before } => (edge, time, before, false),
             ArcEnd::Stop { stop, time, state } => match due {

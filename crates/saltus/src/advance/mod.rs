@@ -7,10 +7,12 @@ mod exact;
 mod grazing;
 mod noise;
 mod series;
+mod smooth;
 mod solved;
 mod stepped;
 
 pub(crate) use series::Held;
+pub(crate) use smooth::Smooth;
 
 use std::ops::ControlFlow;
 
@@ -224,6 +226,8 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) memory: &'a mut Memory<A::Edge, A::State>,
     pub(crate) tape: &'a mut Tape,
     pub(crate) held: &'a mut Held<A>,
+    /// The stretch of time on which the flow of the arc's mode is smooth.
+    pub(crate) smooth: Smooth,
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {

@@ -16,6 +16,7 @@ use crate::time::{Span, Time, resolution};
 
 use super::crossing::{Near, OnStep};
 use super::exact::natural;
+use super::smooth::Arrival;
 use super::stepped::{evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd};
 
@@ -53,12 +54,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
+        self.smooth_from(mode, clock.now, &x)?;
         loop {
             let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
-            let longest = remaining.min(self.options.longest_step);
+            let longest = remaining.min(self.options.longest_step).min(self.smooth.ahead(clock.now));
             let wanted = longest.min(AS_LAST * self.memory.last_duration - clock.now.since(began));
             let Some(mut expansion) = self.expanded(mode, flow, clock.now, &x, order, &mut c)? else {
                 return self.stepped(mode, x, clock, first, observer);
@@ -90,12 +92,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Ok(self.crossed(mode, &found, clock.now, c, unit, remaining, observer));
             }
             let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
-            clock.now = if h >= remaining { clock.end } else { clock.now.after(h) };
+            let Arrival { time, at_stop } = self.arrival(&clock, h, remaining);
+            clock.now = time;
             if told.is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });
             }
-            self.tape.anew(ahead.kink.filter(|_| h == ahead.step));
+            self.tape.anew(ahead.kink.filter(|_| h == ahead.step && !at_stop));
             (x, first) = (end, false);
+            if at_stop {
+                self.smooth_from(mode, clock.now, &x)?;
+            }
             if self.memory.wall_count > 0 {
                 self.keep_staying(mode, clock.now, &x, h);
             }
@@ -108,7 +114,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let &Expansion { unit, order, reach } = expansion;
         let mut step = reach.min(longest);
         if step == f64::INFINITY {
-            step = LONGEST * unit * natural(&c[..=order]);
+            let natural = unit * natural(&c[..=order]);
+            // Of a polynomial from zero nothing tells how fast it changes.
+            step = if natural > 0.0 { LONGEST * natural } else { longest };
         }
         step = evened(step, longest);
         for _ in 0..MOST_HALVINGS {
@@ -135,7 +143,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<Expansion>, Error> {
         let mut unit = 1.0;
         loop {
-            let mut series = Series::around(self.tape, now.seconds(), x, 0, order, unit);
+            let mut series = Series::around(self.tape, self.smooth.within(now.seconds()), x, 0, order, unit);
             flow(self.automaton, mode, &mut series);
             if let Some(dimension) = series.mismatch() {
                 return Err(wrong_dimension(dimension, mode, now, x));
@@ -321,10 +329,10 @@ fn power_of_two(x: f64) -> f64 {
 const MANTISSA: f64 = (1_u64 << 52) as f64;
 const EXPONENT: f64 = 1023.0;
 
-/// Another unit of time than a second, a power of two of it, in which a state changes by about its size.
+/// Another unit of time than a second, a power of two of it, in which a state changes by about its size, if it has one.
 #[cold]
 fn own_unit<S: State>(tolerance: &Tolerance, x: &S, slope: &S) -> f64 {
     let (size, speed) = (tolerance.norm(x, x, x), tolerance.norm(slope, x, x));
-    let exponent = (size / speed).log2().round().clamp(-900.0, 900.0);
-    if exponent.is_finite() && exponent != 0.0 { exponent.exp2() } else { 2.0 }
+    let exponent = (size / speed).log2().round();
+    if exponent.is_finite() && exponent != 0.0 { exponent.clamp(-900.0, 900.0).exp2() } else { 2.0 }
 }

@@ -17,6 +17,7 @@ use crate::time::{LAST, Span, Time, grace, resolution};
 
 use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
 use super::noise::PROBE;
+use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
 
 /// The shortest step, in spacings of time.
@@ -38,6 +39,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut first: bool,
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
+        self.smooth_from(mode, clock.now, &x)?;
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
             return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
@@ -49,18 +51,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if let Some(stop) = self.over(remaining) {
                 return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
             }
-            let (h, trial) = match self.accepted(mode, clock.now, &x, &slope, remaining) {
+            let ahead = remaining.min(self.smooth.ahead(clock.now));
+            let (h, trial) = match self.accepted(mode, clock.now, &x, &slope, ahead) {
                 Ok(accepted) => accepted,
                 Err(error) if error.kind() == ErrorKind::Flow => {
                     return self.edge_of_flow(mode, clock.now, &x, &slope).ok_or(error);
                 }
                 Err(error) => return Err(error),
             };
-            let last = h >= remaining;
+            let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
             if clear && !observer.wants_pieces() {
-                clock.now = if last { clock.end } else { clock.now.after(h) };
-                (x, slope, first) = (trial.end, trial.slope, false);
+                (clock.now, x, first) = (arrival, trial.end, false);
+                slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
                 self.memory.wall_count = 0; // clear of zero
                 continue;
             }
@@ -88,11 +91,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 // Where guards were looked at, the state goes on from where they were seen last.
                 let state = if clear { trial.end } else { horner(c, 1.0) };
                 let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
-                clock.now = if last { clock.end } else { clock.now.after(h) };
+                clock.now = arrival;
                 if told.is_break() {
                     return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
                 }
-                (x, slope, first) = (state, trial.slope, false);
+                (x, first) = (state, false);
+                slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
                 if self.memory.wall_count > 0 {
                     self.keep_staying(mode, clock.now, &x, h);
                 }
@@ -190,10 +194,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         h: f64,
     ) -> Trial<A::State, M::Stages<A::State>> {
         self.memory.stats.jacobians += self.stepper.jacobians();
-        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
+        let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
-            automaton.flow(mode, t, x)
+            automaton.flow(mode, smooth.within(t), x)
         };
         self.stepper.trial(&mut flow, t, x, slope, h)
     }
@@ -206,10 +210,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         h: f64,
         trial: &Trial<A::State, M::Stages<A::State>>,
     ) -> M::Dense<A::State> {
-        let (automaton, count) = (self.automaton, &mut self.memory.stats.flows);
+        let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.flows);
         let mut flow = |t: f64, x: &A::State| {
             *count += 1;
-            automaton.flow(mode, t, x)
+            automaton.flow(mode, smooth.within(t), x)
         };
         self.stepper.dense(&mut flow, t, x, h, trial.as_ref())
     }
@@ -236,6 +240,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         None
     }
 
+    /// The flow just behind a stop.
+    #[cold]
+    fn slope_behind(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
+        self.smooth_from(mode, time, x)?;
+        self.slope(mode, time, x)
+    }
+
     /// The flow, of as many coordinates as the state.
     #[inline]
     pub(super) fn slope(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
@@ -245,7 +256,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
         self.memory.stats.flows += 1;
-        self.automaton.flow(mode, t, x)
+        self.automaton.flow(mode, self.smooth.within(t), x)
     }
 
     /// Whether an arc that leaves a wall by the flow, or stands on it, falls from it at once by a dense output whose slope at its start is not the flow's: the

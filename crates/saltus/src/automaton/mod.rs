@@ -6,7 +6,7 @@ pub(crate) mod clocks;
 pub(crate) mod edges;
 pub(crate) mod solution;
 
-use self::clocks::Clocks;
+use self::clocks::{Clock, Clocks};
 use self::edges::Edges;
 use self::solution::{Fall, Solution};
 use crate::error::Refusal;
@@ -121,6 +121,18 @@ pub trait Automaton {
     fn clocks(&self, mode: Self::Mode) -> Clocks<'_, Self::Edge> {
         let _ = mode;
         Clocks::none()
+    }
+
+    /// The times at which the flow of `mode` is not smooth: a step ends there, and nothing else happens.
+    ///
+    /// A switch, a pulse or a kink of an input in time is then met exactly and never stepped over. A
+    /// step asks for the flow strictly between two stops: whether it has its value of before or after
+    /// a stop at the stop itself does not matter. An exact solution has no steps, and so no stops. By
+    /// default there are none.
+    #[inline]
+    fn stops(&self, mode: Self::Mode) -> &[Clock] {
+        let _ = mode;
+        &[]
     }
 
     /// Whether a run can be in `mode`: asked as a run starts, before anything else, and of each

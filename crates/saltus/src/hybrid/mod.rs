@@ -80,6 +80,7 @@ struct Mode<'a, S> {
     /// Those of the edges that have guards, and those that clocks take.
     guarded: Vec<Link>,
     clocks: Vec<(Clock, Link)>,
+    stops: Vec<Clock>,
 }
 
 /// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
@@ -244,6 +245,25 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
+    /// Says when the flow of a mode is not smooth in time: a step ends at each of these times, and nothing else happens. See
+    /// [`Automaton::stops`](crate::Automaton::stops).
+    ///
+    /// ```
+    /// use saltus::{Clock, Hybrid, Simulation};
+    /// // A pulse of one microsecond in a minute is not stepped over.
+    /// let kicked = Hybrid::new()
+    ///     .mode("drift", |t, _x: &f64| if (30.0..30.000_001).contains(&t) { 1e6 } else { 0.0 })
+    ///     .stops("drift", Clock::at([30.0, 30.000_001]));
+    /// let run = Simulation::of(&kicked).run("drift", 0.0, 0.0..60.0)?;
+    /// assert!((run.end.state - 1.0).abs() < 1e-8 && run.trajectory.jumps().is_empty());
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn stops(mut self, name: impl Into<Cow<'static, str>>, stops: Clock) -> Self {
+        self.entry_of(kept(name)).stops.push(stops);
+        self
+    }
+
     /// An edge at which the run ends, without a reset; it leads from its mode to itself.
     ///
     /// ```
@@ -332,8 +352,9 @@ impl<'a, S: State> Hybrid<'a, S> {
     fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
         self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
-            let (edges, guarded, clocks) = (Vec::new(), Vec::new(), Vec::new());
-            self.modes.push(Mode { name, flow: None, series: None, exact: None, beyond: None, edges, guarded, clocks });
+            let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            let (flow, series, exact, beyond) = (None, None, None, None);
+            self.modes.push(Mode { name, flow, series, exact, beyond, edges, guarded, clocks, stops });
             self.modes.len() - 1
         });
         &mut self.modes[index]

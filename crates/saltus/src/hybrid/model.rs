@@ -2,7 +2,7 @@
 
 use super::{Hybrid, Link, Mode};
 use crate::analysis::reverse::Invertible;
-use crate::automaton::clocks::Clocks;
+use crate::automaton::clocks::{Clock, Clocks};
 use crate::automaton::edges::Edges;
 use crate::automaton::solution::Solution;
 use crate::automaton::{About, Automaton, Limit};
@@ -37,6 +37,10 @@ impl<S: State> Automaton for Hybrid<'_, S> {
 
     fn clocks(&self, mode: &'static str) -> Clocks<'_, Link> {
         self.find(mode).map_or(Clocks::none(), |mode| Clocks::kept(&mode.clocks))
+    }
+
+    fn stops(&self, mode: &'static str) -> &[Clock] {
+        self.find(mode).map_or(&[], |mode| &mode.stops)
     }
 
     fn reset(&self, _: &'static str, link: Link, t: f64, x: &S) -> Result<(&'static str, S), Refusal> {

@@ -50,6 +50,9 @@ impl<S: State> Hybrid<'_, S> {
                     return Some(format!("the clock of edge {link:?} {flaw}"));
                 }
             }
+            if let Some(flaw) = mode.stops.iter().find_map(|clock| clock.validate().err()) {
+                return Some(format!("the clock of the stops in {name:?} {flaw}"));
+            }
         }
         let (method, from, to) = self.misses.first()?;
         Some(format!(

@@ -4,7 +4,7 @@ use num_dual::Dual64;
 
 use super::passage::Passage;
 use super::{Linearize, moving, moving_in, velocity};
-use crate::automaton::clocks::Clocks;
+use crate::automaton::clocks::{Clock, Clocks};
 use crate::automaton::edges::Edges;
 use crate::automaton::solution::{Fall, Polynomial, Solution};
 use crate::automaton::{About, Automaton, Entry, Limit};
@@ -283,6 +283,11 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
     #[inline]
     fn clocks(&self, mode: A::Mode) -> Clocks<'_, A::Edge> {
         self.automaton.clocks(mode)
+    }
+
+    #[inline]
+    fn stops(&self, mode: A::Mode) -> &[Clock] {
+        self.automaton.stops(mode)
     }
 
     fn validate(&self, mode: A::Mode) -> Result<(), String> {
