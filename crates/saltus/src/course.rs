@@ -373,6 +373,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             Next::Stop(Stop::Cascade { edge })
         } else if at.memory.stats.evaluations() >= options.most_evaluations {
             Next::Stop(Stop::Evaluations { most: options.most_evaluations })
+        } else if let Some(stop) = options.overdue() {
+            Next::Stop(stop)
         } else {
             *stand = Stand { mode: to, state: after, now: time, instant: held };
             Next::Arc

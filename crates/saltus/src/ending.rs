@@ -1,6 +1,7 @@
 //! How a run ended, and what it cost.
 
 use std::fmt;
+use std::time::{Duration, Instant};
 
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
@@ -20,6 +21,9 @@ pub(crate) struct Options {
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
     pub(crate) most_bytes: usize,
+    pub(crate) deadline: Option<Duration>,
+    /// The moment of the deadline, once the run has begun.
+    pub(crate) due: Option<Instant>,
     /// Whether modes that a formula or a series solves are stepped through all the same.
     pub(crate) stepped: bool,
 }
@@ -33,8 +37,20 @@ impl Options {
         } else if stats.evaluations() >= self.most_evaluations {
             Some(Stop::Evaluations { most: self.most_evaluations })
         } else {
-            None
+            self.overdue()
         }
+    }
+
+    /// Whether the deadline has passed.
+    #[inline]
+    pub(crate) fn overdue<E>(&self) -> Option<Stop<E>> {
+        let (after, due) = (self.deadline?, self.due?);
+        (Instant::now() >= due).then_some(Stop::Deadline { after })
+    }
+
+    /// A run begins now, or goes on.
+    pub(crate) fn begun(self) -> Self {
+        Self { due: self.deadline.and_then(|after| Instant::now().checked_add(after)), ..self }
     }
 }
 
@@ -95,6 +111,11 @@ pub enum Stop<E> {
         /// The limit.
         most: usize,
     },
+    /// The time that the run was given on the clock on the wall is over.
+    Deadline {
+        /// How long that was.
+        after: Duration,
+    },
     /// Too many jumps at one and the same time: the resets send the state round in a circle.
     Cascade {
         /// The edge taken last.
@@ -117,6 +138,7 @@ impl<E> Stop<E> {
             Self::Steps { most } => options.most_steps > most,
             Self::Evaluations { most } => options.most_evaluations > most,
             Self::Bytes { most } => options.most_bytes > most,
+            Self::Deadline { .. } => true,
             _ => false,
         }
     }
@@ -155,6 +177,12 @@ impl<E: fmt::Debug> fmt::Display for Stop<E> {
                 write!(
                     f,
                     "the limit of {most} bytes of a recorded trajectory was reached: raise Simulation::most_bytes, or observe the run with Simulation::drive, which keeps nothing"
+                )
+            }
+            Self::Deadline { after } => {
+                write!(
+                    f,
+                    "the deadline of {after:?} is over: give more by Simulation::deadline, or go on from a checkpoint"
                 )
             }
             Self::Cascade { edge } => {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::{ControlFlow, Range};
+use std::time::Duration;
 
 use crate::advance::Memory;
 use crate::automaton::Automaton;
@@ -87,7 +88,7 @@ impl<A: Automaton> Observer<A> for Bounded<'_, A> {
 impl<'a, A: Automaton> Simulation<'a, A> {
     /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
     /// and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and 2³⁰ bytes of what is recorded;
-    /// evaluations are not limited.
+    /// evaluations and time on the wall are not limited.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
@@ -99,6 +100,8 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
             most_bytes: 1 << 30,
+            deadline: None,
+            due: None,
             stepped: false,
         };
         Self { automaton, stepper: Auto::new(), options }
@@ -190,6 +193,25 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
+    /// After how long, by the clock on the wall, the run ends with [`Stop::Deadline`]; a run that is
+    /// resumed has as much again. Looked at between steps and between jumps.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use saltus::{Hybrid, Simulation, Stop};
+    /// let swing = Hybrid::new().mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]]);
+    /// let simulation = Simulation::of(&swing).deadline(Duration::from_millis(20));
+    /// let end = simulation.drive("swing", [1.0, 0.0], 0.0..f64::INFINITY, &mut ())?;
+    /// assert_eq!(end.stop, Stop::Deadline { after: Duration::from_millis(20) });
+    /// assert!((end.state[0] - end.time.seconds().cos()).abs() < 1e-3);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn deadline(mut self, after: Duration) -> Self {
+        self.options.deadline = Some(after);
+        self
+    }
+
     /// After how many jumps at one and the same time the run ends with [`Stop::Cascade`].
     #[must_use]
     pub const fn longest_cascade(mut self, count: usize) -> Self {
@@ -273,7 +295,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
     #[must_use]
     pub fn resume(&self, checkpoint: CheckpointOf<A>) -> Course<'a, A, M> {
-        Course::new(self.automaton, self.fitted(), self.options, checkpoint.under(&self.options))
+        Course::new(self.automaton, self.fitted(), self.options.begun(), checkpoint.under(&self.options))
     }
 
     /// The relative tolerance.

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+use std::time::Duration;
+
 use proptest::prelude::*;
 use saltus::step::Stepper;
 use saltus::{
@@ -344,4 +346,27 @@ fn what_rounding_hides_is_no_limit() {
         }
     }
     assert!(hidden > 10 && certified > 10, "{hidden} {certified}");
+}
+
+/// A deadline stops steps, exact arcs and jumps alike, keeps what the run had, and a resumed run has as much again.
+#[test]
+fn a_deadline_stops_every_run() {
+    let after = Duration::from_millis(5);
+    let exact = Hybrid::new().exact("run", |_t, x: &[f64; 2]| [*x, [x[1], -9.8], [-4.9, 0.0]].into()).edge(
+        "run",
+        "run",
+        |_t, x| x[0],
+        |_t, x| [x[0], -x[1]],
+    );
+    let stepped = Hybrid::new().mode("run", |_t, x: &[f64; 2]| [x[1], -x[0]]);
+    for model in [exact, stepped] {
+        let simulation = Simulation::of(&model).most_jumps(usize::MAX).deadline(after);
+        let run = simulation.run("run", [1.0, 0.0], 0.0..1e300).unwrap();
+        assert_eq!(run.end.stop, Stop::Deadline { after });
+        assert!(run.complete().is_err());
+        let mut course = simulation.start("run", [1.0, 0.0], 0.0..1e300).unwrap();
+        let first = course.finish(&mut ()).unwrap();
+        let second = simulation.resume(course.checkpoint()).finish(&mut ()).unwrap();
+        assert!(second.time > first.time && second.stop == Stop::Deadline { after });
+    }
 }
