@@ -1,5 +1,6 @@
 //! What a mode's coordinates may be: anything with a length, a way to read one coordinate and a way to rebuild itself.
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 
 use nalgebra::SVector;
@@ -23,6 +24,11 @@ pub trait State: Copy + Debug {
     /// A state of the same shape whose coordinate `i` is `f(i)`.
     #[must_use]
     fn with(&self, f: impl FnMut(usize) -> f64) -> Self;
+
+    /// The name of coordinate `i`, for tables and errors: `x0`, `x1`, … unless the state names it.
+    fn name(&self, i: usize) -> Cow<'static, str> {
+        format!("x{i}").into()
+    }
 
     /// Whether there are no coordinates at all.
     fn is_empty(&self) -> bool {

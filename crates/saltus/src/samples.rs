@@ -1,0 +1,199 @@
+//! A run at regular times: rows of a table, with both limits at each jump.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use crate::automaton::Automaton;
+use crate::jump::JumpOf;
+use crate::observe::Observer;
+use crate::piece::Piece;
+use crate::state::State;
+use crate::time::{Time, grace};
+use crate::trajectory::Trajectory;
+
+/// How many rows are kept at most: a table of a gigabyte or so.
+const MOST_ROWS: usize = 10_000_000;
+
+/// The state at a hybrid time (t, j).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Sample<M, S> {
+    /// The time, in seconds.
+    pub t: f64,
+    /// How many jumps came before.
+    pub j: usize,
+    /// The mode.
+    pub mode: M,
+    /// The state.
+    pub state: S,
+}
+
+/// Keeps a run at the times t₀ + k·dt, and where each arc begins and ends: at a jump x⁻ and then x⁺.
+///
+/// As an observer it keeps only these rows, so that a long run takes the memory of its table. Tick k
+/// is rounded once, never added up; one that falls on an end of an arc is that end. An arc that never
+/// ends has its first row and its last. More than 10⁷ rows end the run, with
+/// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the names of the
+/// state's coordinates ([`State::name`]) as headings.
+///
+/// ```
+/// use saltus::{Hybrid, Sampler, Simulation};
+/// let tank = Hybrid::new()
+///     .mode("fill", |_t, _x: &f64| 1.0)
+///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0);
+/// let mut table = Sampler::every(0.5);
+/// Simulation::of(&tank).drive("fill", 0.0, 0.0..1.5, &mut table)?;
+/// assert_eq!(table.to_string(), "\
+/// t (s),j,mode,x0
+/// 0.0,0,\"fill\",0.0
+/// 0.5,0,\"fill\",0.5
+/// 1.0,0,\"fill\",1.0
+/// 1.25,0,\"fill\",1.25
+/// 1.25,1,\"fill\",0.0
+/// 1.5,1,\"fill\",0.25
+/// ");
+/// # Ok::<(), saltus::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Sampler<M, S> {
+    dt: f64,
+    start: Option<f64>,
+    /// The number of the next tick.
+    next: u64,
+    rows: Vec<Sample<M, S>>,
+    /// The end of the last piece, which may be that of its arc.
+    end: Option<Sample<M, S>>,
+    j: usize,
+}
+
+/// The samples of the automaton `A`.
+pub type SamplerOf<A> = Sampler<<A as Automaton>::Mode, <A as Automaton>::State>;
+
+impl<M: Copy, S: State> Sampler<M, S> {
+    /// Every `dt` seconds; with one that is not above zero only where arcs begin and end.
+    #[must_use]
+    pub const fn every(dt: f64) -> Self {
+        Self { dt, start: None, next: 1, rows: Vec::new(), end: None, j: 0 }
+    }
+
+    /// The rows in order.
+    pub fn rows(&self) -> impl Iterator<Item = Sample<M, S>> {
+        self.rows.iter().copied().chain(self.end)
+    }
+
+    fn full(&self) -> ControlFlow<()> {
+        if self.rows.len() < MOST_ROWS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
+    #[allow(clippy::cast_precision_loss)] // a count of ticks
+    fn tick(&self, start: f64) -> f64 {
+        (self.next as f64).mul_add(self.dt, start)
+    }
+
+    fn begin(&mut self, t: f64, mode: M, state: S) -> f64 {
+        *self.start.get_or_insert_with(|| {
+            self.rows.push(Sample { t, j: 0, mode, state });
+            t
+        })
+    }
+
+    pub(crate) fn take_piece(&mut self, mode: M, piece: &Piece<'_, S>) -> ControlFlow<()> {
+        let (from, j) = (piece.start(), self.j);
+        let to = from.after(piece.span()).seconds();
+        let start = self.begin(from.seconds(), mode, piece.at(0.0));
+        if self.dt > 0.0 && to.is_finite() {
+            let instant = grace(to.abs().max(start.abs()));
+            while self.tick(start) <= from.seconds() + instant {
+                self.next += 1;
+            }
+            while self.tick(start) < to - instant && self.full().is_continue() {
+                let t = self.tick(start);
+                let state = piece.at(Time::new(t).since(from).clamp(0.0, piece.span()));
+                self.rows.push(Sample { t, j, mode, state });
+                self.next += 1;
+            }
+        }
+        self.end = Some(Sample { t: to, j, mode, state: piece.at(piece.span()) });
+        self.full()
+    }
+
+    pub(crate) fn take_jump(&mut self, t: f64, [from, to]: [(M, S); 2]) -> ControlFlow<()> {
+        self.begin(t, from.0, from.1);
+        // At once after another jump, or the start, the state before is the last row.
+        if self.end.take().is_some() {
+            self.rows.push(Sample { t, j: self.j, mode: from.0, state: from.1 });
+        }
+        self.j += 1;
+        self.rows.push(Sample { t, j: self.j, mode: to.0, state: to.1 });
+        self.full()
+    }
+}
+
+impl<A: Automaton> Observer<A> for SamplerOf<A> {
+    fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.take_piece(mode, piece)
+    }
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
+        self.take_jump(jump.t(), [(jump.from, jump.before), (jump.to, jump.after)])
+    }
+}
+
+impl<M: Copy + fmt::Debug, S: State> fmt::Display for Sampler<M, S> {
+    /// As CSV. Of modes that differ in dimension a row has as many numbers as its state.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("t (s),j,mode")?;
+        if let Some(widest) = self.rows().max_by_key(|row| row.state.len()) {
+            for i in 0..widest.state.len() {
+                write!(f, ",{}", quoted(&widest.state.name(i)))?;
+            }
+        }
+        writeln!(f)?;
+        for Sample { t, j, mode, state } in self.rows() {
+            write!(f, "{t:?},{j},\"{}\"", format!("{mode:?}").trim_matches('"').replace('"', "\"\""))?;
+            for i in 0..state.len() {
+                write!(f, ",{:?}", state.get(i))?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
+
+/// A name as a cell of a table.
+fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
+
+impl<M: Copy, E, S: State> Trajectory<M, E, S> {
+    /// The trajectory every `dt` seconds, with both limits at each jump: see [`Sampler`].
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
+    /// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
+    /// let table = run.trajectory.sampled(0.25);
+    /// assert_eq!(table.rows().count(), 5);
+    /// assert!(table.rows().all(|row| (row.state - (-row.t).exp()).abs() < 1e-8));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn sampled(&self, dt: f64) -> Sampler<M, S> {
+        let mut table = Sampler::every(dt);
+        for (index, arc) in self.arcs().iter().enumerate() {
+            if index == 0 {
+                table.begin(arc.start().seconds(), arc.mode(), *arc.state());
+            }
+            for piece in self.pieces(index) {
+                if table.take_piece(arc.mode(), &piece).is_break() {
+                    return table;
+                }
+            }
+            if let Some(jump) = self.jumps().get(index)
+                && table.take_jump(jump.t(), [(jump.from, jump.before), (jump.to, jump.after)]).is_break()
+            {
+                return table;
+            }
+        }
+        table
+    }
+}
