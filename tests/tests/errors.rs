@@ -209,7 +209,7 @@ fn a_flow_that_is_not_finite() {
     let automaton = Hybrid::new().mode("fall", |_t, x: &Vector2<f64>| vector![x[1], -x[0].sqrt()]);
     let (kind, text) = message(&automaton, "fall", vector![-1.0, 0.0], 1.0);
     assert_eq!(kind, ErrorKind::Flow);
-    insta::assert_snapshot!(text, @r#"the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state (t = 0, mode "fall", state [-1.0, 0.0])"#);
+    insta::assert_snapshot!(text, @r#"the flow is not finite (x1' = NaN), however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state (t = 0, mode "fall", state [-1.0, 0.0])"#);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::{env, fs};
 
 /// The crates of the project, as a program names them, with their place and the features that a page may name.
 const CRATES: [(&str, &str, &[&str]); 7] = [
-    ("saltus", "crates/saltus", &["num-dual", "rayon", "serde"]),
+    ("saltus", "crates/saltus", &["num-dual", "rayon", "serde", "derive"]),
     ("saltus_bounce", "crates/saltus-bounce", &[]),
     ("saltus_scene", "crates/saltus-scene", &[]),
     ("saltus_fit", "crates/saltus-fit", &[]),

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
-    About, Automaton, CheckpointOf, Coords, Edges, Jump, JumpOf, Observer, Piece, Refusal, Simulation, State, Stop,
-    TrajectoryOf,
+    About, Automaton, CheckpointOf, Clock, Coords, Edges, Hybrid, Jump, JumpOf, Observer, Piece, Refusal, Simulation,
+    State, Stop, TrajectoryOf,
 };
 use serde::{Deserialize, Serialize};
 
@@ -262,5 +262,30 @@ fn runs_can_be_shared_between_threads() {
     shared::<TrajectoryOf<Drag>>();
     shared::<CheckpointOf<Drag>>();
     shared::<saltus::CertificateOf<Drag>>();
-    shared::<saltus::Hybrid<'_, Vector2<f64>>>();
+    shared::<Hybrid<'_, Vector2<f64>>>();
+}
+
+/// A checkpoint of closures goes through a file, with jumps that rounding may take again, clocks and a Zeno run under way.
+#[test]
+fn a_hybrid_goes_on_from_a_file() {
+    let model = Hybrid::new()
+        .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+        .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.9 * x[1]])
+        .clock("flight", "flight", Clock::every(0.25), |_t, x| [x[0], 0.99 * x[1]])
+        .mode("rest", |_t, _x| [0.0; 2])
+        .beyond("flight", "rest", |_t, _x| [0.0; 2]);
+    let simulation = Simulation::of(&model).most_jumps(50_000);
+    let whole = simulation.run("flight", [1.0, 0.0], 0.0..20.0).unwrap();
+    assert!(whole.end.mode == "rest");
+    for jumps in [0, 1, 2, 7, 40] {
+        let mut course = simulation.start("flight", [1.0, 0.0], 0.0..20.0).unwrap();
+        (0..jumps).for_each(|_| assert!(course.advance(&mut ()).unwrap().is_none()));
+        let written = serde_json::to_string(&course.checkpoint()).unwrap();
+        let read: CheckpointOf<Hybrid<'_, [f64; 2]>> = serde_json::from_str(written.leak()).unwrap();
+        let end = simulation.resume(read).finish(&mut ()).unwrap();
+        assert_eq!((end.state, end.time, end.stats), (whole.end.state, whole.end.time, whole.end.stats));
+    }
+    let written = serde_json::to_string(&whole.trajectory).unwrap();
+    let read: TrajectoryOf<Hybrid<'_, [f64; 2]>> = serde_json::from_str(written.leak()).unwrap();
+    assert_eq!(read.at(1.2345), whole.trajectory.at(1.2345));
 }

@@ -72,7 +72,8 @@ enum Next<A: Automaton> {
 /// goes on from it; the feature `serde` writes and reads it.
 ///
 /// What is written bears the number of its format, and one of another number is refused: a run goes on
-/// to the bit only with what it was begun with.
+/// to the bit only with what it was begun with. Modes and edges of a [`Hybrid`](crate::Hybrid) are names, which are borrowed from the text that is
+/// read: let it last by [`String::leak`]. Lists of more than 32 coordinates are read and written as `SVector`.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation, Stop};

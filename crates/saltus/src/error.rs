@@ -1,5 +1,6 @@
 //! What can go wrong in a run: what, where, and what to do.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use crate::state::State;
@@ -33,6 +34,8 @@ pub(crate) struct Place {
     pub(crate) mode: String,
     pub(crate) edge: Option<String>,
     pub(crate) state: Vec<f64>,
+    /// The names of the coordinates, where the state gives them.
+    names: Vec<Cow<'static, str>>,
 }
 
 impl Place {
@@ -42,15 +45,37 @@ impl Place {
             mode: format!("{mode:?}"),
             edge: edge.map(|edge| format!("{edge:?}")),
             state: (0..state.len()).map(|i| state.get(i)).collect(),
+            names: (0..state.len()).map(|i| state.name(i)).filter(|name| is_given(name)).collect(),
         }
     }
 }
 
-/// A state as a list of its coordinates.
+/// Whether a coordinate has a name of its own, and not that of its place.
+fn is_given(name: &str) -> bool {
+    !name.strip_prefix('x').is_some_and(|place| place.bytes().all(|digit| digit.is_ascii_digit()))
+}
+
+/// A state as a list of its coordinates, with the names that it gives them.
 #[cold]
 pub(crate) fn listed(state: &impl State) -> String {
-    let coordinates: Vec<f64> = (0..state.len()).map(|i| state.get(i)).collect();
-    format!("{coordinates:?}")
+    let Place { state, names, .. } = Place::new(0.0, (), None::<()>, state);
+    written(&state, &names)
+}
+
+fn written(state: &[f64], names: &[Cow<'static, str>]) -> String {
+    if names.is_empty() || names.len() != state.len() {
+        return format!("{state:?}");
+    }
+    let coordinates: Vec<_> = names.iter().zip(state).map(|(name, value)| format!("{name} = {value:?}")).collect();
+    format!("({})", coordinates.join(", "))
+}
+
+/// Which coordinates of a flow are not finite.
+#[cold]
+pub(crate) fn not_finite(state: &impl State) -> String {
+    let wrong = (0..state.len()).filter(|&i| !state.get(i).is_finite());
+    let each: Vec<_> = wrong.map(|i| format!("{}' = {}", state.name(i), state.get(i))).collect();
+    each.join(", ")
 }
 
 /// The kinds of failure.
@@ -141,7 +166,7 @@ impl Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Failure { kind, place: Place { t, mode, edge, state }, note } = &*self.0;
+        let Failure { kind, place: Place { t, mode, edge, state, names }, note } = &*self.0;
         let note = note.as_deref();
         let said = note.unwrap_or("?");
         let edge = edge.as_deref();
@@ -169,7 +194,10 @@ impl fmt::Display for Error {
                 Some(edge) => write!(f, "the reset of edge {edge} {said}")?,
                 None => return f.write_str(said),
             },
-            ErrorKind::Clock => write!(f, "the clock of edge {by} {said}")?,
+            ErrorKind::Clock => match edge {
+                Some(edge) => write!(f, "the clock of edge {edge} {said}")?,
+                None => write!(f, "the clock of the stops {said}")?,
+            },
             ErrorKind::ClockDerivative => write!(
                 f,
                 "edge {by} is taken by a clock, and how its time depends on the parameters is not given: say it in Linearize::tick_over, also that it does not"
@@ -182,9 +210,15 @@ impl fmt::Display for Error {
             ErrorKind::Series => f.write_str(
                 "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow",
             )?,
-            ErrorKind::Flow => f.write_str(
-                "the flow is not finite, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",
-            )?,
+            ErrorKind::Flow => {
+                f.write_str("the flow is not finite")?;
+                if let Some(which) = note {
+                    write!(f, " ({which})")?;
+                }
+                f.write_str(
+                    ", however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",
+                )?;
+            }
             ErrorKind::Guard => write!(
                 f,
                 "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before"
@@ -217,7 +251,7 @@ impl fmt::Display for Error {
                 "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there",
             )?,
         }
-        write!(f, " (t = {t}, mode {mode}, state {state:?})")
+        write!(f, " (t = {t}, mode {mode}, state {})", written(state, names))
     }
 }
 

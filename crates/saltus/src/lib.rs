@@ -56,6 +56,8 @@ mod zeno;
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
+#[cfg(feature = "derive")]
+pub use saltus_derive::State;
 
 pub use analysis::distance::Closeness;
 pub use analysis::frames::frame_by_frame;

@@ -7,7 +7,8 @@ use nalgebra::SVector;
 
 /// The continuous state x of a hybrid automaton: a short list of real coordinates, passed by value.
 ///
-/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may differ from mode to mode.
+/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may differ from mode to mode; and, with the feature `derive`, by
+/// `#[derive(State)]` for a struct of these, whose fields then name its coordinates in flows, tables and errors.
 ///
 /// ```
 /// use saltus::State;
@@ -30,6 +31,12 @@ pub trait State: Copy + Debug {
         format!("x{i}").into()
     }
 
+    /// What follows the name of a field of this type in the name of its coordinate `i`: nothing for a number, `[i]` for a list.
+    #[doc(hidden)]
+    fn within(&self, i: usize) -> String {
+        format!("[{i}]")
+    }
+
     /// Whether there are no coordinates at all.
     fn is_empty(&self) -> bool {
         self.len() == 0
@@ -42,6 +49,9 @@ pub trait State: Copy + Debug {
 }
 
 impl State for f64 {
+    fn within(&self, _: usize) -> String {
+        String::new()
+    }
     #[inline]
     fn len(&self) -> usize {
         1

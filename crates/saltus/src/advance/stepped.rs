@@ -7,7 +7,7 @@ use crate::automaton::Automaton;
 use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
 use crate::ending::Stop;
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::{Error, ErrorKind, Place, not_finite};
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{Piece, horner};
@@ -42,7 +42,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.smooth_from(mode, clock.now, &x)?;
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
-            return Err(Error::new(ErrorKind::Flow, Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x)));
+            let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
+            return Err(Error::new(ErrorKind::Flow, place).noting(Some(not_finite(&slope))));
         }
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
@@ -179,8 +180,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.memory.stats.rejected += 1;
             h = size * factor;
             if h <= SHORTEST * resolution(t) {
-                let kind = if finite { ErrorKind::StepSize } else { ErrorKind::Flow };
-                return Err(Error::new(kind, Place::new(t, mode, None::<A::Edge>, x)));
+                let place = Place::new(t, mode, None::<A::Edge>, x);
+                return Err(if finite {
+                    Error::new(ErrorKind::StepSize, place)
+                } else {
+                    let which = Some(not_finite(&trial.slope)).filter(|which| !which.is_empty());
+                    Error::new(ErrorKind::Flow, place).noting(which)
+                });
             }
         }
     }

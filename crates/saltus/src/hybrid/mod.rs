@@ -90,7 +90,10 @@ struct Mode<'a, S> {
 /// let link = Link { from: "flight", to: "rest", place: 1 };
 /// assert_eq!(format!("{link:?}"), "flight -> rest (edge 1)");
 /// ```
+///
+/// With the feature `serde` it is read from text that lasts as long as the program: see [`Checkpoint`](crate::Checkpoint).
 #[derive(Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Link {
     /// The mode it leaves.
     pub from: &'static str,
