@@ -39,8 +39,9 @@ pub struct Sample<M, S> {
 /// ```
 /// use saltus::{Hybrid, Sampler, Simulation};
 /// let tank = Hybrid::new()
-///     .mode("fill", |_t, _x: &f64| 1.0)
-///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0);
+///     .exact("fill", |_t, x: &f64| [*x, 1.0].into())
+///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0)
+///     .affine("fill", "fill");
 /// let mut table = Sampler::every(0.5);
 /// Simulation::of(&tank).drive("fill", 0.0, 0.0..1.5, &mut table)?;
 /// assert_eq!(table.to_string(), "\
