@@ -210,6 +210,8 @@ pub struct Stats {
     pub rejected: u64,
     /// Arcs advanced by an exact solution.
     pub exact: u64,
+    /// Steps accepted of a method for stiff flows to which the stepper changed by itself.
+    pub stiff: u64,
     /// Evaluations of flows; of one given over jets, each order of a series is one.
     pub flows: u64,
     /// Evaluations of guards.

@@ -10,9 +10,12 @@ mod series;
 mod smooth;
 mod solved;
 mod stepped;
+mod stiff;
 
 pub(crate) use series::Held;
 pub(crate) use smooth::Smooth;
+
+use self::stiff::Gait;
 
 use std::ops::ControlFlow;
 
@@ -89,6 +92,7 @@ pub(crate) struct Memory<E, S> {
     /// x' on the last piece of an arc that ends at a crossing.
     slope: Option<S>,
     controller: Controller,
+    gait: Gait,
     step: Option<f64>,
     spent: Option<Spent<E>>,
     /// The edge of the last jump.
@@ -119,6 +123,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             largest: None,
             slope: None,
             controller: Controller::new(stepper),
+            gait: Gait::START,
             step: first_step,
             spent: None,
             last: None,

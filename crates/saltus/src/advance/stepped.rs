@@ -39,6 +39,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut first: bool,
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
+        if self.memory.gait.stiff {
+            self.stepper = self.stepper.adapted(true);
+        }
         self.smooth_from(mode, clock.now, &x)?;
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
@@ -158,6 +161,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         slope: &A::State,
         remaining: f64,
     ) -> Result<(f64, Trial<A::State, M::Stages<A::State>>), Error> {
+        self.change_method();
         let t = now.seconds();
         let longest = remaining.min(self.options.longest_step);
         let tolerance = self.options.tolerance;
@@ -175,9 +179,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if accepted {
                 self.memory.stats.steps += 1;
                 self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });
+                self.notice_stiffness(mode, t, x, size, &trial, slope);
                 return Ok((size, trial));
             }
             self.memory.stats.rejected += 1;
+            self.memory.gait.rejected();
             h = size * factor;
             if h <= SHORTEST * resolution(t) {
                 let place = Place::new(t, mode, None::<A::Edge>, x);

@@ -63,6 +63,20 @@ impl<L: Stepper, T: Stepper> Stepper for Either<L, T> {
         }
     }
 
+    fn stable_to(&self) -> Option<f64> {
+        match self {
+            Self::Loose(method) => method.stable_to(),
+            Self::Tight(method) => method.stable_to(),
+        }
+    }
+
+    fn adapted(self, stiff: bool) -> Self {
+        match self {
+            Self::Loose(method) => Self::Loose(method.adapted(stiff)),
+            Self::Tight(method) => Self::Tight(method.adapted(stiff)),
+        }
+    }
+
     #[inline]
     fn error_order(&self) -> f64 {
         match self {

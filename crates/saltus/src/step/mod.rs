@@ -2,7 +2,7 @@
 //!
 //! | stepper | order | dense output | flows per step | made for |
 //! |---|---|---|---|---|
-//! | [`Auto`] | | | | the default: the next or the one after it, by the tolerance |
+//! | [`Auto`] | | | | the default: the next or the one after it, by the tolerance, and the last where a flow is stiff |
 //! | [`Tsit5`] | 5(4) | 4 | 6 | everyday work, relative tolerances of 1e-3 to 1e-7 |
 //! | [`Dop853`] | 8(5, 3) | 7 | 12, and 3 for the dense output | tight tolerances, 1e-7 to 1e-14 |
 //! | [`Rodas5P`] | 5(4) | 4 | 8, and 2 n + 1 for the Jacobian of n coordinates | stiff flows |
@@ -54,6 +54,23 @@ pub trait Stepper: Copy {
     #[must_use]
     fn for_tolerance(self, relative: f64) -> Self {
         let _ = relative;
+        self
+    }
+
+    /// The h·|λ| up to which the explicit method is stable, of a stepper that has another for stiff flows; none of one that has not.
+    ///
+    /// Where steps are as long as that for a flow whose Jacobian has the eigenvalue λ, stability limits them, and
+    /// [`adapted`](Self::adapted) is asked for the other method.
+    #[inline]
+    fn stable_to(&self) -> Option<f64> {
+        None
+    }
+
+    /// The method for a flow that is stiff, or is not so.
+    #[must_use]
+    #[inline]
+    fn adapted(self, stiff: bool) -> Self {
+        let _ = stiff;
         self
     }
 
