@@ -142,12 +142,7 @@ impl<A: Automaton> Observer<A> for Certificate<A::Mode, A::Edge> {
         match inspection.evidence {
             Evidence::Excluded => self.row(inspection.edge).excluded += 1,
             Evidence::Isolated => self.row(inspection.edge).isolated += 1,
-            Evidence::Grazing { .. }
-            | Evidence::Rounding { .. }
-            | Evidence::Unresolved { .. }
-            | Evidence::Discontinuous { .. } => {
-                self.doubts.add(inspection);
-            }
+            Evidence::Doubtful { .. } => self.doubts.add(inspection),
         }
     }
 }

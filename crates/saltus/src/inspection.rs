@@ -4,13 +4,13 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::automaton::Automaton;
-use crate::cross::Evidence;
+use crate::cross::{Doubt, Evidence};
 use crate::time::Time;
 
 /// How the guard of one edge was searched over one step, or over one exact arc.
 ///
 /// ```
-/// use saltus::cross::Evidence;
+/// use saltus::cross::Doubt;
 /// use saltus::{Hybrid, Simulation};
 ///
 /// // A guard that swings more than a million times a second is too fast to be followed through a step.
@@ -20,7 +20,7 @@ use crate::time::Time;
 /// let run = Simulation::of(&fast).run("wait", 0.0, 0.0..1.0)?;
 ///
 /// let doubt = run.trajectory.doubts().last().unwrap();
-/// assert!(matches!(doubt.evidence, Evidence::Unresolved { .. }));
+/// assert_eq!(doubt.evidence.doubt(), Some(Doubt::Unresolved));
 /// assert_eq!(doubt.doubt().map(|when| when.end), Some(1.0));
 /// assert!(doubt.to_string().contains("varies too fast"));
 /// # Ok::<(), saltus::Error>(())
@@ -65,7 +65,7 @@ impl<M: Copy, E: Copy> Inspection<M, E> {
             return false;
         };
         let after = later.start.since(self.start);
-        let same = std::mem::discriminant(&self.evidence) == std::mem::discriminant(&later.evidence);
+        let same = self.evidence.doubt() == later.evidence.doubt();
         let follows = same && after + next <= to + 4.0 * f64::EPSILON * to.abs();
         if follows {
             self.span = after + later.span;
@@ -85,10 +85,7 @@ impl<M: Copy, E: Copy> Inspection<M, E> {
 /// From when to when a doubt lasts.
 const fn when(evidence: Evidence) -> Option<(f64, f64)> {
     match evidence {
-        Evidence::Grazing { from, to }
-        | Evidence::Rounding { from, to }
-        | Evidence::Unresolved { from, to }
-        | Evidence::Discontinuous { from, to } => Some((from, to)),
+        Evidence::Doubtful { from, to, .. } => Some((from, to)),
         Evidence::Excluded | Evidence::Isolated => None,
     }
 }
@@ -96,11 +93,8 @@ const fn when(evidence: Evidence) -> Option<(f64, f64)> {
 /// The same doubt, from another time to another.
 const fn between(evidence: Evidence, from: f64, to: f64) -> Evidence {
     match evidence {
-        Evidence::Grazing { .. } => Evidence::Grazing { from, to },
-        Evidence::Rounding { .. } => Evidence::Rounding { from, to },
-        Evidence::Unresolved { .. } => Evidence::Unresolved { from, to },
-        Evidence::Discontinuous { .. } => Evidence::Discontinuous { from, to },
-        known => known,
+        Evidence::Doubtful { why, .. } => Evidence::doubtful(why, from, to),
+        sure => sure,
     }
 }
 
@@ -121,23 +115,34 @@ impl<M: Copy + fmt::Debug, E: Copy + fmt::Debug> fmt::Display for Inspection<M, 
         f.write_str(match evidence {
             Evidence::Excluded => "not crossed; bounds on its guard leave no room",
             Evidence::Isolated => "searched until no part had room for more than one crossing",
-            Evidence::Grazing { .. } => {
-                "its guard comes as close to zero as the error of the step, and turns: whether it is crossed there \
-                 is not decided. If that matters, lower Simulation::tolerance"
-            }
-            Evidence::Rounding { .. } => {
-                "its guard is zero but for rounding and was taken for a touch; two crossings may hide there. \
-                 If that matters, write the guard so that it does not cancel"
-            }
-            Evidence::Unresolved { .. } => {
-                "its guard varies too fast to be followed, and a crossing may have been missed. \
-                 Shorten Simulation::longest_step, or give the guard a slower form"
-            }
-            Evidence::Discontinuous { .. } => {
-                "its guard changes sign without coming near zero: a pole is no crossing, a leap is taken for one. \
-                 Write the guard so that it is continuous"
-            }
+            Evidence::Doubtful { why, .. } => advice(*why),
         })
+    }
+}
+
+/// What is in doubt, and what to do.
+const fn advice(why: Doubt) -> &'static str {
+    match why {
+        Doubt::Grazing => {
+            "its guard comes as close to zero as the error of the step, and turns: whether it is crossed there \
+             is not decided. If that matters, lower Simulation::tolerance"
+        }
+        Doubt::Rounding => {
+            "its guard is zero but for rounding and was taken for a touch; two crossings may hide there. \
+             If that matters, write the guard so that it does not cancel"
+        }
+        Doubt::Unresolved => {
+            "its guard varies too fast to be followed, and a crossing may have been missed. \
+             Shorten Simulation::longest_step, or give the guard a slower form"
+        }
+        Doubt::Discontinuous => {
+            "its guard changes sign without coming near zero: a pole is no crossing, a leap is taken for one. \
+             Write the guard so that it is continuous"
+        }
+        Doubt::Missed => {
+            "its guard is below zero at the end, and no crossing was found on the way. \
+             Lower Simulation::tolerance or shorten Simulation::longest_step, and compare"
+        }
     }
 }
 

@@ -79,7 +79,7 @@ impl<A: Automaton> Observer<A> for Bounded<'_, A> {
         self.full()
     }
     fn inspection(&mut self, inspection: &InspectionOf<A>) {
-        if inspection.evidence.is_doubtful() {
+        if inspection.evidence.doubt().is_some() {
             self.trajectory.push_doubt(inspection);
         }
     }

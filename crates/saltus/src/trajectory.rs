@@ -298,7 +298,7 @@ impl<A: Automaton> Observer<A> for TrajectoryOf<A> {
         ControlFlow::Continue(())
     }
     fn inspection(&mut self, inspection: &InspectionOf<A>) {
-        if inspection.evidence.is_doubtful() {
+        if inspection.evidence.doubt().is_some() {
             self.push_doubt(inspection);
         }
     }

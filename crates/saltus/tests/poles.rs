@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use saltus::cross::Evidence;
+use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
 
 /// The times of the jumps where `guard` of time falls, and of the doubts that its continuity leaves.
@@ -20,7 +20,7 @@ fn falls(guard: impl Fn(f64) -> f64 + Send + Sync, start: f64, span: f64) -> (Ve
     let run = simulation.run("run", 0.0, start..start + span).unwrap();
     times.extend(run.trajectory.jumps().iter().map(saltus::Jump::t));
     simulation.drive("run", 0.0, start..start + span, &mut certificate).unwrap();
-    let broken = |doubt: &&saltus::Inspection<_, _>| matches!(doubt.evidence, Evidence::Discontinuous { .. });
+    let broken = |doubt: &&saltus::Inspection<_, _>| doubt.evidence.doubt() == Some(Doubt::Discontinuous);
     let doubts = certificate.doubts().iter().filter(broken).filter_map(|doubt| Some(doubt.doubt()?.start));
     (times, doubts.collect())
 }

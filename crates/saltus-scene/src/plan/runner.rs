@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use saltus::cross::Evidence;
+use saltus::cross::Doubt;
 use saltus::step::Stepper;
 use saltus::{
     Automaton, Cause, EndingOf, InspectionOf, Jump, JumpOf, Observer, Piece, Run, RunOf, Simulation, Solution, Time,
@@ -425,10 +425,11 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
             let name = edge.split(':').next().unwrap_or(&edge);
             let mode = self.view.mode(doubt.mode, 0);
             let times = doubt.doubt().unwrap_or_default();
-            let why = match doubt.evidence {
-                Evidence::Grazing { .. } => "the error of the steps decides whether it came to that",
-                Evidence::Rounding { .. } => "rounding hides whether it came to that",
-                Evidence::Discontinuous { .. } => "what decides it is not continuous",
+            let why = match doubt.evidence.doubt() {
+                Some(Doubt::Grazing) => "the error of the steps decides whether it came to that",
+                Some(Doubt::Rounding) => "rounding hides whether it came to that",
+                Some(Doubt::Discontinuous) => "what decides it is not continuous",
+                Some(Doubt::Missed) => "it was passed by the end, and its time was not found",
                 _ => "the search for it was given up",
             };
             format!("{name} in mode {mode}, {:.9} s to {:.9} s: {why}", times.start, times.end)

@@ -4,7 +4,7 @@ use std::cell::LazyCell;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Polynomial;
-use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
+use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
 use crate::ending::Stop;
 use crate::error::Error;
 use crate::observe::Observer;
@@ -76,7 +76,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {
             return match quadratic_touch(powers).filter(|&at| start != Start::Spent && at <= limit) {
-                Some(at) => Searched { evidence: Evidence::Rounding { from: at, to: at }, ..Searched::solved(None) },
+                Some(at) => {
+                    Searched { evidence: Evidence::doubtful(Doubt::Rounding, at, at), ..Searched::solved(None) }
+                }
                 None => Searched::solved(None),
             };
         };

@@ -2,7 +2,7 @@
 //! falls.
 
 use crate::automaton::Automaton;
-use crate::cross::Evidence;
+use crate::cross::{Doubt, Evidence};
 use crate::piece::horner;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -44,7 +44,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let room = self.error_of(edge, step, s, least) - least;
         // As far to both sides as a parabola through the least value and an end stays within it.
         let half = |end: usize| (turn[end] - s).abs() * (room / (ends[end] - least)).sqrt().min(1.0);
-        (room >= 0.0).then(|| Evidence::Grazing { from: s - half(0), to: s + half(1) })
+        (room >= 0.0).then(|| Evidence::doubtful(Doubt::Grazing, s - half(0), s + half(1)))
     }
 
     /// Of a guard that falls at `root`: whether it rises again from within the error of the step, and
@@ -72,7 +72,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<Evidence> {
         let depth = 0.5 * bend * turn * turn;
         let close = depth <= self.error_of(edge, step, root, 0.0);
-        close.then(|| Evidence::Grazing { from: (root - turn.abs()).max(0.0), to: root + 2.0 * turn.abs() })
+        close.then(|| Evidence::doubtful(Doubt::Grazing, (root - turn.abs()).max(0.0), root + 2.0 * turn.abs()))
     }
 
     /// Whether a guard that falls at `root` has been no farther from zero on the step than what the
@@ -88,7 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (absolute, x) = (self.options.tolerance.absolute, horner(step.c, middle / step.scale));
         let off = self.moved(edge, step.now.after(middle).seconds(), &x, half, |_| STEP_ERROR * absolute);
         self.memory.resolved = start.abs().max(half.abs()) > RESOLVED * off;
-        (!self.memory.resolved).then_some(Evidence::Grazing { from: 0.0, to: root })
+        (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 
     /// The guard of `edge` a time `s` after the start of a step.

@@ -22,10 +22,11 @@ use std::ops::ControlFlow;
 use crate::automaton::solution::Solution;
 use crate::automaton::{Automaton, Entry};
 use crate::control::Controller;
-use crate::cross::Start;
+use crate::cross::{Doubt, Evidence, Start};
 use crate::ending::Options;
 use crate::ending::{Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
+use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::series::Tape;
 use crate::state::State;
@@ -328,7 +329,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         };
         let end = end?;
-        self.stayed_inside(mode, x, now, &end)?;
+        self.stayed_inside(mode, x, now, &end, observer)?;
         match end {
             ArcEnd::Stop { stop: Stop::Time, state, .. } => {
                 Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state })
@@ -337,38 +338,63 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Whether the edge whose jump led to this arc's start has let the state into the mode: a guard that never rose from its spent root, and is below zero at
-    /// the arc's end, fell on from the start, which is a negative guard at entry.
+    /// Looks at the guards of the edges that did not end an arc, at its end.
     #[inline]
-    fn stayed_inside(&mut self, mode: A::Mode, x: &A::State, began: Time, end: &ArcEnd<A>) -> Result<(), Error> {
+    fn stayed_inside(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        began: Time,
+        end: &ArcEnd<A>,
+        observer: &mut impl Observer<A>,
+    ) -> Result<(), Error> {
         let (taken, time, state) = match end {
             ArcEnd::Crossing { edge, time, before } => (Some(*edge), *time, before),
             ArcEnd::Stop { time, state, .. } => (None, *time, state),
         };
-        match self.memory.spent {
-            Some(Spent { edge, .. }) if Some(edge) != taken => {
-                self.fell_on(mode, edge, (began.seconds(), x), (time.seconds(), state))
+        for edge in self.automaton.edges(mode).iter().filter(|&edge| Some(edge) != taken) {
+            self.memory.stats.guards += 1;
+            if self.automaton.guard(edge, time.seconds(), state) < 0.0 {
+                self.outside(mode, edge, (began, x), (time, state), observer)?;
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
-    /// An error where the guard of `edge` is below zero at the end of an arc by more than rounding and the tolerance leave open, and its edge refuses that.
-    fn fell_on(
+    /// The guard of `edge` is below zero at the end of an arc that it did not end. Beyond what rounding and the tolerance
+    /// leave open it was crossed on the way, which the search missed, or fell on from its spent root, which is a
+    /// negative guard at entry: a doubt, or an error. An edge that waits may have been outside from the start.
+    #[cold]
+    #[inline(never)]
+    fn outside(
         &mut self,
         mode: A::Mode,
         edge: A::Edge,
-        (began, x): (f64, &A::State),
-        (t, state): (f64, &A::State),
+        (began, x): (Time, &A::State),
+        (time, state): (Time, &A::State),
+        observer: &mut impl Observer<A>,
     ) -> Result<(), Error> {
-        if !self.is_below(mode, edge, t, state) || !matches!(self.automaton.about(edge).entry, Entry::Refuse) {
+        if self.clear_of_zero(edge, time, state) == 0.0 {
             return Ok(());
         }
-        let g = self.automaton.guard(edge, t, state);
-        if -g <= self.within_tolerance(edge, t, state, g) {
-            return Ok(());
+        let entry = self.automaton.about(edge).entry;
+        if self.memory.just_took(edge) && entry == Entry::Refuse {
+            let place = Place::new(began.seconds(), mode, Some(edge), x);
+            return Err(Error::new(ErrorKind::Entry, place).noting(Some(FELL_ON.to_owned())));
         }
-        Err(Error::new(ErrorKind::Entry, Place::new(began, mode, Some(edge), x)).noting(Some(FELL_ON.to_owned())))
+        if entry != Entry::Wait || self.clear_of_zero(edge, began, x) > 0.0 {
+            let span = time.since(began);
+            let evidence = Evidence::doubtful(Doubt::Missed, 0.0, span);
+            observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
+        }
+        Ok(())
+    }
+
+    /// The guard of `edge` at `x`, or zero where rounding and the tolerance leave open which side it is on.
+    fn clear_of_zero(&mut self, edge: A::Edge, time: Time, x: &A::State) -> f64 {
+        let t = time.seconds();
+        let g = self.automaton.guard(edge, t, x);
+        if g.abs() > self.within_tolerance(edge, t, x, g) { g } else { 0.0 }
     }
 
     /// How the search for `edge` starts on the first piece of an arc.

@@ -100,7 +100,8 @@ pub trait Automaton {
     /// When the guard of `edge` first falls through zero on the exact solution from `x` at `t` (see
     /// [`Solution::is_exact`]), where a formula says so. By default it is searched for.
     ///
-    /// A wrong answer is believed: it breaks the guarantee that no crossing is missed.
+    /// A wrong answer is believed: it breaks the guarantee that no crossing is missed. Where the guard is
+    /// below zero when the arc ends, that is a [`Doubt::Missed`](crate::cross::Doubt::Missed).
     #[inline]
     fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {
         let _ = (mode, edge, t, x);

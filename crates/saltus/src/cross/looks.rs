@@ -1,7 +1,7 @@
 //! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
 
 use super::search::{Part, Search, Side};
-use super::{Evidence, Undefined};
+use super::{Doubt, Evidence, Undefined};
 
 /// How many samples are taken of a guard that seems to be nothing but rounding.
 const LOOKS: usize = 128;
@@ -133,7 +133,7 @@ impl Search<'_> {
         // A guard that leaves the wall slowly is nothing but rounding of its values at first, which hides nothing.
         let leaves = came_from == Side::Wall && !self.is_rougher_than_rounding(rounding);
         if let Some((from, to)) = hidden.filter(|_| !leaves) {
-            self.weaken(Evidence::Rounding { from, to });
+            self.weaken(Evidence::doubtful(Doubt::Rounding, from, to));
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };
         if came_from == Side::Wall && side == Side::Outside && self.spent {

@@ -2,6 +2,7 @@
 
 pub(crate) mod chebyshev;
 mod departure;
+mod evidence;
 mod looks;
 mod powers;
 mod refine;
@@ -9,6 +10,7 @@ mod search;
 
 use crate::poly::{Bernstein, Shape};
 
+pub use evidence::{Doubt, Evidence};
 pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
 use search::Search;
@@ -49,88 +51,6 @@ pub enum Start {
     Spent,
     /// The search goes on where an earlier one ended: a guard that is zero here is on the side it came from.
     Resumed,
-}
-
-/// How a search came to its result.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Evidence {
-    /// Bounds on the guard over the whole interval leave no room for a fall.
-    Excluded,
-    /// The interval was halved until bounds left no room for a fall in any part, or a single fall in the first part that has one.
-    Isolated,
-    /// Between these times the guard is nothing but rounding: a touch, or two crossings so close that its values do not show them.
-    /// It was taken for zero there.
-    Rounding {
-        /// Where that begins.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-    /// Between these times the guard varies too fast to be resolved within the limit on evaluations: only the signs at both ends were used.
-    Unresolved {
-        /// Where that begins.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-    /// Between these times, some thousand roundings apart, the guard changes its sign without coming near zero. At a pole, where it is larger the nearer it
-    /// is looked at, that is no crossing; a leap is taken for one.
-    Discontinuous {
-        /// Shortly before.
-        from: f64,
-        /// Shortly after.
-        to: f64,
-    },
-    /// Between these times the guard comes so close to zero, and turns, that the error of the step decides whether it falls: it did not, or it fell and
-    /// would have risen again.
-    Grazing {
-        /// Where that begins.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-}
-
-impl Evidence {
-    /// Whether a crossing may have been missed.
-    #[must_use]
-    pub const fn is_doubtful(&self) -> bool {
-        matches!(
-            self,
-            Self::Grazing { .. } | Self::Rounding { .. } | Self::Unresolved { .. } | Self::Discontinuous { .. }
-        )
-    }
-
-    /// The weaker of two.
-    pub(crate) fn and(self, other: Self) -> Self {
-        let rank = |evidence: &Self| match evidence {
-            Self::Excluded => 0,
-            Self::Isolated => 1,
-            Self::Grazing { .. } => 2,
-            Self::Rounding { .. } => 3,
-            Self::Unresolved { .. } => 4,
-            Self::Discontinuous { .. } => 5,
-        };
-        match (self, other) {
-            (Self::Rounding { from, .. }, Self::Rounding { to, .. }) => Self::Rounding { from, to },
-            (Self::Unresolved { from, .. }, Self::Unresolved { to, .. }) => Self::Unresolved { from, to },
-            (Self::Discontinuous { from, .. }, Self::Discontinuous { to, .. }) => Self::Discontinuous { from, to },
-            _ if rank(&other) > rank(&self) => other,
-            _ => self,
-        }
-    }
-
-    /// The same with its times counted from a moment `s` earlier.
-    pub(crate) fn later(self, s: f64) -> Self {
-        match self {
-            Self::Grazing { from, to } => Self::Grazing { from: from + s, to: to + s },
-            Self::Rounding { from, to } => Self::Rounding { from: from + s, to: to + s },
-            Self::Unresolved { from, to } => Self::Unresolved { from: from + s, to: to + s },
-            Self::Discontinuous { from, to } => Self::Discontinuous { from: from + s, to: to + s },
-            other => other,
-        }
-    }
 }
 
 /// The outcome of a search.

@@ -1,7 +1,7 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
 use super::search::{AT_START, ROUNDING, Search};
-use super::{Crossing, Evidence, Undefined};
+use super::{Crossing, Doubt, Evidence, Undefined};
 
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
@@ -86,7 +86,7 @@ impl Search<'_> {
             Passage::Leap
         };
         if passage != Passage::Root {
-            self.weaken(Evidence::Discontinuous { from: before, to: after });
+            self.weaken(Evidence::doubtful(Doubt::Discontinuous, before, after));
         }
         Ok(passage)
     }

@@ -5,7 +5,7 @@ use crate::poly::{Bernstein, Shape};
 use super::departure::Departure;
 use super::looks::{Look, order};
 use super::refine::Passage;
-use super::{Crossing, Evidence, Searched, Start, Undefined, chebyshev, settle};
+use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, chebyshev, settle};
 
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
@@ -197,7 +197,7 @@ impl<'a> Search<'a> {
             return Ok(Part::None(Side::Wall));
         }
         if depth == 0 || self.evaluations > MOST_EVALUATIONS {
-            self.weaken(Evidence::Unresolved { from: a, to: b });
+            self.weaken(Evidence::doubtful(Doubt::Unresolved, a, b));
             return self.by_sign(a, b, side);
         }
         let proxy = if let Some(p) = known {
@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
         if hidden && self.is_rougher_than_rounding(margin) {
             let to = b * (slope / bend + (margin / bend).sqrt());
             if self.is_rough(0.0, to)? {
-                self.weaken(Evidence::Rounding { from: 0.0, to });
+                self.weaken(Evidence::doubtful(Doubt::Rounding, 0.0, to));
             }
         }
         Ok(())
