@@ -362,24 +362,30 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
             return Ok(Next::Limit { remaining, certified: true });
         }
-        Ok(if at.jumps >= options.most_jumps {
+        let next = self.after_jump(edge, now);
+        if matches!(next, Next::Arc) {
+            *stand = Stand { mode: to, state: after, now: time, instant: held };
+        }
+        Ok(next)
+    }
+
+    /// What follows a jump at time `t`: another arc, unless jumps at one time contract or a limit of the run is reached.
+    #[inline]
+    fn after_jump(&self, edge: A::Edge, t: f64) -> Next<A> {
+        let Self { automaton, options, at, .. } = self;
+        // Collisions that go on at one time: where they contract, what lies beyond them is the model's to say.
+        let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
+        if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
-        } else if at.cascade.contracts(options.longest_cascade) && {
-            // Collisions that go on at one time: where they contract, what lies beyond them is the model's to say.
-            let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, now, &at.state));
-            at.recent.cycle().with(beyond).is_some()
-        } {
+        } else if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
             Next::Limit { remaining: 0.0, certified: true }
         } else if at.cascade.jumps() >= options.longest_cascade {
             Next::Stop(Stop::Cascade { edge })
         } else if at.memory.stats.evaluations() >= options.most_evaluations {
             Next::Stop(Stop::Evaluations { most: options.most_evaluations })
-        } else if let Some(stop) = options.overdue() {
-            Next::Stop(stop)
         } else {
-            *stand = Stand { mode: to, state: after, now: time, instant: held };
-            Next::Arc
-        })
+            options.overdue().map_or(Next::Arc, Next::Stop)
+        }
     }
 
     /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to resolve, and the model says what lies beyond.

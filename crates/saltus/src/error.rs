@@ -165,93 +165,107 @@ impl Error {
 }
 
 impl fmt::Display for Error {
+    /// What is wrong and what to do; of a run that had begun, with time, mode and state.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Failure { kind, place: Place { t, mode, edge, state, names }, note } = &*self.0;
+        let Failure { kind, place, note } = &*self.0;
         let note = note.as_deref();
-        let said = note.unwrap_or("?");
-        let edge = edge.as_deref();
-        let by = edge.unwrap_or("?");
         match kind {
-            ErrorKind::Span => {
-                return write!(
-                    f,
-                    "the span {said} does not run forwards from a finite time: give start..end with start <= end and a start within 1e300 s; to run backwards, implement Invertible and run Reversed"
-                );
+            ErrorKind::Span | ErrorKind::Tolerance | ErrorKind::StepLimit => {
+                return asked(f, *kind, note.unwrap_or("?"));
             }
-            ErrorKind::Tolerance => {
-                return write!(
-                    f,
-                    "the tolerances ({said}) cannot be kept: relative must be finite and at least 1e-15, absolute finite and above zero"
-                );
-            }
-            ErrorKind::StepLimit => {
-                return f.write_str(
-                    "a step cannot have this size: give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out",
-                );
-            }
-            ErrorKind::InitialState => f.write_str("the initial state is not finite: give finite coordinates")?,
-            ErrorKind::Model => match edge {
-                Some(edge) => write!(f, "the reset of edge {edge} {said}")?,
-                None => return f.write_str(said),
-            },
-            ErrorKind::Clock => match edge {
-                Some(edge) => write!(f, "the clock of edge {edge} {said}")?,
-                None => write!(f, "the clock of the stops {said}")?,
-            },
-            ErrorKind::ClockDerivative => write!(
-                f,
-                "edge {by} is taken by a clock, and how its time depends on the parameters is not given: say it in Linearize::tick_over, also that it does not"
-            )?,
-            ErrorKind::Dimension => write!(
-                f,
-                "the flow gives {said} and the state has {} coordinates: give both as many in this mode, here and in the resets that lead to it",
-                state.len()
-            )?,
-            ErrorKind::Series => f.write_str(
-                "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow",
-            )?,
-            ErrorKind::Flow => {
-                f.write_str("the flow is not finite")?;
-                if let Some(which) = note {
-                    write!(f, " ({which})")?;
-                }
-                f.write_str(
-                    ", however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state",
-                )?;
-            }
-            ErrorKind::Guard => write!(
-                f,
-                "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before"
-            )?,
-            ErrorKind::Reset => {
-                match edge {
-                    Some(edge) => write!(f, "the reset of edge {edge}")?,
-                    None => f.write_str("Automaton::beyond")?,
-                }
-                write!(
-                    f,
-                    " gave {said}, which is not finite: check it for division by zero or roots of negative numbers at this state"
-                )?;
-            }
-            ErrorKind::Refused => write!(f, "the reset of edge {by} refused: {said}")?,
-            ErrorKind::Entry if note.is_some() => write!(
-                f,
-                "the guard of edge {by} {said}: let the reset turn the motion round or lead to another mode, or let About::entry or Hybrid::entry say Wait, for an edge that counts passages"
-            )?,
-            ErrorKind::Entry => write!(
-                f,
-                "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let About::entry or Hybrid::entry say Wait or Fire"
-            )?,
-            ErrorKind::Grazing => write!(
-                f,
-                "edge {by} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
-            )?,
-            ErrorKind::Unfinished => write!(f, "the run ended before it was to: {said}")?,
-            ErrorKind::StepSize => f.write_str(
-                "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there",
-            )?,
+            ErrorKind::Model if place.edge.is_none() => return f.write_str(note.unwrap_or("?")),
+            ErrorKind::InitialState
+            | ErrorKind::Dimension
+            | ErrorKind::Series
+            | ErrorKind::Flow
+            | ErrorKind::StepSize
+            | ErrorKind::Unfinished => on_the_way(f, *kind, note, place.state.len())?,
+            _ => of_edge(f, *kind, note, place.edge.as_deref())?,
         }
+        let Place { t, mode, state, names, .. } = place;
         write!(f, " (t = {t}, mode {mode}, state {})", written(state, names))
+    }
+}
+
+/// What is wrong with what a run was asked for.
+fn asked(f: &mut fmt::Formatter<'_>, kind: ErrorKind, given: &str) -> fmt::Result {
+    match kind {
+        ErrorKind::Span => write!(
+            f,
+            "the span {given} does not run forwards from a finite time: give start..end with start <= end and a start within 1e300 s; to run backwards, implement Invertible and run Reversed"
+        ),
+        ErrorKind::Tolerance => write!(
+            f,
+            "the tolerances ({given}) cannot be kept: relative must be finite and at least 1e-15, absolute finite and above zero"
+        ),
+        _ => f.write_str(
+            "a step cannot have this size: give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out",
+        ),
+    }
+}
+
+/// What is wrong with a state or a flow, of so many coordinates.
+fn on_the_way(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, coordinates: usize) -> fmt::Result {
+    match kind {
+        ErrorKind::InitialState => f.write_str("the initial state is not finite: give finite coordinates"),
+        ErrorKind::Dimension => write!(
+            f,
+            "the flow gives {} and the state has {coordinates} coordinates: give both as many in this mode, here and in the resets that lead to it",
+            note.unwrap_or("?")
+        ),
+        ErrorKind::Series => f.write_str(
+            "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow",
+        ),
+        ErrorKind::Flow => {
+            let which = note.map_or(String::new(), |which| format!(" ({which})"));
+            write!(
+                f,
+                "the flow is not finite{which}, however short the step: the solution may grow without bound, or the flow divide by zero or take a root of a negative number near this state"
+            )
+        }
+        ErrorKind::Unfinished => write!(f, "the run ended before it was to: {}", note.unwrap_or("?")),
+        _ => f.write_str(
+            "the step size fell below the spacing of time: the solution may blow up, or the flow jump; loosen the tolerance or split the mode there",
+        ),
+    }
+}
+
+/// What is wrong with an edge: its clock, its guard or its reset.
+fn of_edge(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, edge: Option<&str>) -> fmt::Result {
+    let (given, by) = (note.unwrap_or("?"), edge.unwrap_or("?"));
+    match kind {
+        ErrorKind::Clock => match edge {
+            Some(edge) => write!(f, "the clock of edge {edge} {given}"),
+            None => write!(f, "the clock of the stops {given}"),
+        },
+        ErrorKind::ClockDerivative => write!(
+            f,
+            "edge {by} is taken by a clock, and how its time depends on the parameters is not given: say it in Linearize::tick_over, also that it does not"
+        ),
+        ErrorKind::Guard => {
+            write!(f, "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before")
+        }
+        ErrorKind::Reset => {
+            let by = edge.map_or("Automaton::beyond".to_owned(), |edge| format!("the reset of edge {edge}"));
+            write!(
+                f,
+                "{by} gave {given}, which is not finite: check it for division by zero or roots of negative numbers at this state"
+            )
+        }
+        ErrorKind::Refused => write!(f, "the reset of edge {by} refused: {given}"),
+        ErrorKind::Entry if note.is_some() => write!(
+            f,
+            "the guard of edge {by} {given}: let the reset turn the motion round or lead to another mode, or let About::entry or Hybrid::entry say Wait, for an edge that counts passages"
+        ),
+        ErrorKind::Entry => write!(
+            f,
+            "the guard of edge {by} is already negative as the mode is entered: correct the state or the reset that led to it, or the guard's sign (it is positive while the edge is not due), or let About::entry or Hybrid::entry say Wait or Fire"
+        ),
+        ErrorKind::Grazing => write!(
+            f,
+            "edge {by} is crossed without speed (its guard's rate is zero to rounding), where the jump has no derivative: change the initial state or a parameter a little, or run without sensitivities"
+        ),
+        _ => write!(f, "the reset of edge {by} {given}"),
     }
 }
 

@@ -14,37 +14,33 @@ use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
-use super::grazing::Step;
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards were searched.
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,
-        now: Time,
-        c: &[A::State],
-        scale: f64,
+        step: Step<'_, A::State>,
         limit: f64,
         first: bool,
         mut observer: Option<&mut impl Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
-        let step = Step { now, c, scale };
+        let Step { now, c, scale } = step;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge));
             if self.memory.wall_count > 0 && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
-                if let Some(crossing) = self.leaves((mode, edge, now), (c, scale), limit) {
+                if let Some(crossing) = self.leaves(mode, edge, step, limit) {
                     found = earlier(found, OnStep { edge, crossing, near: None });
                 }
                 continue;
             }
             let affine = self.automaton.about(edge).affine;
-            let along = if affine { self.along(edge, now, c, limit / scale, start, level, &mut powers) } else { None };
+            let along = if affine { self.along(edge, step, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;
             let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
@@ -98,13 +94,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
-    #[allow(clippy::too_many_arguments)]
     #[inline]
     fn along<'p>(
         &mut self,
         edge: A::Edge,
-        now: Time,
-        c: &[A::State],
+        Step { now, c, .. }: Step<'_, A::State>,
         stretch: f64,
         start: Start,
         level: f64,
@@ -247,6 +241,26 @@ pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f
 fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
     let later = searched.fall.filter(|fall| fall.inside > 0.0);
     Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
+}
+
+/// A step's start, dense output and size.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'c, S> {
+    pub(super) now: Time,
+    pub(super) c: &'c [S],
+    pub(super) scale: f64,
+}
+
+impl<S: State> Step<'_, S> {
+    /// The time `s` after its start.
+    pub(super) fn time(&self, s: f64) -> f64 {
+        self.now.after(s).seconds()
+    }
+
+    /// The state then.
+    pub(super) fn at(&self, s: f64) -> S {
+        horner(self.c, s / self.scale)
+    }
 }
 
 /// The first crossing on a step.

@@ -3,11 +3,10 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{Doubt, Evidence};
-use crate::piece::horner;
 use crate::step::Stepper;
-use crate::time::Time;
 
 use super::Advance;
+use super::crossing::Step;
 use super::noise::{PROBE, STEP_ERROR};
 
 /// A guard that turns farther from zero than this part of the way by which it moves on the step is no
@@ -21,14 +20,6 @@ const RESOLVED: f64 = 100.0;
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
 /// below what the tolerance allows off by the square of 0.618⁴⁰.
 const SECTIONS: usize = 40;
-
-/// A step's start, dense output and size.
-#[derive(Clone, Copy)]
-pub(super) struct Step<'c, S> {
-    pub(super) now: Time,
-    pub(super) c: &'c [S],
-    pub(super) scale: f64,
-}
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Of a guard that does not fall on a step, and turns between two times: whether its least value is
@@ -85,21 +76,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let middle = 0.5 * root;
         let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
-        let (absolute, x) = (self.options.tolerance.absolute, horner(step.c, middle / step.scale));
-        let off = self.moved(edge, step.now.after(middle).seconds(), &x, half, |_| STEP_ERROR * absolute);
+        let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
+        let off = self.moved(edge, step.time(middle), &x, half, |_| STEP_ERROR * absolute);
         self.memory.resolved = start.abs().max(half.abs()) > RESOLVED * off;
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 
     /// The guard of `edge` a time `s` after the start of a step.
-    fn on(&mut self, edge: A::Edge, Step { now, c, scale }: Step<'_, A::State>, s: f64) -> f64 {
+    fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
         self.memory.stats.guards += 1;
-        self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+        self.automaton.guard(edge, step.time(s), &step.at(s))
     }
 
     /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its start.
-    fn error_of(&mut self, edge: A::Edge, Step { now, c, scale }: Step<'_, A::State>, s: f64, g: f64) -> f64 {
-        self.step_error(edge, now.after(s).seconds(), &horner(c, s / scale), g)
+    fn error_of(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64, g: f64) -> f64 {
+        self.step_error(edge, step.time(s), &step.at(s), g)
     }
 
     /// Where a guard that turns up between two times is least, and its value there.

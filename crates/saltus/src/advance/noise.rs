@@ -3,11 +3,11 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{AT_START, Crossing};
-use crate::piece::horner;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
+use super::crossing::Step;
 use super::{Advance, Spent, Wall};
 
 /// How many times what the tolerance allows in a step a state on its dense output may be off.
@@ -93,12 +93,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their walls,
     /// g = 0 and n·f + ∂g/∂t = 0 to rounding.
     #[inline]
-    pub(super) fn find_staying(&mut self, mode: A::Mode, now: Time, c: &[A::State], scale: f64, slope: &A::State) {
+    pub(super) fn find_staying(&mut self, mode: A::Mode, step: Step<'_, A::State>, slope: &A::State) {
         if let Some(Spent { edge, slack }) = self.memory.spent
             && self.memory.wall(edge).is_none()
             && self.automaton.edges(mode).iter().any(|other| other == edge)
         {
-            let (automaton, t, x, by) = (self.automaton, now.seconds(), &c[0], PROBE * scale);
+            let (automaton, t, x, by) = (self.automaton, step.now.seconds(), &step.c[0], PROBE * step.scale);
             self.memory.stats.guards += 2;
             let guard = |s: f64| automaton.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
             if (guard(by) - guard(-by)).abs() <= LEAVES * slack {
@@ -106,19 +106,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         if self.memory.wall_count > 0 {
-            self.sort_walls(mode, now, c, scale);
+            self.sort_walls(mode, step);
         }
     }
 
     #[cold]
-    fn sort_walls(&mut self, mode: A::Mode, now: Time, c: &[A::State], scale: f64) {
+    fn sort_walls(&mut self, mode: A::Mode, step: Step<'_, A::State>) {
+        let Step { now, c, scale } = step;
         let (t, x) = (now.seconds(), &c[0]);
         for k in 0..self.memory.wall_count {
             let Some(Wall { edge, level, .. }) = self.memory.walls[k] else { continue };
             let rate = self.guard_rate(mode, edge, t, x, PROBE * scale);
             let mut along = |part: f64| {
-                let t = now.after(part * scale).seconds();
-                self.carried(mode, edge, t, &horner(c, part), scale) == Carried::Along
+                let s = part * scale;
+                self.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
             };
             // A guard that falls or rises as a power of time does so within a small part of the step.
             let along = along(1.0) || along(EARLY);
@@ -173,11 +174,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[cold]
     pub(super) fn leaves(
         &mut self,
-        (mode, edge, now): (A::Mode, A::Edge, Time),
-        (c, scale): (&[A::State], f64),
+        mode: A::Mode,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
         limit: f64,
     ) -> Option<Crossing> {
-        let mut carried = |s: f64| self.carried(mode, edge, now.after(s).seconds(), &horner(c, s / scale), scale);
+        let mut carried = |s: f64| self.carried(mode, edge, step.time(s), &step.at(s), step.scale);
         if carried(limit) != Carried::Down {
             return None;
         }
@@ -185,7 +187,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if carried(on) == Carried::Down {
             return Some(Crossing::at_start(limit * AT_START));
         }
-        while off - on > resolution(now.seconds() + off).max(off.next_up() - off) {
+        while off - on > resolution(step.time(off)).max(off.next_up() - off) {
             let middle = on.midpoint(off);
             *(if carried(middle) == Carried::Down { &mut off } else { &mut on }) = middle;
         }

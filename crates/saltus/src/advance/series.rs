@@ -14,7 +14,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Span, Time, resolution};
 
-use super::crossing::{Near, OnStep};
+use super::crossing::{Near, OnStep, Step};
 use super::exact::natural;
 use super::smooth::Arrival;
 use super::stepped::{evened, remaining, searched, wrong_dimension};
@@ -80,7 +80,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let c = &c[..=order];
             if first {
                 let slope = x.with(|i| c[1].get(i) / unit);
-                self.find_staying(mode, clock.now, c, unit, &slope);
+                self.find_staying(mode, Step { now: clock.now, c, scale: unit }, &slope);
             }
             let way = Way { mode, now: clock.now, since: clock.now.since(began), remaining, first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
@@ -89,7 +89,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.held.0.iter().for_each(|inspection| observer.inspection(inspection));
             self.memory.stats.steps += 1;
             if let Some(found) = found {
-                return Ok(self.crossed(mode, &found, clock.now, c, unit, remaining, observer));
+                return Ok(self.crossed(mode, &found, Step { now: clock.now, c, scale: unit }, remaining, observer));
             }
             let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
             let Arrival { time, at_stop } = self.arrival(&clock, h, remaining);
@@ -195,7 +195,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let limit = searched(h, remaining, since, now.after(remaining));
             let mut held = std::mem::take(self.held);
             held.0.clear();
-            let found = self.first_crossing(mode, now, c, unit, limit, first, Some(&mut held));
+            let found = self.first_crossing(mode, Step { now, c, scale: unit }, limit, first, Some(&mut held));
             *self.held = held;
             let near = match &found {
                 Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),

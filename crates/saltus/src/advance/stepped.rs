@@ -15,7 +15,7 @@ use crate::state::State;
 use crate::step::{Stepper, Trial};
 use crate::time::{LAST, Span, Time, grace, resolution};
 
-use super::crossing::{OnStep, exceeds, is_rounding, less_constant};
+use super::crossing::{OnStep, Step, exceeds, is_rounding, less_constant};
 use super::noise::PROBE;
 use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
@@ -72,54 +72,53 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
-            let c = dense.as_ref();
-            if first
-                && h > f64::EPSILON * clock.now.seconds().abs()
-                && self.contradicted(mode, clock.now, &x, &slope, c, h)
-            {
+            let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
+            if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                 self.memory.stats.steps -= 1;
                 self.memory.stats.rejected += 1;
                 self.memory.step = Some(0.1 * h);
                 continue;
             }
             if first {
-                self.find_staying(mode, clock.now, c, h, &slope);
+                self.find_staying(mode, step, &slope);
             }
             let limit = searched(h, remaining, clock.now.since(began), clock.end);
-            let found = if clear {
-                None
-            } else {
-                self.first_crossing(mode, clock.now, c, h, limit, first, Some(&mut *observer))?
-            };
-            let Some(rough) = found else {
-                // Where guards were looked at, the state goes on from where they were seen last.
-                let state = if clear { trial.end } else { horner(c, 1.0) };
-                let told = observer.piece(mode, &Piece::new(clock.now, h, h, c));
-                clock.now = arrival;
-                if told.is_break() {
-                    return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
-                }
-                (x, first) = (state, false);
-                slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
-                if self.memory.wall_count > 0 {
-                    self.keep_staying(mode, clock.now, &x, h);
-                }
-                continue;
-            };
-            self.memory.cut(h);
-            let closer = self.closer(mode, clock.now, &x, &slope, c, h, &rough, limit);
-            let again = match &closer {
-                Some(Closer { dense, h, ahead }) => {
-                    self.first_crossing(mode, clock.now, dense.as_ref(), *h, *ahead, first, None::<&mut O>)?
-                }
-                None => None,
-            };
-            let (found, c, scale) = match (&again, &closer) {
-                (Some(again), Some(closer)) => (again, closer.dense.as_ref(), closer.h),
-                _ => (&rough, c, h),
-            };
-            return Ok(self.crossed(mode, found, clock.now, c, scale, remaining, observer));
+            let found = if clear { None } else { self.first_crossing(mode, step, limit, first, Some(&mut *observer))? };
+            if let Some(rough) = found {
+                return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
+            }
+            // Where guards were looked at, the state goes on from where they were seen last.
+            let state = if clear { trial.end } else { horner(step.c, 1.0) };
+            let told = observer.piece(mode, &Piece::new(clock.now, h, h, step.c));
+            clock.now = arrival;
+            if told.is_break() {
+                return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
+            }
+            (x, first) = (state, false);
+            slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
+            if self.memory.wall_count > 0 {
+                self.keep_staying(mode, clock.now, &x, h);
+            }
         }
+    }
+
+    /// The end of the arc at a crossing that the dense output of a `step` shows only roughly: looked for again on a real step to it.
+    fn closed_in<O: Observer<A>>(
+        &mut self,
+        mode: A::Mode,
+        (x, slope, step): (&A::State, &A::State, Step<'_, A::State>),
+        (rough, limit, first): (&OnStep<A>, f64, bool),
+        remaining: f64,
+        observer: &mut O,
+    ) -> Result<ArcEnd<A>, Error> {
+        self.memory.cut(step.scale);
+        if let Some(Closer { dense, h, ahead }) = self.closer(mode, x, slope, step, rough, limit) {
+            let closer = Step { now: step.now, c: dense.as_ref(), scale: h };
+            if let Some(again) = self.first_crossing(mode, closer, ahead, first, None::<&mut O>)? {
+                return Ok(self.crossed(mode, &again, closer, remaining, observer));
+            }
+        }
+        Ok(self.crossed(mode, rough, step, remaining, observer))
     }
 
     /// Why no further step is taken with so much of the span `remaining`, if none is.
@@ -129,15 +128,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// The end of the arc at a crossing `found` on its last piece, of which the observer is told.
-    #[allow(clippy::too_many_arguments)]
     #[inline]
     pub(super) fn crossed(
         &mut self,
         mode: A::Mode,
         found: &OnStep<A>,
-        now: Time,
-        c: &[A::State],
-        scale: f64,
+        Step { now, c, scale }: Step<'_, A::State>,
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
@@ -276,11 +272,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn contradicted(
         &mut self,
         mode: A::Mode,
-        now: Time,
         x: &A::State,
         slope: &A::State,
-        c: &[A::State],
-        h: f64,
+        Step { now, c, scale: h }: Step<'_, A::State>,
     ) -> bool {
         let Some(c1) = c.get(1) else { return false };
         if (0..slope.len()).all(|i| c1.get(i) == h * slope.get(i)) {
@@ -359,19 +353,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,
     /// to be looked at close to its end, where it errs by the square of the correction only.
-    #[allow(clippy::too_many_arguments)]
     fn closer(
         &mut self,
         mode: A::Mode,
-        now: Time,
         x: &A::State,
         slope: &A::State,
-        c: &[A::State],
-        scale: f64,
-        rough: &OnStep<A>,
+        step: Step<'_, A::State>,
+        &OnStep { edge, crossing, .. }: &OnStep<A>,
         limit: f64,
     ) -> Option<Closer<M::Dense<A::State>>> {
-        let &OnStep { edge, crossing, .. } = rough;
+        let Step { now, scale, .. } = step;
         let mut h = crossing.outside;
         if h <= scale * 1e-9 {
             return None; // at the start, where the dense output is exact
@@ -379,7 +370,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let near = (crossing.inside - scale * 1e-3).max(0.0);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
-            self.automaton.guard(edge, now.after(s).seconds(), &horner(c, s / scale))
+            self.automaton.guard(edge, step.time(s), &step.at(s))
         };
         let rise = guard(near) - guard(crossing.inside);
         let fall = rise / (crossing.inside - near); // -dg/dt

@@ -73,30 +73,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.stiff += u64::from(self.memory.gait.stiff);
         self.memory.gait.steps += 1;
         if self.memory.gait.signs > 0 || self.memory.gait.steps >= SELDOM {
-            self.look_at_stiffness(mode, t + h, x, h, (&trial.end, &trial.slope), slope, limit);
+            let change = x.with(|i| trial.slope.get(i) - slope.get(i));
+            self.look_at_stiffness(mode, t + h, (&trial.end, &trial.slope), change, h / limit);
         }
     }
 
     #[cold]
     #[inline(never)]
-    #[allow(clippy::too_many_arguments)] // a step
     fn look_at_stiffness(
         &mut self,
         mode: A::Mode,
         t: f64,
-        x: &A::State,
-        h: f64,
         (end, slope): (&A::State, &A::State),
-        before: &A::State,
-        limit: f64,
+        change: A::State,
+        part: f64,
     ) {
         self.memory.gait.steps = 0;
-        let change = x.with(|i| slope.get(i) - before.get(i));
         // Of a state that the tolerance does not resolve nothing tells what its guards want of a method.
         if self.options.tolerance.norm(end, end, end) < 1.0 && !self.automaton.edges(mode).is_empty() {
             return;
         }
-        let stiff = h * self.damping(mode, t, (end, slope), change) > NEAR * limit;
+        let stiff = part * self.damping(mode, t, (end, slope), change) > NEAR;
         let gait = &mut self.memory.gait;
         gait.signs = if stiff == gait.stiff { 0 } else { gait.signs + 1 };
         if gait.signs >= gait.patience {

@@ -45,28 +45,16 @@ pub fn frame_by_frame<A: Automaton>(
     rate: f64,
     most_jumps: usize,
 ) -> Result<RunOf<A>, Error> {
-    let place = |t: f64, edge: Option<A::Edge>, mode: A::Mode, x: &A::State| Place::new(t, mode, edge, x);
+    let place = |t: f64, mode: A::Mode, x: &A::State| Place::new(t, mode, None::<A::Edge>, x);
     if !(span.start.is_finite() && span.end.is_finite() && span.start <= span.end) {
         let note = Some(format!("{}..{}", span.start, span.end));
-        return Err(Error::new(ErrorKind::Span, place(span.start, None, mode, &state)).noting(note));
+        return Err(Error::new(ErrorKind::Span, place(span.start, mode, &state)).noting(note));
     }
     if !(rate > 0.0 && rate.is_finite()) {
-        return Err(Error::new(ErrorKind::StepLimit, place(span.start, None, mode, &state)));
+        return Err(Error::new(ErrorKind::StepLimit, place(span.start, mode, &state)));
     }
     let start = Time::new(span.start);
-    let mut run = Run {
-        trajectory: Trajectory::starting(mode, state, start),
-        end: Ending {
-            stop: Stop::Time,
-            stats: Stats::default(),
-            time: start,
-            jumps: 0,
-            mode,
-            state,
-            limits: Limits::default(),
-        },
-    };
-    let mut now = start;
+    let (mut now, mut run) = (start, begun::<A>(mode, state, start));
     let mut ticks = Ticks::new();
     let mut may = Vec::new();
     for frame in 1_u64.. {
@@ -78,7 +66,7 @@ pub fn frame_by_frame<A: Automaton>(
         }
         let (mode, x) = (run.end.mode, run.end.state);
         if let Some(flaw) = automaton.edges(mode).flaw() {
-            return Err(Error::new(ErrorKind::Model, place(now.seconds(), None, mode, &x)).noting(Some(flaw)));
+            return Err(Error::new(ErrorKind::Model, place(now.seconds(), mode, &x)).noting(Some(flaw)));
         }
         // One that waits was negative before the frame; any other is taken as soon as it is.
         held(automaton, mode, now.seconds(), &x, &mut run.end.stats, &mut may, |entry| entry != Entry::Wait);
@@ -86,7 +74,7 @@ pub fn frame_by_frame<A: Automaton>(
         run.end.stats.flows += 4;
         run.end.stats.steps += 1;
         if !end.is_finite() {
-            return Err(Error::new(ErrorKind::Flow, place(now.seconds(), None, mode, &x)));
+            return Err(Error::new(ErrorKind::Flow, place(now.seconds(), mode, &x)));
         }
         run.trajectory.push_piece(&Piece::new(now, h, h, &between(&x, &slope, &end, h)));
         let frame = Span { start, now, end: next };
@@ -110,6 +98,13 @@ pub fn frame_by_frame<A: Automaton>(
     run.trajectory.finish(now);
     (run.end.time, run.end.jumps) = (now, run.end.stats.jumps);
     Ok(run)
+}
+
+/// A run at its start.
+fn begun<A: Automaton>(mode: A::Mode, state: A::State, time: Time) -> RunOf<A> {
+    let (stop, stats, limits) = (Stop::Time, Stats::default(), Limits::default());
+    let trajectory = Trajectory::starting(mode, state, time);
+    Run { trajectory, end: Ending { stop, stats, time, jumps: 0, mode, state, limits } }
 }
 
 /// Which edges of a mode, by their places, may be taken once their guards are negative: those whose guards are not so yet, and those with such an `entry`.

@@ -4,6 +4,7 @@ use crate::poly::Bernstein;
 
 use super::Undefined;
 use super::looks::order;
+use super::proxy::Proxy;
 use super::search::{Part, Search, Side};
 
 /// What the stretches that begin at a spent root have shown of the guard there.
@@ -77,14 +78,12 @@ fn is_even(order: f64) -> bool {
 }
 
 impl Search<'_> {
-    /// Whether the guard, as `p` known to within `margin` and `least` of its values on `0..=b`, is nothing but rounding there, and was seen to rise on a longer
-    /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a step of rounding.
+    /// Whether the guard on `0..=b` is nothing but rounding, and was seen to rise on a longer stretch: so a floor lets go of
+    /// a ball, which rises as the cube of time, for long not by a step of rounding.
     pub(super) fn is_under_a_rise(
         &mut self,
-        p: &Bernstein,
+        &Proxy { ref p, margin, least, .. }: &Proxy,
         b: f64,
-        least: f64,
-        margin: f64,
     ) -> Result<bool, Undefined> {
         let nowhere_below = least > -margin;
         if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * (margin + self.roughness(b)) {

@@ -5,6 +5,7 @@ mod departure;
 mod evidence;
 mod looks;
 mod powers;
+mod proxy;
 mod refine;
 mod search;
 

@@ -4,8 +4,9 @@ use crate::poly::{Bernstein, Shape};
 
 use super::departure::Departure;
 use super::looks::{Look, order};
+use super::proxy::Proxy;
 use super::refine::Passage;
-use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, chebyshev, settle};
+use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, settle};
 
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
@@ -85,6 +86,27 @@ pub(super) struct Stretch {
     /// How far the guard may be from its polynomial: from the one that is known, or from the interpolant on the interval of which this is a half.
     margin: f64,
     known: Option<Bernstein>,
+}
+
+/// What a stretch of the search looks like.
+#[allow(clippy::large_enum_variant)] // looked at on the stack at once
+enum Seen {
+    /// A sample of the guard is no number.
+    Undefined,
+    /// The guard is above zero on the whole of it.
+    Above,
+    As(Proxy),
+}
+
+/// How the search goes on after a look at the shape of a polynomial.
+enum Next {
+    Part(Part),
+    /// The guard is zero, and on this side of it.
+    Zero(Side),
+    /// Both halves are to be looked at.
+    Halves,
+    /// Samples are to be looked at.
+    Looks,
 }
 
 /// What a part of the interval holds.
@@ -188,7 +210,7 @@ impl<'a> Search<'a> {
     }
 
     fn part(&mut self, stretch: &Stretch, side: Side) -> Result<Part, Undefined> {
-        let &Stretch { a, b, depth, margin: whole, ref known } = stretch;
+        let &Stretch { a, b, depth, ref known, .. } = stretch;
         if b - a <= FEW * (b.next_up() - b) {
             return self.walked(a, b, side);
         }
@@ -200,56 +222,81 @@ impl<'a> Search<'a> {
             self.weaken(Evidence::doubtful(Doubt::Unresolved, a, b));
             return self.by_sign(a, b, side);
         }
-        let proxy = if let Some(p) = known {
-            Proxy { p: *p, margin: whole, start: p.start(), end: p.end(), least: p.start() }
-        } else if let Ok(samples) = self.sampled(a, b) {
-            if depth == DEEPEST && a == 0.0 {
-                self.turn = samples.turn().map(|x| x.map(|x| 0.5 * b * (1.0 + x)));
-            }
-            if side == Side::Inside && samples.stay_above() {
+        let proxy = match self.seen(stretch, side) {
+            Seen::Above => {
                 self.flat = None;
                 return Ok(Part::None(Side::Inside));
             }
-            samples.proxy()
-        } else {
-            return self.halved(stretch, f64::INFINITY, side);
+            Seen::As(proxy) => proxy,
+            Seen::Undefined => return self.halved(stretch, f64::INFINITY, side),
         };
-        let Proxy { p, mut margin, start, end, least } = proxy;
         let leaving = side == Side::Wall && a == 0.0;
-        if leaving && known.is_some() {
-            margin = 8.0 * f64::EPSILON * p.scale(); // zero at the start: every power of time keeps its digits
-        }
-        let sampled = margin;
+        let mut margin = proxy.margin;
         if side == Side::Wall {
             let (roughness, base) = (self.roughness(b), if known.is_some() { 0.0 } else { self.base });
-            if p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
+            if proxy.p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
                 return Ok(Part::None(Side::Wall));
             }
             margin += roughness;
         }
-        let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (p, margin) };
-        if leaving && !self.spent && known.is_none() && self.is_under_a_rise(&p, b, least, sampled)? {
+        if leaving && known.is_none() && !self.spent && self.is_under_a_rise(&proxy, b)? {
             return Ok(Part::None(Side::Inside));
         }
+        let next = self.by_shape(stretch, &proxy, side, margin)?;
+        match next {
+            Next::Part(part) => {
+                self.flat = None;
+                Ok(part)
+            }
+            Next::Zero(side) => {
+                self.flat = Some(self.flat.unwrap_or(a));
+                Ok(Part::None(side))
+            }
+            Next::Halves => self.halved(stretch, margin, side),
+            Next::Looks => self.by_looks(stretch, proxy.p.scale(), side, margin),
+        }
+    }
+
+    /// The polynomial in place of the guard on a stretch: the one that is known, or its interpolant.
+    fn seen(&mut self, stretch: &Stretch, side: Side) -> Seen {
+        let &Stretch { a, b, depth, margin, known } = stretch;
+        if let Some(p) = known {
+            // Zero at the start: every power of time keeps its digits.
+            let margin = if side == Side::Wall && a == 0.0 { 8.0 * f64::EPSILON * p.scale() } else { margin };
+            return Seen::As(Proxy { p, margin, start: p.start(), end: p.end(), least: p.start() });
+        }
+        let Ok(samples) = self.sampled(a, b) else { return Seen::Undefined };
+        if depth == DEEPEST && a == 0.0 {
+            self.turn = samples.turn().map(|x| x.map(|x| 0.5 * b * (1.0 + x)));
+        }
+        if side == Side::Inside && samples.stay_above() { Seen::Above } else { Seen::As(samples.proxy()) }
+    }
+
+    /// What the shape of the polynomial says of the guard, which is within `margin` of it.
+    fn by_shape(&mut self, stretch: &Stretch, proxy: &Proxy, side: Side, margin: f64) -> Result<Next, Undefined> {
+        let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
+        let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
+        let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
+        let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (*p, margin) };
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
             self.doubt_noise(&q, b, sampled)?;
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
-        let resolved = known.is_some() || margin <= 1e-4 * p.scale() || margin >= 0.1 * whole;
-        let scale = p.scale();
+        let resolved = known.is_some() || margin <= 1e-4 * scale || margin >= 0.1 * whole;
         let from = self.flat.unwrap_or(a);
         if leaving
             && !self.spent
             && q.start() < -q_margin
             && (known.is_some() || least < -margin && self.falls_from_start(b, q.start())?)
         {
-            return Ok(Part::AtStart);
+            return Ok(Next::Part(Part::AtStart));
         }
-        let decided = match q.shape(q_margin) {
-            Shape::Above => Some(Part::None(Side::Inside)),
-            Shape::Below => Some(match side {
+        let order = || Some(order(p.start(), p.end(), a, b));
+        Ok(Next::Part(match q.shape(q_margin) {
+            Shape::Above => Part::None(Side::Inside),
+            Shape::Below => match side {
                 Side::Inside => Part::Fall { a: from, b, near: None },
                 Side::Outside => Part::None(Side::Outside),
                 // The samples may be too far apart to see that the guard rises first.
@@ -259,44 +306,44 @@ impl<'a> Search<'a> {
                         && known.is_none()
                         && (q.start() > -SURELY * sampled || self.rises_first(b)?) =>
                 {
-                    return self.halved(stretch, margin, side);
+                    return Ok(Next::Halves);
                 }
                 Side::Wall if leaving => self.left(None, b),
-                Side::Wall => self.left(Some(order(p.start(), p.end(), a, b)), b),
-            }),
+                Side::Wall => self.left(order(), b),
+            },
             Shape::Falling if resolved => match side {
-                Side::Outside => Some(Part::None(Side::Outside)),
-                Side::Wall if !leaving => Some(self.left(Some(order(p.start(), p.end(), a, b)), b)),
+                Side::Outside => Part::None(Side::Outside),
+                Side::Wall if !leaving => self.left(order(), b),
                 Side::Wall if q.start() <= q_margin => {
                     self.falls_smoothly = true;
-                    None
+                    return Ok(Next::Looks);
                 }
                 // Falling strictly from a zero, the rest of which is rounding.
-                Side::Inside if start == 0.0 => Some(Part::Fall { a, b, near: Some(a) }),
-                _ if end < 0.0 => Some(match (q.root().map(|u| a + (b - a) * u), known) {
+                Side::Inside if start == 0.0 => Part::Fall { a, b, near: Some(a) },
+                _ if end < 0.0 => match (q.root().map(|u| a + (b - a) * u), known) {
                     (Some(guess), None) if from == a => Part::Falls { a, b, guess },
                     (near, Some(_)) => Part::Fall { a: from, b, near },
                     (_, None) => Part::Fall { a: from, b, near: None },
-                }),
-                _ => Some(Part::None(Side::Inside)),
+                },
+                _ => Part::None(Side::Inside),
             },
             Shape::Rising if resolved => match side {
-                Side::Wall if q.end().abs() <= q_margin => None,
-                Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => None,
-                Side::Wall => Some(Part::None(Side::of(q.end(), side))),
-                _ => Some(Part::None(Side::of(end, side))),
+                Side::Wall if q.end().abs() <= q_margin => return Ok(Next::Looks),
+                Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => return Ok(Next::Looks),
+                Side::Wall => Part::None(Side::of(q.end(), side)),
+                _ => Part::None(Side::of(end, side)),
             },
             Shape::Flat if scale == 0.0 => {
-                self.flat = Some(from);
                 let plateau = side == Side::Wall && !self.spent && !self.falls_smoothly;
-                return Ok(Part::None(if plateau { Side::Inside } else { side }));
+                return Ok(Next::Zero(if plateau { Side::Inside } else { side }));
             }
-            _ => None,
-        };
-        if let Some(decided) = decided {
-            self.flat = None;
-            return Ok(decided);
-        }
+            _ => return Ok(Next::Looks),
+        }))
+    }
+
+    /// What samples say of a guard of this `scale` that is near zero by no more than a few margins, or goes in steps.
+    fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
+        let &Stretch { a, b, ref known, .. } = stretch;
         let rounding = scale <= 8.0 * margin && (known.is_some() || margin <= ROUNDING * self.largest);
         if rounding || margin > 1e-3 * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
@@ -380,99 +427,4 @@ impl<'a> Search<'a> {
         self.flat = None;
         Ok(if side == Side::Inside && end == Side::Outside { Part::Fall { a, b, near: None } } else { Part::None(end) })
     }
-
-    /// The guard at the Chebyshev points of `[a, b]` and at two checks between them.
-    fn sampled(&mut self, a: f64, b: f64) -> Result<Samples, Undefined> {
-        let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
-        let mut values = [0.0; 9];
-        for (value, x) in values.iter_mut().zip(chebyshev::NODES) {
-            let s = if x == -1.0 {
-                a
-            } else if x == 1.0 {
-                b
-            } else {
-                centre + radius * x
-            };
-            *value = self.value(s)?;
-        }
-        let series = chebyshev::series(&values);
-        let mut off = 0.0_f64;
-        for x in [-0.557_350_921, 0.271_828_183] {
-            off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
-        }
-        let off = (series[7].abs() + series[8].abs()).max(off);
-        // The nodes themselves are rounded, and the state at them likewise.
-        let least = values.into_iter().fold(f64::INFINITY, f64::min);
-        let spacing = (b.next_up() - b) / (b - a);
-        Ok(Samples { series, off, spacing, start: values[0], end: values[8], least, values })
-    }
-}
-
-/// A guard seen at the Chebyshev points of an interval.
-struct Samples {
-    series: [f64; 9],
-    /// How far the guard is from its interpolant, as far as seen.
-    off: f64,
-    /// The spacing of numbers, as a part of the interval.
-    spacing: f64,
-    /// The guard at both ends.
-    start: f64,
-    end: f64,
-    /// The least value seen.
-    least: f64,
-    /// All of them.
-    values: [f64; 9],
-}
-
-impl Samples {
-    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end or clear of zero: above a half of what the
-    /// interpolant varies by.
-    fn turn(&self) -> Option<[f64; 2]> {
-        let varies: f64 = self.series[1..].iter().map(|c| c.abs()).sum();
-        if self.series[0] > 2.0 * varies {
-            return None;
-        }
-        // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
-        let slope = |odd: f64| {
-            let c = &self.series;
-            odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8]
-        };
-        let lowest = (1..9).fold(0, |low, k| if self.values[k] < self.values[low] { k } else { low });
-        let turns = match lowest {
-            0 => slope(-1.0) > 0.0,
-            8 => slope(1.0) > 0.0,
-            _ => true,
-        };
-        turns.then(|| [chebyshev::NODES[lowest.max(1) - 1], chebyshev::NODES[(lowest + 1).min(8)]])
-    }
-
-    /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
-    fn stay_above(&self) -> bool {
-        let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);
-        for (k, c) in self.series.iter().enumerate().skip(1) {
-            most += c.abs();
-            steepest += 2.0 * square * c.abs();
-            square += (2 * k + 1) as f64;
-        }
-        let scale = self.series[0].abs() + most;
-        self.series[0] > most + 8.0 * (self.off + steepest * self.spacing) + 16.0 * f64::EPSILON * scale
-    }
-
-    fn proxy(&self) -> Proxy {
-        let p = Bernstein::new(&chebyshev::bernstein(&self.series));
-        let margin = 8.0 * (self.off + p.steepest() * self.spacing) + 16.0 * f64::EPSILON * p.scale();
-        let margin = if margin.is_finite() { margin } else { f64::INFINITY };
-        Proxy { p, margin, start: self.start, end: self.end, least: self.least }
-    }
-}
-
-/// A polynomial in place of the guard on an interval.
-struct Proxy {
-    p: Bernstein,
-    margin: f64,
-    /// The guard at both ends.
-    start: f64,
-    end: f64,
-    /// The least value seen of it.
-    least: f64,
 }
