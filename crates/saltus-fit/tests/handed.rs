@@ -134,3 +134,47 @@ fn a_film_beside_heights_is_another_experiment() {
     assert!((cors[0] - 0.802).abs() < 0.001 && (cors[1] - 0.780).abs() < 0.001, "{report}");
     assert!(report.cor().is_none());
 }
+
+/// Tables in `answers.tsv`, of every kind that teachers and students write: each has its COR, or a COR for each group, or asks what it has to.
+#[test]
+fn tables_have_the_answers_that_were_planted() {
+    let answers = std::fs::read_to_string(path("answers.tsv")).unwrap();
+    let lines = answers.lines().filter(|line| !line.starts_with('#'));
+    let mut read = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let (name, answer, more) = (cells[0], cells[1], cells.get(3).copied().unwrap_or_default());
+        let words: Vec<&str> = more.split(' ').collect();
+        let mut options = ReadOptions::default();
+        if let ["--fps", rate] = words[..] {
+            options = options.fps(rate.parse().unwrap());
+        } else if words.contains(&"--y-down") {
+            options = options.y_down(true);
+        }
+        let table = Table::read(&path(name), &options);
+        if answer == "asks" {
+            let error = table.unwrap_err().to_string();
+            assert!(error.contains(more), "{name}: {error}");
+            continue;
+        }
+        let report = Fit::new().run(&table.unwrap_or_else(|error| panic!("{name}: {error}"))).unwrap();
+        let near: f64 = cells[2].parse().unwrap();
+        let is = |found: &Report, truth: &str| {
+            let value = found.cor().unwrap_or_else(|| panic!("{name}: {report}")).value;
+            assert!((value - truth.parse::<f64>().unwrap()).abs() <= near, "{name}: {truth}\n{report}");
+        };
+        if answer.contains('=') {
+            let groups: Vec<(&str, &str)> = answer.split(';').map(|group| group.split_once('=').unwrap()).collect();
+            assert_eq!(report.groups().len(), groups.len(), "{name}: {report}");
+            for (found, (label, truth)) in report.groups().iter().zip(groups) {
+                assert!(found.name.to_lowercase().contains(label), "{name}: {report}");
+                is(&found.report, truth);
+            }
+        } else {
+            is(&report, answer);
+            assert!(report.verdict() == Verdict::Trusted || words.contains(&"doubt"), "{name}: {report}");
+        }
+        read += 1;
+    }
+    assert!(read > 50, "{read}");
+}

@@ -30,9 +30,11 @@ pub enum FindingKind {
         trusted: usize,
         refused: usize,
     },
-    /// The table names the ball in a column of its own: its size and drag are taken.
+    /// The table names the ball: the interval allows for its size and its air.
     BallNamed {
         ball: Ball,
+        /// Whether its air is taken out of the COR, since the readings show it.
+        air: bool,
     },
     /// What was stated of the way that heights count, where the ball then falls upwards.
     FallsUpwards {

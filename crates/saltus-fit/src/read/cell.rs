@@ -63,6 +63,9 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
     }
     let (text, turned) = without_remark(text);
     let text = without_about(text);
+    if let Some(range) = range(text, comma) {
+        return Cell::Number(range);
+    }
     let (number, error) = match split_error(text) {
         Some((number, error)) => (number, Some(error)),
         None => (text, None),
@@ -84,6 +87,21 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
         Ok(None) => Cell::Words,
         Err(fault) => Cell::Wrong(fault),
     }
+}
+
+/// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.
+const RANGE: f64 = 1.5;
+
+/// The middle of a range, `63-65 cm` or `63 to 65`, and half its width for its error.
+fn range(text: &str, comma: bool) -> Option<Measured> {
+    let (low, high) = ["–", "—", " to ", " bis ", "..", "-"].iter().find_map(|mark| text.split_once(mark))?;
+    let plain = |text: &str| lengths(text.trim(), comma).ok().flatten();
+    let (low, high) = (plain(low)?, plain(high)?);
+    let unit = high.unit.or(low.unit);
+    let alike = low.unit.is_none() || low.unit == unit;
+    let wide = low.value > 0.0 && high.value > low.value && high.value <= RANGE * low.value;
+    let half = 0.5 * (high.value - low.value);
+    (alike && wide).then_some(Measured { value: low.value + half, unit, error: Some(half) })
 }
 
 /// A number with its error, both in the unit of the number.
@@ -299,6 +317,9 @@ mod tests {
             ("96 cm ± 10 mm", 0.96, Some(1.0), true),
             ("100 ± 2 %", 100.0, Some(2.0), false),
             ("64 %", 0.64, None, true),
+            ("63-65", 64.0, Some(1.0), false),
+            ("63 – 65 cm", 0.64, Some(1.0), true),
+            ("63 to 65", 64.0, Some(1.0), false),
             ("5' 3\"", 1.6002, None, true),
             ("5'3", 1.6002, None, true),
             ("5 ft 3 in", 1.6002, None, true),
@@ -325,7 +346,8 @@ mod tests {
             ("drop", Cell::Words),
             ("62 wobbles", Cell::Words),
             ("12.3.2026", Cell::Words),
-            ("62-64", Cell::Words),
+            ("5-11", Cell::Words),
+            ("2026-05-03", Cell::Words),
             ("64 (predicted)", Cell::Wrong(Fault::Turned)),
             ("1.000,5", Cell::Wrong(Fault::Thousands)),
             ("1e999", Cell::Wrong(Fault::NotFinite)),

@@ -1,9 +1,12 @@
 //! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a ball, and the words that are not understood.
 
+mod inside;
+
 use super::aside::Why;
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use super::words::{Kind, Numbers, Word, numbers, split};
+pub(super) use inside::{DropHeight, release};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,6 +71,8 @@ pub(super) struct Value {
     pub(super) position: bool,
     /// Also the name of a number of trials: `drop`.
     pub(super) or_trial: bool,
+    /// The height that the heading says the ball was dropped from.
+    pub(super) drop: Option<DropHeight>,
 }
 
 /// What a heading says of its column.
@@ -103,6 +108,10 @@ pub(super) struct Heading {
     pub(super) meaning: Meaning,
     /// The words that are not understood; with any, the column is not used unless it is asked for.
     pub(super) unknown: Vec<String>,
+    /// The place of its readings beside the bounce of their row: `h_n` is 0, `h_n+1` is 1.
+    pub(super) place: Option<i8>,
+    /// A height of release that it states.
+    drop: Option<DropHeight>,
     /// The meanings of its words.
     atoms: Vec<Atom>,
     /// Those that name a ball or a surface.
@@ -119,6 +128,8 @@ impl Heading {
             spread: None,
             meaning: Meaning::Empty,
             unknown: Vec::new(),
+            place: None,
+            drop: None,
             atoms: Vec::new(),
             labels: Vec::new(),
         };
@@ -127,12 +138,22 @@ impl Heading {
             Some((run, name)) if !name.trim().is_empty() => (run.trim(), name),
             _ => ("", text),
         };
-        let bare = heading.take_brackets(name);
+        let (drop, name) = release(name).map_or((None, name.to_owned()), |(drop, rest)| (Some(drop), rest));
+        heading.drop = drop;
+        let bare = heading.take_brackets(&name);
         let bare = heading.take_unit(&bare);
+        let (place, bare) = inside::place(&bare);
+        heading.place = place;
         let mut words = split(&bare);
+        let before = inside::hundredths(&mut words);
+        if before.is_some() {
+            heading.unit = Unit::parse("%");
+        }
         heading.take_unit_word(&mut words);
         heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
         heading.labels = words.iter().filter(|w| w.is(Atom::Label)).map(|w| w.text.clone()).collect();
+        // Hundredths of the height before are ratios.
+        heading.atoms.extend(before.filter(|before| *before).map(|_| Atom::Derived));
         let turned = split(run);
         for word in words.iter().chain(&turned) {
             if let Kind::Known(atoms) = word.kind {
@@ -274,6 +295,7 @@ impl Heading {
             return Meaning::Aside(Why::Other);
         }
         let what = if intervals { What::Interval } else { self.what() };
+        let what = if what == What::Unsaid && self.drop.is_some() { What::Height } else { what };
         if what == What::Unsaid
             && self.unit.is_none()
             && let Some(key) = self.key(&numbers)
@@ -364,7 +386,8 @@ impl Heading {
             () if has(Min) => Role::Min,
             () => Role::Reading,
         };
-        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty();
+        let from = self.drop.as_ref();
+        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty() && from.is_none();
         let at = match (numbers.bounce.first(), what) {
             (Some(0), What::Height) => At::Release,
             (Some(&n), _) => At::Nth(n),
@@ -375,7 +398,11 @@ impl Heading {
             (None, What::Speed) if has(Before) || has(Impact) => At::Before,
             _ => At::Row,
         };
-        let label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        let mut label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        if let Some(drop) = from {
+            let apart = if label.is_empty() { "" } else { ", " };
+            label = format!("{label}{apart}from {}", drop.text);
+        }
         Meaning::Value(Value {
             what,
             at,
@@ -384,6 +411,7 @@ impl Heading {
             group: numbers.group,
             position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
             or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
+            drop: self.drop.clone(),
         })
     }
 }

@@ -22,6 +22,7 @@ mod rows;
 mod samples;
 mod stray;
 mod text;
+mod title;
 mod units;
 mod vocabulary;
 mod words;
@@ -150,6 +151,8 @@ const LARGEST: u64 = 1 << 30;
 pub(crate) struct Metadata {
     pub(crate) frame_rate: Option<f64>,
     pub(crate) gravity: Option<f64>,
+    /// The height of release, where no column and no row tells it, m.
+    pub(crate) drop: Option<f64>,
     pub(crate) sigma_height: Option<f64>,
     pub(crate) sigma_time: Option<f64>,
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.

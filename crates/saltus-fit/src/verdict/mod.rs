@@ -18,7 +18,7 @@ use crate::solve::series::Series;
 
 pub(crate) use judgement::Judgement;
 pub use judgement::{Cor, Verdict};
-pub(crate) use unseen::{Stated, in_a_vacuum};
+pub(crate) use unseen::{Stated, air_shows, in_a_vacuum};
 
 /// What was said of the table when it was read, and what was done to put its readings in order.
 fn begun(fits: &Fits<'_>) -> Judgement {

@@ -97,7 +97,7 @@ impl Columns {
             }
             self.leave(index, Why::NotUnderstood);
         }
-        if self.values().next().is_none() && !region.chosen {
+        if self.values().next().is_none() && self.one(&Kind::Frame).is_none() && !region.chosen {
             return Err(self.nothing(region));
         }
         Ok(())
@@ -133,7 +133,7 @@ impl Columns {
             .help(format!("use one of {}", dimension.known()))
     }
 
-    pub(super) fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
+    pub(in crate::read) fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
         let heading = &self.columns[index].heading;
         let name = shown(&heading.text);
         if heading.text.trim().parse::<f64>().is_ok() {

@@ -85,6 +85,7 @@ impl Columns {
             found.push(Heading::parse(text));
         }
         found.counted(region);
+        found.placed();
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;
@@ -104,7 +105,7 @@ impl Columns {
     ) -> Result<(), TableError> {
         self.infer(region, options)?;
         self.frames(region, fps)?;
-        self.clocks();
+        self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;
         self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
@@ -175,6 +176,26 @@ impl Columns {
         let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
         if numbers() > words() {
             self.columns[event].kind = Kind::Number { sure: true };
+        }
+    }
+
+    /// `h_n` beside `h_n+1`: of a bounce what was before it, and what comes after it.
+    fn placed(&mut self) {
+        let places: Vec<(usize, i8, What)> =
+            self.values().filter_map(|(n, c, v)| Some((n, c.heading.place?, v.what))).collect();
+        for &(index, place, what) in &places {
+            let later = places.iter().any(|p| p.2 == what && p.1 > place);
+            let earlier = places.iter().any(|p| p.2 == what && p.1 < place);
+            if let Kind::Value(value) = &mut self.columns[index].kind
+                && later != earlier
+            {
+                value.at = match (what, later) {
+                    (What::Height, true) => At::Release,
+                    (_, true) => At::Before,
+                    (What::Speed, false) => At::After,
+                    (_, false) => At::Row,
+                };
+            }
         }
     }
 
@@ -312,6 +333,16 @@ impl Columns {
                 self.leave(index, Why::Elsewhere);
                 continue;
             }
+            // Of the places of a film one axis may lie still.
+            let (first, still) = (*before, |n: usize| value.position && constant(region, n));
+            if still(index) || still(first) {
+                if !still(index) {
+                    seen.push((index, value.clone()));
+                    seen.retain(|(n, _)| *n != first);
+                }
+                self.leave(if still(index) { index } else { first }, Why::Still);
+                continue;
+            }
             let name = |n: usize| shown(&self.columns[n].heading.text);
             let message = if name(*before) == name(index) {
                 format!("two columns are named '{}'", name(index))
@@ -345,6 +376,18 @@ impl Columns {
     }
 }
 
+/// Whether all numbers of a column are the same, there being several.
+fn constant(region: &Region<'_>, column: usize) -> bool {
+    let number = |row: &usize| match region.view.read(*row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let mut numbers = region.rows.iter().filter_map(number);
+    let first = numbers.next();
+    let mut rest = numbers.peekable();
+    rest.peek().is_some() && rest.all(|n| Some(n) == first)
+}
+
 /// Readings of which the row tells the event.
 pub(super) fn plain(what: What) -> Value {
     Value {
@@ -355,5 +398,6 @@ pub(super) fn plain(what: What) -> Value {
         group: String::new(),
         position: false,
         or_trial: false,
+        drop: None,
     }
 }
