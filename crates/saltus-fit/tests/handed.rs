@@ -146,10 +146,14 @@ fn tables_have_the_answers_that_were_planted() {
         let (name, answer, more) = (cells[0], cells[1], cells.get(3).copied().unwrap_or_default());
         let words: Vec<&str> = more.split(' ').collect();
         let mut options = ReadOptions::default();
-        if let ["--fps", rate] = words[..] {
-            options = options.fps(rate.parse().unwrap());
-        } else if words.contains(&"--y-down") {
-            options = options.y_down(true);
+        for option in words.windows(2).chain([&words[words.len() - 1..]]) {
+            options = match option {
+                ["--fps", rate] => options.fps(rate.parse().unwrap()),
+                ["--height-unit", unit] => options.height_unit(unit),
+                ["--time-unit", unit] => options.time_unit(unit),
+                ["--y-down", ..] => options.y_down(true),
+                _ => options,
+            };
         }
         let table = Table::read(&path(name), &options);
         if answer == "asks" {
@@ -176,5 +180,5 @@ fn tables_have_the_answers_that_were_planted() {
         }
         read += 1;
     }
-    assert!(read > 50, "{read}");
+    assert!(read > 125, "{read}");
 }

@@ -7,7 +7,7 @@ use super::workbook::{Content, Part};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to make there.
-const KINDS: [(&[&str], &str, &str); 11] = [
+const KINDS: [(&[&str], &str, &str); 13] = [
     (
         &["trk", "trz"],
         "a project of Tracker",
@@ -38,6 +38,8 @@ const KINDS: [(&[&str], &str, &str); 11] = [
         "type the numbers into a spreadsheet and save it as CSV",
     ),
     (&["numbers"], "a sheet of Numbers", "in Numbers: File, Export To, CSV or Excel; give that file"),
+    (&["json"], "JSON", "write its numbers as a table, a name above each column, and save it as CSV"),
+    (&["xml"], "XML", "export the table as CSV; give that file"),
     (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];
 
@@ -63,6 +65,7 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
         None if begins(b"RIFF") => "wav",
         None if bytes.get(4..8) == Some(b"ftyp") => "mp4",
         None if text.contains("org.opensourcephysics") => "trk",
+        None if text.trim_start().starts_with(['{', '[']) && text.contains('"') && text.contains(':') => "json",
         None if text.contains("<MBL>") || text.contains("LoggerPro") => "cmbl",
         None => ending.as_str(),
     };

@@ -133,6 +133,10 @@ impl Heading {
             atoms: Vec::new(),
             labels: Vec::new(),
         };
+        // The format of a clock, such as `mm:ss.ms`.
+        if text.contains(':') && text.chars().all(|c| "hmsHMS:.,".contains(c)) {
+            return Self::parse("time (s)").called(text);
+        }
         // Programs put the run before the name: 'Latest: Time (s)'.
         let (run, name) = match text.split_once(':') {
             Some((run, name)) if !name.trim().is_empty() => (run.trim(), name),
@@ -160,10 +164,18 @@ impl Heading {
                 heading.atoms.extend(atoms);
             }
         }
+        // `v_in` beside `v_out`.
+        if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {
+            heading.atoms.push(Atom::Before);
+        }
         if !heading.atoms.is_empty() || heading.unit.is_some() {
             heading.meaning = heading.interpret(&words, run);
         }
         heading
+    }
+
+    fn called(self, text: &str) -> Self {
+        Self { text: text.to_owned(), ..self }
     }
 
     /// Whether the heading says what its column holds, every word of it being understood.
@@ -207,15 +219,18 @@ impl Heading {
             left.push_str(&rest[..open]);
             left.push(' ');
             let inside = rest[open + 1..open + close].trim();
+            // `h(n)`, `y(t)`: of what it is a function, and no unit.
+            let argument =
+                matches!(inside, "n" | "i" | "k" | "t" | "x") && rest[..open].ends_with(char::is_alphanumeric);
             rest = &rest[open + close + 1..];
             let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
             if let Some(error) = error.map(str::trim) {
                 let digits = error.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(error.len());
                 self.spread = error[..digits].replace(',', ".").parse().ok().filter(|e: &f64| *e > 0.0);
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
-            } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)) {
+            } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
-            } else {
+            } else if !(argument && matches!(inside, "t" | "x")) {
                 left.push_str(inside);
                 left.push(' ');
             }
@@ -350,7 +365,7 @@ impl Heading {
         if named || has(Mean) || has(Error) {
             return None;
         }
-        if has(Event) {
+        if has(Event) && !has(Repeat) {
             return Some(Meaning::Event);
         }
         if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {

@@ -147,13 +147,23 @@ pub(super) fn layout(
     if any(|t| t.time.is_some() && t.height.is_some()) && (!numbered || filmed) {
         return Ok(Layout::Samples { frames: false });
     }
-    if any(|t| !t.nth.is_empty()) {
+    // The time until rest tells more than that of the first contact.
+    let rests = |t: &Track| t.total.is_some() && t.release.is_some() && t.nth.len() == 1;
+    if any(|t| !t.nth.is_empty()) && !tracks.iter().all(rests) {
         return Ok(Layout::Wide);
     }
     if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.total.is_some()) {
         return Ok(Layout::Pairs);
     }
     let released = any(Track::released);
+    let counted = numbered && sure;
+    if !released
+        && !counted
+        && rowed
+        && let Some(error) = misread(region, columns, rows)
+    {
+        return Err(error);
+    }
     // One height of release for several rows is that of a drop of several bounces; else each row is a drop.
     let constant = numbered && (!sure || released) && one_release(region, rows, tracks);
     if numbered && rowed && (!released || constant) {
@@ -183,6 +193,28 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// Numbers whose name is not understood, beside readings that nothing counts: they may be the heights of release, or other readings.
+fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+    let (_, reading, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
+    let dimension = |column: &Column| column.heading.unit.map(|unit| unit.dimension);
+    let (index, column) = columns.columns.iter().enumerate().find(|(n, c)| {
+        let alike = dimension(c).is_none() || dimension(c) == dimension(reading);
+        let numbers = || rows.rows.iter().any(|row| region.view.is_number(row.at, *n));
+        c.kind == Kind::Aside && !c.heading.unknown.is_empty() && !c.heading.turns() && alike && numbers()
+    })?;
+    let (name, word) = (shown(&column.heading.text), shown(column.heading.unknown.first()?));
+    let message = format!(
+        "what is '{name}'? The word '{word}' is not understood, and '{}' may depend on it",
+        shown(&reading.heading.text)
+    );
+    Some(
+        region
+            .header_error(index, message)
+            .question()
+            .help("name it by --header, such as 'drop height (cm)' for heights of release; '-' leaves a column aside; or number the bounces in a column 'bounce'"),
+    )
 }
 
 /// A list may be of something else than bounces where numbers stand beside it that are not used: a film, or balls that differ.

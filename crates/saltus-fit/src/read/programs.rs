@@ -231,7 +231,10 @@ fn distinct(regions: &mut [Region<'_>]) {
 /// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank column or not.
 fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let header = &region.header;
-    let run = |cell: &str| cell.split_once(':').map_or(String::new(), |(run, _)| run.trim().to_owned());
+    let run = |cell: &str| {
+        let parts = cell.split_once(':').filter(|(_, name)| !name.trim().is_empty());
+        parts.map_or(String::new(), |(run, _)| run.trim().to_owned())
+    };
     let mut runs: Vec<String> = Vec::new();
     for name in header.iter().map(|cell| run(cell)) {
         if !name.is_empty() && !runs.contains(&name) {

@@ -35,6 +35,8 @@ impl Columns {
         let beside = |v: &Value| {
             values.iter().any(|(_, o)| role(o, Role::Reading) && same(o, v) && (placed(o, v) || !o.trial.is_empty()))
         };
+        // A mean stands for the readings between its extremes.
+        let within = |v: &Value| values.iter().any(|(_, o)| role(o, Role::Mean) && same(o, v) && placed(o, v));
         for (index, value) in &values {
             match value.role {
                 Role::Reading => {}
@@ -45,10 +47,9 @@ impl Columns {
                     let other = if value.role == Role::Max { Role::Min } else { Role::Max };
                     let pair = values.iter().find(|(_, o)| role(o, other) && same(o, value) && o.at == value.at);
                     match pair {
-                        Some(_) if beside(value) => self.leave(*index, Why::Statistic),
+                        _ if beside(value) || within(value) => self.leave(*index, Why::Statistic),
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
-                        None if beside(value) => self.leave(*index, Why::Statistic),
                         // The greatest height between two bounces is that of the apex.
                         None if value.role == Role::Max && self.number().is_some_and(|(_, sure)| sure) => {
                             self.read(*index);
@@ -115,7 +116,11 @@ impl Columns {
         // Where rows are bounces, columns that are numbered are trials, whatever they hold.
         let rows = self.number().is_some_and(|(_, sure)| sure);
         let numbered = |v: &Value| match v.at {
-            At::Nth(n) if (rows || matches!(v.what, What::Height | What::Unsaid)) && v.trial.is_empty() => Some(n),
+            At::Nth(n)
+                if (rows || matches!(v.what, What::Height | What::Unsaid | What::Interval)) && v.trial.is_empty() =>
+            {
+                Some(n)
+            }
             _ => None,
         };
         let mut nth: Vec<(usize, usize)> = self.values().filter_map(|(n, _, v)| Some((numbered(v)?, n))).collect();

@@ -176,6 +176,12 @@ fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>)
     if found.bounce.is_some() {
         return Ok(found);
     }
+    // `First drop` above `first bounce`.
+    let heading = Heading::parse(cell);
+    if number && heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.has(Atom::Impact) {
+        found.bounce = Some(0);
+        return Ok(found);
+    }
     if number {
         let message = match region.view.read(row, key) {
             Cell::Empty => "the cell is empty".to_owned(),
@@ -187,7 +193,7 @@ fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>)
             .error(row, key, message)
             .help("count the bounces in whole numbers, 0 being the release"));
     }
-    found.group = Heading::parse(cell).value().map_or(String::new(), |v| v.group.clone());
+    found.group = heading.value().map_or(String::new(), |v| v.group.clone());
     cell.clone_into(&mut found.name);
     Ok(found)
 }

@@ -17,6 +17,9 @@ pub(super) struct Stated {
     pub(super) drop: Option<(f64, u64)>,
 }
 
+/// Remarks below a table are looked for in so many of its last lines.
+const REMARKS: usize = 20;
+
 /// What frame rates are written in.
 const RATES: [&str; 14] = [
     "fps",
@@ -41,13 +44,17 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     if region.view.across {
         return found;
     }
-    for line in region.aside.iter().filter_map(|aside| aside.line) {
-        let row = region.view.grid.row_of(line);
+    // Below a table as well, where a line stands alone.
+    let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
+    let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
+    let below = region.rows.iter().rev().take(REMARKS).copied().filter(alone);
+    for row in above.chain(below) {
+        let line = region.view.line(row, 0);
         let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
         let text = cells.join(" ");
         found.fps = found.fps.or(frame_rate(&text).map(|fps| (fps, line)));
         found.drop = found.drop.or(drop(&text).map(|drop| (drop, line)));
-        found.name = if cells.len() == 1 { text } else { found.name };
+        found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
     found
 }

@@ -11,6 +11,7 @@ use crate::read::heading::{At, Heading, What};
 use crate::read::layout::{Layout, Track};
 use crate::read::region::Region;
 use crate::read::rows::Row;
+use crate::read::units::Scale;
 use crate::read::vocabulary::Atom;
 use crate::read::{Event, Reading, Timed, Trial};
 
@@ -287,7 +288,13 @@ impl Builder<'_> {
             return Ok(());
         }
         let (mut height, sigma) = if Some(rebound) == track.lost {
-            self.required(row.at, rebound)?
+            let (lost, sigma) = self.required(row.at, rebound)?;
+            // Hundredths of the height of release.
+            let percent = self.region.view.read(row.at, rebound);
+            let percent = self.columns.columns[rebound].unit.is_some_and(|unit| unit.scale == Scale::Percent)
+                || matches!(percent, Cell::Number(m) if m.unit.is_some_and(|unit| unit.scale == Scale::Percent));
+            let of = if percent { drop } else { 1.0 };
+            (lost * of, sigma.map(|sigma| sigma * of))
         } else {
             self.height(row.at, rebound)?.ok_or_else(|| self.empty(row.at, rebound))?
         };

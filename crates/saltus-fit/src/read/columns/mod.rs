@@ -103,6 +103,7 @@ impl Columns {
         options: &ReadOptions,
         fps: Option<f64>,
     ) -> Result<(), TableError> {
+        self.wordy(region);
         self.infer(region, options)?;
         self.frames(region, fps)?;
         self.clocks(region);
@@ -176,6 +177,18 @@ impl Columns {
         let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
         if numbers() > words() {
             self.columns[event].kind = Kind::Number { sure: true };
+        }
+    }
+
+    /// Times that are written in words, such as the date of a form, are remarks beside readings.
+    fn wordy(&mut self, region: &Region<'_>) {
+        let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
+        let of: Vec<(usize, What)> = self.values().map(|(n, _, v)| (n, v.what)).collect();
+        let others = of.iter().any(|(n, what)| *what != What::Time && numbers(*n));
+        for (index, _) in of.into_iter().filter(|(n, what)| *what == What::Time && others && !numbers(*n) && words(*n))
+        {
+            self.leave(index, Why::Note);
         }
     }
 
