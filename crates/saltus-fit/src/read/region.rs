@@ -1,9 +1,10 @@
 //! Where in a text its tables lie: which lines name the columns, and which rows stand below them.
 
 use super::aside::{LeftAside, Part, Why};
+use super::cell::Cell;
 use super::grid::{View, shown};
 use super::heading::{Heading, Meaning};
-use super::units::Unit;
+use super::units::{Dimension, Unit};
 use crate::error::TableError;
 
 /// One table of a text.
@@ -171,6 +172,7 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     }
     let mut push = |names: Vec<String>, next: usize| {
         let score = score(&names);
+        let score = if (1..VALUE).contains(&score) && measured(view, &names, next) { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
         // A row of words may stand between, such as of units that are not known; a header without rows is one too.
         if score > 0 && (next >= end || numbers(next) || next + 1 < end && numbers(next + 1) || events(view, next)) {
@@ -195,9 +197,18 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     found
 }
 
-/// Whether a row begins with the name of an event.
+/// Whether a cell of a row bears a unit, below a name that is understood.
+fn measured(view: View<'_>, names: &[String], row: usize) -> bool {
+    names.iter().enumerate().any(|(n, name)| {
+        let unit = matches!(view.read(row, n), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension != Dimension::Other && !u.unscaled()));
+        unit && Heading::parse(name).understood()
+    })
+}
+
+/// Whether a row holds the name of an event and nothing else.
 fn events(view: View<'_>, row: usize) -> bool {
-    matches!(view.cell(row, 0).to_lowercase().as_str(), "release" | "drop" | "start" | "contact" | "apex")
+    let alone = (1..view.width(row)).all(|n| view.cell(row, n).is_empty());
+    alone && matches!(view.cell(row, 0).to_lowercase().as_str(), "release" | "drop" | "start" | "contact" | "apex")
 }
 
 /// Whether a row holds words and no number.

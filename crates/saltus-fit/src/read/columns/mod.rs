@@ -1,6 +1,7 @@
 //! What the columns of a table are: a heading alone says much, its neighbours and its cells the rest.
 
 mod faults;
+mod pairs;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
@@ -85,6 +86,8 @@ impl Columns {
             found.push(Heading::parse(text));
         }
         found.counted(region);
+        found.measured(region);
+        found.counting(region);
         found.placed();
         found.unnamed(region)?;
         found.groups(region, options)?;
@@ -92,6 +95,7 @@ impl Columns {
         found.not_understood(region)?;
         found.drops(region);
         found.statistics(region)?;
+        found.paired(region)?;
         found.repeats(region);
         Ok(found)
     }
@@ -342,8 +346,13 @@ impl Columns {
                 seen.push((index, value));
                 continue;
             };
-            if self.alike(region, *before, index) {
-                self.leave(index, Why::Elsewhere);
+            if let Some(coarser) = self.alike(region, *before, index) {
+                if coarser != index {
+                    let first = *before;
+                    seen.retain(|(n, _)| *n != first);
+                    seen.push((index, value));
+                }
+                self.leave(coarser, Why::Elsewhere);
                 continue;
             }
             // Of the places of a film one axis may lie still.
@@ -372,20 +381,25 @@ impl Columns {
         Ok(())
     }
 
-    /// Whether two columns say the same in every row, as in centimetres and in inches.
-    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> bool {
-        /// What rounding to two digits leaves between two units.
-        const ROUNDED: f64 = 0.01;
+    /// The coarser of two columns that say the same in every row to their last digits, as in centimetres and in inches.
+    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
+        // A number, and half a unit in its last place.
         let si = |row: usize, column: usize| match region.view.read(row, column) {
-            Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
+            Cell::Number(m) => {
+                let unit = m.unit.or(self.columns[column].unit)?;
+                let text = region.cell(row, column);
+                let digits = text
+                    .find(['.', ','])
+                    .map_or(0, |at| text[at + 1..].chars().take_while(char::is_ascii_digit).count());
+                Some((unit.si(m.value), unit.si(0.5 * 0.1f64.powf(digits as f64))))
+            }
             _ => None,
         };
-        let pairs: Vec<(f64, f64)> =
-            region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
-        let (one, other) = (&self.columns[one], &self.columns[other]);
-        pairs.len() > 1
-            && one.unit != other.unit
-            && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * a.abs().max(b.abs()))
+        let pairs: Vec<_> = region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
+        let rounded = |((a, half), (b, other)): &((f64, f64), (f64, f64))| (a - b).abs() <= 1.001 * (half + other);
+        let alike = pairs.len() > 1 && self.columns[one].unit != self.columns[other].unit && pairs.iter().all(rounded);
+        let coarser = pairs.iter().map(|(a, b)| a.1 - b.1).sum::<f64>() > 0.0;
+        alike.then_some(if coarser { one } else { other })
     }
 }
 
