@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use saltus_fit::{Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};
+use saltus_fit::{FindingKind, Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/handed").join(name)
@@ -185,4 +185,22 @@ fn tables_have_the_answers_that_were_planted() {
         read += 1;
     }
     assert!(read > 125, "{read}");
+}
+
+/// A COR that the writer worked out checks how the readings beside it were taken; its square is that of one who forgot the root.
+#[test]
+fn a_cor_in_the_table_checks_the_readings() {
+    let verdict = |cors: [&str; 3]| {
+        let rows = [("100", "64"), ("80", "51"), ("60", "38")].into_iter().zip(cors);
+        let rows: String = rows.map(|((drop, rebound), cor)| format!("{drop},{rebound},{cor}\n")).collect();
+        let text = format!("Drop (cm),Rebound (cm),Coefficient of restitution\n{rows}");
+        let report = Fit::new().run(&Table::parse("t.csv", text.as_bytes(), &ReadOptions::default()).unwrap()).unwrap();
+        (report.verdict(), report.findings().iter().any(|f| matches!(f.kind, FindingKind::StatedDiffers { .. })))
+    };
+    for right in [["0.80", "0.80", "0.79"], ["0.64", "0.64", "0.63"], ["80%", "80%", "79%"], ["", "0.8", "#N/A"]] {
+        assert_eq!(verdict(right), (Verdict::Trusted, false), "{right:?}");
+    }
+    for other in [["0.55", "0.55", "0.56"], ["0.90", "0.91", "0.90"]] {
+        assert_eq!(verdict(other), (Verdict::Doubtful, true), "{other:?}");
+    }
 }

@@ -193,6 +193,13 @@ pub enum FindingKind {
     FirstFlightDiffers {
         cor: f64,
     },
+    /// The table works out another COR than its readings give.
+    StatedDiffers {
+        /// The COR that the table works out, the median of all.
+        stated: f64,
+        /// That of its readings.
+        cor: f64,
+    },
     Vague {
         low: f64,
         high: f64,

@@ -110,6 +110,8 @@ pub(super) struct Heading {
     pub(super) unknown: Vec<String>,
     /// The place of its readings beside the bounce of their row: `h_n` is 0, `h_n+1` is 1.
     pub(super) place: Option<i8>,
+    /// It names the COR, worked out from other columns.
+    pub(super) cor: bool,
     /// A height of release that it states.
     drop: Option<DropHeight>,
     /// The meanings of its words.
@@ -129,6 +131,7 @@ impl Heading {
             meaning: Meaning::Empty,
             unknown: Vec::new(),
             place: None,
+            cor: false,
             drop: None,
             atoms: Vec::new(),
             labels: Vec::new(),
@@ -164,6 +167,7 @@ impl Heading {
                 heading.atoms.extend(atoms);
             }
         }
+        heading.cor = inside::is_cor(&words) && !heading.turned();
         // `v_in` beside `v_out`.
         if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {
             heading.atoms.push(Atom::Before);
@@ -198,6 +202,11 @@ impl Heading {
 
     pub(super) fn has(&self, atom: Atom) -> bool {
         self.atoms.contains(&atom)
+    }
+
+    /// A word that says that a COR is not that of the readings beside it.
+    fn turned(&self) -> bool {
+        [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Error].iter().any(|atom| self.has(*atom))
     }
 
     /// A word that says that numbers are no readings.

@@ -91,6 +91,8 @@ pub struct Trial {
     pub(crate) readings: Vec<Reading>,
     /// A time from which, with gravity, the rebound follows.
     pub(crate) timed: Option<Timed>,
+    /// The CORs that the table itself works out for it.
+    pub(crate) stated: Vec<f64>,
 }
 
 /// The time of the only flight, or that from release to rest, s.
@@ -301,6 +303,7 @@ impl Table {
             ball: None,
             readings,
             timed: None,
+            stated: Vec::new(),
         }];
         let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
         check::table(&mut table);

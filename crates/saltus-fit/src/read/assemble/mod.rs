@@ -103,7 +103,10 @@ pub(super) fn table(
             builder.row(n, row, track, flights)?;
         }
     }
-    builder.finish(options, &tracks, flights, table)
+    let (region, columns) = (builder.region, builder.columns.clone());
+    let mut table = builder.finish(options, &tracks, flights, table)?;
+    stated::cors(region, &columns, &rows, &mut table.trials);
+    Ok(table)
 }
 
 /// Keeps the rows that every filter asks for, and counts the others.

@@ -109,6 +109,7 @@ impl Builder<'_> {
             ball,
             readings,
             timed: None,
+            stated: Vec::new(),
         });
         Ok(self.trials.len() - 1)
     }

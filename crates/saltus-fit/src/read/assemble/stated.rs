@@ -1,15 +1,44 @@
-//! The height of release where no column and no row of a table tells it: from an option, a comment, or a line above the table.
+//! What a table states beside its readings: a height of release above it or in an option, the CORs that its writer worked out.
+
+use std::collections::HashMap;
 
 use super::Builder;
 use crate::error::TableError;
-use crate::read::columns::Kind;
+use crate::read::Trial;
+use crate::read::cell::Cell;
+use crate::read::columns::{Columns, Kind};
 use crate::read::heading::What;
 use crate::read::layout::Track;
+use crate::read::region::Region;
 use crate::read::rows::Rows;
 use crate::read::units::Scale;
 
 /// A first height down to this part of the stated one is the release itself: no ball rebounds so high.
 const RELEASE: f64 = 0.99;
+
+/// Gives each trial the CORs that a column of the table works out beside its readings.
+pub(super) fn cors(region: &Region<'_>, columns: &Columns, rows: &Rows, trials: &mut [Trial]) {
+    if region.view.across {
+        return;
+    }
+    for (index, column) in columns.columns.iter().enumerate().filter(|(_, c)| c.kind == Kind::Aside && c.heading.cor) {
+        let mut found: HashMap<u64, f64> = HashMap::new();
+        for row in &rows.rows {
+            if let Cell::Number(m) = region.view.read(row.at, index) {
+                let unit = m.unit.or(column.unit).filter(|unit| unit.scale == Scale::Percent);
+                let cor = unit.map_or(m.value, |unit| unit.si(m.value));
+                if cor > 0.0 && cor < 1.5 {
+                    found.insert(region.view.line(row.at, index), cor);
+                }
+            }
+        }
+        for trial in trials.iter_mut() {
+            let mut lines: Vec<u64> = trial.readings.iter().map(|r| r.line).collect();
+            lines.dedup();
+            trial.stated.extend(lines.iter().filter_map(|line| found.get(line)));
+        }
+    }
+}
 
 impl Builder<'_> {
     /// Gives the tracks the stated height of release, unless a column, or a row, tells it; says whether any took it.

@@ -67,7 +67,7 @@ impl Column {
 }
 
 /// The columns of a table and what was noted about them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Columns {
     pub(super) columns: Vec<Column>,
     pub(super) aside: Vec<LeftAside>,

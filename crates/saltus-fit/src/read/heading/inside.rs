@@ -89,3 +89,28 @@ pub(super) fn place(text: &str) -> (Option<i8>, String) {
     }
     (None, text.to_owned())
 }
+
+/// Whether words name the COR, and neither its square nor an energy.
+pub(super) fn is_cor(words: &[Word]) -> bool {
+    const NAMES: [&str; 16] = [
+        "cor",
+        "e",
+        "cr",
+        "restitution",
+        "restitucion",
+        "restituzione",
+        "restituicao",
+        "stosszahl",
+        "stossziffer",
+        "restitutionszahl",
+        "restitutionskoeffizient",
+        "restitutiecoefficient",
+        "coefrest",
+        "coeffrest",
+        "restcoeff",
+        "elastizitatszahl",
+    ];
+    let text = |w: &Word| folded(&w.text);
+    words.iter().any(|w| NAMES.contains(&text(w).as_str()))
+        && !words.iter().any(|w| text(w) == "squared" || text(w).starts_with("energ"))
+}

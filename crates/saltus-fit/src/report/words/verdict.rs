@@ -142,6 +142,9 @@ fn whole(finding: &Finding) -> Option<String> {
             "the first flight and the release height give {cor:.3}: the release height, gravity or the first bounce is not what it is taken \
              for (this value is shown, not used)"
         ),
+        FindingKind::StatedDiffers { stated, cor } => format!(
+            "the table itself works out a COR of {stated:.3}, and its readings give {cor:.3}: were they read as they are meant? (the notes say how)"
+        ),
         FindingKind::Vague { low, high } => {
             format!("the COR is hardly known: from {low:.2} to {high:.2}; are the units and the reading errors right?")
         }
