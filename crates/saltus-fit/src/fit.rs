@@ -220,32 +220,43 @@ impl Fit {
             return Ok(Report::of_groups(table, groups, &like));
         }
         if let Some(ball) = self.named_by(table) {
-            return Self { named: Some(ball), ..self.kind(ball) }.run_with(table, progress);
+            let named = Self { named: Some(ball), ..self.ball(ball.diameter()) };
+            let fit = if named.air_shows(table, ball)? { named.drag(ball.drag()) } else { named };
+            return fit.run_with(table, progress);
         }
         let known = self.known(table);
-        let table = &*table
-            .at_gravity(known.gravity.value, known.sigma_time.map_or(<Contacts as OneKind>::ASSUMED, |s| s.value));
+        let table = &*table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
         let mut evidence = self.evidence(table, &known)?;
         if let Some(drag) = self.drag.filter(|drag| *drag > 0.0) {
             evidence = verdict::in_a_vacuum(table, evidence, (&known, drag))?;
         }
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()
-            && let Some(series) = series::fit(table, !self.no_repair, self.drag)?
+            && let Some(series) = series::fit(table, !self.no_repair, self.drag.or(self.named.map(Ball::drag)))?
         {
             return Ok(self.report_of_recordings(&fits, series));
         }
         let mut comparison = compare::all(&fits, &self.wanted())?;
         let extras = self.extras(&fits, progress)?;
         let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model, (&known, self.stated()));
-        judgement.findings.extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball })));
+        judgement
+            .findings
+            .extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball, air: self.drag.is_some() })));
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
         Ok(Report::build(&fits, comparison, extras, judgement, self.ball))
     }
 
-    /// The ball that a column of the table names, where nothing is stated of it.
+    /// Whether the readings of a ball that the table names are better explained with its air.
+    fn air_shows(&self, table: &Table, ball: Ball) -> Result<bool, FitError> {
+        let known = self.known(table);
+        let table = table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
+        let evidence = self.evidence(&table, &known)?;
+        verdict::air_shows(&table, &evidence, (&known, ball.drag()))
+    }
+
+    /// The ball that the table names, where nothing is stated of it.
     fn named_by(&self, table: &Table) -> Option<Ball> {
         if self.ball.or(self.drag).is_some() {
             return None;
@@ -287,7 +298,7 @@ impl Fit {
 
     /// What is stated of what the readings cannot show.
     fn stated(&self) -> Stated {
-        Stated { ball: self.ball, sigma_zero: self.sigma_zero, drag: self.drag }
+        Stated { ball: self.ball, sigma_zero: self.sigma_zero, drag: self.drag, named: self.named }
     }
 
     /// What the caller wants of the comparison with other models.
@@ -316,7 +327,9 @@ impl Fit {
 
     fn report_of_recordings(&self, fits: &Fits<'_>, series: Series) -> Report {
         let (mut judgement, estimates, models) = verdict::of_recordings(fits, &series);
-        judgement.findings.extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball })));
+        judgement
+            .findings
+            .extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball, air: self.drag.is_some() })));
         if self.model.is_some() {
             judgement.note(FindingKind::ModelNotHeeded);
         }

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use saltus_fit::{Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};
+use saltus_fit::{FindingKind, Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/handed").join(name)
@@ -133,4 +133,74 @@ fn a_film_beside_heights_is_another_experiment() {
     let cors: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
     assert!((cors[0] - 0.802).abs() < 0.001 && (cors[1] - 0.780).abs() < 0.001, "{report}");
     assert!(report.cor().is_none());
+}
+
+/// Tables in `answers.tsv`, of every kind that teachers and students write: each has its COR, or a COR for each group, or asks what it has to.
+#[test]
+fn tables_have_the_answers_that_were_planted() {
+    let answers = std::fs::read_to_string(path("answers.tsv")).unwrap();
+    let lines = answers.lines().filter(|line| !line.starts_with('#'));
+    let mut read = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let (name, answer, more) = (cells[0], cells[1], cells.get(3).copied().unwrap_or_default());
+        let words: Vec<&str> = more.split(' ').collect();
+        let mut options = ReadOptions::default();
+        for option in words.windows(2).chain([&words[words.len() - 1..]]) {
+            options = match option {
+                ["--fps", rate] => options.fps(rate.parse().unwrap()),
+                ["--height-unit", unit] => options.height_unit(unit),
+                ["--time-unit", unit] => options.time_unit(unit),
+                ["--y-down", ..] => options.y_down(true),
+                _ => options,
+            };
+        }
+        let table = Table::read(&path(name), &options);
+        if answer == "asks" {
+            let error = table.unwrap_err().to_string();
+            assert!(error.contains(more), "{name}: {error}");
+            continue;
+        }
+        let report = Fit::new().run(&table.unwrap_or_else(|error| panic!("{name}: {error}"))).unwrap();
+        if answer == "refused" {
+            assert!(report.verdict() == Verdict::Refused && report.cor().is_none(), "{name}: {report}");
+            continue;
+        }
+        let near: f64 = cells[2].parse().unwrap();
+        let is = |found: &Report, truth: &str| {
+            let value = found.cor().unwrap_or_else(|| panic!("{name}: {report}")).value;
+            assert!((value - truth.parse::<f64>().unwrap()).abs() <= near, "{name}: {truth}\n{report}");
+        };
+        if answer.contains('=') {
+            let groups: Vec<(&str, &str)> = answer.split(';').map(|group| group.split_once('=').unwrap()).collect();
+            assert_eq!(report.groups().len(), groups.len(), "{name}: {report}");
+            for (found, (label, truth)) in report.groups().iter().zip(groups) {
+                assert!(found.name.to_lowercase().contains(label), "{name}: {report}");
+                is(&found.report, truth);
+            }
+        } else {
+            is(&report, answer);
+            assert!(report.verdict() == Verdict::Trusted || words.contains(&"doubt"), "{name}: {report}");
+        }
+        read += 1;
+    }
+    assert!(read > 125, "{read}");
+}
+
+/// A COR that the writer worked out checks how the readings beside it were taken; its square is that of one who forgot the root.
+#[test]
+fn a_cor_in_the_table_checks_the_readings() {
+    let verdict = |cors: [&str; 3]| {
+        let rows = [("100", "64"), ("80", "51"), ("60", "38")].into_iter().zip(cors);
+        let rows: String = rows.map(|((drop, rebound), cor)| format!("{drop},{rebound},{cor}\n")).collect();
+        let text = format!("Drop (cm),Rebound (cm),Coefficient of restitution\n{rows}");
+        let report = Fit::new().run(&Table::parse("t.csv", text.as_bytes(), &ReadOptions::default()).unwrap()).unwrap();
+        (report.verdict(), report.findings().iter().any(|f| matches!(f.kind, FindingKind::StatedDiffers { .. })))
+    };
+    for right in [["0.80", "0.80", "0.79"], ["0.64", "0.64", "0.63"], ["80%", "80%", "79%"], ["", "0.8", "#N/A"]] {
+        assert_eq!(verdict(right), (Verdict::Trusted, false), "{right:?}");
+    }
+    for other in [["0.55", "0.55", "0.56"], ["0.90", "0.91", "0.90"]] {
+        assert_eq!(verdict(other), (Verdict::Doubtful, true), "{other:?}");
+    }
 }

@@ -180,20 +180,19 @@ fn heights_that_do_not_shrink_are_doubted() {
 #[test]
 fn settings_that_differ_are_told_with_the_cor_of_each_by_itself() {
     let mut noise = Noise(6);
-    let mut text = "temperature (°C),trial,bounce,time_s\n".to_owned();
-    for (ball, e) in [("40", 0.85), ("5", 0.8)] {
+    let mut text = "h0_cm,trial,bounce,time_s\n".to_owned();
+    for (drop, e) in [("40", 0.85), ("5", 0.8)] {
         for trial in 0..4 {
             let (mut t, mut lasts) = (0.0, 0.8);
             for bounce in 0..7 {
-                text += &format!("{ball},{trial},{bounce},{:.5}\n", t + noise.normal(0.001));
+                text += &format!("{drop},{trial},{bounce},{:.5}\n", t + noise.normal(0.001));
                 (t, lasts) = (t + lasts, e * lasts);
             }
         }
     }
     let reason = fit(&text).reason().to_owned();
-    let of = |ball: &str| -> f64 {
-        let (before, _) =
-            reason.split_once(&format!(" for temperature (°C) {ball}")).unwrap_or_else(|| panic!("{reason}"));
+    let of = |drop: &str| -> f64 {
+        let (before, _) = reason.split_once(&format!(" for h0_cm {drop}")).unwrap_or_else(|| panic!("{reason}"));
         before.rsplit(' ').next().unwrap().parse().unwrap()
     };
     assert!((of("40") - 0.85).abs() < 0.003 && (of("5") - 0.8).abs() < 0.003, "{reason}");

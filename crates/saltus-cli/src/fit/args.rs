@@ -42,9 +42,9 @@ pub(crate) struct Fit {
     /// The COR to plan for where no table tells it.
     #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75")]
     pub(crate) expect: f64,
-    /// The height of the drop to plan for where no table tells it.
-    #[arg(long, value_name = "LENGTH", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = small(Quantity::Length, "m"), default_value = "1m")]
-    pub(crate) drop: f64,
+    /// The height of the drops where no table tells it, such as `1m`; that to plan for is 1 m unless it is stated.
+    #[arg(long, value_name = "LENGTH", conflicts_with = "values", value_parser = small(Quantity::Length, "m"))]
+    pub(crate) drop: Option<f64>,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,

@@ -79,7 +79,7 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
 
 /// What a measurement takes, before the first drop.
 fn plan(args: &args::Fit, want: f64) -> Result<ExitCode, Error> {
-    let expected = Expected::new(args.expect, args.drop)
+    let expected = Expected::new(args.expect, args.drop.unwrap_or(1.0))
         .ok_or_else(|| Error::new("a drop to plan for is between 1 cm and 100 m: give it by --drop, such as 1m"))?;
     let plan = fit(args).plan(want, expected).map_err(Error::data)?;
     let text = match args.format {
@@ -161,6 +161,9 @@ fn options(args: &args::Fit) -> ReadOptions {
     }
     if let Some(scale) = args.scale {
         options = options.scale(scale);
+    }
+    if let Some(drop) = args.drop {
+        options = options.drop_height(drop);
     }
     if let Some(zero) = args.zero {
         options = options.zero(zero);

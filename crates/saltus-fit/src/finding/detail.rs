@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{CorModel, Measured, Readings};
+use crate::quantity::{Ball, CorModel, Measured, Readings};
 
 /// What one model of the readings gives: one COR, or those at the slowest and the fastest impact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -251,6 +251,9 @@ pub enum Widening {
         most_per_m: f64,
         /// By how much the COR may be higher.
         share: f64,
+        /// The ball that the table names, if it does.
+        #[serde(default)]
+        ball: Option<Ball>,
     },
     /// The bend of the lens, which the samples do not show.
     Lens {

@@ -30,9 +30,11 @@ pub enum FindingKind {
         trusted: usize,
         refused: usize,
     },
-    /// The table names the ball in a column of its own: its size and drag are taken.
+    /// The table names the ball: the interval allows for its size and its air.
     BallNamed {
         ball: Ball,
+        /// Whether its air is taken out of the COR, since the readings show it.
+        air: bool,
     },
     /// What was stated of the way that heights count, where the ball then falls upwards.
     FallsUpwards {
@@ -189,6 +191,13 @@ pub enum FindingKind {
         second_cor: f64,
     },
     FirstFlightDiffers {
+        cor: f64,
+    },
+    /// The table works out another COR than its readings give.
+    StatedDiffers {
+        /// The COR that the table works out, the median of all.
+        stated: f64,
+        /// That of its readings.
         cor: f64,
     },
     Vague {

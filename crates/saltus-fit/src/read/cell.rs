@@ -55,14 +55,25 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
             (false, false) => Cell::Wrong(Fault::NotFinite),
         };
     }
+    if MISSING.contains(&folded(text).as_str()) {
+        return Cell::Empty;
+    }
     if !text.contains(|c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|f| f.0 == c)) {
         return Cell::Words;
     }
     if text.starts_with(['<', '>', '≤', '≥']) {
         return Cell::Wrong(Fault::Bound);
     }
-    let (text, turned) = without_remark(text);
+    // Blanks may part thousands.
+    let closed = spaced(text);
+    let text = closed.as_deref().unwrap_or(text);
+    // A reading in brackets is one that is not sure.
+    let bare = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')).filter(|t| !t.contains(['(', ')']));
+    let (text, turned) = without_remark(bare.unwrap_or(text));
     let text = without_about(text);
+    if let Some(range) = range(text, comma) {
+        return Cell::Number(range);
+    }
     let (number, error) = match split_error(text) {
         Some((number, error)) => (number, Some(error)),
         None => (text, None),
@@ -84,6 +95,51 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
         Ok(None) => Cell::Words,
         Err(fault) => Cell::Wrong(fault),
     }
+}
+
+/// What people write where nothing was read.
+const MISSING: [&str; 26] = [
+    "missed",
+    "missing",
+    "miss",
+    "lost",
+    "none",
+    "no reading",
+    "not read",
+    "not measured",
+    "not recorded",
+    "no data",
+    "x",
+    "xx",
+    "nil",
+    "null",
+    "void",
+    "fail",
+    "failed",
+    "n.a.",
+    "n.d.",
+    "nd",
+    "k.a.",
+    "n.b.",
+    "/",
+    "…",
+    "...",
+    "#div/0!",
+];
+
+/// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.
+const RANGE: f64 = 1.5;
+
+/// The middle of a range, `63-65 cm` or `63 to 65`, and half its width for its error.
+fn range(text: &str, comma: bool) -> Option<Measured> {
+    let (low, high) = ["–", "—", " to ", " bis ", "..", "-"].iter().find_map(|mark| text.split_once(mark))?;
+    let plain = |text: &str| lengths(text.trim(), comma).ok().flatten();
+    let (low, high) = (plain(low)?, plain(high)?);
+    let unit = high.unit.or(low.unit);
+    let alike = low.unit.is_none() || low.unit == unit;
+    let wide = low.value > 0.0 && high.value > low.value && high.value <= RANGE * low.value;
+    let half = 0.5 * (high.value - low.value);
+    (alike && wide).then_some(Measured { value: low.value + half, unit, error: Some(half) })
 }
 
 /// A number with its error, both in the unit of the number.
@@ -238,6 +294,9 @@ fn fraction(text: &str) -> Option<(f64, f64, &str)> {
 /// A number with a decimal point or, where commas do not separate the cells, a decimal comma.
 fn decimal(number: &str, comma: bool) -> Result<Option<f64>, Fault> {
     let plain = number.replace('−', "-");
+    if let Some(value) = thousands(&plain) {
+        return Ok(Some(value));
+    }
     let value = if let Some((whole, parts)) = plain.split_once(',') {
         if parts.contains(',') || plain.contains('.') {
             return Err(Fault::Thousands);
@@ -255,6 +314,27 @@ fn decimal(number: &str, comma: bool) -> Result<Option<f64>, Fault> {
         Ok(_) => Err(Fault::NotFinite),
         Err(_) => Ok(None),
     }
+}
+
+/// A number whose thousands are parted by blanks, `1 500`, without them.
+fn spaced(text: &str) -> Option<String> {
+    let end =
+        text.find(|c: char| !(c.is_ascii_digit() || matches!(c, ' ' | '\u{a0}' | '\u{202f}'))).unwrap_or(text.len());
+    let number = text[..end].trim_end();
+    let parts: Vec<&str> = number.split([' ', '\u{a0}', '\u{202f}']).collect();
+    let grouped =
+        parts.len() > 1 && (1..=3).contains(&parts[0].len()) && parts.iter().skip(1).all(|part| part.len() == 3);
+    grouped.then(|| parts.concat() + &text[number.len()..])
+}
+
+/// A number with separators of thousands beside a decimal mark of the other kind: `1.000,5`, `1,234.5`.
+fn thousands(number: &str) -> Option<f64> {
+    let (first, last) = (number.find(['.', ','])?, number.rfind(['.', ','])?);
+    let (mark, point) = (number[first..].chars().next()?, number[last..].chars().next()?);
+    let whole: Vec<&str> = number[..last].split(mark).collect();
+    let grouped =
+        whole.iter().skip(1).all(|part| part.len() == 3) && (1..=3).contains(&whole[0].trim_start_matches('-').len());
+    (mark != point && grouped).then(|| format!("{}.{}", whole.concat(), &number[last + 1..]).parse().ok())?
 }
 
 /// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does not.
@@ -290,15 +370,22 @@ mod tests {
             ("25.5cm", 0.255, None, true),
             ("30,5", 30.5, None, false),
             ("−3", -3.0, None, false),
+            ("1.000,5", 1000.5, None, false),
+            ("1,234.5 mm", 1.2345, None, true),
+            ("1 500", 1500.0, None, false),
             ("~62", 62.0, None, false),
             ("ca. 62 cm", 0.62, None, true),
             ("62 (approx.)", 62.0, None, false),
             ("62*", 62.0, None, false),
+            ("(62)", 62.0, None, false),
             ("96 ± 1", 96.0, Some(1.0), false),
             ("96 +/- 1 cm", 0.96, Some(1.0), true),
             ("96 cm ± 10 mm", 0.96, Some(1.0), true),
             ("100 ± 2 %", 100.0, Some(2.0), false),
             ("64 %", 0.64, None, true),
+            ("63-65", 64.0, Some(1.0), false),
+            ("63 – 65 cm", 0.64, Some(1.0), true),
+            ("63 to 65", 64.0, Some(1.0), false),
             ("5' 3\"", 1.6002, None, true),
             ("5'3", 1.6002, None, true),
             ("5 ft 3 in", 1.6002, None, true),
@@ -321,13 +408,17 @@ mod tests {
             ("", Cell::Empty),
             ("-", Cell::Empty),
             ("n/a", Cell::Empty),
+            ("Missed", Cell::Empty),
             ("NaN", Cell::Lost),
             ("drop", Cell::Words),
             ("62 wobbles", Cell::Words),
             ("12.3.2026", Cell::Words),
-            ("62-64", Cell::Words),
+            ("5-11", Cell::Words),
+            ("2024/03/12 10:21", Cell::Words),
+            ("2026-05-03", Cell::Words),
             ("64 (predicted)", Cell::Wrong(Fault::Turned)),
-            ("1.000,5", Cell::Wrong(Fault::Thousands)),
+            ("1.000.5", Cell::Words),
+            ("1,000,5", Cell::Wrong(Fault::Thousands)),
             ("1e999", Cell::Wrong(Fault::NotFinite)),
             ("> 60", Cell::Wrong(Fault::Bound)),
         ] {

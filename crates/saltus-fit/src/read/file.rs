@@ -11,10 +11,12 @@ use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
 use super::text::text;
+use super::title::{self, Stated};
 use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
 use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool};
 use crate::error::TableError;
+use crate::quantity::Ball;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
 const MOVES: f64 = 0.5;
@@ -47,6 +49,7 @@ pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<T
 fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     let mut metadata = grid.metadata()?;
     metadata.frame_rate = options.fps.or(metadata.frame_rate);
+    metadata.drop = options.drop.or(metadata.drop);
     metadata.oriented = options.down.is_some();
     let Recognised { what, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
     let found = if regions.is_empty() {
@@ -76,18 +79,25 @@ fn joined_up<'a>(
     mut regions: Vec<Region<'a>>,
     tracks: bool,
     options: &ReadOptions,
-    metadata: Metadata,
+    mut metadata: Metadata,
 ) -> Result<Table, TableError> {
+    let titles: Vec<Stated> = regions.iter().map(title::stated).collect();
+    // A film is of one rate; above each table its own height of release may stand.
+    let mut stated = Vec::new();
+    if metadata.frame_rate.is_none()
+        && let Some((fps, line)) = titles.iter().find_map(|title| title.fps)
+    {
+        metadata.frame_rate = Some(fps);
+        stated.push(format!("{fps} frames a second, as line {line} states"));
+    }
     filmed(&mut regions, metadata.frame_rate);
-    let several = regions.len() > 1;
     let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
     for (n, region) in regions.iter_mut().enumerate() {
-        match one(region, options, metadata) {
+        let own = Metadata { drop: metadata.drop.or(titles[n].drop.map(|(drop, _)| drop)), ..metadata };
+        match one(region, options, own) {
             Ok(mut table) => {
                 titled(region, &mut table);
-                let label =
-                    if several && region.label.is_empty() { format!("run {}", n + 1) } else { region.label.clone() };
-                parts.push((label, table));
+                parts.push((region.label.clone(), table));
             }
             // A table below another, of something else.
             Err(error) if n > 0 && error.is_of_nothing() => {
@@ -101,14 +111,38 @@ fn joined_up<'a>(
     if let Some(error) = failed {
         return Err(error);
     }
+    named(&regions, &titles, &mut parts);
     let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
     let mut table = pool::join(grid.name, parts)?;
     table.left_aside.extend(aside);
+    table.notes.extend(stated);
     if !still.is_empty() {
         table.notes.push(format!("left aside, as it hardly moves: {} (choose with --column)", still.join(", ")));
         table.left_aside.extend(still.into_iter().map(|name| LeftAside::new(Kind::Track, name, Why::Still)));
     }
     Ok(table)
+}
+
+/// What tables of one text are called: by themselves, by the lines above them, or by their number; balls and surfaces are groups.
+fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)]) {
+    if parts.len() < 2 {
+        return;
+    }
+    let unnamed = parts.iter().all(|(label, _)| label.is_empty());
+    if unnamed && parts.len() == regions.len() {
+        let own: Vec<&str> = titles.iter().map(|title| title.name.as_str()).collect();
+        let apart = own.iter().all(|name| !name.is_empty() && own.iter().filter(|other| *other == name).count() == 1);
+        for ((label, _), name) in parts.iter_mut().zip(own).filter(|_| apart) {
+            name.clone_into(label);
+        }
+    }
+    // Tracks of one film are told apart by what moves.
+    if regions.iter().all(|region| !region.chosen) {
+        told_apart(parts);
+    }
+    for (n, (label, _)) in parts.iter_mut().enumerate().filter(|(_, (label, _))| label.is_empty()) {
+        *label = format!("run {}", n + 1);
+    }
 }
 
 /// The table of a region: its columns by their names, the rows that hold readings, the quantities, and then the trials.
@@ -227,18 +261,19 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
 fn told_apart(found: &mut [(String, Table)]) -> bool {
     let several = found.len() > 1;
     let mut drops = false;
-    for (label, table) in found {
+    for (label, table) in found.iter_mut().filter(|(label, _)| !label.is_empty()) {
         let drop = drop_height(label, table);
         drops |= drop;
         let heading = Heading::parse(label);
         let trial = heading.unknown.is_empty()
-            && (heading.has(Atom::Trial) || heading.has(Atom::Repeat) || heading.has(Atom::Time));
+            && [Atom::Trial, Atom::Repeat, Atom::Time, Atom::Release].iter().any(|atom| heading.has(*atom));
         let group = several && !drop && (!trial || !heading.labels().is_empty());
         let name = if heading.labels().is_empty() { label.clone() } else { heading.labels() };
         for trial in table.trials.iter_mut().filter(|_| several) {
             trial.setting = joined(label, &trial.setting);
             if group {
                 trial.group = joined(&name, &trial.group);
+                trial.ball = trial.ball.or(Ball::named(&name));
             }
         }
     }

@@ -7,7 +7,7 @@ use super::workbook::{Content, Part};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to make there.
-const KINDS: [(&[&str], &str, &str); 11] = [
+const KINDS: [(&[&str], &str, &str); 13] = [
     (
         &["trk", "trz"],
         "a project of Tracker",
@@ -38,6 +38,8 @@ const KINDS: [(&[&str], &str, &str); 11] = [
         "type the numbers into a spreadsheet and save it as CSV",
     ),
     (&["numbers"], "a sheet of Numbers", "in Numbers: File, Export To, CSV or Excel; give that file"),
+    (&["json"], "JSON", "write its numbers as a table, a name above each column, and save it as CSV"),
+    (&["xml"], "XML", "export the table as CSV; give that file"),
     (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];
 
@@ -63,6 +65,7 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
         None if begins(b"RIFF") => "wav",
         None if bytes.get(4..8) == Some(b"ftyp") => "mp4",
         None if text.contains("org.opensourcephysics") => "trk",
+        None if text.trim_start().starts_with(['{', '[']) && text.contains('"') && text.contains(':') => "json",
         None if text.contains("<MBL>") || text.contains("LoggerPro") => "cmbl",
         None => ending.as_str(),
     };
@@ -89,7 +92,10 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
     let mut page = Page::default();
     loop {
         match reader.read_event() {
-            Ok(Event::Start(tag)) => page.begin(&tag.local_name().as_ref().to_ascii_lowercase(), span(&tag)),
+            Ok(Event::Start(tag)) => {
+                let spans = (span(&tag, "colspan"), span(&tag, "rowspan"));
+                page.begin(&tag.local_name().as_ref().to_ascii_lowercase(), spans);
+            }
             Ok(Event::Empty(tag)) if tag.local_name().as_ref().eq_ignore_ascii_case("br") => page.text(" "),
             Ok(Event::End(tag)) => page.end(&tag.local_name().as_ref().to_ascii_lowercase()),
             Ok(Event::Text(words)) => page.text(words.as_ref()),
@@ -104,9 +110,9 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
     Some(page.parts)
 }
 
-/// How many columns a cell spans.
-fn span(tag: &quick_xml::events::BytesStart<'_>) -> usize {
-    let value = tag.try_get_attribute("colspan").ok().flatten();
+/// How many columns, or rows, a cell spans.
+fn span(tag: &quick_xml::events::BytesStart<'_>, of: &str) -> usize {
+    let value = tag.try_get_attribute(of).ok().flatten();
     let number = value.and_then(|attribute| attribute.value.trim().parse::<usize>().ok());
     number.unwrap_or(1).clamp(1, COLUMNS)
 }
@@ -145,16 +151,23 @@ struct Page {
     /// The cells of the row, and whether the last one is open.
     row: Vec<String>,
     open: bool,
-    span: usize,
+    /// How many columns and rows the last cell spans.
+    span: (usize, usize),
+    /// In how many rows from here on each column is part of a cell above.
+    taken: Vec<usize>,
 }
 
 impl Page {
-    fn begin(&mut self, tag: &str, span: usize) {
+    fn begin(&mut self, tag: &str, span: (usize, usize)) {
         match tag {
-            "table" => self.table = Some(String::new()),
+            "table" => {
+                self.table = Some(String::new());
+                self.taken.clear();
+            }
             "tr" => self.close_row(),
             "td" | "th" => {
                 self.close_cell();
+                self.skip_taken();
                 if self.row.len() < COLUMNS {
                     self.row.push(String::new());
                     (self.open, self.span) = (true, span);
@@ -188,14 +201,29 @@ impl Page {
 
     fn close_cell(&mut self) {
         if self.open {
-            let more = self.span.min(COLUMNS - self.row.len().min(COLUMNS) + 1) - 1;
+            let (columns, rows) = self.span;
+            let more = columns.min(COLUMNS - self.row.len().min(COLUMNS) + 1) - 1;
+            let first = self.row.len() - 1;
             self.row.extend(std::iter::repeat_n(String::new(), more));
+            let end = self.row.len();
+            self.taken.resize(self.taken.len().max(end), 0);
+            self.taken[first..end].fill(rows);
             self.open = false;
+        }
+    }
+
+    /// Empty cells where a cell of a row above reaches down.
+    fn skip_taken(&mut self) {
+        while self.taken.get(self.row.len()).is_some_and(|rows| *rows > 0) {
+            self.row.push(String::new());
         }
     }
 
     fn close_row(&mut self) {
         self.close_cell();
+        if !self.row.is_empty() {
+            self.taken.iter_mut().for_each(|rows| *rows = rows.saturating_sub(1));
+        }
         if let Some(table) = self.table.as_mut().filter(|_| !self.row.is_empty()) {
             let cells: Vec<&str> = self.row.iter().map(|cell| cell.trim()).collect();
             table.push_str(&cells.join("\t"));

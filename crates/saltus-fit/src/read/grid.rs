@@ -201,6 +201,7 @@ impl<'a> Grid<'a> {
                     continue;
                 }
                 "gravity" | "g" => (&mut found.gravity, Quantity::Acceleration),
+                "drop height" | "drop" | "release height" | "dropped from" => (&mut found.drop, Quantity::Length),
                 "sigma height" | "height error" => (&mut found.sigma_height, Quantity::Length),
                 "sigma time" | "time error" => (&mut found.sigma_time, Quantity::Time),
                 _ => continue,

@@ -1,9 +1,12 @@
 //! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a ball, and the words that are not understood.
 
+mod inside;
+
 use super::aside::Why;
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use super::words::{Kind, Numbers, Word, numbers, split};
+pub(super) use inside::{DropHeight, release};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,6 +71,8 @@ pub(super) struct Value {
     pub(super) position: bool,
     /// Also the name of a number of trials: `drop`.
     pub(super) or_trial: bool,
+    /// The height that the heading says the ball was dropped from.
+    pub(super) drop: Option<DropHeight>,
 }
 
 /// What a heading says of its column.
@@ -103,6 +108,12 @@ pub(super) struct Heading {
     pub(super) meaning: Meaning,
     /// The words that are not understood; with any, the column is not used unless it is asked for.
     pub(super) unknown: Vec<String>,
+    /// The place of its readings beside the bounce of their row: `h_n` is 0, `h_n+1` is 1.
+    pub(super) place: Option<i8>,
+    /// It names the COR, worked out from other columns.
+    pub(super) cor: bool,
+    /// A height of release that it states.
+    drop: Option<DropHeight>,
     /// The meanings of its words.
     atoms: Vec<Atom>,
     /// Those that name a ball or a surface.
@@ -119,30 +130,56 @@ impl Heading {
             spread: None,
             meaning: Meaning::Empty,
             unknown: Vec::new(),
+            place: None,
+            cor: false,
+            drop: None,
             atoms: Vec::new(),
             labels: Vec::new(),
         };
+        // The format of a clock, such as `mm:ss.ms`.
+        if text.contains(':') && text.chars().all(|c| "hmsHMS:.,".contains(c)) {
+            return Self::parse("time (s)").called(text);
+        }
         // Programs put the run before the name: 'Latest: Time (s)'.
         let (run, name) = match text.split_once(':') {
             Some((run, name)) if !name.trim().is_empty() => (run.trim(), name),
             _ => ("", text),
         };
-        let bare = heading.take_brackets(name);
+        let (drop, name) = release(name).map_or((None, name.to_owned()), |(drop, rest)| (Some(drop), rest));
+        heading.drop = drop;
+        let bare = heading.take_brackets(&name);
         let bare = heading.take_unit(&bare);
+        let (place, bare) = inside::place(&bare);
+        heading.place = place;
         let mut words = split(&bare);
+        let before = inside::hundredths(&mut words);
+        if before.is_some() {
+            heading.unit = Unit::parse("%");
+        }
         heading.take_unit_word(&mut words);
         heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
         heading.labels = words.iter().filter(|w| w.is(Atom::Label)).map(|w| w.text.clone()).collect();
+        // Hundredths of the height before are ratios.
+        heading.atoms.extend(before.filter(|before| *before).map(|_| Atom::Derived));
         let turned = split(run);
         for word in words.iter().chain(&turned) {
             if let Kind::Known(atoms) = word.kind {
                 heading.atoms.extend(atoms);
             }
         }
+        heading.cor = inside::is_cor(&words) && !heading.turned();
+        // `v_in` beside `v_out`.
+        if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {
+            heading.atoms.push(Atom::Before);
+        }
         if !heading.atoms.is_empty() || heading.unit.is_some() {
             heading.meaning = heading.interpret(&words, run);
         }
         heading
+    }
+
+    fn called(self, text: &str) -> Self {
+        Self { text: text.to_owned(), ..self }
     }
 
     /// Whether the heading says what its column holds, every word of it being understood.
@@ -167,6 +204,11 @@ impl Heading {
         self.atoms.contains(&atom)
     }
 
+    /// A word that says that a COR is not that of the readings beside it.
+    fn turned(&self) -> bool {
+        [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Error].iter().any(|atom| self.has(*atom))
+    }
+
     /// A word that says that numbers are no readings.
     pub(super) fn turns(&self) -> bool {
         [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived].iter().any(|atom| self.has(*atom))
@@ -186,15 +228,18 @@ impl Heading {
             left.push_str(&rest[..open]);
             left.push(' ');
             let inside = rest[open + 1..open + close].trim();
+            // `h(n)`, `y(t)`: of what it is a function, and no unit.
+            let argument =
+                matches!(inside, "n" | "i" | "k" | "t" | "x") && rest[..open].ends_with(char::is_alphanumeric);
             rest = &rest[open + close + 1..];
             let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
             if let Some(error) = error.map(str::trim) {
                 let digits = error.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(error.len());
                 self.spread = error[..digits].replace(',', ".").parse().ok().filter(|e: &f64| *e > 0.0);
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
-            } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)) {
+            } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
-            } else {
+            } else if !(argument && matches!(inside, "t" | "x")) {
                 left.push_str(inside);
                 left.push(' ');
             }
@@ -274,6 +319,7 @@ impl Heading {
             return Meaning::Aside(Why::Other);
         }
         let what = if intervals { What::Interval } else { self.what() };
+        let what = if what == What::Unsaid && self.drop.is_some() { What::Height } else { what };
         if what == What::Unsaid
             && self.unit.is_none()
             && let Some(key) = self.key(&numbers)
@@ -328,7 +374,7 @@ impl Heading {
         if named || has(Mean) || has(Error) {
             return None;
         }
-        if has(Event) {
+        if has(Event) && !has(Repeat) {
             return Some(Meaning::Event);
         }
         if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {
@@ -364,7 +410,8 @@ impl Heading {
             () if has(Min) => Role::Min,
             () => Role::Reading,
         };
-        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty();
+        let from = self.drop.as_ref();
+        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty() && from.is_none();
         let at = match (numbers.bounce.first(), what) {
             (Some(0), What::Height) => At::Release,
             (Some(&n), _) => At::Nth(n),
@@ -375,7 +422,11 @@ impl Heading {
             (None, What::Speed) if has(Before) || has(Impact) => At::Before,
             _ => At::Row,
         };
-        let label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        let mut label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        if let Some(drop) = from {
+            let apart = if label.is_empty() { "" } else { ", " };
+            label = format!("{label}{apart}from {}", drop.text);
+        }
         Meaning::Value(Value {
             what,
             at,
@@ -384,6 +435,7 @@ impl Heading {
             group: numbers.group,
             position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
             or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
+            drop: self.drop.clone(),
         })
     }
 }

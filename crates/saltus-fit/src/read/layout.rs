@@ -4,9 +4,9 @@ use super::aside::Why;
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
-use super::heading::{At, Meaning, Role, What};
+use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::region::Region;
-use super::rows::Rows;
+use super::rows::{Row, Rows};
 use super::vocabulary::Atom;
 use crate::error::TableError;
 use crate::statistics::median;
@@ -42,6 +42,8 @@ pub(super) struct Track {
     pub(super) before: Option<usize>,
     pub(super) after: Option<usize>,
     pub(super) lost: Option<usize>,
+    /// The height of release that the headings state, m.
+    pub(super) drop: Option<f64>,
     /// Columns of numbered bounces.
     pub(super) nth: Vec<usize>,
 }
@@ -54,6 +56,7 @@ impl Track {
             }
             return;
         };
+        self.drop = self.drop.or(value.drop.as_ref().map(DropHeight::metres));
         let slot = match (value.what, value.at) {
             (_, At::Nth(_)) => return self.nth.push(index),
             (What::Height, At::Release | At::Before) => &mut self.release,
@@ -72,11 +75,17 @@ impl Track {
     fn beside(&self, shared: &Self) -> Self {
         Self {
             release: self.release.or(shared.release),
+            drop: self.drop.or(shared.drop),
             time: self.time.or(shared.time),
             interval: self.interval.or(shared.interval),
             before: self.before.or(shared.before),
             ..self.clone()
         }
+    }
+
+    /// Whether a column, or its heading, tells the height of release.
+    pub(super) fn released(&self) -> bool {
+        self.release.is_some() || self.drop.is_some()
     }
 
     pub(super) fn label(&self) -> String {
@@ -130,28 +139,48 @@ pub(super) fn layout(
         return Ok(Layout::Samples { frames: true });
     }
     let key = columns.number().is_some() || columns.one(&Kind::Label).is_some();
-    let numbered = key && !rows.rows.is_empty() && rows.rows.iter().all(|row| row.bounce.is_some());
     let sure = columns.number().is_none_or(|(_, sure)| sure);
+    let numbered = key && !rows.rows.is_empty() && rows.rows.iter().all(|row| row.bounce.is_some());
     let rowed = any(|t| t.height.is_some() || t.time.is_some() || t.interval.is_some() || t.speed.is_some());
-    if any(|t| t.time.is_some() && t.height.is_some()) && !numbered {
+    // Rows that are only counted may be those of a film, whose heights rise and fall.
+    let filmed = !sure && !tracks.iter().all(|track| falling_throughout(region, rows, track));
+    if any(|t| t.time.is_some() && t.height.is_some()) && (!numbered || filmed) {
         return Ok(Layout::Samples { frames: false });
     }
-    if any(|t| !t.nth.is_empty()) {
+    // The time until rest tells more than that of the first contact.
+    let rests = |t: &Track| t.total.is_some() && t.release.is_some() && t.nth.len() == 1;
+    if any(|t| !t.nth.is_empty()) && !tracks.iter().all(rests) {
         return Ok(Layout::Wide);
     }
     if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.total.is_some()) {
         return Ok(Layout::Pairs);
     }
-    let released = any(|t| t.release.is_some());
+    let released = any(Track::released);
+    let counted = numbered && sure;
+    if !released
+        && !counted
+        && rowed
+        && let Some(error) = misread(region, columns, rows)
+    {
+        return Err(error);
+    }
     // One height of release for several rows is that of a drop of several bounces; else each row is a drop.
     let constant = numbered && (!sure || released) && one_release(region, rows, tracks);
     if numbered && rowed && (!released || constant) {
         return Ok(Layout::Numbered);
     }
+    // Heights that fall below one another are the bounces of one drop.
+    let stated = tracks.iter().all(|t| t.drop.is_some() && t.release.is_none());
+    let keyed = columns.columns.iter().any(|c| matches!(c.kind, Kind::Trial | Kind::Setting));
+    let listed = stated && !key && !keyed && tracks.iter().all(|track| falling(region, rows, track));
     if released && any(|t| t.height.is_some() || t.interval.is_some()) {
-        return Ok(Layout::Pairs);
+        return Ok(if listed { Layout::Listed } else { Layout::Pairs });
     }
     if !rowed && !any(|t| t.after.is_some()) {
+        let unknown = columns.columns.iter().position(|c| c.heading.value().is_some() && !c.heading.unknown.is_empty());
+        if let Some((index, word)) = unknown.and_then(|n| Some((n, columns.columns[n].heading.unknown.first()?))) {
+            return Err(columns.unknown(region, index, word));
+        }
         return Err(region
             .error("no column holds heights or times of bounces")
             .nothing()
@@ -164,6 +193,28 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// Numbers whose name is not understood, beside readings that nothing counts: they may be the heights of release, or other readings.
+fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+    let (_, reading, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
+    let dimension = |column: &Column| column.heading.unit.map(|unit| unit.dimension);
+    let (index, column) = columns.columns.iter().enumerate().find(|(n, c)| {
+        let alike = dimension(c).is_none() || dimension(c) == dimension(reading);
+        let numbers = || rows.rows.iter().any(|row| region.view.is_number(row.at, *n));
+        c.kind == Kind::Aside && !c.heading.unknown.is_empty() && !c.heading.turns() && alike && numbers()
+    })?;
+    let (name, word) = (shown(&column.heading.text), shown(column.heading.unknown.first()?));
+    let message = format!(
+        "what is '{name}'? The word '{word}' is not understood, and '{}' may depend on it",
+        shown(&reading.heading.text)
+    );
+    Some(
+        region
+            .header_error(index, message)
+            .question()
+            .help("name it by --header, such as 'drop height (cm)' for heights of release; '-' leaves a column aside; or number the bounces in a column 'bounce'"),
+    )
 }
 
 /// A list may be of something else than bounces where numbers stand beside it that are not used: a film, or balls that differ.
@@ -192,17 +243,31 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
 /// Whether bounces are counted up beside one height of release, and the count is of bounces rather than of drops: their heights fall.
 fn one_release(region: &Region<'_>, rows: &Rows, tracks: &[Track]) -> bool {
     tracks.iter().all(|track| {
-        let Some(release) = track.release else { return true };
+        if !track.released() {
+            return true;
+        }
         let mut several = false;
         let alike = rows.rows.windows(2).all(|pair| {
             let goes_on = pair[1].bounce > pair[0].bounce;
-            let same = region.cell(pair[0].at, release) == region.cell(pair[1].at, release)
-                || region.cell(pair[1].at, release).is_empty();
+            let same = track.release.is_none_or(|release| {
+                region.cell(pair[0].at, release) == region.cell(pair[1].at, release)
+                    || region.cell(pair[1].at, release).is_empty()
+            });
             several |= goes_on && same;
             !goes_on || same
         });
         several && alike && falling(region, rows, track)
     })
+}
+
+/// Whether no height is above the one in the row before.
+fn falling_throughout(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
+    let number = |row: &Row| match region.view.read(row.at, track.height?) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let heights: Vec<f64> = rows.rows.iter().filter_map(number).collect();
+    heights.windows(2).all(|pair| pair[1] <= pair[0])
 }
 
 /// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and those of several drops do not.
@@ -214,7 +279,8 @@ fn falling(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
         Cell::Number(m) => Some(m.value),
         _ => None,
     };
-    let steps = rows.rows.windows(2).filter(|pair| pair[1].bounce > pair[0].bounce);
+    let follows = |pair: &&[Row]| pair[1].bounce > pair[0].bounce || pair[1].bounce.or(pair[0].bounce).is_none();
+    let steps = rows.rows.windows(2).filter(follows);
     let mut ratios: Vec<f64> = steps.filter_map(|pair| Some(number(pair[1].at)? / number(pair[0].at)?)).collect();
     median(&mut ratios).is_none_or(|ratio| ratio < LEVEL)
 }

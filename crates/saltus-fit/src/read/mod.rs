@@ -22,6 +22,7 @@ mod rows;
 mod samples;
 mod stray;
 mod text;
+mod title;
 mod units;
 mod vocabulary;
 mod words;
@@ -90,6 +91,8 @@ pub struct Trial {
     pub(crate) readings: Vec<Reading>,
     /// A time from which, with gravity, the rebound follows.
     pub(crate) timed: Option<Timed>,
+    /// The CORs that the table itself works out for it.
+    pub(crate) stated: Vec<f64>,
 }
 
 /// The time of the only flight, or that from release to rest, s.
@@ -150,6 +153,8 @@ const LARGEST: u64 = 1 << 30;
 pub(crate) struct Metadata {
     pub(crate) frame_rate: Option<f64>,
     pub(crate) gravity: Option<f64>,
+    /// The height of release, where no column and no row tells it, m.
+    pub(crate) drop: Option<f64>,
     pub(crate) sigma_height: Option<f64>,
     pub(crate) sigma_time: Option<f64>,
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.
@@ -298,6 +303,7 @@ impl Table {
             ball: None,
             readings,
             timed: None,
+            stated: Vec::new(),
         }];
         let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
         check::table(&mut table);

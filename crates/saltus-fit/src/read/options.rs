@@ -22,6 +22,7 @@ pub struct ReadOptions {
     pub(crate) fps: Option<f64>,
     pub(crate) scale: Option<f64>,
     pub(crate) zero: Option<f64>,
+    pub(crate) drop: Option<f64>,
     pub(crate) down: Option<bool>,
 }
 
@@ -106,6 +107,22 @@ impl ReadOptions {
     #[must_use]
     pub fn scale(mut self, metres_per_pixel: f64) -> Self {
         self.scale = Some(metres_per_pixel);
+        self
+    }
+
+    /// The height of release, m, of every drop of which the table does not tell it.
+    ///
+    /// ```
+    /// use saltus_fit::{ReadOptions, Table};
+    ///
+    /// let options = ReadOptions::default().drop_height(1.0);
+    /// let table = Table::parse("drop.csv", b"trial,rebound_cm\n1,64\n2,65\n", &options)?;
+    /// assert_eq!(table.trials()[1].readings()[0].height, Some(1.0));
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    #[must_use]
+    pub fn drop_height(mut self, metres: f64) -> Self {
+        self.drop = Some(metres);
         self
     }
 

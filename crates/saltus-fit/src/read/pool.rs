@@ -4,6 +4,7 @@ use super::aside::LeftAside;
 use super::heading::Heading;
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
+use crate::quantity::Ball;
 
 /// Tells files apart whose names are of different balls or surfaces, and recordings from readings of bounces: they are no one experiment.
 pub(super) fn apart(parts: &mut [(String, Table)]) {
@@ -23,6 +24,7 @@ pub(super) fn apart(parts: &mut [(String, Table)]) {
         let label = if balls { label } else { String::new() };
         for trial in &mut table.trials {
             let parts = [label.as_str(), kind, &trial.group];
+            trial.ball = trial.ball.or(Ball::named(&label));
             trial.group = parts.iter().filter(|p| !p.is_empty()).copied().collect::<Vec<_>>().join(", ");
         }
     }
@@ -87,6 +89,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
     Ok(Metadata {
         frame_rate: smaller(a.frame_rate, b.frame_rate),
         gravity: a.gravity.or(b.gravity),
+        drop: None,
         sigma_height: larger(a.sigma_height, b.sigma_height),
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,

@@ -7,7 +7,7 @@ use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::grid::{Grid, View};
-use super::heading::Heading;
+use super::heading::{Heading, What};
 use super::region::{self, Region};
 use super::units::Unit;
 use crate::error::TableError;
@@ -69,7 +69,9 @@ pub(super) fn tables<'a>(
 /// The table whose names stand in the first column, one below the other.
 pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
     let found = region::tables(View { grid, across: true });
-    found.into_iter().find(|region| !region.rows.is_empty())
+    // A name says what it is of: numbered rows alone are no names.
+    let says = |name: &String| Heading::parse(name).value().is_some_and(|value| value.what != What::Unsaid);
+    found.into_iter().find(|region| !region.rows.is_empty() && region.header.iter().any(says))
 }
 
 /// The column of a row with this text.
@@ -229,7 +231,10 @@ fn distinct(regions: &mut [Region<'_>]) {
 /// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank column or not.
 fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let header = &region.header;
-    let run = |cell: &str| cell.split_once(':').map_or(String::new(), |(run, _)| run.trim().to_owned());
+    let run = |cell: &str| {
+        let parts = cell.split_once(':').filter(|(_, name)| !name.trim().is_empty());
+        parts.map_or(String::new(), |(run, _)| run.trim().to_owned())
+    };
     let mut runs: Vec<String> = Vec::new();
     for name in header.iter().map(|cell| run(cell)) {
         if !name.is_empty() && !runs.contains(&name) {

@@ -1,9 +1,10 @@
 //! Where in a text its tables lie: which lines name the columns, and which rows stand below them.
 
 use super::aside::{LeftAside, Part, Why};
+use super::cell::Cell;
 use super::grid::{View, shown};
 use super::heading::{Heading, Meaning};
-use super::units::Unit;
+use super::units::{Dimension, Unit};
 use crate::error::TableError;
 
 /// One table of a text.
@@ -163,10 +164,15 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         return found;
     }
     let line = |n: usize| -> Vec<String> { view.cells(n).map(str::to_owned).collect() };
-    let below = |n: usize| n < end && names_only(view, n);
     let one = line(row);
+    let below = |n: usize| n < end && names_only(view, n);
+    // Units are no names.
+    if of_units(&one) {
+        return found;
+    }
     let mut push = |names: Vec<String>, next: usize| {
         let score = score(&names);
+        let score = if (1..VALUE).contains(&score) && measured(view, &names, next) { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
         // A row of words may stand between, such as of units that are not known; a header without rows is one too.
         if score > 0 && (next >= end || numbers(next) || next + 1 < end && numbers(next + 1) || events(view, next)) {
@@ -174,6 +180,9 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         }
     };
     push(one.clone(), row + 1);
+    if let Some(names) = (row + 1 < end).then(|| numbered(view, &one, row + 1)).flatten() {
+        push(names, row + 2);
+    }
     if below(row + 1)
         && !events(view, row + 1)
         && let Some(names) = both(&one, &line(row + 1))
@@ -188,9 +197,18 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     found
 }
 
-/// Whether a row begins with the name of an event.
+/// Whether a cell of a row bears a unit, below a name that is understood.
+fn measured(view: View<'_>, names: &[String], row: usize) -> bool {
+    names.iter().enumerate().any(|(n, name)| {
+        let unit = matches!(view.read(row, n), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension != Dimension::Other && !u.unscaled()));
+        unit && Heading::parse(name).understood()
+    })
+}
+
+/// Whether a row holds the name of an event and nothing else.
 fn events(view: View<'_>, row: usize) -> bool {
-    matches!(view.cell(row, 0).to_lowercase().as_str(), "release" | "drop" | "start" | "contact" | "apex")
+    let alone = (1..view.width(row)).all(|n| view.cell(row, n).is_empty());
+    alone && matches!(view.cell(row, 0).to_lowercase().as_str(), "release" | "drop" | "start" | "contact" | "apex")
 }
 
 /// Whether a row holds words and no number.
@@ -223,6 +241,30 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     first.understood().then_some(Header { names, at: row, below: row + 1, score })
 }
 
+/// `Rebound (cm)` over `1,2,3`: the columns that a name spans are counted in the line below it.
+fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>> {
+    let width = view.width(row).max(upper.len());
+    let above = |n: usize| upper.get(n).filter(|cell| !cell.is_empty());
+    let (mut spanning, mut count, mut names, mut counted) = (String::new(), 0, Vec::new(), 0);
+    for n in 0..width {
+        if let Some(name) = above(n) {
+            (spanning, count) = (name.clone(), 0);
+        }
+        let cell = view.cell(row, n);
+        if cell.is_empty() {
+            names.push(above(n).cloned().unwrap_or_default());
+            continue;
+        }
+        count += 1;
+        if cell.parse() != Ok(count) || spanning.is_empty() {
+            return None;
+        }
+        counted += usize::from(count > 1);
+        names.push(format!("{spanning} {count}"));
+    }
+    (counted > 0 && view.cell(row, 0).is_empty()).then_some(names)
+}
+
 /// How much of a header is understood.
 fn score(names: &[String]) -> usize {
     let of = |name: &String| {
@@ -230,6 +272,8 @@ fn score(names: &[String]) -> usize {
         match heading.meaning {
             _ if !heading.unknown.is_empty() => 0,
             Meaning::Value(_) => VALUE + usize::from(heading.unit.is_some()),
+            // A frame tells a time.
+            Meaning::Frame => VALUE,
             Meaning::Empty | Meaning::Aside(_) => 0,
             _ => 1,
         }
@@ -297,7 +341,10 @@ fn spanned(name: &str, lower: &str) -> String {
 /// Whether a line holds units and nothing else.
 fn of_units(line: &[String]) -> bool {
     let unit = |cell: &str| Unit::parse(cell.trim_matches(['(', ')', '[', ']'])).is_some();
-    line.iter().any(|cell| !cell.is_empty()) && line.iter().all(|cell| cell.is_empty() || unit(cell))
+    // In brackets there may be others that are not known.
+    let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
+    let known = line.iter().any(|cell| unit(cell));
+    known && line.iter().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
 }
 
 #[cfg(test)]

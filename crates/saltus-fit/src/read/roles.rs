@@ -10,7 +10,7 @@ use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::Atom;
+use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
 use crate::statistics::median;
 
@@ -35,6 +35,8 @@ impl Columns {
         let beside = |v: &Value| {
             values.iter().any(|(_, o)| role(o, Role::Reading) && same(o, v) && (placed(o, v) || !o.trial.is_empty()))
         };
+        // A mean stands for the readings between its extremes.
+        let within = |v: &Value| values.iter().any(|(_, o)| role(o, Role::Mean) && same(o, v) && placed(o, v));
         for (index, value) in &values {
             match value.role {
                 Role::Reading => {}
@@ -45,10 +47,9 @@ impl Columns {
                     let other = if value.role == Role::Max { Role::Min } else { Role::Max };
                     let pair = values.iter().find(|(_, o)| role(o, other) && same(o, value) && o.at == value.at);
                     match pair {
-                        Some(_) if beside(value) => self.leave(*index, Why::Statistic),
+                        _ if beside(value) || within(value) => self.leave(*index, Why::Statistic),
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
-                        None if beside(value) => self.leave(*index, Why::Statistic),
                         // The greatest height between two bounces is that of the apex.
                         None if value.role == Role::Max && self.number().is_some_and(|(_, sure)| sure) => {
                             self.read(*index);
@@ -115,7 +116,11 @@ impl Columns {
         // Where rows are bounces, columns that are numbered are trials, whatever they hold.
         let rows = self.number().is_some_and(|(_, sure)| sure);
         let numbered = |v: &Value| match v.at {
-            At::Nth(n) if (rows || matches!(v.what, What::Height | What::Unsaid)) && v.trial.is_empty() => Some(n),
+            At::Nth(n)
+                if (rows || matches!(v.what, What::Height | What::Unsaid | What::Interval)) && v.trial.is_empty() =>
+            {
+                Some(n)
+            }
             _ => None,
         };
         let mut nth: Vec<(usize, usize)> = self.values().filter_map(|(n, _, v)| Some((numbered(v)?, n))).collect();
@@ -187,8 +192,34 @@ impl Columns {
         Ok(())
     }
 
+    /// Times between contacts that rise from row to row are a running clock: those of a ball fall.
+    fn running(&mut self, region: &Region<'_>) {
+        let between: Vec<usize> = self
+            .values()
+            .filter(|(_, _, v)| v.what == What::Interval && v.at == At::Row && v.role == Role::Reading)
+            .map(|(n, _, _)| n)
+            .collect();
+        for index in between {
+            let number = |row: &usize| match region.view.read(*row, index) {
+                Cell::Number(m) => Some(m.value),
+                _ => clock(region.cell(*row, index)),
+            };
+            let times: Vec<f64> = region.rows.iter().filter_map(number).collect();
+            if times.len() > 2
+                && times.windows(2).all(|pair| pair[1] > pair[0])
+                && let Kind::Value(value) = &mut self.columns[index].kind
+            {
+                value.what = What::Time;
+                let name = shown(&self.columns[index].heading.text);
+                self.notes
+                    .push(format!("the times of '{name}' rise from row to row: taken as those of a running clock"));
+            }
+        }
+    }
+
     /// Running clocks, laps, and the heights that phyphox computes from the times.
-    pub(super) fn clocks(&mut self) {
+    pub(super) fn clocks(&mut self, region: &Region<'_>) {
+        self.running(region);
         let numbered = self.number().is_some() || self.one(&Kind::Label).is_some();
         if self.any(What::Total, Some(At::Row))
             && (numbered || self.any(What::Interval, Some(At::Row)))
@@ -219,7 +250,8 @@ impl Columns {
             .filter(|(_, _, v)| v.what == What::Height && (matches!(v.at, At::Nth(_)) || v.at == At::Release))
             .map(|(n, _, _)| n)
             .collect();
-        let computed = self.columns.iter().any(|c| c.heading.text.to_lowercase().starts_with("energy"));
+        let energy = |c: &super::columns::Column| folded(&c.heading.text).starts_with("energ");
+        let computed = self.columns.iter().any(energy);
         if computed && heights.iter().any(|&n| matches!(self.columns[n].value().map(|v| v.at), Some(At::Nth(_)))) {
             heights.into_iter().for_each(|index| self.leave(index, Why::Computed));
             self.notes.push("heights were left aside: phyphox computes them from the times".to_owned());
@@ -238,7 +270,14 @@ impl Columns {
 
     /// The unit of every column of numbers.
     pub(super) fn scales(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
+        let placed = self.any(What::Height, None) || self.any(What::Time, None);
         for index in 0..self.columns.len() {
+            // Programs write speeds in units of their own beside the places that they follow from.
+            let column = &self.columns[index];
+            if placed && column.holds(What::Speed) && column.unit.is_none_or(|unit| unit.dimension != Dimension::Speed)
+            {
+                self.leave(index, Why::Derived);
+            }
             let dimension = match &self.columns[index].kind {
                 Kind::Value(value) => value.what.dimension(),
                 Kind::Lost => Some(Dimension::Length),
@@ -313,10 +352,24 @@ impl Columns {
                 .push(format!("'{name}' has no unit: taken as pixels of unknown size, which a COR does not need"));
             return Ok(Some(Unit::PIXEL));
         }
+        if let Some(unit) = self.of_the_drop(region, index, dimension) {
+            return Ok(Some(unit));
+        }
         if let Some(unit) = self.adopted(region, index, dimension) {
             return Ok(Some(unit));
         }
         Err(self.no_unit(region, index, dimension))
+    }
+
+    /// The unit of the height of release in the heading, if the numbers below it are no higher in it.
+    fn of_the_drop(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
+        let drop = self.columns[index].value()?.drop.as_ref().filter(|drop| drop.unit.dimension == dimension)?;
+        let number = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(m) => Some(m.value),
+            _ => None,
+        };
+        let most = region.rows.iter().filter_map(number).fold(0.0, f64::max);
+        (NEAR * drop.value..=drop.value).contains(&most).then_some(drop.unit)
     }
 
     /// The unit of the neighbours, if they have one and the numbers below it make sense: no rebound is higher than the release.

@@ -82,7 +82,8 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             _ => {}
         }
         let event = columns.one(&Kind::Event).is_some_and(|n| !region.cell(row, n).is_empty());
-        let empty = columns.values().all(|(n, _, _)| region.cell(row, n).is_empty());
+        let held = columns.values().map(|(n, _, _)| n).chain(columns.one(&Kind::Frame));
+        let empty = held.into_iter().all(|n| region.cell(row, n).is_empty());
         if empty && !event {
             if used.iter().any(|&n| !region.cell(row, n).is_empty()) {
                 found.aside.push(leave(Why::Empty, Part::Row));
@@ -130,7 +131,8 @@ pub(super) fn bounce(cell: &str) -> Option<usize> {
         let n = measured.value;
         // In range and whole: the cast is exact.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        return (n.fract() == 0.0 && (0.0..=1e6).contains(&n) && measured.unit.is_none()).then_some(n as usize);
+        let plain = measured.unit.is_none() && measured.error.is_none();
+        return (n.fract() == 0.0 && (0.0..=1e6).contains(&n) && plain).then_some(n as usize);
     }
     let heading = Heading::parse(cell);
     if !heading.unknown.is_empty() {
@@ -174,6 +176,12 @@ fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>)
     if found.bounce.is_some() {
         return Ok(found);
     }
+    // `First drop` above `first bounce`.
+    let heading = Heading::parse(cell);
+    if number && heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.has(Atom::Impact) {
+        found.bounce = Some(0);
+        return Ok(found);
+    }
     if number {
         let message = match region.view.read(row, key) {
             Cell::Empty => "the cell is empty".to_owned(),
@@ -185,7 +193,7 @@ fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>)
             .error(row, key, message)
             .help("count the bounces in whole numbers, 0 being the release"));
     }
-    found.group = Heading::parse(cell).value().map_or(String::new(), |v| v.group.clone());
+    found.group = heading.value().map_or(String::new(), |v| v.group.clone());
     cell.clone_into(&mut found.name);
     Ok(found)
 }

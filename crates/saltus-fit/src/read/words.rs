@@ -72,6 +72,14 @@ pub(super) fn split(text: &str) -> Vec<Word> {
 
 /// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`; another one is not understood.
 pub(super) fn lettered(words: &mut [Word]) {
+    let measured = |w: &Word| w.is(Atom::Height) || w.is(Atom::Rebound) || w.is(Atom::Interval);
+    for n in 1..words.len().saturating_sub(1) {
+        let counted = matches!(words[n + 1].kind, Kind::Number(_));
+        // `height V1`, `height T2`: of a trial, since what is measured is said.
+        if counted && matches!(words[n].text.as_str(), "V" | "v" | "T") && words[..n].iter().any(measured) {
+            words[n].kind = Kind::Known(&[Atom::Trial]);
+        }
+    }
     for n in 0..words.len() {
         let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
         let named =
@@ -100,9 +108,13 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
             c => spelt.push(c),
         }
     }
+    for number in ["N°", "n°", "N.º", "n.º", "Nº", "nº"] {
+        spelt = spelt.replace(number, " number ");
+    }
     // Whose it is: "the ball's height".
     let spelt = spelt.replace("'s ", " ").replace("’s ", " ");
-    let parts = spelt.split('/').filter(|part| !part.trim().is_empty()).count();
+    // A date is none.
+    let parts = spelt.split('/').filter(|part| part.contains(char::is_alphabetic)).count();
     let mut found: Vec<String> = spelt
         .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
         .filter(|piece| !piece.is_empty())
@@ -156,7 +168,7 @@ pub(super) fn numbers(words: &[Word]) -> Numbers {
                 labelled = true;
             }
             Kind::Number(count) => found.bounce.push(count),
-            Kind::Ordinal(count) => {
+            Kind::Ordinal(count) | Kind::Known(&[Atom::Ordinal(count)]) => {
                 let next = words[n + 1..].iter().find(|w| counts(w));
                 if next.is_some_and(of_trial) {
                     found.trial = format!("{} {count}", next.map_or("", |w| w.text.as_str()));
@@ -167,7 +179,6 @@ pub(super) fn numbers(words: &[Word]) -> Numbers {
                     found.bounce.push(count);
                 }
             }
-            Kind::Known([Atom::Ordinal(count)]) => found.bounce.push(*count),
             _ if of_group(word) => {
                 labelled |= word.is(Atom::Label);
                 group.push(&word.text);

@@ -15,10 +15,11 @@ use crate::solve::choice::ModelChoice;
 use crate::solve::estimate::Estimate;
 use crate::solve::fits::{Fits, Known};
 use crate::solve::series::Series;
+use crate::statistics::median;
 
 pub(crate) use judgement::Judgement;
 pub use judgement::{Cor, Verdict};
-pub(crate) use unseen::{Stated, in_a_vacuum};
+pub(crate) use unseen::{Stated, air_shows, in_a_vacuum};
 
 /// What was said of the table when it was read, and what was done to put its readings in order.
 fn begun(fits: &Fits<'_>) -> Judgement {
@@ -51,6 +52,7 @@ pub(crate) fn of_readings(
         unseen::read_otherwise(&mut judgement, fits, known);
         judgement.doubt_if_vague();
     }
+    stated_differs(&mut judgement, fits);
     unseen::drag_held(&mut judgement, stated.drag.unwrap_or(0.0));
     let compared = &mut comparison.compared;
     judgement.findings.append(&mut compared.notes);
@@ -66,6 +68,19 @@ pub(crate) fn of_readings(
         weigh::rest_on(&mut judgement, wanted, compared);
     }
     judgement
+}
+
+/// A COR that the writer of a table worked out differs by so much only if it is of other numbers.
+const WORKED_OUT: f64 = 0.03;
+
+/// Doubts a COR that is neither that which the table itself works out from the same rows, nor its root, for who forgot it.
+fn stated_differs(judgement: &mut Judgement, fits: &Fits<'_>) {
+    let mut all: Vec<f64> = fits.table.trials().iter().flat_map(|trial| trial.stated.iter().copied()).collect();
+    let Some((cor, stated)) = judgement.cor.zip(median(&mut all)) else { return };
+    let near = |e: f64| (e - cor.value).abs() <= WORKED_OUT || (cor.low..=cor.high).contains(&e);
+    if !near(stated) && !near(stated.sqrt()) {
+        judgement.doubt(FindingKind::StatedDiffers { stated, cor: cor.value });
+    }
 }
 
 /// Judges the fit of all recordings; with it come the estimates and the models of the report.

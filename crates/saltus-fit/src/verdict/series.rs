@@ -207,7 +207,7 @@ fn allow(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
     let (rms, noise) = (worst.rms, worst.noise);
     let named = NAMED * 0.5 * (allowed.high - allowed.low);
     for (share, why) in [
-        (allowed.air, Widening::Air { most_per_m: ORDINARY_DRAG, share: allowed.air }),
+        (allowed.air, Widening::Air { most_per_m: ORDINARY_DRAG, share: allowed.air, ball: None }),
         (allowed.lens, Widening::Lens { share: allowed.lens.abs() }),
         (allowed.misfit, Widening::Misfit { rms, noise, share: allowed.misfit }),
     ] {

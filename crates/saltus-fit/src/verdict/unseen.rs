@@ -8,10 +8,10 @@ use crate::error::FitError;
 use crate::evidence::{Evidence, TrialEvidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
 use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, missed, raised, released_higher, telling, without_air};
-use crate::quantity::{Readings, Source};
+use crate::quantity::{Ball, Readings, Source};
 use crate::read::Table;
 use crate::solve::fits::{Fits, Known};
-use crate::statistics::{NORMAL, student};
+use crate::statistics::{CLEAR, NORMAL, student};
 
 /// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule without naming where on it.
 const USUAL_BALL: f64 = 0.067;
@@ -33,6 +33,8 @@ pub(crate) struct Stated {
     pub(crate) sigma_zero: Option<f64>,
     /// Drag, 1/m: the readings come without the air where it is stated.
     pub(crate) drag: Option<f64>,
+    /// The ball that the table names: its air is allowed for, and no other's.
+    pub(crate) named: Option<Ball>,
 }
 
 impl Stated {
@@ -70,6 +72,26 @@ pub(crate) fn in_a_vacuum(
     Ok(without_air(&evidence, (known.gravity.value, drag), before))
 }
 
+/// Whether the readings are clearly better explained with so much drag than with none.
+pub(crate) fn air_shows(table: &Table, evidence: &Evidence, (known, drag): (&Known, f64)) -> Result<bool, FitError> {
+    let few = telling(evidence);
+    let still = Fits::of(table, &few, known, false)?;
+    let same = Known { sigma_height: Some(still.sigma_height), sigma_time: Some(still.sigma_time), ..*known };
+    let scattered = [still.sigma_height, still.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
+    let still = misfit(&Fits::of(table, &few, &same, false)?);
+    let altered = in_a_vacuum(table, few, (&same, drag))?;
+    let moving = misfit(&Fits::of(table, &altered, &same, false)?);
+    let better = |((zero, _), (some, freedom)): ((f64, usize), (f64, usize))| {
+        let unit = some / freedom.max(1) as f64;
+        if scattered {
+            zero - some > student(freedom).powi(2).max(CLEAR) * unit
+        } else {
+            zero - some > CLEAR * unit.max(1.0)
+        }
+    };
+    Ok(still.zip(moving).is_some_and(better))
+}
+
 /// Widens the interval by what the readings cannot show.
 pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated): (&Known, Stated)) {
     let Some(cor) = judgement.cor.filter(|cor| cor.standard_error.is_some()) else { return };
@@ -95,9 +117,10 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     }
     if stated.drag.is_none()
         && before.value < 1.0
-        && let Some((most_per_m, share)) = air(fits, known, before.value)
+        && let Some((most_per_m, share)) = air(fits, known, (before.value, stated.named))
     {
-        shares.push(([(-share).max(0.0), share.max(0.0)], Widening::Air { most_per_m, share }));
+        let ball = stated.named;
+        shares.push(([(-share).max(0.0), share.max(0.0)], Widening::Air { most_per_m, share, ball }));
     }
     let side = |n: usize, own: f64| shares.iter().fold(own, |all, (share, _)| all.hypot(share[n]));
     let (below, above) = (side(0, cor.value - cor.low), side(1, cor.high - cor.value));
@@ -159,8 +182,9 @@ fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
 
 /// The most drag that the readings allow, and how far it moves the COR.
 ///
-/// That is the drag of the lightest ball, or less where the chi-square, a parabola over the drag, rules it out; that of ordinary balls is always allowed.
-fn air(fits: &Fits<'_>, known: &Known, e: f64) -> Option<(f64, f64)> {
+/// That is the drag of the ball that is named; else of the lightest ball, or less where the chi-square, a parabola over the drag, rules it out; that of
+/// ordinary balls is always allowed.
+fn air(fits: &Fits<'_>, known: &Known, (e, named): (f64, Option<Ball>)) -> Option<(f64, f64)> {
     // In units of one and the same error of reading.
     let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
     let at = |drag: f64| {
@@ -168,6 +192,11 @@ fn air(fits: &Fits<'_>, known: &Known, e: f64) -> Option<(f64, f64)> {
         let fits = Fits::of(fits.table, &altered, &same, false).ok()?;
         Some((judged(&fits)?.value, misfit(&fits))).filter(|(cor, _)| cor.is_finite())
     };
+    // Nothing keeps more than all of its speed.
+    let share = |most: f64, still: f64| Some((most, (at(most)?.0 - still).min(1.0 - e)));
+    if let Some(ball) = named {
+        return share(ball.drag(), at(0.0)?.0);
+    }
     let (still, ordinary, light) = (at(0.0)?, at(ORDINARY_DRAG)?, at(LIGHT_DRAG));
     let scattered = [fits.sigma_height, fits.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
     let most = match (still.1, ordinary.1, light.and_then(|light| light.1)) {
@@ -179,8 +208,7 @@ fn air(fits: &Fits<'_>, known: &Known, e: f64) -> Option<(f64, f64)> {
         _ if light.is_some() => LIGHT_DRAG,
         _ => ORDINARY_DRAG,
     };
-    // Nothing keeps more than all of its speed.
-    Some((most, (at(most)?.0 - still.0).min(1.0 - e)))
+    share(most, still.0)
 }
 
 /// The drag, from that of ordinary balls to that of the lightest, up to which a chi-square stays within one of its least; it rises by so much from no drag

@@ -2,8 +2,9 @@
 
 mod cells;
 mod rows;
+mod stated;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::aside::LeftAside;
 use super::cell::Cell;
@@ -33,8 +34,10 @@ struct Builder<'a> {
     settings: Vec<usize>,
     trials: Vec<Trial>,
     index: HashMap<String, usize>,
-    /// Cells that stood in the row before, where a merged cell leaves the next ones empty.
-    merged: HashMap<usize, String>,
+    /// Whether each column, of those that tell what was tried, tells groups apart.
+    apart: Vec<bool>,
+    /// The rows of the last cells that are not empty, by column: a merged cell leaves the next ones empty.
+    merged: HashMap<usize, usize>,
     /// The lines of rows of a series without a position.
     missing: Vec<u64>,
     aside: Vec<LeftAside>,
@@ -67,20 +70,19 @@ pub(super) fn table(
             .help("add the readings below the header"));
     }
     floor(region, columns, &rows, options)?;
-    let tracks = tracks(columns);
-    let layout = layout(region, columns, &rows, &tracks)?;
     let mut table = Table { metadata, ..Table::default() };
     table.metadata.pixels |= columns.unscaled;
-    unscaled(region, columns, layout, options, &mut table.metadata)?;
     if skipped > 0 {
         table.notes.push(format!("{} rows kept and {skipped} left out by the filter", rows.rows.len()));
     }
     table.rows = rows.rows.len();
+    let mut tracks = tracks(columns);
     let mut builder = Builder {
         region,
-        layout,
+        layout: Layout::Listed,
         keys: Vec::new(),
         settings: Vec::new(),
+        apart: vec![true; columns.columns.len()],
         columns,
         trials: Vec::new(),
         index: HashMap::new(),
@@ -89,14 +91,22 @@ pub(super) fn table(
         aside: rows.aside.clone(),
         flights: Vec::new(),
     };
-    builder.keyed();
+    if builder.dropped(&rows, &mut tracks, metadata.drop)? {
+        table.notes.push(format!("dropped from {} m, as stated", metadata.drop.unwrap_or_default()));
+    }
+    builder.layout = layout(region, builder.columns, &rows, &tracks)?;
+    unscaled(region, builder.columns, builder.layout, options, &mut table.metadata)?;
+    builder.keyed(&rows, tracks.len());
     let flights = builder.descending(&rows, &tracks)?;
     for (n, row) in rows.rows.iter().enumerate() {
         for track in &tracks {
             builder.row(n, row, track, flights)?;
         }
     }
-    builder.finish(options, &tracks, flights, table)
+    let (region, columns) = (builder.region, builder.columns.clone());
+    let mut table = builder.finish(options, &tracks, flights, table)?;
+    stated::cors(region, &columns, &rows, &mut table.trials);
+    Ok(table)
 }
 
 /// Keeps the rows that every filter asks for, and counts the others.
@@ -173,7 +183,7 @@ fn unscaled(
 
 impl Builder<'_> {
     /// Finds the columns whose cells tell trials apart.
-    fn keyed(&mut self) {
+    fn keyed(&mut self, rows: &Rows, tracks: usize) {
         let columns = &self.columns.columns;
         let release = |n: &usize| {
             columns[*n].value().is_some_and(|v| v.at == At::Release && v.trial.is_empty() && v.group.is_empty())
@@ -186,6 +196,25 @@ impl Builder<'_> {
             .filter(|n| columns[*n].kind == Kind::Setting || drops && release(n) && self.columns.values().count() > 1)
             .collect();
         self.keys = all.filter(|n| columns[*n].kind == Kind::Trial || self.settings.contains(n)).collect();
+        // A condition that is measured, such as a temperature, tells groups apart where its values repeat, or stand beside several trials.
+        let trials = match self.layout {
+            Layout::Pairs | Layout::Wide => rows.rows.len(),
+            _ => rows.rows.iter().map(|row| self.key(row)).collect::<HashSet<String>>().len(),
+        };
+        for n in self.settings.clone().into_iter().filter(|n| self.columns.columns[*n].heading.unit.is_some()) {
+            let cells = rows.rows.iter().map(|row| self.region.cell(row.at, n)).filter(|cell| !cell.is_empty());
+            self.apart[n] = trials * tracks >= 2 * cells.collect::<HashSet<&str>>().len();
+        }
+        if let Layout::Samples { .. } = self.layout {
+            // What is another in every row counts the samples.
+            let counts = |n: usize| {
+                let cells: HashSet<&str> = rows.rows.iter().map(|row| self.region.cell(row.at, n)).collect();
+                rows.rows.len() > 2 && cells.len() == rows.rows.len()
+            };
+            let keys: Vec<usize> = self.keys.iter().copied().filter(|&n| !counts(n)).collect();
+            self.settings.retain(|n| keys.contains(n));
+            self.keys = keys;
+        }
         let sure = self.columns.number().is_none_or(|(_, sure)| sure);
         if !sure
             && matches!(self.layout, Layout::Pairs | Layout::Wide)
@@ -242,10 +271,12 @@ impl Builder<'_> {
 
     /// The text of a cell, or of the merged cell that it is part of.
     fn text(&self, row: usize, column: usize) -> &str {
-        match self.region.cell(row, column) {
-            "" => self.merged.get(&column).map_or("", String::as_str),
-            cell => cell,
-        }
+        self.region.cell(self.spanning(row, column), column)
+    }
+
+    /// The row of a cell, or of the merged cell that it is part of.
+    fn spanning(&self, row: usize, column: usize) -> usize {
+        if self.region.cell(row, column).is_empty() { self.merged.get(&column).copied().unwrap_or(row) } else { row }
     }
 
     /// What remains to be done once all rows are read.

@@ -11,17 +11,15 @@ use crate::read::heading::{At, Heading, What};
 use crate::read::layout::{Layout, Track};
 use crate::read::region::Region;
 use crate::read::rows::Row;
+use crate::read::units::Scale;
 use crate::read::vocabulary::Atom;
 use crate::read::{Event, Reading, Timed, Trial};
 
 impl Builder<'_> {
     pub(super) fn row(&mut self, n: usize, row: &Row, track: &Track, flights: bool) -> Result<(), TableError> {
-        if matches!(self.layout, Layout::Numbered | Layout::Events { .. } | Layout::Samples { .. }) {
-            for index in self.keys.clone() {
-                let cell = self.region.cell(row.at, index).to_owned();
-                if !cell.is_empty() {
-                    self.merged.insert(index, cell);
-                }
+        for &index in self.keys.iter().chain(&track.release) {
+            if !self.region.cell(row.at, index).is_empty() {
+                self.merged.insert(index, row.at);
             }
         }
         match self.layout {
@@ -36,8 +34,8 @@ impl Builder<'_> {
                 let count =
                     self.trials[trial].readings.iter().filter(|r| r.event != Event::Release || r.bounce > 0).count();
                 let released = self.trials[trial].readings.iter().any(|r| r.event == Event::Release);
-                let next = if track.release.is_some() { count + 1 } else { count + usize::from(released) };
-                let place = if several { next } else { n + usize::from(track.release.is_some()) };
+                let next = if track.released() { count + 1 } else { count + usize::from(released) };
+                let place = if several { next } else { n + usize::from(track.released()) };
                 self.numbered(place, row, track, flights)
             }
         }
@@ -76,20 +74,19 @@ impl Builder<'_> {
         let mut setting = self.listed(row, &self.settings);
         let groups = self.settings.iter().filter(|&&n| {
             let column = &self.columns.columns[n];
-            // A temperature is a condition of the drop, and no other ball.
-            column.kind == Kind::Setting && column.heading.unit.is_none()
+            column.kind == Kind::Setting && self.apart[n]
         });
         let mut group: Vec<String> = groups.map(|&n| self.text(row.at, n).to_owned()).collect();
-        let mut balls = group.iter().filter_map(|name| Ball::named(name));
-        let ball = balls.next().filter(|_| balls.next().is_none());
         for name in [&row.group, &track.group].into_iter().filter(|name| !name.is_empty()) {
             setting.push(name.clone());
             group.push(name.clone());
         }
+        let mut balls = group.iter().filter_map(|name| Ball::named(name));
+        let ball = balls.next().filter(|_| balls.next().is_none());
         let mut readings = Vec::new();
         if let Some((index, (height, sigma))) = track
             .release
-            .map(|n| Ok((n, self.height(row.at, n)?)))
+            .map(|n| Ok((n, self.height(self.spanning(row.at, n), n)?)))
             .transpose()?
             .and_then(|(n, found)| Some((n, found?)))
         {
@@ -100,6 +97,10 @@ impl Builder<'_> {
                 ..Reading::new(Event::Release, 0, line)
             });
         }
+        if let Some(height) = track.drop.filter(|_| track.release.is_none()) {
+            let line = self.line(row.at, 0);
+            readings.push(Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
+        }
         group.retain(|part| !part.is_empty());
         self.trials.push(Trial {
             label: label.join(", "),
@@ -108,6 +109,7 @@ impl Builder<'_> {
             ball,
             readings,
             timed: None,
+            stated: Vec::new(),
         });
         Ok(self.trials.len() - 1)
     }
@@ -236,6 +238,9 @@ impl Builder<'_> {
     pub(super) fn pair(&mut self, row: &Row, track: &Track) -> Result<(), TableError> {
         let rebound = track.height.or(track.after).or(track.lost).or(track.interval).or(track.total);
         let before = track.release.or(track.before);
+        if let Some((drop, rebound)) = track.drop.filter(|_| before.is_none()).zip(rebound) {
+            return self.rebound(row, track, rebound, (drop, None));
+        }
         let Some((before, rebound)) = before.zip(rebound) else {
             return match rebound.or(before) {
                 Some(column) if rebound.is_some() => Err(self
@@ -251,15 +256,30 @@ impl Builder<'_> {
                 _ => Ok(()),
             };
         };
-        let line = self.line(row.at, rebound);
         if matches!(self.region.view.read(row.at, rebound), Cell::Empty) {
             let name = self.columns.columns[rebound].heading.text.clone();
+            let line = self.line(row.at, rebound);
             self.aside.push(LeftAside::new(Part::Cell, shown(&name), Why::Empty).at(line));
             return Ok(());
         }
+        let drop = self.height(self.spanning(row.at, before), before)?.ok_or_else(|| self.empty(row.at, before))?;
+        self.rebound(row, track, rebound, drop)
+    }
+
+    /// The rebound of a row from a known height.
+    fn rebound(
+        &mut self,
+        row: &Row,
+        track: &Track,
+        rebound: usize,
+        (drop, sigma): (f64, Option<f64>),
+    ) -> Result<(), TableError> {
+        if self.region.cell(row.at, rebound).is_empty() {
+            return Ok(());
+        }
+        let line = self.line(row.at, rebound);
         let trial = self.push(row, track, &format!("line {line}"))?;
-        let (drop, sigma) = self.height(row.at, before)?.ok_or_else(|| self.empty(row.at, before))?;
-        if track.release.is_none() {
+        if !track.released() {
             self.apex(trial, 0, (drop, sigma), line);
         }
         if Some(rebound) == track.interval || Some(rebound) == track.total {
@@ -269,7 +289,13 @@ impl Builder<'_> {
             return Ok(());
         }
         let (mut height, sigma) = if Some(rebound) == track.lost {
-            self.required(row.at, rebound)?
+            let (lost, sigma) = self.required(row.at, rebound)?;
+            // Hundredths of the height of release.
+            let percent = self.region.view.read(row.at, rebound);
+            let percent = self.columns.columns[rebound].unit.is_some_and(|unit| unit.scale == Scale::Percent)
+                || matches!(percent, Cell::Number(m) if m.unit.is_some_and(|unit| unit.scale == Scale::Percent));
+            let of = if percent { drop } else { 1.0 };
+            (lost * of, sigma.map(|sigma| sigma * of))
         } else {
             self.height(row.at, rebound)?.ok_or_else(|| self.empty(row.at, rebound))?
         };
@@ -326,6 +352,15 @@ impl Builder<'_> {
         let bounce = self.next_bounce(trial, what);
         let time = track.time.map(|c| self.number(row.at, c)).transpose()?.flatten();
         let high = track.height.or(track.speed).map(|c| self.height(row.at, c)).transpose()?.flatten();
+        if let (Event::Contact, Some(_), Some((height, _))) = (what, track.height, high)
+            && height != 0.0
+            && track.time.is_none()
+        {
+            // Rows named by their bounces, without a clock: the height is the one reached after it.
+            let bounce = self.next_bounce(trial, Event::Contact);
+            self.apex(trial, bounce, (height, high.and_then(|h| h.1)), line);
+            return Ok(());
+        }
         if let (Event::Contact, Some(index), Some((height, _))) = (what, track.height, high)
             && height != 0.0
         {

@@ -97,7 +97,7 @@ impl Columns {
             }
             self.leave(index, Why::NotUnderstood);
         }
-        if self.values().next().is_none() && !region.chosen {
+        if self.values().next().is_none() && self.one(&Kind::Frame).is_none() && !region.chosen {
             return Err(self.nothing(region));
         }
         Ok(())
@@ -105,6 +105,9 @@ impl Columns {
 
     /// No column is of use: why not, at the one that comes nearest.
     pub(super) fn nothing(&self, region: &Region<'_>) -> TableError {
+        if let Some(error) = self.several(region) {
+            return error;
+        }
         let near = |c: &Column| !c.heading.unknown.is_empty() && !matches!(c.heading.meaning, Meaning::Empty);
         let index = self.columns.iter().position(|c| near(c) && c.heading.value().is_some());
         let index = index.or(self.columns.iter().position(|c| !c.heading.unknown.is_empty()));
@@ -120,7 +123,26 @@ impl Columns {
         if let Some((index, dimension)) = (0..self.columns.len()).find_map(|n| Some((n, measured(&self.columns[n])?))) {
             return self.mismatch(region, index, dimension);
         }
-        region.error("no column holds heights or times").nothing().help("name one, such as 'height_cm' or 'time_s'")
+        let left: Vec<String> = self.aside.iter().map(|aside| format!("'{}': {}", aside.name, aside.why)).collect();
+        let left = if left.is_empty() { String::new() } else { format!("; left aside are {}", left.join(", ")) };
+        let help = format!("name one, such as 'height_cm' or 'time_s'{left}");
+        region.error("no column holds heights or times").nothing().help(help)
+    }
+
+    /// Several columns of readings that nothing in their names tells apart but words that are not understood: of persons, or of balls.
+    fn several(&self, region: &Region<'_>) -> Option<TableError> {
+        let unknown = |c: &&Column| {
+            let unit = c.heading.unit.is_some_and(|u| matches!(u.dimension, Dimension::Length | Dimension::Time));
+            unit && !c.heading.unknown.is_empty() && !c.heading.turns()
+        };
+        let names: Vec<String> = self.columns.iter().filter(unknown).map(|c| shown(&c.heading.text)).collect();
+        let index = self.columns.iter().position(|c| unknown(&c)).filter(|_| names.len() > 1)?;
+        let message = format!("what do '{}' tell apart?", names.join("', '"));
+        Some(region.header_error(index, message).question().help(format!(
+            "balls or surfaces: --group '{}'; trials: names such as 'trial 1 (cm)' by --header; one of them: --column '{}'",
+            names.join(","),
+            names[0]
+        )))
     }
 
     /// The unit of a column is of something else than what it holds.
@@ -133,7 +155,7 @@ impl Columns {
             .help(format!("use one of {}", dimension.known()))
     }
 
-    pub(super) fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
+    pub(in crate::read) fn unknown(&self, region: &Region<'_>, index: usize, word: &str) -> TableError {
         let heading = &self.columns[index].heading;
         let name = shown(&heading.text);
         if heading.text.trim().parse::<f64>().is_ok() {

@@ -1,6 +1,7 @@
 //! What the columns of a table are: a heading alone says much, its neighbours and its cells the rest.
 
 mod faults;
+mod pairs;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
@@ -66,7 +67,7 @@ impl Column {
 }
 
 /// The columns of a table and what was noted about them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Columns {
     pub(super) columns: Vec<Column>,
     pub(super) aside: Vec<LeftAside>,
@@ -85,12 +86,16 @@ impl Columns {
             found.push(Heading::parse(text));
         }
         found.counted(region);
+        found.measured(region);
+        found.counting(region);
+        found.placed();
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;
         found.not_understood(region)?;
         found.drops(region);
         found.statistics(region)?;
+        found.paired(region)?;
         found.repeats(region);
         Ok(found)
     }
@@ -102,9 +107,10 @@ impl Columns {
         options: &ReadOptions,
         fps: Option<f64>,
     ) -> Result<(), TableError> {
+        self.wordy(region);
         self.infer(region, options)?;
         self.frames(region, fps)?;
-        self.clocks();
+        self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;
         self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
@@ -175,6 +181,38 @@ impl Columns {
         let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
         if numbers() > words() {
             self.columns[event].kind = Kind::Number { sure: true };
+        }
+    }
+
+    /// Times that are written in words, such as the date of a form, are remarks beside readings.
+    fn wordy(&mut self, region: &Region<'_>) {
+        let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
+        let of: Vec<(usize, What)> = self.values().map(|(n, _, v)| (n, v.what)).collect();
+        let others = of.iter().any(|(n, what)| *what != What::Time && numbers(*n));
+        for (index, _) in of.into_iter().filter(|(n, what)| *what == What::Time && others && !numbers(*n) && words(*n))
+        {
+            self.leave(index, Why::Note);
+        }
+    }
+
+    /// `h_n` beside `h_n+1`: of a bounce what was before it, and what comes after it.
+    fn placed(&mut self) {
+        let places: Vec<(usize, i8, What)> =
+            self.values().filter_map(|(n, c, v)| Some((n, c.heading.place?, v.what))).collect();
+        for &(index, place, what) in &places {
+            let later = places.iter().any(|p| p.2 == what && p.1 > place);
+            let earlier = places.iter().any(|p| p.2 == what && p.1 < place);
+            if let Kind::Value(value) = &mut self.columns[index].kind
+                && later != earlier
+            {
+                value.at = match (what, later) {
+                    (What::Height, true) => At::Release,
+                    (_, true) => At::Before,
+                    (What::Speed, false) => At::After,
+                    (_, false) => At::Row,
+                };
+            }
         }
     }
 
@@ -308,8 +346,23 @@ impl Columns {
                 seen.push((index, value));
                 continue;
             };
-            if self.alike(region, *before, index) {
-                self.leave(index, Why::Elsewhere);
+            if let Some(coarser) = self.alike(region, *before, index) {
+                if coarser != index {
+                    let first = *before;
+                    seen.retain(|(n, _)| *n != first);
+                    seen.push((index, value));
+                }
+                self.leave(coarser, Why::Elsewhere);
+                continue;
+            }
+            // Of the places of a film one axis may lie still.
+            let (first, still) = (*before, |n: usize| value.position && constant(region, n));
+            if still(index) || still(first) {
+                if !still(index) {
+                    seen.push((index, value.clone()));
+                    seen.retain(|(n, _)| *n != first);
+                }
+                self.leave(if still(index) { index } else { first }, Why::Still);
                 continue;
             }
             let name = |n: usize| shown(&self.columns[n].heading.text);
@@ -328,21 +381,38 @@ impl Columns {
         Ok(())
     }
 
-    /// Whether two columns say the same in every row, as in centimetres and in inches.
-    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> bool {
-        /// What rounding to two digits leaves between two units.
-        const ROUNDED: f64 = 0.01;
+    /// The coarser of two columns that say the same in every row to their last digits, as in centimetres and in inches.
+    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
+        // A number, and half a unit in its last place.
         let si = |row: usize, column: usize| match region.view.read(row, column) {
-            Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
+            Cell::Number(m) => {
+                let unit = m.unit.or(self.columns[column].unit)?;
+                let text = region.cell(row, column);
+                let digits = text
+                    .find(['.', ','])
+                    .map_or(0, |at| text[at + 1..].chars().take_while(char::is_ascii_digit).count());
+                Some((unit.si(m.value), unit.si(0.5 * 0.1f64.powf(digits as f64))))
+            }
             _ => None,
         };
-        let pairs: Vec<(f64, f64)> =
-            region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
-        let (one, other) = (&self.columns[one], &self.columns[other]);
-        pairs.len() > 1
-            && one.unit != other.unit
-            && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * a.abs().max(b.abs()))
+        let pairs: Vec<_> = region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
+        let rounded = |((a, half), (b, other)): &((f64, f64), (f64, f64))| (a - b).abs() <= 1.001 * (half + other);
+        let alike = pairs.len() > 1 && self.columns[one].unit != self.columns[other].unit && pairs.iter().all(rounded);
+        let coarser = pairs.iter().map(|(a, b)| a.1 - b.1).sum::<f64>() > 0.0;
+        alike.then_some(if coarser { one } else { other })
     }
+}
+
+/// Whether all numbers of a column are the same, there being several.
+fn constant(region: &Region<'_>, column: usize) -> bool {
+    let number = |row: &usize| match region.view.read(*row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let mut numbers = region.rows.iter().filter_map(number);
+    let first = numbers.next();
+    let mut rest = numbers.peekable();
+    rest.peek().is_some() && rest.all(|n| Some(n) == first)
 }
 
 /// Readings of which the row tells the event.
@@ -355,5 +425,6 @@ pub(super) fn plain(what: What) -> Value {
         group: String::new(),
         position: false,
         or_trial: false,
+        drop: None,
     }
 }

@@ -90,7 +90,10 @@ pub(super) fn widening(widening: &Widening) -> String {
             "the height of release is known to {} only, which may move the COR by {share:.3}: its own row may state its error",
             length(*sigma_m)
         ),
-        Widening::Air { most_per_m, share } => format!(
+        Widening::Air { share, ball: Some(ball), .. } => format!(
+            "the table names the ball, {ball}, whose air may move the COR by {share:+.3}: --ball {ball} takes the air out of it"
+        ),
+        Widening::Air { most_per_m, share, ball: None } => format!(
             "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
              tennis) or its drag (--drag)"
         ),

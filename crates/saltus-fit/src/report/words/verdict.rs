@@ -44,8 +44,14 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
         FindingKind::ErrorsTooLarge { readings, times } => format!(
             "the {readings} scatter {times:.2} times as much as their reading errors say: those are probably too large"
         ),
-        FindingKind::BallNamed { ball } => format!(
-            "the table names the ball, {ball}: its size ({}) and its drag ({:.3} /m) by the rules of its sport are taken, as --ball does",
+        FindingKind::BallNamed { ball, air: true } => format!(
+            "the table names the ball, {ball}, and its air shows: its drag ({:.3} /m) and its size ({}) by the rules of its sport are taken, as --ball does",
+            ball.drag(),
+            length(ball.diameter())
+        ),
+        FindingKind::BallNamed { ball, air: false } => format!(
+            "the table names the ball, {ball}: the interval allows for its size ({}) and its drag ({:.3} /m) by the rules of its sport; --ball {ball} takes \
+             the air out of the COR",
             length(ball.diameter()),
             ball.drag()
         ),
@@ -136,6 +142,9 @@ fn whole(finding: &Finding) -> Option<String> {
             "the first flight and the release height give {cor:.3}: the release height, gravity or the first bounce is not what it is taken \
              for (this value is shown, not used)"
         ),
+        FindingKind::StatedDiffers { stated, cor } => format!(
+            "the table itself works out a COR of {stated:.3}, and its readings give {cor:.3}: were they read as they are meant? (the notes say how)"
+        ),
         FindingKind::Vague { low, high } => {
             format!("the COR is hardly known: from {low:.2} to {high:.2}; are the units and the reading errors right?")
         }
@@ -146,7 +155,8 @@ fn whole(finding: &Finding) -> Option<String> {
             format!("no rebound was high enough to be read: the COR is at most {high:.2} (95 %)")
         }
         FindingKind::OneHeight => {
-            "a COR needs the height before and after a bounce, and there is one height at most".to_owned()
+            "a COR needs the height before and after a bounce, and there is one height at most (from which height was the ball dropped? --drop 1m)"
+                .to_owned()
         }
         FindingKind::OneContact => "a COR needs two flights to compare, and there is one contact only".to_owned(),
         FindingKind::OneFlight => {

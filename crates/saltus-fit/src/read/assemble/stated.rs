@@ -1,0 +1,66 @@
+//! What a table states beside its readings: a height of release above it or in an option, the CORs that its writer worked out.
+
+use std::collections::HashMap;
+
+use super::Builder;
+use crate::error::TableError;
+use crate::read::Trial;
+use crate::read::cell::Cell;
+use crate::read::columns::{Columns, Kind};
+use crate::read::heading::What;
+use crate::read::layout::Track;
+use crate::read::region::Region;
+use crate::read::rows::Rows;
+use crate::read::units::Scale;
+
+/// A first height down to this part of the stated one is the release itself: no ball rebounds so high.
+const RELEASE: f64 = 0.99;
+
+/// Gives each trial the CORs that a column of the table works out beside its readings.
+pub(super) fn cors(region: &Region<'_>, columns: &Columns, rows: &Rows, trials: &mut [Trial]) {
+    if region.view.across {
+        return;
+    }
+    for (index, column) in columns.columns.iter().enumerate().filter(|(_, c)| c.kind == Kind::Aside && c.heading.cor) {
+        let mut found: HashMap<u64, f64> = HashMap::new();
+        for row in &rows.rows {
+            if let Cell::Number(m) = region.view.read(row.at, index) {
+                let unit = m.unit.or(column.unit).filter(|unit| unit.scale == Scale::Percent);
+                let cor = unit.map_or(m.value, |unit| unit.si(m.value));
+                if cor > 0.0 && cor < 1.5 {
+                    found.insert(region.view.line(row.at, index), cor);
+                }
+            }
+        }
+        for trial in trials.iter_mut() {
+            let mut lines: Vec<u64> = trial.readings.iter().map(|r| r.line).collect();
+            lines.dedup();
+            trial.stated.extend(lines.iter().filter_map(|line| found.get(line)));
+        }
+    }
+}
+
+impl Builder<'_> {
+    /// Gives the tracks the stated height of release, unless a column, or a row, tells it; says whether any took it.
+    pub(super) fn dropped(&self, rows: &Rows, tracks: &mut [Track], drop: Option<f64>) -> Result<bool, TableError> {
+        // Hundredths are of the release.
+        let percent = self.columns.values().any(|(_, c, _)| c.unit.is_some_and(|unit| unit.scale == Scale::Percent));
+        let Some(drop) = drop.filter(|_| !self.columns.unscaled).or(percent.then_some(1.0)) else { return Ok(false) };
+        let numbered = rows.rows.iter().any(|row| row.bounce == Some(0));
+        let events = self.columns.one(&Kind::Event).is_some();
+        let series = tracks.iter().any(|t| t.time.is_some() && t.height.is_some());
+        if numbered || events || series {
+            return Ok(false);
+        }
+        let mut taken = false;
+        for track in tracks.iter_mut().filter(|t| !t.released() && t.before.is_none()) {
+            let column = track.height.or(track.nth.first().copied());
+            let column = column.filter(|n| self.columns.columns[*n].holds(What::Height));
+            let first = rows.rows.iter().find_map(|row| self.height(row.at, column?).transpose()).transpose()?;
+            if first.is_none_or(|(height, _)| height < RELEASE * drop) {
+                (track.drop, taken) = (Some(drop), true);
+            }
+        }
+        Ok(taken && !percent)
+    }
+}

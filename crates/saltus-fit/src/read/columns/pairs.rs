@@ -1,0 +1,102 @@
+//! Columns that are what they are beside others: drops with their own rebounds, counts of rows, measured cells under the name of a key.
+
+use super::{Columns, Kind, plain};
+use crate::error::TableError;
+use crate::read::cell::Cell;
+use crate::read::grid::shown;
+use crate::read::heading::{At, What};
+use crate::read::region::Region;
+use crate::read::units::{Dimension, Scale};
+use crate::read::vocabulary::Atom;
+
+impl Columns {
+    /// `Drop 1,Rebound 1,Drop 2,Rebound 2`: each drop with its own rebound; a single numbered drop is that of all bounces.
+    pub(super) fn paired(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        let number = |trial: &str| trial.rsplit(' ').next().and_then(|n| n.parse::<usize>().ok());
+        let mut drops: Vec<(usize, usize)> = Vec::new();
+        let mut rebounds: Vec<(usize, usize)> = Vec::new();
+        for (index, column, value) in self.values().filter(|(_, _, v)| matches!(v.what, What::Height | What::Unsaid)) {
+            match value.at {
+                At::Nth(n) if value.trial.is_empty() => rebounds.push((n, index)),
+                At::Row if column.heading.has(Atom::Release) && !column.heading.has(Atom::Rebound) => {
+                    drops.extend(number(&value.trial).filter(|_| value.drop.is_none()).map(|n| (n, index)));
+                }
+                _ => {}
+            }
+        }
+        drops.sort_unstable();
+        rebounds.sort_unstable();
+        if drops.is_empty() || rebounds.is_empty() {
+            return Ok(());
+        }
+        let same = drops.iter().map(|(n, _)| n).eq(rebounds.iter().map(|(n, _)| n));
+        if let ([(_, drop)], false) = (drops.as_slice(), same && rebounds.len() > 1) {
+            self.place(*drop, At::Release, String::new());
+            return Ok(());
+        }
+        if !same {
+            let (first, second) = (drops[0].1, rebounds[0].1);
+            let name = |n: usize| shown(&self.columns[n].heading.text);
+            let message = format!("which of the drops such as '{}' does '{}' belong to?", name(first), name(second));
+            return Err(region
+                .header_error(second, message)
+                .question()
+                .help("give each drop a row of its own, or one rebound of the same number"));
+        }
+        for ((n, drop), (_, rebound)) in drops.into_iter().zip(rebounds) {
+            self.place(drop, At::Release, format!("drop {n}"));
+            self.place(rebound, At::Row, format!("drop {n}"));
+        }
+        Ok(())
+    }
+
+    fn place(&mut self, index: usize, at: At, trial: String) {
+        if let Kind::Value(value) = &mut self.columns[index].kind {
+            (value.at, value.trial, value.or_trial) = (at, trial, false);
+        }
+    }
+
+    /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak height (m)`.
+    pub(super) fn counting(&mut self, region: &Region<'_>) {
+        if self.number().is_some() {
+            return;
+        }
+        let measured = |n: usize| self.values().any(|(other, c, _)| other != n && c.unit.is_some());
+        let found = self.values().find(|(n, c, v)| {
+            let bare = c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
+            let rows = region.rows.iter().filter(|&&row| !region.cell(row, *n).is_empty());
+            let first =
+                rows.clone().next().and_then(|&row| region.cell(row, *n).parse::<usize>().ok()).filter(|n| *n < 2);
+            let count = rows.clone().count();
+            let counts = first
+                .is_some_and(|first| rows.enumerate().all(|(k, &row)| region.cell(row, *n).parse() == Ok(first + k)));
+            bare && counts && count > 1 && measured(*n)
+        });
+        if let Some(index) = found.map(|(n, _, _)| n) {
+            self.columns[index].kind = Kind::Number { sure: self.columns[index].heading.has(Atom::Rebound) };
+        }
+    }
+
+    /// Under the name of a key, such as `Bounce` or `Experiment`, cells that all bear units are readings.
+    pub(super) fn measured(&mut self, region: &Region<'_>) {
+        for column in 0..self.columns.len() {
+            let key = matches!(self.columns[column].kind, Kind::Number { .. } | Kind::Trial | Kind::Event);
+            let cells: Vec<Cell> = region.rows.iter().map(|&row| region.view.read(row, column)).collect();
+            let unit = |cell: &Cell| match cell {
+                Cell::Number(m) => m.unit.filter(|unit| unit.scale != Scale::Percent).map(|unit| unit.dimension),
+                _ => None,
+            };
+            let first = cells.iter().find_map(unit).filter(|_| key);
+            let of_one = cells.iter().all(|cell| matches!(cell, Cell::Empty | Cell::Words) || unit(cell) == first);
+            let what = match first {
+                Some(Dimension::Length) => What::Height,
+                Some(Dimension::Speed) => What::Speed,
+                Some(Dimension::Time) if self.columns[column].kind != Kind::Trial => What::Time,
+                _ => continue,
+            };
+            if of_one && cells.iter().filter(|cell| unit(cell).is_some()).count() > 1 {
+                self.columns[column].kind = Kind::Value(plain(what));
+            }
+        }
+    }
+}
