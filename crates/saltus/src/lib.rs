@@ -38,6 +38,7 @@ mod filippov;
 mod hybrid;
 mod inspection;
 mod jump;
+mod memory;
 mod observe;
 mod piece;
 mod poly;
