@@ -57,17 +57,21 @@ pub(super) struct Sides {
 /// Both limits of each jump at which the line breaks; marks only where no other jump is near.
 pub(super) fn sides(traced: &Traced, line: usize, (x, y): (Affine, Affine), ty: Type) -> Sides {
     let place = |(t, from, to): (f64, f64, f64)| (x.at(t), y.at(from), y.at(to));
-    let breaks: Vec<_> = traced.breaks(line).map(place).filter(|(_, from, to)| (from - to).abs() > BREAK).collect();
+    let breaks: Vec<_> = traced.breaks(line).map(place).collect();
     let r = radius(ty);
     let mut sides = Sides::default();
     let mut drawn = f64::NEG_INFINITY;
     for (n, &(px, from, to)) in breaks.iter().enumerate() {
+        if (from - to).abs() < BREAK {
+            continue;
+        }
         if px - drawn > SAME {
             sides.between.push_str(&format!("M{} {}V{}", number(px, 2), number(from, 2), number(to, 2)));
             drawn = px;
         }
         let near = |other: Option<&(f64, f64, f64)>| other.is_some_and(|other| (other.0 - px).abs() < 4.0 * r);
-        if near(n.checked_sub(1).and_then(|before| breaks.get(before))) || near(breaks.get(n + 1)) {
+        let crowded = near(n.checked_sub(1).and_then(|before| breaks.get(before))) || near(breaks.get(n + 1));
+        if crowded || (from - to).abs() < 3.0 * r {
             continue;
         }
         let [left, middle, breadth] = [px - r, from, 2.0 * r].map(|value| number(value, 2));

@@ -24,9 +24,9 @@ use crate::traced::Traced;
 use crate::unit::Unit;
 
 /// The width of a page, and the height of all its panels if each is high enough then, in px.
-const PAGE: (f64, f64) = (800.0, 430.0);
+const PAGE: (f64, f64) = (800.0, 470.0);
 /// The least height of a panel, in px.
-const LOWEST: f64 = 110.0;
+const LOWEST: f64 = 116.0;
 /// Lines of a panel beyond so many have no names of their own.
 const NAMES: usize = 8;
 
@@ -179,7 +179,7 @@ fn panel(content: &Content<'_>, lines: &[usize], reach: &[(f64, f64)], (high, pa
     let (low, top) = opened((low / unit.size, top / unit.size));
     let air = (top - low) * (0.5 * ty.base / high).min(0.1);
     let ends = (low - air, top + air);
-    let most = (high / (1.5 * ty.base)).clamp(2.0, 10.0) as usize;
+    let most = (high / (1.4 * ty.base)).clamp(2.0, 10.0) as usize;
     let legend = Legend::of(words(&labels, &unit, same, ty), ty, page - 2.0 * ty.margin());
     Panel { lines: lines.to_vec(), legend, axis: Axis::new(ends.0, ends.1, ends, most), unit }
 }
