@@ -6,7 +6,8 @@ use std::error::Error;
 
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Hybrid, Simulation};
-use saltus_examples::{Figure, gallery};
+use saltus_examples::gallery;
+use saltus_plot::{Background, Phase};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // kg, N/m, m/s, and the friction that holds and that drags, in N.
@@ -21,16 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = Simulation::of(&block).tolerance(1e-13).run("stick", vector![0.0, belt], 0.0..330.0)?;
 
     let trajectory = &run.trajectory;
-    let orbit = |mode: &'static str| {
-        (0..=2000).map(move |k| f64::from(k) * 4e-3).filter_map(move |t| {
-            let x = trajectory.at(t)?;
-            Some(if trajectory.mode_at(t)? == mode { [x[0], x[1]] } else { [f64::NAN; 2] })
-        })
-    };
-    let picture = Figure::new("A block on a moving belt", "place (m)", "velocity (m/s)")
-        .line("sticks", orbit("stick"))
-        .line("slips", orbit("slip"));
-    gallery("stick_slip", &picture.svg())?;
+    let picture = Phase::of(trajectory, "place", "velocity")
+        .named(["place (m)", "velocity (m/s)"])
+        .title("A block on a moving belt")
+        .over(0.0..8.0)
+        .background(Background::Adaptive);
+    gallery("stick_slip", &picture.svg()?)?;
 
     // It slips about drags/spring, from where the spring beats the holding friction, until it has the belt's velocity again.
     let omega: f64 = (spring / mass).sqrt();

@@ -5,7 +5,8 @@
 use std::error::Error;
 
 use saltus::{Hybrid, Simulation};
-use saltus_examples::{Figure, gallery};
+use saltus_examples::gallery;
+use saltus_plot::{Background, Panels};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // The room loses heat at this rate (1/h) to the outside; the heater gives 5 °C an hour.
@@ -20,15 +21,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = Simulation::of(&room).tolerance(1e-13).run("heats", 20.0, 0.0..1.26e5)?;
 
     let trajectory = &run.trajectory;
-    let warmth = |mode: &'static str| {
-        (0..=1200)
-            .map(move |k| f64::from(k) * 1e-2)
-            .filter_map(move |t| Some([t, if trajectory.mode_at(t)? == mode { trajectory.at(t)? } else { f64::NAN }]))
-    };
-    let picture = Figure::new("A thermostat", "time (h)", "temperature (°C)")
-        .line("heats", warmth("heats"))
-        .line("waits", warmth("waits"));
-    gallery("thermostat", &picture.svg())?;
+    let picture = Panels::of(trajectory)
+        .named(["temperature (°C)"])
+        .title("A thermostat")
+        .over(0.0..12.0)
+        .time("h")
+        .background(Background::Adaptive);
+    gallery("thermostat", &picture.svg()?)?;
 
     // Between two temperatures the room takes the logarithm of the ratio of their distances from where it tends.
     let tends = outside + heater / loss;

@@ -9,7 +9,9 @@ use saltus::{ErrorKind, Hybrid, Simulation, State};
 /// A buck converter: coil and capacitor, and the time since its switch was closed.
 #[derive(Clone, Copy, Debug, PartialEq, State, serde::Serialize, serde::Deserialize)]
 struct Buck {
+    #[unit("A")]
     current: f64,
+    #[unit("V")]
     voltage: f64,
 }
 
@@ -18,6 +20,7 @@ struct Pair(f64, [f64; 2]);
 
 #[derive(Clone, Copy, Debug, PartialEq, State)]
 struct Robot<L> {
+    #[unit("m")]
     place: Vector3<f64>,
     r#type: f64,
     load: L,
@@ -45,6 +48,9 @@ fn coordinates_are_named_by_their_fields() {
         "bucks.1[1]",
     ];
     assert_eq!(names, fields);
+    let units: Vec<_> = (0..x.len()).map(|i| x.unit(i)).collect();
+    assert_eq!(units, ["m", "m", "m", "", "A", "V", "", "", ""]);
+    assert_eq!(x.unit(9), "");
     assert!(x.get(9).is_nan());
 }
 
@@ -90,7 +96,7 @@ fn a_named_state_runs_like_an_array() {
     assert_eq!([run.end.state.current, run.end.state.voltage], same.end.state);
     assert_eq!(run.end.stats, same.end.stats);
     let table = run.trajectory.sampled(1e-3).to_string();
-    assert!(table.starts_with("t (s),j,mode,current,voltage\n0.0,0,\"on\",0.0,0.0\n"), "{table}");
+    assert!(table.starts_with("t (s),j,mode,current (A),voltage (V)\n0.0,0,on,0.0,0.0\n"), "{table}");
     let mut course = Simulation::of(&named).start("on", Buck { current: 0.0, voltage: 0.0 }, 0.0..0.01).unwrap();
     course.advance(&mut ()).unwrap();
     assert!(format!("{:?}", course.checkpoint()).contains("voltage"));

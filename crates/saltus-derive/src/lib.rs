@@ -4,16 +4,17 @@
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-use syn::{Data, DeriveInput, Error, Fields, Index, Member, parse_macro_input, parse_quote};
+use syn::{Data, DeriveInput, Error, Field, Fields, Index, LitStr, Member, parse_macro_input, parse_quote};
 
 /// Implements `saltus::State` for a struct whose fields are states: numbers, arrays, vectors, and structs
 /// of the same kind.
 ///
 /// Coordinates are counted field by field, in the order in which the fields stand. Each is named by its
-/// field: `voltage`, `arm[2]`, `load.speed`. The struct is to be `Copy` and `Debug` as well.
+/// field: `voltage`, `arm[2]`, `load.speed`. `#[unit("V")]` before a field is the unit of all its
+/// coordinates; without it they have their own, if any. The struct is to be `Copy` and `Debug` as well.
 ///
 /// A struct without fields, an enum and a union are refused as the program is compiled.
-#[proc_macro_derive(State)]
+#[proc_macro_derive(State, attributes(unit))]
 pub fn state(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let input = parse_macro_input!(item as DeriveInput);
     implemented(input).unwrap_or_else(Error::into_compile_error).into()
@@ -37,7 +38,16 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     for parameter in generics.type_params_mut() {
         parameter.bounds.push(parse_quote!(::saltus::State));
     }
-    let names: Vec<String> = members.iter().map(member_name).collect();
+    let names = members.iter().zip(&types).map(|(member, ty)| {
+        let name = member_name(member);
+        quote!(::std::format!("{}{}", #name, <#ty as ::saltus::State>::within(&self.#member, i - first)).into())
+    });
+    let units = data.fields.iter().zip(members.iter().zip(&types)).map(unit).collect::<Result<Vec<_>, _>>()?;
+    let values =
+        members.iter().zip(&types).map(|(member, ty)| quote!(<#ty as ::saltus::State>::get(&self.#member, i - first)));
+    let get = asked(&members, &types, values, quote!(f64::NAN));
+    let name = asked(&members, &types, names, quote!(::std::format!("x{i}").into()));
+    let unit = asked(&members, &types, units, quote!(""));
     let made: Vec<_> = (0..members.len()).map(|place| format_ident!("part_{place}")).collect();
     let (impls, uses, clause) = generics.split_for_impl();
     Ok(quote! {
@@ -49,16 +59,7 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
             }
             #[inline]
             fn get(&self, i: usize) -> f64 {
-                let mut first = 0;
-                #({
-                    let len = <#types as ::saltus::State>::len(&self.#members);
-                    if i < first + len {
-                        return <#types as ::saltus::State>::get(&self.#members, i - first);
-                    }
-                    first += len;
-                })*
-                let _ = first;
-                f64::NAN
+                #get
             }
             #[inline]
             fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
@@ -72,17 +73,10 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
                 Self { #(#members: #made),* }
             }
             fn name(&self, i: usize) -> ::std::borrow::Cow<'static, str> {
-                let mut first = 0;
-                #({
-                    let len = <#types as ::saltus::State>::len(&self.#members);
-                    if i < first + len {
-                        let within = <#types as ::saltus::State>::within(&self.#members, i - first);
-                        return ::std::format!("{}{}", #names, within).into();
-                    }
-                    first += len;
-                })*
-                let _ = first;
-                ::std::format!("x{i}").into()
+                #name
+            }
+            fn unit(&self, i: usize) -> &'static str {
+                #unit
             }
             fn within(&self, i: usize) -> ::std::string::String {
                 ::std::format!(".{}", ::saltus::State::name(self, i))
@@ -91,12 +85,48 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     })
 }
 
+/// The answer about coordinate `i` of the field in which it lies, whose first coordinate is `first`; else `none`.
+fn asked(
+    members: &[Member],
+    types: &[syn::Type],
+    answers: impl IntoIterator<Item = TokenStream>,
+    none: TokenStream,
+) -> TokenStream {
+    let answers = answers.into_iter();
+    quote! {
+        let mut first = 0;
+        #({
+            let len = <#types as ::saltus::State>::len(&self.#members);
+            if i < first + len {
+                return #answers;
+            }
+            first += len;
+        })*
+        let _ = first;
+        #none
+    }
+}
+
 fn parts(fields: &Fields) -> (Vec<Member>, Vec<syn::Type>) {
-    let member = |(place, field): (usize, &syn::Field)| match &field.ident {
+    let member = |(place, field): (usize, &Field)| match &field.ident {
         Some(ident) => Member::Named(ident.clone()),
         None => Member::Unnamed(Index::from(place)),
     };
     (fields.iter().enumerate().map(member).collect(), fields.iter().map(|field| field.ty.clone()).collect())
+}
+
+/// The unit of a field, as it is said before it or asked of the field.
+fn unit((field, (member, ty)): (&Field, (&Member, &syn::Type))) -> Result<TokenStream, Error> {
+    let mut said = field.attrs.iter().filter(|attribute| attribute.path().is_ident("unit"));
+    let Some(attribute) = said.next() else {
+        return Ok(quote!(<#ty as ::saltus::State>::unit(&self.#member, i - first)));
+    };
+    if let Some(second) = said.next() {
+        return Err(Error::new_spanned(second, "the unit of a field is said twice: say it once"));
+    }
+    let unit: LitStr =
+        attribute.parse_args().map_err(|_| Error::new_spanned(attribute, "a unit is text: write #[unit(\"V\")]"))?;
+    Ok(quote!(#unit))
 }
 
 fn member_name(member: &Member) -> String {

@@ -31,6 +31,11 @@ impl Axis {
         Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false, least: None }
     }
 
+    /// An axis without ticks.
+    pub(crate) const fn bare(low: f64, high: f64) -> Self {
+        Self { low, high, ticked: (1.0, 0.0), step: 1.0, decades: false, least: None }
+    }
+
     /// An axis of powers of ten from 10^`low` to 10^`high`.
     pub(crate) fn decades(low: f64, high: f64) -> Self {
         let step = ((high - low) / 8.0).ceil().max(1.0);

@@ -1,12 +1,25 @@
 //! Any two quantities against each other: paths, phase portraits, energies, loops.
 
+use std::borrow::Cow;
+
 use crate::chart_page;
 use crate::error::{PlotError, finite, magnitude};
 use crate::height_time::Background;
 use crate::stroke::Stroke;
 
 /// What an axis measures; data are given in SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+///
+/// A unit by name, `"V".into()`, gets a prefix where its numbers would be long, if it is one of the SI that takes
+/// prefixes; `bar`, `1/min` and any other stay as they are.
+///
+/// ```
+/// use saltus_plot::{Chart, Measure, Stroke};
+/// let loading = Stroke::between([0.0, 0.0], [1e-3, 230e3]);
+/// let chart = Chart::new("Charging", ("Time", Measure::Time), ("Pressure", "Pa".into())).line("", [loading]);
+/// assert!(chart.svg()?.contains("Pressure (kPa)"));
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Measure {
     /// In s.
@@ -25,6 +38,20 @@ pub enum Measure {
     Count,
     /// A number without a unit.
     Number,
+    /// In the unit of this name, in which data are given.
+    Unit(Cow<'static, str>),
+}
+
+impl From<&'static str> for Measure {
+    fn from(unit: &'static str) -> Self {
+        Self::Unit(unit.into())
+    }
+}
+
+impl From<String> for Measure {
+    fn from(unit: String) -> Self {
+        Self::Unit(unit.into())
+    }
 }
 
 /// A disc to scale.

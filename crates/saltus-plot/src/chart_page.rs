@@ -40,7 +40,7 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let units = [0, 1].map(|k| if chart.to_scale { longer } else { k }).map(|k| {
         // Over many powers of ten no prefix fits better than none.
         let wide = chart.logarithmic[k] && (reach[k].1 / reach[k].0).log10() > MANY_DECADES;
-        unit(chart.axes[k].1, if wide { (0.5, 5.0) } else { reach[k] })
+        unit(&chart.axes[k].1, if wide { (0.5, 5.0) } else { reach[k] })
     });
     let scaled = |k: usize| opened((reach[k].0 / units[k].size, reach[k].1 / units[k].size));
     let ranged = |k: usize| if chart.logarithmic[k] { decades(reach[k], units[k].size) } else { scaled(k) };
@@ -144,7 +144,7 @@ fn legend(chart: &Chart) -> Vec<(Sign, String)> {
     lines.chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
 }
 
-fn unit(measure: Measure, (low, high): (f64, f64)) -> Unit {
+pub(crate) fn unit(measure: &Measure, (low, high): (f64, f64)) -> Unit {
     let (largest, span) = (low.abs().max(high.abs()), high - low);
     match measure {
         Measure::Time => Unit::of_time(largest, span),
@@ -154,11 +154,12 @@ fn unit(measure: Measure, (low, high): (f64, f64)) -> Unit {
         Measure::SpecificEnergy => Unit::prefixed("J/kg", largest, span),
         Measure::Force => Unit::prefixed("N", largest, span),
         Measure::Count | Measure::Number => Unit { size: 1.0, label: String::new() },
+        Measure::Unit(name) => Unit::named(name, largest, span),
     }
 }
 
 /// A reach that has a width.
-fn opened((low, high): (f64, f64)) -> (f64, f64) {
+pub(crate) fn opened((low, high): (f64, f64)) -> (f64, f64) {
     let least = 1e-9 * low.abs().max(high.abs());
     if high - low > least {
         (low, high)

@@ -164,7 +164,7 @@ impl Pen {
 
     fn arc(&mut self, arc: &Arc, x: Affine, y: Affine) {
         let c = trimmed(arc.coefficients());
-        let span = arc.span();
+        let span = arc.length();
         let (x0, x1) = (x.at(arc.start()), x.at(arc.end()));
         let across = |part: f64| x0 + (x1 - x0) * part;
         let (start, end) = (value(c, 0.0), value(c, span));

@@ -20,6 +20,8 @@ use crate::error::{PlotError, finite, magnitude};
 pub struct Arc {
     start: f64,
     span: f64,
+    /// The unit of time of the coefficients, in seconds.
+    scale: f64,
     coefficients: Vec<f64>,
 }
 
@@ -29,13 +31,18 @@ impl Arc {
     /// No coefficients at all mean height zero. A span of zero draws nothing.
     #[must_use]
     pub fn new(start: f64, span: f64, coefficients: Vec<f64>) -> Self {
-        Self { start, span, coefficients }
+        Self { start, span, scale: 1.0, coefficients }
+    }
+
+    /// The same with coefficients of the powers of (t − start)/`scale`: those of a short step neither overflow nor vanish.
+    pub(crate) fn scaled(start: f64, span: f64, scale: f64, coefficients: Vec<f64>) -> Self {
+        Self { start, span, scale, coefficients }
     }
 
     /// The height (m) at time `t` (s); the polynomial goes on beyond the arc's ends.
     #[must_use]
     pub fn height(&self, t: f64) -> f64 {
-        curve::value(&self.coefficients, t - self.start)
+        curve::value(&self.coefficients, (t - self.start) / self.scale)
     }
 
     pub(crate) fn start(&self) -> f64 {
@@ -44,6 +51,11 @@ impl Arc {
 
     pub(crate) fn span(&self) -> f64 {
         self.span
+    }
+
+    /// How long it lasts in the unit of the coefficients.
+    pub(crate) fn length(&self) -> f64 {
+        self.span / self.scale
     }
 
     pub(crate) fn end(&self) -> f64 {
@@ -56,7 +68,7 @@ impl Arc {
 
     /// The lowest and highest point, both ends included.
     pub(crate) fn extent(&self) -> (f64, f64) {
-        curve::extent(&self.coefficients, self.span)
+        curve::extent(&self.coefficients, self.length())
     }
 
     pub(crate) fn check(&self, name: impl Fn() -> String) -> Result<(), PlotError> {

@@ -45,6 +45,13 @@ pub enum PlotError {
     },
     /// The run has nothing that such a picture shows: what is missing, and what to do.
     Missing(&'static str),
+    /// The state has no such coordinate.
+    Coordinate {
+        /// Which was asked for: its name or its place.
+        asked: String,
+        /// The names of those that there are.
+        names: Vec<String>,
+    },
     /// The drawing library could not place an element.
     Drawing(String),
 }
@@ -72,6 +79,11 @@ impl fmt::Display for PlotError {
                 write!(f, "the drawing library could not place an element ({reason}): try a larger size")
             }
             Self::Missing(says) => f.write_str(says),
+            Self::Coordinate { asked, names } => write!(
+                f,
+                "the state has no coordinate {asked}, only {}: name one of these, or its place counted from 0",
+                names.join(", ")
+            ),
         }
     }
 }

@@ -1,6 +1,22 @@
 //! SVG pictures of hybrid motion.
 //!
-//! Data in, text out: a [`HeightTime`] picture takes arcs, measurements, contacts and residuals in seconds and metres, and
+//! A run in one line: [`Panels`] shows the coordinates of any trajectory of the engine against time, [`Phase`] one against another.
+//!
+//! ```
+//! use saltus::{Hybrid, Simulation};
+//! use saltus_plot::{Panels, Phase};
+//!
+//! let ball = Hybrid::new()
+//!     .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
+//!     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.8 * x[1]]);
+//! let run = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..2.0)?;
+//! let svg = Panels::of(&run.trajectory).named(["height (m)", "velocity (m/s)"]).svg()?;
+//! assert!(svg.contains("height (m)") && svg.contains("Time (s)"));
+//! assert!(Phase::of(&run.trajectory, 0, 1).svg()?.starts_with("<svg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Or data in, text out: a [`HeightTime`] picture takes arcs, measurements, contacts and residuals in seconds and metres, and
 //! gives one SVG document. Flights are drawn as what they are: a parabola is one quadratic Bézier curve, not a polyline. The
 //! document names itself (`<title>`, `<desc>`, `role="img"`), scales (`viewBox`), follows light and dark surroundings, needs no
 //! fonts of its own, and tells lines and marks apart by shape as well as by colour.
@@ -24,13 +40,14 @@
 //!
 //! # Limits
 //!
-//! The floor is at height zero. Letters are measured with the widths of Helvetica; a much wider face may let neighbouring
+//! The floor of a [`HeightTime`] is at height zero. Letters are measured with the widths of Helvetica; a much wider face may let neighbouring
 //! labels come close. Arcs that together are narrower than 0.3 px are drawn as one stroke.
 
 mod axis;
 mod callout;
 mod chart;
 mod chart_page;
+mod coordinate;
 mod curve;
 mod data;
 mod error;
@@ -38,17 +55,23 @@ mod heading;
 mod height_time;
 mod marks;
 mod page;
+mod panels;
+mod phase;
 #[cfg(feature = "scene")]
 pub mod record;
 mod residuals;
 mod stroke;
 mod svg;
 mod theme;
+mod traced;
 mod unit;
 
 pub use chart::{Chart, Disc, Measure};
+pub use coordinate::Coordinate;
 pub use data::{Arc, Mark, Measured, Residual};
 pub use error::PlotError;
 pub use height_time::{Background, HeightTime};
+pub use panels::Panels;
+pub use phase::Phase;
 pub use stroke::Stroke;
 pub use unit::HeightUnit;

@@ -8,7 +8,7 @@ use plotters_backend::{BackendCoord, DrawingBackend, DrawingErrorKind};
 
 use crate::data::{Mark, Measured};
 use crate::svg::{Canvas, grains};
-use crate::theme::{Dash, Ink};
+use crate::theme::{Dash, Ink, Type};
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
@@ -20,6 +20,11 @@ pub(crate) struct Trace {
     pub(crate) width: f64,
     pub(crate) dash: Dash,
     pub(crate) alpha: f64,
+}
+
+/// The upright lines of jumps.
+pub(crate) fn event(data: String, ty: Type) -> Trace {
+    Trace { data, ink: Ink::Muted, width: 0.8 * ty.hairline(), dash: Dash::Solid, alpha: 0.4 }
 }
 
 impl<'a, C: 'a> PointCollection<'a, C> for &'a Trace {

@@ -184,7 +184,7 @@ fn panels(
 }
 
 /// The strip of the page from `top` px, `height` px high.
-fn band(root: &Area, top: f64, height: f64, width: f64) -> Area {
+pub(crate) fn band(root: &Area, top: f64, height: f64, width: f64) -> Area {
     root.clone().shrink((0, grains(top)), (grains(width), grains(height)))
 }
 

@@ -73,6 +73,11 @@ impl HeightUnit {
     }
 }
 
+/// Units that prefixes go with.
+const PLAIN: [&str; 16] = ["m", "A", "V", "W", "J", "N", "Pa", "Hz", "C", "F", "H", "S", "T", "Wb", "Ω", "J/kg"];
+/// Numbers that need no prefix: 0.3 A and 1500 V are read as they are.
+const READABLE: std::ops::Range<f64> = 0.1..1e4;
+
 /// A unit as an axis shows it: how large it is in metres or seconds, and what is written in the brackets.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Unit {
@@ -95,12 +100,24 @@ impl Unit {
         }
     }
 
+    /// A unit by name: one of the SI gets a prefix where its numbers would be long; any other stays as it is.
+    pub(crate) fn named(name: &str, largest: f64, span: f64) -> Self {
+        if name == "s" {
+            Self::of_time(largest, span)
+        } else if PLAIN.contains(&name) && !READABLE.contains(&largest) {
+            Self::prefixed(name, largest, span)
+        } else {
+            Self::scaled(name, 1.0, largest, span)
+        }
+    }
+
     /// The unit with the prefix that reads best.
     pub(crate) fn prefixed(symbol: &str, largest: f64, span: f64) -> Self {
-        let prefixes = [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)];
+        let prefixes =
+            [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12)];
         let fits = |&(_, size): &(&str, f64)| largest == 0.0 || largest >= 2.0 * size;
         let (prefix, size) =
-            prefixes.into_iter().filter(|p| largest != 0.0 || p.1 == 1.0).find(fits).unwrap_or(("n", 1e-9));
+            prefixes.into_iter().filter(|p| largest != 0.0 || p.1 == 1.0).find(fits).unwrap_or(("p", 1e-12));
         Self::scaled(&format!("{prefix}{symbol}"), size, largest, span)
     }
 
@@ -113,7 +130,8 @@ impl Unit {
             return Self { size, label: symbol.to_owned() };
         }
         let power = (ratio.log10() / 3.0).floor() as i32 * 3;
-        Self { size: size * 10f64.powi(power), label: format!("10{} {symbol}", superscript(power)) }
+        let label = format!("10{} {symbol}", superscript(power)).trim_end().to_owned();
+        Self { size: size * 10f64.powi(power), label }
     }
 }
 
@@ -146,6 +164,26 @@ mod tests {
     fn the_study_reads_in_centimetres_and_seconds() {
         assert_eq!(Unit::of_height(None, 1.0, 1.0).label, "cm");
         assert_eq!(Unit::of_time(1.11, 1.11).label, "s");
+    }
+
+    #[test]
+    fn units_by_name_take_prefixes_where_numbers_would_be_long() {
+        let label = |name: &str, largest: f64| Unit::named(name, largest, largest).label;
+        for (name, largest, expected) in [
+            ("V", 12.0, "V"),
+            ("V", 0.3, "V"),
+            ("V", 0.03, "mV"),
+            ("Pa", 101_325.0, "kPa"),
+            ("F", 3e-12, "pF"),
+            ("mA", 0.03, "mA"),
+            ("bar", 200.0, "bar"),
+            ("1/min", 3000.0, "1/min"),
+            ("rad", 0.05, "rad"),
+            ("N", 0.0, "N"),
+            ("widgets", 3e6, "10⁶ widgets"),
+        ] {
+            assert_eq!(label(name, largest), expected, "{largest} {name}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::automaton::Automaton;
 use crate::control::Tolerance;
 use crate::error::{Error, ErrorKind, Place};
+use crate::memory::Room;
 use crate::state::State;
 use crate::time::Time;
 use crate::trajectory::Trajectory;
@@ -20,7 +21,7 @@ pub(crate) struct Options {
     pub(crate) most_evaluations: u64,
     pub(crate) most_jumps: usize,
     pub(crate) longest_cascade: usize,
-    pub(crate) most_bytes: usize,
+    pub(crate) room: Room,
     pub(crate) deadline: Option<Duration>,
     /// The moment of the deadline, once the run has begun.
     pub(crate) due: Option<Instant>,
@@ -137,7 +138,7 @@ impl<E> Stop<E> {
             Self::Jumps { most } => options.most_jumps > most,
             Self::Steps { most } => options.most_steps > most,
             Self::Evaluations { most } => options.most_evaluations > most,
-            Self::Bytes { most } => options.most_bytes > most,
+            Self::Bytes { most } => options.room.exceeds(most),
             Self::Deadline { .. } => true,
             _ => false,
         }

@@ -8,11 +8,9 @@ use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::state::State;
+use crate::table::{MOST_ROWS, cell, heading, named, numbers};
 use crate::time::{Time, grace};
 use crate::trajectory::Trajectory;
-
-/// How many rows are kept at most: a table of a gigabyte or so.
-const MOST_ROWS: usize = 10_000_000;
 
 /// The state at a hybrid time (t, j).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +31,8 @@ pub struct Sample<M, S> {
 /// As an observer it keeps only these rows, so that a long run takes the memory of its table. Tick k
 /// is rounded once, never added up; one that falls on an end of an arc is that end. An arc that never
 /// ends has its first row and its last. More than 10⁷ rows end the run, with
-/// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the names of the
-/// state's coordinates ([`State::name`]) as headings.
+/// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the names and units of
+/// the state's coordinates ([`State::name`], [`State::unit`]) as headings.
 ///
 /// ```
 /// use saltus::{Hybrid, Sampler, Simulation};
@@ -42,16 +40,16 @@ pub struct Sample<M, S> {
 ///     .exact("fill", |_t, x: &f64| [*x, 1.0].into())
 ///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0)
 ///     .affine("fill", "fill");
-/// let mut table = Sampler::every(0.5);
+/// let mut table = Sampler::every(0.5).named(["level (m)"]);
 /// Simulation::of(&tank).drive("fill", 0.0, 0.0..1.5, &mut table)?;
 /// assert_eq!(table.to_string(), "\
-/// t (s),j,mode,x0
-/// 0.0,0,\"fill\",0.0
-/// 0.5,0,\"fill\",0.5
-/// 1.0,0,\"fill\",1.0
-/// 1.25,0,\"fill\",1.25
-/// 1.25,1,\"fill\",0.0
-/// 1.5,1,\"fill\",0.25
+/// t (s),j,mode,level (m)
+/// 0.0,0,fill,0.0
+/// 0.5,0,fill,0.5
+/// 1.0,0,fill,1.0
+/// 1.25,0,fill,1.25
+/// 1.25,1,fill,0.0
+/// 1.5,1,fill,0.25
 /// ");
 /// # Ok::<(), saltus::Error>(())
 /// ```
@@ -65,6 +63,8 @@ pub struct Sampler<M, S> {
     /// The end of the last piece, which may be that of its arc.
     end: Option<Sample<M, S>>,
     j: usize,
+    /// Of the coordinates, where the state's are not wanted.
+    names: Vec<String>,
 }
 
 /// The samples of the automaton `A`.
@@ -74,7 +74,14 @@ impl<M: Copy, S: State> Sampler<M, S> {
     /// Every `dt` seconds; with one that is not above zero only where arcs begin and end.
     #[must_use]
     pub const fn every(dt: f64) -> Self {
-        Self { dt, start: None, next: 1, rows: Vec::new(), end: None, j: 0 }
+        Self { dt, start: None, next: 1, rows: Vec::new(), end: None, j: 0, names: Vec::new() }
+    }
+
+    /// Names the coordinates in the table, units in brackets at the end; those left over keep the names of the state.
+    #[must_use]
+    pub fn named<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
+        self.names = names.into_iter().map(Into::into).collect();
+        self
     }
 
     /// The rows in order.
@@ -145,24 +152,17 @@ impl<M: Copy + fmt::Debug, S: State> fmt::Display for Sampler<M, S> {
         f.write_str("t (s),j,mode")?;
         if let Some(widest) = self.rows().max_by_key(|row| row.state.len()) {
             for i in 0..widest.state.len() {
-                write!(f, ",{}", quoted(&widest.state.name(i)))?;
+                write!(f, ",{}", cell(&heading(&self.names, &widest.state, i, "")))?;
             }
         }
         writeln!(f)?;
         for Sample { t, j, mode, state } in self.rows() {
-            write!(f, "{t:?},{j},\"{}\"", format!("{mode:?}").trim_matches('"').replace('"', "\"\""))?;
-            for i in 0..state.len() {
-                write!(f, ",{:?}", state.get(i))?;
-            }
+            write!(f, "{t:?},{j},{}", cell(&named(&mode)))?;
+            numbers(f, &state)?;
             writeln!(f)?;
         }
         Ok(())
     }
-}
-
-/// A name as a cell of a table.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
 impl<M: Copy, E, S: State> Trajectory<M, E, S> {

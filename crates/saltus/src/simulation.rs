@@ -12,6 +12,7 @@ use crate::ending::{Ending, EndingOf, Failed, FailedOf, Options, Run, RunOf, Sta
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::InspectionOf;
 use crate::jump::JumpOf;
+use crate::memory::Room;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::state::State;
@@ -56,16 +57,35 @@ impl<A, M: fmt::Debug> fmt::Debug for Simulation<'_, A, M> {
     }
 }
 
-/// Records until so many bytes are taken.
+/// Records until there is no more room.
 struct Bounded<'t, A: Automaton> {
     trajectory: &'t mut TrajectoryOf<A>,
-    most: usize,
+    room: Room,
+    /// How many bytes may be taken before the room is asked again.
+    next: usize,
+    /// The limit, once it is reached.
+    most: Option<usize>,
 }
 
 impl<A: Automaton> Bounded<'_, A> {
     #[inline]
-    fn full(&self) -> ControlFlow<()> {
-        if self.trajectory.bytes() < self.most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    fn full(&mut self) -> ControlFlow<()> {
+        let bytes = self.trajectory.bytes();
+        if bytes < self.next { ControlFlow::Continue(()) } else { self.ask(bytes) }
+    }
+
+    #[cold]
+    fn ask(&mut self, bytes: usize) -> ControlFlow<()> {
+        match self.room.ask(bytes) {
+            Ok(next) => {
+                self.next = next;
+                ControlFlow::Continue(())
+            }
+            Err(most) => {
+                self.most = Some(most);
+                ControlFlow::Break(())
+            }
+        }
     }
 }
 
@@ -87,8 +107,8 @@ impl<A: Automaton> Observer<A> for Bounded<'_, A> {
 
 impl<'a, A: Automaton> Simulation<'a, A> {
     /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
-    /// and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and 2³⁰ bytes of what is recorded;
-    /// evaluations and time on the wall are not limited.
+    /// and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and, of what is recorded, a quarter of the
+    /// memory that is free, at most 4 GiB ([`most_bytes`](Self::most_bytes)); evaluations and time on the wall are not limited.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
@@ -99,7 +119,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
             most_evaluations: u64::MAX,
             most_jumps: 10_000_000,
             longest_cascade: 10_000,
-            most_bytes: 1 << 30,
+            room: Room::Free,
             deadline: None,
             due: None,
             stepped: false,
@@ -180,6 +200,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// After how many bytes of its trajectory [`run`](Self::run) ends with [`Stop::Bytes`], counted
     /// between pieces and between jumps. Memory for up to twice as many may be set aside.
     ///
+    /// Without it, a quarter of the memory that is free, of the machine or of the container, and at most 4 GiB. It is
+    /// asked for from 16 MiB on, and again as the record grows, so that runs side by side leave room for each other.
+    /// In a browser it is 1 GiB.
+    ///
     /// ```
     /// use saltus::{Hybrid, Simulation, Stop};
     /// let swing = Hybrid::new().mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]]);
@@ -189,7 +213,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// ```
     #[must_use]
     pub const fn most_bytes(mut self, count: usize) -> Self {
-        self.options.most_bytes = count;
+        self.options.room = Room::Given(count);
         self
     }
 
@@ -249,12 +273,14 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             Ok(course) => course,
             Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),
         };
-        let most = self.options.most_bytes;
-        match course.finish(&mut Bounded { trajectory: &mut trajectory, most }) {
+        let room = self.options.room;
+        let mut record = Bounded { trajectory: &mut trajectory, room, next: room.first(), most: None };
+        let end = course.finish(&mut record);
+        let most = record.most;
+        match end {
             Ok(end) => {
                 trajectory.finish(end.time);
-                // Nobody else observes.
-                let stop = if end.stop == Stop::Observer { Stop::Bytes { most } } else { end.stop };
+                let stop = most.map_or(end.stop, |most| Stop::Bytes { most });
                 Ok(Run { trajectory, end: Ending { stop, ..end } })
             }
             Err(error) => {

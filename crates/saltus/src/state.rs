@@ -31,6 +31,13 @@ pub trait State: Copy + Debug {
         format!("x{i}").into()
     }
 
+    /// The unit of coordinate `i`, for tables and pictures: `V`, `1/min`; empty unless the state names one. With the feature
+    /// `derive`, `#[unit("V")]` before a field says it.
+    fn unit(&self, i: usize) -> &'static str {
+        let _ = i;
+        ""
+    }
+
     /// What follows the name of a field of this type in the name of its coordinate `i`: nothing for a number, `[i]` for a list.
     #[doc(hidden)]
     fn within(&self, i: usize) -> String {

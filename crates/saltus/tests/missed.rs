@@ -68,8 +68,11 @@ impl Automaton for Runner {
     }
 }
 
+/// A doubt of an edge, and from when to when.
+type Doubted = (To, Doubt, f64, f64);
+
 /// The edge taken, if any, and the doubts.
-fn run(runner: &Runner, start: f64, span: f64) -> Result<(Option<To>, Vec<(To, Doubt, f64, f64)>), Error> {
+fn run(runner: &Runner, start: f64, span: f64) -> Result<(Option<To>, Vec<Doubted>), Error> {
     let run = Simulation::of(runner).run(false, start, 0.0..span)?;
     assert_eq!(run.end.stop, Stop::Time);
     let doubts = run.trajectory.doubts().iter();

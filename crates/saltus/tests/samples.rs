@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{Clock, Hybrid, Sample, Sampler, Simulation};
+use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, Simulation};
 
 type Rows = Vec<Sample<&'static str, f64>>;
 
@@ -50,6 +50,60 @@ proptest! {
     }
 }
 
+/// The cells of a line of CSV.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            c => cells.last_mut().unwrap().push(c),
+        }
+    }
+    cells
+}
+
+proptest! {
+    /// A table of jumps has each of them, to the bit, also as an observer that keeps nothing else.
+    #[test]
+    fn jumps_are_rows(top in 0.3..3.0_f64, kick in 0.1..2.0_f64, from in -3.0..3.0_f64) {
+        let model = saw(top, kick);
+        let run = Simulation::of(&model).run("rise", 0.0, from..from + 5.0).unwrap();
+        let mut observed = JumpTable::new();
+        Simulation::of(&model).drive("rise", 0.0, from..from + 5.0, &mut observed).unwrap();
+        let text = run.trajectory.jump_table().to_string();
+        prop_assert_eq!(&observed.to_string(), &text);
+        let mut lines = text.lines();
+        let head = "t (s),j,edge,from,to".to_owned() + if run.trajectory.jumps().is_empty() { "" } else { ",x0 before,x0 after" };
+        prop_assert_eq!(lines.next(), Some(&*head));
+        for jump in run.trajectory.jumps() {
+            let row = cells(lines.next().unwrap());
+            let numbers = [&row[0], &row[5], &row[6]].map(|cell| cell.parse::<f64>().unwrap());
+            prop_assert_eq!(numbers, [jump.t(), jump.before, jump.after]);
+            let edge = format!("{:?}", jump.edge().unwrap());
+            prop_assert_eq!(&row[1..5], [jump.j.to_string(), edge, "rise".to_owned(), "rise".to_owned()]);
+        }
+        prop_assert_eq!(lines.next(), None);
+    }
+}
+
+/// Rows of modes that differ in dimension are as long as the heading; a limit of jumps is named.
+#[test]
+fn jumps_of_modes_that_differ() {
+    let model = Hybrid::new()
+        .mode("fly, \"high\"", |_t, x: &Coords<2>| [x[1], -9.8].into())
+        .edge("fly, \"high\"", "fly, \"high\"", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]].into())
+        .mode("rest", |_t, _x| [0.0].into())
+        .beyond("fly, \"high\"", "rest", |_t, _x| [0.0].into());
+    let run = Simulation::of(&model).run("fly, \"high\"", [1.0, 0.0].into(), 0.0..4.0).unwrap();
+    let text = run.trajectory.jump_table().named(["height (m)", "speed"]).to_string();
+    let rows: Vec<_> = text.lines().map(cells).collect();
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    assert_eq!(rows[0][5..], ["height before (m)", "speed before", "height after (m)", "speed after"]);
+    let last = rows.last().unwrap();
+    assert_eq!([&*last[2], &*last[3], &*last[4], &*last[7], &*last[8]], ["limit", "fly, high", "rest", "0.0", ""]);
+}
+
 /// Runs without duration, without end, and with a step that is none.
 #[test]
 fn tables_of_odd_runs() {
@@ -74,5 +128,7 @@ fn a_table_is_csv() {
     let text = run.trajectory.sampled(1.0).to_string();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "t (s),j,mode,x0,x1");
-    assert!(lines[1].starts_with("0.0,0,\"a, ") && lines[1].ends_with(",0.0,1e-300"), "{text}");
+    assert_eq!(lines[1], "0.0,0,\"a, \"\"b\"\"\",0.0,1e-300");
+    let named = run.trajectory.sampled(1.0).named(["a, b (m)"]).to_string();
+    assert!(named.starts_with("t (s),j,mode,\"a, b (m)\",x1\n"), "{named}");
 }
