@@ -33,7 +33,7 @@ fn a_guard_is_not_asked_in_another_mode() {
         assert_eq!(x.len(), 1, "asked of {x:?}");
         x.get(0)
     };
-    for held in [1e-3, 1e-6, 1e-9, 1e-15] {
+    for held in [1e-3, 1e-6, 1e-9, 1e-15, 1e-16, 1e-17, 1e-300] {
         let ball = Hybrid::new()
             .mode("flight", |_t, x: &Either| [x.get(1), -9.81].into())
             .mode("held", |_t, _x| [-1.0].into())

@@ -252,6 +252,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.forget_risen(mode, t, before);
         }
         if let Some(last) = self.memory.spent.filter(|last| last.edge != edge)
+            && self.has(mode, last.edge)
             && duration.is_none_or(|s| self.memory.is_short(s) && self.is_below(mode, last.edge, t, before))
         {
             let g = self.automaton.guard(last.edge, began, x);
@@ -275,11 +276,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether the guard of an edge that this mode has, and another mode may not, is below zero at `x`.
     fn is_below(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> bool {
-        if !self.automaton.edges(mode).iter().any(|other| other == edge) {
+        if !self.has(mode, edge) {
             return false;
         }
         self.memory.stats.guards += 1;
         self.automaton.guard(edge, t, x) < 0.0
+    }
+
+    /// Whether an edge leads out of this mode: elsewhere its guard may not even be asked.
+    pub(super) fn has(&self, mode: A::Mode, edge: A::Edge) -> bool {
+        self.automaton.edges(mode).iter().any(|other| other == edge)
     }
 
     /// Forgets the edges that the mode does not have, and those whose guards have risen since they were taken.

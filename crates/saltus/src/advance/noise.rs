@@ -96,7 +96,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn find_staying(&mut self, mode: A::Mode, step: Step<'_, A::State>, slope: &A::State) {
         if let Some(Spent { edge, slack }) = self.memory.spent
             && self.memory.wall(edge).is_none()
-            && self.automaton.edges(mode).iter().any(|other| other == edge)
+            && self.has(mode, edge)
         {
             let (automaton, t, x, by) = (self.automaton, step.now.seconds(), &step.c[0], PROBE * step.scale);
             self.memory.stats.guards += 2;
