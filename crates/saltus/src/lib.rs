@@ -39,6 +39,7 @@ mod hybrid;
 mod inspection;
 mod jump;
 mod memory;
+mod noise;
 mod observe;
 mod piece;
 mod poly;
