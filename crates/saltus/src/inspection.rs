@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use crate::automaton::Automaton;
 use crate::cross::{Doubt, Evidence};
-use crate::noise::rounding;
 use crate::time::Time;
 
 /// How the guard of one edge was searched over one step, or over one exact arc.
@@ -67,7 +66,7 @@ impl<M: Copy, E: Copy> Inspection<M, E> {
         };
         let after = later.start.since(self.start);
         let same = self.evidence.doubt() == later.evidence.doubt();
-        let follows = same && after + next <= to + rounding(to.abs());
+        let follows = same && after + next <= to + 4.0 * f64::EPSILON * to.abs();
         if follows {
             self.span = after + later.span;
             self.evidence = between(self.evidence, from, to.max(after + end));

@@ -39,7 +39,6 @@ mod hybrid;
 mod inspection;
 mod jump;
 mod memory;
-mod noise;
 mod observe;
 mod piece;
 mod poly;

@@ -1,6 +1,5 @@
 //! Zeno: jumps accumulate where the times between them *and* what they change contract to nothing.
 
-use crate::noise::rounding;
 use crate::state::State;
 use crate::time::resolution;
 
@@ -17,6 +16,10 @@ const CLEARLY_BELOW_ONE: f64 = 0.995;
 /// Ratios of durations are of one contraction if they differ by no more than this: one that is far below the others is of jumps that rounding keeps from being at
 /// one time.
 const ALIKE: f64 = 1e-3;
+
+/// A coordinate that differs by this part of itself from a cycle ago has been rounded: a landing
+/// leaves a height a few units in the last place off.
+const STILL: f64 = 8.0 * f64::EPSILON;
 
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
@@ -179,7 +182,7 @@ fn square_way<S: State>(x: &S, y: &S) -> f64 {
     let square = |i: usize| {
         let (x, y) = (x.get(i), y.get(i));
         let by = (y - x).abs();
-        if by <= rounding(x.abs().max(y.abs())) { 0.0 } else { by * by }
+        if by <= STILL * x.abs().max(y.abs()) { 0.0 } else { by * by }
     };
     (0..x.len()).map(square).sum()
 }

@@ -6,7 +6,6 @@ use crate::cross::{
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::Inspection;
-use crate::noise::{CLEARLY, SURELY, rounding};
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
 use crate::poly::{Bernstein, MAX_DEGREE, value_and_slope};
@@ -147,9 +146,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let nearest = at(root);
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
-        self.memory.slack = CLEARLY * g.abs().max(outer.abs());
+        self.memory.slack = 4.0 * g.abs().max(outer.abs());
         let short = self.memory.is_short(root);
-        let resolved = root > rounding(t.abs());
+        let resolved = root > 64.0 * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();
         let hidden =
             short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
@@ -169,7 +168,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.automaton.guard(edge, t, end);
         let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < SURELY * (SURELY * self.guard_rounding(edge, t, end, g, end) + by_time)
+        rise < 65536.0 * self.guard_rounding(edge, t, end, g, end) + 64.0 * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that rounding does not matter: such a fall, on an arc so short
@@ -194,7 +193,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// Whether a guard that is `start` where it is known stays above zero when it changes by `most`, with room for the digits that its `constant` costs.
 #[inline]
 pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
-    let rounding = rounding(constant.abs() + start.abs() + most);
+    let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
     start > most + rounding && rounding < f64::INFINITY
 }
 
@@ -228,7 +227,7 @@ pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x:
     *count += x.len() as u64 + 1;
     let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
     let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
-    less_constant(guard, constant, x).abs() <= rounding(parts)
+    less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
 }
 
 /// What was found of a guard less its `level` at the start, of the `guard` itself.
@@ -380,7 +379,7 @@ struct Along<'p> {
 impl Along<'_> {
     /// How far its value at the start may be off.
     fn rounding(&self) -> f64 {
-        rounding(self.constant.abs() + self.start.abs())
+        4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
     }
 
     /// Where it first falls, as far as its powers show it at once.
@@ -402,7 +401,7 @@ impl Along<'_> {
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(self.powers.coefficients())?;
-        Some((p, self.rounding() + rounding(p.scale()), self.powers.bend()))
+        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.powers.bend()))
     }
 }
 

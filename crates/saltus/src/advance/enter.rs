@@ -5,15 +5,17 @@ use std::cell::Cell;
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
 use crate::error::{Error, ErrorKind, Place};
-use crate::noise::{ALIKE, ROUNDINGS, SURELY};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
+use super::noise::ROUNDINGS;
 
 /// A guard no larger than this part of the state may be zero but for rounding.
 const SMALL: f64 = 1e-12;
+/// A guard that changes by this many roundings at a glance is sure to rise or fall.
+const SURELY: f64 = 64.0;
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
 
@@ -141,13 +143,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A guard that moves is seen to move by no less than some roundings of time.
         guards.set(guards.get() + 1);
         let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { resolution(t) };
-        let shortest = (longest / (1_u64 << 60) as f64).max(SURELY * tick).min(longest);
+        let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
             while h < longest && h > 0.0 {
                 let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
                 let doubles =
-                    (far - by * half).abs() < ALIKE * far.abs() && (half - by * quarter).abs() < ALIKE * half.abs();
+                    (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
                 if doubles && far.abs() > ROUNDINGS * rounding {
                     return far / h;
                 }

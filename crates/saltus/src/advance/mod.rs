@@ -27,7 +27,6 @@ use crate::ending::Options;
 use crate::ending::{Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::Inspection;
-use crate::noise::CLEARLY;
 use crate::observe::Observer;
 use crate::series::Tape;
 use crate::state::State;
@@ -206,7 +205,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
     #[inline]
     pub(crate) fn at_once(&self, since: f64) -> bool {
-        since <= CLEARLY * f64::EPSILON * self.last_duration
+        since <= 4.0 * f64::EPSILON * self.last_duration
     }
 
     /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row, for one may be short by chance.

@@ -3,7 +3,6 @@
 
 use crate::automaton::Automaton;
 use crate::cross::{AT_START, Crossing};
-use crate::noise::{ROUNDINGS, SURELY};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
@@ -58,9 +57,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const STEPS: f64 = 1024.0;
         let rounding = self.still(edge, t, x, g);
         let tolerance = self.options.tolerance;
-        SURELY * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
+        STEPS * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
     }
 
     /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
@@ -83,9 +83,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        const SOME: f64 = 1024.0;
         self.memory.stats.guards += 1;
-        let ahead = t + SURELY * resolution(t);
-        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SURELY;
+        let ahead = t + SOME * resolution(t);
+        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
         if change.is_finite() { change } else { 0.0 }
     }
 
@@ -225,3 +226,7 @@ enum Carried {
 
 /// A guard that moves by so many times what rounding leaves of it leaves its wall.
 const LEAVES: f64 = (1_u64 << 20) as f64;
+
+/// How many times what rounding its coordinates and the time may move a guard by, its value may be off: its own arithmetic
+/// rounds as well, a dozen times or so, and so did that of the jumps before at the same time.
+pub(super) const ROUNDINGS: f64 = 16.0;

@@ -6,7 +6,6 @@ use crate::control::Tolerance;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::InspectionOf;
-use crate::noise::SURELY;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::poly::MAX_DEGREE;
@@ -225,7 +224,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<bool, Error> {
         let Near { s, state, slope } = end;
         let flow = self.slope(mode, now.after(*s), state)?;
-        let off = |i: usize| s * ((flow.get(i) - slope.get(i)).abs() - SURELY * f64::EPSILON * flow.get(i).abs());
+        let off = |i: usize| s * ((flow.get(i) - slope.get(i)).abs() - 64.0 * f64::EPSILON * flow.get(i).abs());
         let agrees = |i: usize| off(i) <= most as f64 * self.options.tolerance.allowed(x.get(i), state.get(i));
         Ok(state.is_finite() && (0..state.len()).all(agrees))
     }

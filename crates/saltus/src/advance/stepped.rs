@@ -9,7 +9,6 @@ use crate::cross::Evidence;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place, not_finite};
 use crate::inspection::Inspection;
-use crate::noise::{ALIKE, CLEARLY, ROUNDINGS, rounding};
 use crate::observe::Observer;
 use crate::piece::{Piece, horner};
 use crate::state::State;
@@ -24,17 +23,8 @@ use super::{Advance, ArcEnd};
 /// The shortest step, in spacings of time.
 const SHORTEST: f64 = 2.0;
 
-/// The last step of a span is longer by this factor rather than followed by a tiny one.
-const STRETCHED: f64 = 1.01;
-
 /// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond rounding.
 const INSIDE: f64 = 0.875;
-
-/// Within this part of a step from its start the dense output is exact to rounding, for it starts with the slope of the flow.
-const EXACT: f64 = 1e-9;
-
-/// A step to a crossing that ends within this part of it is a step to the crossing: its dense output errs by the square there.
-const CLOSE: f64 = 1e-5;
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
@@ -86,7 +76,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                 self.memory.stats.steps -= 1;
                 self.memory.stats.rejected += 1;
-                self.memory.step = Some(Controller::SMALLEST * h);
+                self.memory.step = Some(0.1 * h);
                 continue;
             }
             if first {
@@ -251,7 +241,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let root = by * here / (here - there);
                 // A state a little inside where rounding leaves the nearest one outside.
                 let s = [root, INSIDE * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
-                self.memory.slack = CLEARLY * (here - there);
+                self.memory.slack = 4.0 * (here - there);
                 return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
             }
         }
@@ -312,7 +302,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
                 let g = self.automaton.guard(edge, t, x);
-                (rate, told, told < 0.0 && -told > ROUNDINGS * self.guard_rounding(edge, t, x, g, x))
+                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, x))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
@@ -374,10 +364,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<Closer<M::Dense<A::State>>> {
         let Step { now, scale, .. } = step;
         let mut h = crossing.outside;
-        if h <= scale * EXACT {
+        if h <= scale * 1e-9 {
             return None; // at the start, where the dense output is exact
         }
-        let near = (crossing.inside - scale * PROBE).max(0.0);
+        let near = (crossing.inside - scale * 1e-3).max(0.0);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
             self.automaton.guard(edge, step.time(s), &step.at(s))
@@ -392,11 +382,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.memory.stats.guards += 1;
             let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
-            if shift.is_nan() || shift.abs() > ALIKE * h {
+            if shift.is_nan() || shift.abs() > 0.1 * h {
                 return None;
             }
-            if shift.abs() <= CLOSE * h {
-                let ahead = (h + 2.0 * shift.abs() + rounding(h)).min(limit);
+            if shift.abs() <= 1e-5 * h {
+                let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
                 return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);
@@ -422,7 +412,7 @@ pub(super) fn remaining(span: &Span) -> f64 {
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
 #[inline]
 pub(super) fn evened(h: f64, longest: f64) -> f64 {
-    if h * STRETCHED >= longest {
+    if h * 1.01 >= longest {
         longest
     } else if h * 2.0 > longest {
         longest * 0.5
@@ -434,7 +424,7 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
 /// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc began: the last one a few roundings past its end.
 #[inline]
 pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
-    if h >= remaining { h + rounding(h.max(since)).max(grace(end.seconds())) } else { h }
+    if h >= remaining { h + (8.0 * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

@@ -1,12 +1,11 @@
 //! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a long stretch shows to more digits than a short one.
 
-use crate::noise::{CLEARLY, ROUNDINGS, SURELY};
 use crate::poly::Bernstein;
 
 use super::Undefined;
 use super::looks::order;
 use super::proxy::Proxy;
-use super::search::{DIVIDED, Part, Search, Side};
+use super::search::{Part, Search, Side};
 
 /// What the stretches that begin at a spent root have shown of the guard there.
 ///
@@ -24,22 +23,30 @@ pub(super) struct Departure {
     order: Option<f64>,
 }
 
+/// So much longer a stretch tells the slope better than the steps of rounding on a shorter one.
+const FAR: f64 = 1024.0;
+/// A guard is seen where it is by this larger than its rounding, which a few samples may show too small.
+const SEEN: f64 = 64.0;
+/// A guard that is zero at the start is seen to rise from there where it is by this larger than it may be off.
+const RISEN: f64 = 4.0;
+/// A guard no larger than this many times its rounding may be hidden by it, where it was seen to rise on a longer stretch.
+const HIDDEN: f64 = 64.0 * RISEN;
 /// A slope up counts from this part of what it may be off by, which is taken with room: of ten million guards with clustered roots, two that fall at once seem to
 /// rise with 0.27 and 0.30 of it, by chance.
 const SURE: f64 = 0.4;
-/// A power of time below this is the first: a root by which the guard falls with speed, between the first power and the second.
-const LINEAR: f64 = 1.25;
+/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may change its sign, and it is not to be lost then.
+const NONE: f64 = 64.0;
 
 impl Departure {
     /// The guard with its root at the start of `0..=length` divided out, whose values are known to within `margin`, and away from the start to `roughness` more.
     pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
-        let (slope, doubt) = (rest.start() / length, DIVIDED * margin / length);
+        let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
         let mut best = match last {
             Some(last) if last.doubt <= doubt => last,
             _ => Self { slope, doubt, rest: *rest, length, order: last.and_then(|last| last.order) },
         };
         let (half, end) = (0.5 * rest.halves().0.end(), rest.end());
-        if half < -SURELY * (margin + roughness) {
+        if half < -SEEN * (margin + roughness) {
             best.order = Some(order(half, end, 0.5, 1.0));
         }
         best
@@ -52,7 +59,7 @@ impl Departure {
 
     /// Whether nothing is seen of a slope, and the guard falls as the square of time.
     pub(super) fn touches(&self) -> bool {
-        self.slope > -SURELY * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
+        self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
     }
 
     /// The steepest fall that the slope allows.
@@ -62,7 +69,7 @@ impl Departure {
 
     /// Whether it was told by a stretch so long that it knows better than steps of rounding within `0..=b`.
     pub(super) fn is_far(&self, b: f64) -> bool {
-        self.length > SURELY * b
+        self.length > FAR * b
     }
 }
 
@@ -79,15 +86,15 @@ impl Search<'_> {
         b: f64,
     ) -> Result<bool, Undefined> {
         let nowhere_below = least > -margin;
-        if nowhere_below && p.halves().0.end().min(p.end()) > CLEARLY * (margin + self.roughness(b)) {
+        if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * (margin + self.roughness(b)) {
             self.rise = Some(margin);
             return Ok(false);
         }
         // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen number by number its steps have an order.
-        let stays = |then: f64| then < ROUNDINGS * margin && margin < SURELY * then;
+        let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
-            && p.end() < SURELY * margin
+            && p.end() < HIDDEN * margin
             && self.is_rough(0.0, 0.25 * b)?)
     }
 
@@ -105,7 +112,7 @@ impl Search<'_> {
         {
             return Part::Hidden(root * it.length);
         }
-        let linear = order.is_some_and(|order| order < LINEAR);
+        let linear = order.is_some_and(|order| order < 1.25);
         let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
         if touched { Part::AtStart } else { Part::None(Side::Outside) }
     }

@@ -1,7 +1,5 @@
 //! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
 
-use crate::noise::CLEARLY;
-
 use super::search::{Part, Search, Side};
 use super::{Doubt, Evidence, Undefined};
 
@@ -99,7 +97,7 @@ impl Search<'_> {
             let of_value = whole().max() > whole().min().map(|least| 3 * least);
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));
             // The slope that it allows is too small for this fall: two steps, one twice as far as the other, are not its sign.
-            let without_speed = far.is_some_and(|it| CLEARLY * it.steepest() * b < self.base - last);
+            let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
             let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
             let order = if slow && without_speed {
                 2.0
@@ -116,7 +114,7 @@ impl Search<'_> {
     /// What is left of samples when all that is as small as their rounding counts as zero.
     fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
-        let rounding = CLEARLY * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
         let came_from = side;
         let mut side = side;
         let mut hidden: Option<(f64, f64)> = None;

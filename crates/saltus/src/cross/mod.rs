@@ -9,7 +9,6 @@ mod proxy;
 mod refine;
 mod search;
 
-use crate::noise::rounding;
 use crate::poly::{Bernstein, Shape};
 
 pub use evidence::{Doubt, Evidence};
@@ -129,7 +128,7 @@ pub(crate) fn first_fall_of_polynomial(
     if start == Start::Spent {
         // Away from the wall only the change counts, and it carries no rounding of the value at the wall.
         let change = p.less_start();
-        let margin = rounding(change.scale());
+        let margin = 8.0 * f64::EPSILON * change.scale();
         Search::new(guard, span, bend, 0.0).first_fall(start, Some((change, margin)))
     } else if p.shape(margin) == Shape::Above {
         Ok(Searched::solved(None))

@@ -1,6 +1,5 @@
 //! A polynomial in place of a guard: its interpolant at nine Chebyshev points, and how far off that may be.
 
-use crate::noise::rounding;
 use crate::poly::Bernstein;
 
 use super::search::Search;
@@ -33,10 +32,6 @@ impl Search<'_> {
         Ok(Samples { series, off, spacing, start: values[0], end: values[8], least, values })
     }
 }
-
-/// How many times what its last two terms and two checks show an interpolant may be off elsewhere: the terms that are left out fall no slower
-/// than those two where it is resolved at all.
-const ERROR: f64 = 8.0;
 
 /// A guard seen at the Chebyshev points of an interval.
 pub(super) struct Samples {
@@ -85,12 +80,12 @@ impl Samples {
             square += (2 * k + 1) as f64;
         }
         let scale = self.series[0].abs() + most;
-        self.series[0] > most + ERROR * (self.off + steepest * self.spacing) + rounding(scale)
+        self.series[0] > most + 8.0 * (self.off + steepest * self.spacing) + 16.0 * f64::EPSILON * scale
     }
 
     pub(super) fn proxy(&self) -> Proxy {
         let p = Bernstein::new(&chebyshev::bernstein(&self.series));
-        let margin = ERROR * (self.off + p.steepest() * self.spacing) + rounding(p.scale());
+        let margin = 8.0 * (self.off + p.steepest() * self.spacing) + 16.0 * f64::EPSILON * p.scale();
         let margin = if margin.is_finite() { margin } else { f64::INFINITY };
         Proxy { p, margin, start: self.start, end: self.end, least: self.least }
     }

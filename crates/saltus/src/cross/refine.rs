@@ -1,7 +1,5 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
-use crate::noise::{CLEARLY, SURELY};
-
 use super::search::{AT_START, ROUNDING, Search};
 use super::{Crossing, Doubt, Evidence, Undefined};
 
@@ -60,6 +58,12 @@ pub(super) enum Passage {
     Leap,
 }
 
+/// A guard is looked at so many times farther from its change of sign than where that is seen: a root of up to the fourth order has grown at least fourfold
+/// there, and so has shrunk what comes from a pole of the order 1/5 and higher.
+const FARTHER: f64 = 1024.0;
+/// What a guard grows or shrinks by, by then.
+const CLEARLY: f64 = 4.0;
+
 /// How often a fall is looked for around its guess, each time four times as far.
 const TRIES: usize = 4;
 
@@ -70,8 +74,7 @@ impl Search<'_> {
         if near.is_finite() && near <= ROUNDING * self.largest {
             return Ok(Passage::Root);
         }
-        // A root of up to the fourth order has grown by so much farther away, and what comes from a pole shrunk.
-        let by = SURELY * (outside - inside).max(self.tick);
+        let by = FARTHER * (outside - inside).max(self.tick);
         let (before, after) = ((inside - by).max(0.0), outside + by);
         let far = (self.guard)(before).abs() + (self.guard)(after).abs();
         let passage = if near == f64::INFINITY || CLEARLY * far < near && self.largest < CLEARLY * near {
@@ -129,7 +132,7 @@ impl Search<'_> {
         let mut near = (guess, self.value(guess)?);
         let end = self.value(b)?;
         let towards = if near.1 >= 0.0 { 1.0 } else { -1.0 };
-        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(CLEARLY * (guess.next_up() - guess));
+        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(4.0 * (guess.next_up() - guess));
         for _ in 0..TRIES {
             let s = guess + towards * by;
             if s <= a || s >= b {
@@ -140,7 +143,7 @@ impl Search<'_> {
                 return Ok(Some(if towards > 0.0 { [near, next] } else { [next, near] }));
             }
             near = next;
-            by *= CLEARLY;
+            by *= 4.0;
         }
         Ok(None)
     }

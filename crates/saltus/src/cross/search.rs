@@ -1,6 +1,5 @@
 //! Halving an interval until bounds exclude a fall in each part, or show one.
 
-use crate::noise::{ALIKE, ROUNDINGS, SURELY, rounding};
 use crate::poly::{Bernstein, Shape};
 
 use super::departure::Departure;
@@ -20,13 +19,13 @@ pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
 /// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
 /// higher powers carry the error of the step and the rounding of its stages.
 pub(crate) const ROUGH: f64 = 1e-6;
-/// An interpolant that is off by no more than this part of its size shows the shape of the guard.
-const SHOWS: f64 = 1e-3;
-/// How many times the error of an interpolant of degree n = 8 that of its quotient by a root at its start may be: the Bernstein
-/// coefficients of that are (bₖ₊₁ - b₀) n/(k + 1).
-pub(super) const DIVIDED: f64 = 16.0;
+/// Roundings of a guard's largest value that its values near zero may be off by, where it cancels: what is rougher is no rounding.
+const CANCELLED: f64 = 1024.0;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
+
+/// A guard that falls from a spent root by this more than its samples leave open does so: that is the fall that was spent.
+const SURELY: f64 = 1024.0;
 
 /// Compiled once for every guard: it is much code, and a call through a table costs little beside a guard on a dense output.
 pub(super) struct Search<'a> {
@@ -263,7 +262,7 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, depth, margin, known } = stretch;
         if let Some(p) = known {
             // Zero at the start: every power of time keeps its digits.
-            let margin = if side == Side::Wall && a == 0.0 { rounding(p.scale()) } else { margin };
+            let margin = if side == Side::Wall && a == 0.0 { 8.0 * f64::EPSILON * p.scale() } else { margin };
             return Seen::As(Proxy { p, margin, start: p.start(), end: p.end(), least: p.start() });
         }
         let Ok(samples) = self.sampled(a, b) else { return Seen::Undefined };
@@ -278,14 +277,14 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
         let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
-        let (q, q_margin) = if leaving { (p.without_root_at_start(), DIVIDED * margin) } else { (*p, margin) };
+        let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (*p, margin) };
         // A stretch of zeros tells nothing, and least of all that it is sure of it.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
             self.doubt_noise(&q, b, sampled)?;
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
-        let resolved = known.is_some() || margin <= SHOWS * scale || margin >= ALIKE * whole;
+        let resolved = known.is_some() || margin <= 1e-4 * scale || margin >= 0.1 * whole;
         let from = self.flat.unwrap_or(a);
         if leaving
             && !self.spent
@@ -345,8 +344,8 @@ impl<'a> Search<'a> {
     /// What samples say of a guard of this `scale` that is near zero by no more than a few margins, or goes in steps.
     fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
         let &Stretch { a, b, ref known, .. } = stretch;
-        let rounding = scale <= ROUNDINGS * margin && (known.is_some() || margin <= ROUNDING * self.largest);
-        if rounding || margin > SHOWS * scale && self.stands(a, b)? {
+        let rounding = scale <= 8.0 * margin && (known.is_some() || margin <= ROUNDING * self.largest);
+        if rounding || margin > 1e-3 * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
@@ -377,7 +376,7 @@ impl<'a> Search<'a> {
 
     /// Whether values off by so much are off by more than a guard's cancellation explains.
     pub(super) fn is_rougher_than_rounding(&self, off: f64) -> bool {
-        off > SURELY * f64::EPSILON * self.largest
+        off > CANCELLED * f64::EPSILON * self.largest
     }
 
     /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
@@ -401,7 +400,7 @@ impl<'a> Search<'a> {
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {
             let shorter = self.sampled(0.0, part * b)?.proxy().p.without_root_at_start().start();
-            if (shorter - part * change).abs() > ALIKE * part * change.abs() {
+            if (shorter - part * change).abs() > 0.2 * part * change.abs() {
                 return Ok(false);
             }
         }
