@@ -8,7 +8,7 @@ use crate::cloud::meeting_of_balls;
 use crate::effects::Effect;
 use crate::flyer::{Event, Grip, Stance};
 use crate::restitution::Restitution;
-use crate::walls::Walls;
+use crate::walls::{Face, Walls};
 
 impl<const N: usize, E, W, R, G, C> Flock<N, E, W, R, G, C>
 where
@@ -68,9 +68,8 @@ where
             }
             _ => false,
         };
-        // A contact may be over where it begins, as of a ball alone.
-        let about = About::new().affine_if(affine);
-        if self.is_meeting(meeting) { about } else { about.entry(Entry::Fire) }
+        // What overlaps by rounding is put right at once.
+        About::new().affine_if(affine).entry(Entry::Fire)
     }
 
     fn reset(
@@ -85,7 +84,17 @@ where
             Happens::Balls(i, j) => self.collided(i, j, &self.restitution, t, &x),
             Happens::To(ball, event) => {
                 let (flyer, moving) = (&self.balls[ball].1, x.ball(ball));
-                let (stance, moving) = flyer.reset(stances.of(ball), event, t, &moving)?;
+                let parts = |face: Face| {
+                    let (normal, speed) = flyer.normal(face, t, &moving);
+                    matches!(stances.of(ball), Stance::Flight { .. })
+                        && flyer.walls().leads(face, t, &moving.position).is_none()
+                        && moving.velocity.dot(&normal) > speed
+                };
+                let (stance, moving) = match event {
+                    // Inside by its rounding, on its way out.
+                    Event::Meet(face) if parts(face) => (stances.of(ball), flyer.outside(face, t, &moving)),
+                    event => flyer.reset(stances.of(ball), event, t, &moving)?,
+                };
                 let mut after = x;
                 after.put(ball, stance, moving);
                 after
@@ -100,6 +109,7 @@ where
             }
             Happens::Nothing => x,
         };
+        let after = self.sided(t, after);
         Ok((after.stances(), after))
     }
 
