@@ -22,19 +22,11 @@ pub(crate) fn telling(evidence: &Evidence) -> Evidence {
     few
 }
 
-/// The ball left the floor by this part of the least height that was read, at least.
-const LEFT: f64 = 0.1;
-
-/// By how much heights may be read too high, m: the ball did leave the floor.
-pub(crate) fn lowered_at_most(evidence: &Evidence) -> f64 {
-    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
-    (1.0 - LEFT) * read.fold(f64::INFINITY, f64::min)
-}
-
-/// With heights read higher by so much, m.
+/// With heights read higher by so much, m; lower by half the least of them at most, since the ball did leave the floor.
 pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     let mut altered = evidence.clone();
-    let by = by.max(-lowered_at_most(evidence));
+    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
+    let by = by.max(-0.5 * read.fold(f64::INFINITY, f64::min));
     for trial in &mut altered.trials {
         trial.heights.iter_mut().for_each(|h| h.1 += by);
         trial.release_height.iter_mut().for_each(|h| h.0 += by);

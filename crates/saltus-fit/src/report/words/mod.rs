@@ -82,7 +82,7 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
         Widening::Zero { zero_m, share } => format!(
-            "a zero of the heights off by up to {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
+            "a zero of the heights off by {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
              state what is left (--sigma-zero)",
             length(*zero_m)
         ),
