@@ -3,7 +3,7 @@
 use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, FindingKind};
+use crate::finding::FindingKind;
 use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
 use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
 use crate::read::{Reading, Table};
@@ -239,9 +239,7 @@ impl Fit {
         let mut comparison = compare::all(&fits, &self.wanted())?;
         let extras = self.extras(&fits, progress)?;
         let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model, (&known, self.stated()));
-        judgement
-            .findings
-            .extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball, air: self.drag.is_some() })));
+        self.note_ball(&mut judgement);
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
@@ -325,11 +323,15 @@ impl Fit {
         Ok(extras)
     }
 
+    fn note_ball(&self, judgement: &mut verdict::Judgement) {
+        if let Some(ball) = self.named {
+            judgement.note(FindingKind::BallNamed { ball, air: self.drag.is_some() });
+        }
+    }
+
     fn report_of_recordings(&self, fits: &Fits<'_>, series: Series) -> Report {
         let (mut judgement, estimates, models) = verdict::of_recordings(fits, &series);
-        judgement
-            .findings
-            .extend(self.named.map(|ball| Finding::note(FindingKind::BallNamed { ball, air: self.drag.is_some() })));
+        self.note_ball(&mut judgement);
         if self.model.is_some() {
             judgement.note(FindingKind::ModelNotHeeded);
         }

@@ -252,8 +252,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.forget_risen(mode, t, before);
         }
         if let Some(last) = self.memory.spent.filter(|last| last.edge != edge)
-            && self.has(mode, last.edge)
-            && duration.is_none_or(|s| self.memory.is_short(s) && self.is_below(mode, last.edge, t, before))
+            && match duration {
+                Some(s) => self.memory.is_short(s) && self.is_below(mode, last.edge, t, before),
+                None => self.has(mode, last.edge),
+            }
         {
             let g = self.automaton.guard(last.edge, began, x);
             let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g, 0.0) } else { 0.0 };
