@@ -1,7 +1,9 @@
 //! Filippov sliding: two smooth flows and a surface between them become an automaton with a third mode on the surface.
 
+use std::borrow::Cow;
 use std::marker::PhantomData;
 
+use crate::automaton::clocks::Clock;
 use crate::automaton::edges::Edges;
 use crate::automaton::{About, Automaton, Entry};
 use crate::error::Refusal;
@@ -91,6 +93,11 @@ pub trait TwoSided {
         false
     }
 
+    /// The times at which a flow or the surface is not smooth, as [`Automaton::stops`]; by default there are none.
+    fn stops(&self) -> &[Clock] {
+        &[]
+    }
+
     /// The rate κ, in 1/s, at which a deviation from the surface decays while sliding: h' = -κ h. Not used where the surface is affine.
     ///
     /// Anything slow against a step and fast against the slide will do: it acts on deviations of the size of the tolerance.
@@ -125,6 +132,9 @@ impl<T: TwoSided + ?Sized> TwoSided for &T {
     }
     fn affine(&self) -> bool {
         (**self).affine()
+    }
+    fn stops(&self) -> &[Clock] {
+        (**self).stops()
     }
     fn pull(&self) -> f64 {
         (**self).pull()
@@ -325,6 +335,10 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         })
     }
 
+    fn stops(&self, _: Side) -> Cow<'_, [Clock]> {
+        self.system.stops().into()
+    }
+
     #[inline]
     fn about(&self, edge: Passage) -> About {
         match edge {
@@ -357,7 +371,7 @@ impl<T: TwoSided> Automaton for Filippov<T> {
 /// assert!((run.end.state.norm() - 1.0).abs() < 1e-9);
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Sides<S, F, G, H, N, R = fn(f64, &S) -> f64> {
     above: F,
     below: G,
@@ -366,6 +380,7 @@ pub struct Sides<S, F, G, H, N, R = fn(f64, &S) -> f64> {
     rate: R,
     affine: bool,
     pull: f64,
+    stops: Vec<Clock>,
     state: PhantomData<fn(&S) -> S>,
 }
 
@@ -380,7 +395,17 @@ where
     /// The flow where h > 0, the flow where h < 0, h itself, and its gradient with respect to the state.
     #[must_use]
     pub fn new(above: F, below: G, surface: H, normal: N) -> Self {
-        Self { above, below, surface, normal, rate: |_, _| 0.0, affine: false, pull: 1.0, state: PhantomData }
+        Self {
+            above,
+            below,
+            surface,
+            normal,
+            rate: |_, _| 0.0,
+            affine: false,
+            pull: 1.0,
+            stops: Vec::new(),
+            state: PhantomData,
+        }
     }
 }
 
@@ -388,14 +413,35 @@ impl<S, F, G, H, N, R> Sides<S, F, G, H, N, R> {
     /// Lets the surface move: `rate` is ∂h/∂t.
     #[must_use]
     pub fn moving<Q: Fn(f64, &S) -> f64>(self, rate: Q) -> Sides<S, F, G, H, N, Q> {
-        let Self { above, below, surface, normal, affine, pull, state, .. } = self;
-        Sides { above, below, surface, normal, rate, affine, pull, state }
+        let Self { above, below, surface, normal, affine, pull, stops, state, .. } = self;
+        Sides { above, below, surface, normal, rate, affine, pull, stops, state }
     }
 
     /// Promises that the surface is affine and at rest; see [`TwoSided::affine`].
     #[must_use]
     pub fn affine(mut self) -> Self {
         self.affine = true;
+        self
+    }
+
+    /// Says when a flow is not smooth in time, as at the knots of an input; see [`TwoSided::stops`].
+    ///
+    /// ```
+    /// use saltus::{Clock, Filippov, Side, Sides, Simulation};
+    ///
+    /// // A block of 1 kg that friction holds with 2 N is pushed with 5 N for 10 ms.
+    /// let push = |t: f64| if (1.0..1.01).contains(&t) { 5.0 } else { 0.0 };
+    /// let block = Sides::new(move |t, _: &f64| push(t) - 2.0, move |t, _| push(t) + 2.0, |_, v| *v, |_, _| 1.0);
+    /// let block = Filippov::of(block.affine().stops(Clock::at([1.0, 1.01])));
+    /// let run = Simulation::of(&block).run(Side::Sliding, 0.0, 0.0..10.0)?;
+    /// let jumps: Vec<_> = run.trajectory.jumps().iter().map(|jump| (jump.to, jump.t())).collect();
+    /// assert_eq!(jumps[0], (Side::Above, 1.0));
+    /// assert!(jumps[1].0 == Side::Sliding && (jumps[1].1 - 1.025).abs() < 1e-12); // 5·0.01/2 after it began
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn stops(mut self, stops: Clock) -> Self {
+        self.stops.push(stops);
         self
     }
 
@@ -440,6 +486,9 @@ where
     }
     fn affine(&self) -> bool {
         self.affine
+    }
+    fn stops(&self) -> &[Clock] {
+        &self.stops
     }
     fn pull(&self) -> f64 {
         self.pull

@@ -212,15 +212,10 @@ impl Signal {
     /// When it is not smooth: at its knots, for [`Hybrid::stops`](crate::Hybrid::stops) or [`Automaton::stops`](crate::Automaton::stops).
     #[must_use]
     pub fn stops(&self) -> Clock {
-        let signal = self.clone();
+        let knots = Clock::at(self.knots.iter().map(|knot| knot.t).collect::<Vec<_>>());
         match self.period {
-            None => Clock::at(self.knots.iter().map(|knot| knot.t).collect::<Vec<_>>()),
-            Some(_) => Clock::from_fn(move |t| {
-                let cycle = signal.cycle(t);
-                let times = [cycle, cycle + 1.0].map(|cycle| signal.knots.iter().map(move |_| cycle));
-                let cycles = times.into_iter().flatten().zip(signal.knots.iter().cycle());
-                cycles.map(|(cycle, knot)| signal.late(knot, cycle)).find(|&time| time > t)
-            }),
+            Some(period) => knots.repeated(period),
+            None => knots,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use crate::automaton::Automaton;
-use crate::automaton::clocks::{Clock, Clocks, Source, Times};
+use crate::automaton::clocks::{Clocks, Source};
 use crate::error::{Error, ErrorKind, Place};
 use crate::time::{self, Span, Time, resolution};
 
@@ -160,9 +160,10 @@ impl<A: Automaton> Look<'_, A> {
 
     /// A period that is shorter than two instants has ticks that time cannot tell apart.
     fn resolved(&self, time: Option<f64>, from: f64) -> Result<Option<f64>, String> {
-        let Source::Clock(Clock { times: Times::Every { period, phase }, .. }) = self.source else { return Ok(time) };
-        let largest = from.abs().max(phase.map_or(0.0, f64::abs));
-        if *period > 2.0 * grace(largest, self.start) {
+        let Source::Clock(clock) = self.source else { return Ok(time) };
+        let Some((period, phase)) = clock.period() else { return Ok(time) };
+        let largest = from.abs().max(phase);
+        if period > 2.0 * grace(largest, self.start) {
             return Ok(time);
         }
         let spacing = resolution(largest);

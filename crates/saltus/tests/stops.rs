@@ -3,7 +3,10 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{Clock, Dop853, Entry, ErrorKind, Hybrid, Rodas5P, RunOf, Simulation, Tsit5};
+use saltus::{
+    Clock, Dop853, Edge, Entry, ErrorKind, Filippov, Hybrid, Reversed, Rodas5P, RunOf, Side, Sides, Signal, Simulation,
+    Tsit5,
+};
 
 /// An input that is constant between its knots.
 #[derive(Clone, Debug)]
@@ -144,4 +147,205 @@ fn stops_that_cannot_be() {
     let late = error(Clock::from_fn(|t| Some(t.min(0.5))));
     assert_eq!(late.kind(), ErrorKind::Clock);
     assert!(late.to_string().contains("first stop after"), "{late}");
+}
+
+/// A clock of stops, and its ticks in a span, by arithmetic of its own.
+fn any_stops() -> impl Strategy<Value = (Clock, Vec<f64>)> {
+    let within = |ticks: Vec<f64>| ticks.into_iter().filter(|tick| tick.abs() < SPAN - 1e-9).collect::<Vec<_>>();
+    let period = || (1..400_u32).prop_map(|hundredths| f64::from(hundredths) * 0.01);
+    let phase = || (-500..500_i32).prop_map(|hundredths| f64::from(hundredths) * 0.01);
+    let lots = || (-2000..2000).map(f64::from);
+    prop_oneof![
+        period().prop_map(move |every| (Clock::every(every), within(lots().map(|k| k * every).collect()))),
+        (period(), phase()).prop_map(move |(every, phase)| {
+            let ticks = lots().filter(|&k| k >= 0.0).map(|k| k.mul_add(every, phase));
+            (Clock::every(every).after(phase), within(ticks.collect()))
+        }),
+        prop::collection::btree_set(-900..900_i32, 1..9).prop_map(move |ticks| {
+            let ticks: Vec<_> = ticks.into_iter().map(|tick| f64::from(tick) * 0.01).collect();
+            (Clock::at(ticks.clone()), within(ticks))
+        }),
+        (prop::collection::btree_set(-900..900_i32, 1..9), period()).prop_map(move |(ticks, longer)| {
+            let ticks: Vec<_> = ticks.into_iter().map(|tick| f64::from(tick) * 0.01).collect();
+            let period = ticks[ticks.len() - 1] - ticks[0] + longer;
+            let all = lots().flat_map(|k| ticks.iter().map(move |&tick| k.mul_add(period, tick)));
+            let all = within(all.collect());
+            (Clock::at(ticks).repeated(period), all)
+        }),
+    ]
+}
+
+const SPAN: f64 = 10.0;
+
+proptest! {
+    /// Each stop is the end of a step, forwards and backwards, whatever makes it tick.
+    #[test]
+    fn steps_end_at_stops_both_ways((clock, ticks) in any_stops()) {
+        let model = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).stops("run", clock);
+        let there = Simulation::of(&model).run("run", 0.0, -SPAN..SPAN).unwrap();
+        let reversed = Reversed::of(&model);
+        let back = Simulation::of(&reversed).run("run", there.end.state, Reversed::span(SPAN, -SPAN)).unwrap();
+        prop_assert!(back.end.state.abs() < 1e-12);
+        let forwards: Vec<_> = there.trajectory.pieces(0).map(|piece| piece.start().seconds()).collect();
+        let backwards: Vec<_> = back.trajectory.pieces(0).map(|piece| -piece.start().seconds()).collect();
+        for tick in ticks {
+            prop_assert!(forwards.contains(&tick) && backwards.contains(&tick), "{}", tick);
+        }
+    }
+
+    /// An input that switches is undone exactly, and no step backwards is tried in vain.
+    #[test]
+    fn an_input_is_undone(input in held(), period in 0.0..3.0_f64, whole in any::<bool>()) {
+        let samples = input.knots.iter().zip(&input.rates[1..]).map(|(&knot, &rate)| (knot, rate));
+        let signal = Signal::held(samples).unwrap();
+        let period = input.knots[input.knots.len() - 1] - input.knots[0] + 0.01 + period;
+        let signal = if whole { signal } else { signal.repeated(period).unwrap() };
+        let stops = signal.stops();
+        let model = Hybrid::new().mode("run", |t, _x: &[f64; 2]| [signal.at(t), 1.0]).stops("run", stops);
+        let there = Simulation::of(&model).run("run", [0.0; 2], 0.0..SPAN).unwrap();
+        let reversed = Reversed::of(&model);
+        let back = Simulation::of(&reversed).run("run", there.end.state, Reversed::span(SPAN, 0.0)).unwrap();
+        prop_assert!(back.end.state[0].abs() < 256.0 * f64::EPSILON * 1000.0 * SPAN, "{:?}", back.end.state);
+        prop_assert_eq!(back.end.stats.rejected, 0);
+    }
+}
+
+/// A function of time gives the next tick only: backwards it is an error that says what to use.
+#[test]
+fn a_function_has_no_way_back() {
+    let clock = Clock::from_fn(|t| Some(t.floor() + 1.0));
+    let model = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).stops("run", clock);
+    let reversed = Reversed::of(&model);
+    let error = Simulation::of(&reversed).run("run", 0.0, 0.0..1.0).unwrap_err().error;
+    assert!(error.to_string().contains("cannot run backwards: use Clock::every"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_repeated() {
+    let wrong = |clock: Clock| {
+        let model = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).stops("run", clock);
+        Simulation::of(&model).run("run", 0.0, 0.0..1.0).unwrap_err().error.to_string()
+    };
+    assert!(wrong(Clock::at([0.0, 2.0]).repeated(2.0)).contains("repeats ticks over 2 s each 2 s"));
+    assert!(wrong(Clock::at([]).repeated(2.0)).contains("has no tick to repeat"));
+    assert!(wrong(Clock::every(1.0).repeated(2.0)).contains("repeats what is no list of times"));
+    assert!(wrong(Clock::at([0.0]).repeated(f64::NAN)).contains("give Clock::repeated a longer period"));
+}
+
+/// Dry friction under a force that is given by samples: each knot is met, also while it slides.
+#[test]
+fn friction_under_a_switched_force() {
+    // Held by 2 N; pushed by 5 N in each tenth second, for 10 ms, and pulled by 5 N half a period later.
+    let knots = [0.0, 0.01, 0.05, 0.06];
+    let push = |t: f64| match t.rem_euclid(0.1) {
+        u if u < 0.01 => 5.0,
+        u if (0.05..0.06).contains(&u) => -5.0,
+        _ => 0.0,
+    };
+    let block = Sides::new(
+        move |t, x: &[f64; 2]| [x[1], push(t) - 2.0],
+        move |t, x| [x[1], push(t) + 2.0],
+        |_, x| x[1],
+        |_, _| [0.0, 1.0],
+    );
+    let block = Filippov::of(block.affine().stops(Clock::at(knots).repeated(0.1)));
+    let run = Simulation::of(&block).run(Side::Sliding, [0.0; 2], -0.02..9.98).unwrap();
+    // It gains 3 m/s² for 10 ms, loses 2 m/s² for 15 ms, and is pulled back.
+    let push = 1.5 * 0.01 * 0.01 + 0.03 * 0.03 / 4.0;
+    let (first, jumps) = (run.trajectory.jumps()[0], run.trajectory.jumps().len());
+    assert!(first.to == Side::Above && first.t() == 0.0, "{first:?}");
+    assert_eq!((jumps, run.end.stats.rejected), (4 * 100, 0));
+    for (t, place) in [(0.04, push), (0.09, 0.0), (9.94, push), (9.978, 0.0)] {
+        let off = run.trajectory.at(t).unwrap()[0] - place;
+        assert!(off.abs() < 1e-13, "{off} at {t}");
+    }
+}
+
+/// Comparators of an input with levels, each an edge that counts, beside a clock at the knots.
+fn comparators<'a>(input: &'a Held, levels: &[f64], clocked: bool) -> Integrator<'a> {
+    let mut model = integrator(input).series("run", |t, [_, _]| {
+        let zero = t * 0.0;
+        [zero + input.at(t.value()), zero + 1.0]
+    });
+    for &level in levels {
+        let edge = Edge::new(move |t, _x: &[f64; 2]| margin(level, input.at(t)), |_t, x: &[f64; 2]| *x);
+        model = model.edge_with("run", "run", edge.entry(Entry::Wait));
+    }
+    let ticks = if clocked { input.knots.clone() } else { Vec::new() };
+    model.clock("run", "run", Clock::at(ticks), |_t, x| *x)
+}
+
+/// Positive on one side of a level, and negative on the other.
+fn margin(level: f64, u: f64) -> f64 {
+    if level > 0.0 { level - u } else { u - level }
+}
+
+proptest! {
+    /// Which comparator falls at which knot, each once and in the order declared, follows from the input on both sides
+    /// of the knot, whichever side it belongs to; also at both ends of the span, and before the clock of the same instant.
+    #[test]
+    fn guards_that_switch_at_stops(
+        input in held(),
+        levels in prop::collection::vec(-1000..1000_i32, 1..4),
+        stepper in 0..5_usize,
+        ends in prop::array::uniform2(prop::option::of(0..12_usize)),
+        clocked in any::<bool>(),
+    ) {
+        let levels: Vec<_> = levels.into_iter().map(|level| f64::from(level) + 0.5).collect();
+        let knot = |place: Option<usize>, other| place.and_then(|place| input.knots.get(place)).map_or(other, |&knot| knot);
+        let (start, end) = (knot(ends[0], 0.0), knot(ends[1], 11.0));
+        prop_assume!(start < end);
+        let model = comparators(&input, &levels, clocked);
+        let simulation = Simulation::of(&model);
+        let run = match stepper {
+            0 => simulation.stepped().run("run", [0.0; 2], start..end),
+            1 => simulation.stepper(Tsit5).stepped().run("run", [0.0; 2], start..end),
+            2 => simulation.stepper(Dop853).stepped().run("run", [0.0; 2], start..end),
+            3 => simulation.stepper(Rodas5P).stepped().run("run", [0.0; 2], start..end),
+            _ => simulation.run("run", [0.0; 2], start..end),
+        };
+        let run = run.unwrap();
+        let mut expected = Vec::new();
+        for (place, &knot) in input.knots.iter().enumerate().filter(|(_, knot)| (start..=end).contains(*knot)) {
+            let falls = |&(_, &level): &(usize, &f64)| {
+                margin(level, input.rates[place]) >= 0.0 && margin(level, input.rates[place + 1]) < 0.0
+            };
+            expected.extend(levels.iter().enumerate().filter(falls).map(|(edge, _)| (knot, edge)));
+            if clocked && knot > start {
+                expected.push((knot, levels.len()));
+            }
+        }
+        let found: Vec<_> =
+            run.trajectory.jumps().iter().map(|jump| (jump.t(), jump.edge().unwrap().place)).collect();
+        prop_assert_eq!(found, expected);
+        prop_assert!(run.trajectory.doubts().is_empty());
+        prop_assert!((run.end.state[0] - input.integral(end) + input.integral(start)).abs() < 1e-9);
+    }
+
+    /// A switch that follows the sign of an input goes over and back at its knots, by the edge that falls there.
+    #[test]
+    fn modes_that_switch_at_stops(input in held(), stepper in 0..4_usize) {
+        let high = input.at(0.0) >= 0.0;
+        let model: Hybrid<'_, f64> = Hybrid::new()
+            .mode("high", |_t, _x: &f64| 1.0)
+            .mode("low", |_t, _x| -1.0)
+            .edge("high", "low", |t, _x| input.at(t) + 0.5, |_t, x| *x)
+            .edge("low", "high", |t, _x| -0.5 - input.at(t), |_t, x| *x)
+            .stops("high", Clock::at(input.knots.clone()))
+            .stops("low", Clock::at(input.knots.clone()));
+        let simulation = Simulation::of(&model);
+        let start = if high { "high" } else { "low" };
+        let run = match stepper {
+            0 => simulation.run(start, 0.0, 0.0..12.0),
+            1 => simulation.stepper(Tsit5).run(start, 0.0, 0.0..12.0),
+            2 => simulation.stepper(Dop853).run(start, 0.0, 0.0..12.0),
+            _ => simulation.stepper(Rodas5P).run(start, 0.0, 0.0..12.0),
+        };
+        let run = run.unwrap();
+        let changes = (0..input.knots.len()).filter(|&k| (input.rates[k] >= 0.0) != (input.rates[k + 1] >= 0.0));
+        let expected: Vec<_> = changes.map(|k| input.knots[k]).collect();
+        let found: Vec<_> = run.trajectory.jumps().iter().map(saltus::Jump::t).collect();
+        prop_assert_eq!(found, expected);
+        prop_assert!(run.trajectory.doubts().is_empty());
+    }
 }

@@ -45,7 +45,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let unclear = by_powers == FirstFall::Unclear;
             let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
             let bend = if unclear && p.is_none() { self.bend(edge, now, c) } else { 0.0 };
-            let (automaton, count) = (self.automaton, &mut self.memory.stats.guards);
+            let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
             // Where the dense output is long, it is summed up once.
             let near = match by_powers {
                 FirstFall::At(u) if c.len() > LONG => Some(Near::around(c, scale, u * limit)),
@@ -53,7 +53,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             };
             let mut guard = |s: f64| {
                 *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), &at(&near, c, scale, s))
+                automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(&near, c, scale, s))
             };
             let mut above = |s: f64| guard(s) - level;
             let turn_of_powers = along.as_ref().and_then(|along| along.powers.turns()).map(|u| u.map(|u| u * limit));
@@ -88,7 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
         self.memory.stats.guards += 2;
         let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));
-        let [bent, start] = [&bent, &c[0]].map(|x| self.automaton.guard(edge, now.seconds(), x));
+        let [bent, start] = [&bent, &c[0]].map(|x| self.guard(edge, now.seconds(), x));
         let bend = (bent - start).abs();
         if bend.is_finite() { bend } else { 0.0 }
     }
@@ -138,10 +138,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         let t = time.seconds();
         self.memory.stats.guards += 1;
-        let outer = self.automaton.guard(edge, now.after(outside).seconds(), &at(outside));
+        let outer = self.guard(edge, now.after(outside).seconds(), &at(outside));
         let mut guard = |x: &A::State| {
             self.memory.stats.guards += 1;
-            self.automaton.guard(edge, t, x)
+            self.guard(edge, t, x)
         };
         let nearest = at(root);
         let g = guard(&nearest);
@@ -164,9 +164,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn hides(&mut self, edge: A::Edge, now: Time, duration: f64, middle: &A::State, end: &A::State) -> bool {
         self.memory.stats.guards += 3;
         let t = now.after(duration).seconds();
-        let rise = self.automaton.guard(edge, now.after(0.5 * duration).seconds(), middle);
-        let g = self.automaton.guard(edge, t, end);
-        let moved = (self.automaton.guard(edge, t + duration, end) - g).abs() / duration;
+        let rise = self.guard(edge, now.after(0.5 * duration).seconds(), middle);
+        let g = self.guard(edge, t, end);
+        let moved = (self.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
         rise < 65536.0 * self.guard_rounding(edge, t, end, g, end) + 64.0 * by_time
     }
@@ -179,8 +179,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // So that the rounding of time and what the guard bends by weigh alike.
         let (longest, t) = (self.memory.longest_duration, now.seconds());
         let far = 0.3 * longest * (resolution(t) / longest).cbrt();
-        let [before, after] =
-            [root - far, root + far].map(|s| self.automaton.guard(edge, now.after(s).seconds(), &at(s)));
+        let [before, after] = [root - far, root + far].map(|s| self.guard(edge, now.after(s).seconds(), &at(s)));
         after > before
     }
 

@@ -32,7 +32,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         for edge in edges.iter() {
             self.memory.stats.guards += 1;
-            let g = self.automaton.guard(edge, t, x);
+            let g = self.guard(edge, t, x);
             let spent = self.memory.spent_as(edge);
             if spent.is_some_and(|spent| g.abs() <= spent.slack) {
                 if self.memory.idle_count == 0 || !self.is_driven(mode, edge, t, x, g) {
@@ -89,6 +89,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(!spent && slope < 0.0);
         }
         match self.automaton.about(edge).entry {
+            _ if self.fell_at_stop(edge, x) => Ok(true),
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {
@@ -133,16 +134,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let longest = self.glance();
         let slope = self.flow(mode, t, x);
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
-        let (automaton, guards) = (self.automaton, Cell::from_mut(&mut self.memory.stats.guards));
+        let (automaton, smooth, guards) = (self.automaton, self.smooth, Cell::from_mut(&mut self.memory.stats.guards));
         let change = |h: f64, bends: f64| {
             guards.set(guards.get() + 1);
             let bend = bends * h / longest;
             let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
-            automaton.guard(edge, t + h, &ahead) - g
+            automaton.guard(edge, smooth.within(t + h), &ahead) - g
         };
         // A guard that moves is seen to move by no less than some roundings of time.
         guards.set(guards.get() + 1);
-        let tick = if automaton.guard(edge, t + longest, x) == g { 0.0 } else { resolution(t) };
+        let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
         let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;

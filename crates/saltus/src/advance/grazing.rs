@@ -85,7 +85,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The guard of `edge` a time `s` after the start of a step.
     fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
         self.memory.stats.guards += 1;
-        self.automaton.guard(edge, step.time(s), &step.at(s))
+        self.guard(edge, step.time(s), &step.at(s))
     }
 
     /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its start.

@@ -14,6 +14,7 @@ mod stiff;
 
 pub(crate) use series::Held;
 pub(crate) use smooth::Smooth;
+use smooth::Switched;
 
 use self::stiff::Gait;
 
@@ -83,7 +84,7 @@ const FELL_ON: &str = "goes on falling after its own reset, out of the mode";
 const SHORT: f64 = 1e-4;
 
 /// What is kept from arc to arc.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory<E, S> {
     pub(crate) stats: Stats,
@@ -113,6 +114,8 @@ pub(crate) struct Memory<E, S> {
     hidden: u32,
     /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the step.
     resolved: bool,
+    /// Edges that were taken in the last stop because their guards switch there.
+    pub(super) switched: Switched<E>,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from zero: jumps have accumulated as far as can be told.
     pub(crate) spurious: bool,
 }
@@ -138,6 +141,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             longest_duration: 0.0,
             hidden: 0,
             resolved: false,
+            switched: Switched::none(),
             spurious: false,
         }
     }
@@ -257,7 +261,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 None => self.has(mode, last.edge),
             }
         {
-            let g = self.automaton.guard(last.edge, began, x);
+            let g = self.guard(last.edge, began, x);
             let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g, 0.0) } else { 0.0 };
             if slope < 0.0 {
                 self.memory.idle.rotate_right(1);
@@ -272,6 +276,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.longest_duration = duration;
             }
         }
+        self.memory.switched.take(edge);
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
         self.memory.last = Some(edge);
     }
@@ -282,7 +287,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return false;
         }
         self.memory.stats.guards += 1;
-        self.automaton.guard(edge, t, x) < 0.0
+        self.guard(edge, t, x) < 0.0
     }
 
     /// Whether an edge leads out of this mode: elsewhere its guard may not even be asked.
@@ -312,6 +317,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let &Span { now, .. } = clock;
+        self.smooth_from(mode, now, x)?;
         if let Some(edge) = self.enter(mode, x, now)? {
             return Ok(ArcEnd::Crossing { edge, time: now, before: *x });
         }
@@ -320,21 +326,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state: *x });
         }
         let stepped = self.options.stepped;
+        let smooth = std::mem::replace(&mut self.smooth, Smooth::ALWAYS); // as an exact solution is
         if !stepped
             && !observer.wants_pieces()
             && let Some(end) = self.told(mode, x, now, clock.end.since(now), observer)
         {
             return Ok(end);
         }
-        let end = if stepped {
-            self.stepped(mode, *x, *clock, true, observer)
-        } else {
-            match self.automaton.solution(mode, now.seconds(), x) {
-                Solution::Polynomial(polynomial) => self.exact(mode, &polynomial, clock, observer),
-                Solution::Formula(formula) => self.closed(mode, x, formula, clock, observer),
-                Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
-                Solution::Steps => self.stepped(mode, *x, *clock, true, observer),
-            }
+        let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
+        if matches!(solution, Solution::Series(_) | Solution::Steps) {
+            self.smooth = smooth;
+        }
+        let end = match solution {
+            Solution::Polynomial(polynomial) => self.exact(mode, &polynomial, clock, observer),
+            Solution::Formula(formula) => self.closed(mode, x, formula, clock, observer),
+            Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
+            Solution::Steps => self.stepped(mode, *x, *clock, true, observer),
         };
         let end = end?;
         self.stayed_inside(mode, x, now, &end, observer)?;
@@ -362,7 +369,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         for edge in self.automaton.edges(mode).iter().filter(|&edge| Some(edge) != taken) {
             self.memory.stats.guards += 1;
-            if self.automaton.guard(edge, time.seconds(), state) < 0.0 {
+            if self.guard(edge, time.seconds(), state) < 0.0 {
                 self.outside(mode, edge, (began, x), (time, state), observer)?;
             }
         }
@@ -398,10 +405,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(())
     }
 
+    /// The guard of `edge`, of the stretch between two stops as the flow is.
+    #[inline]
+    fn guard(&self, edge: A::Edge, t: f64, x: &A::State) -> f64 {
+        self.automaton.guard(edge, self.smooth.within(t), x)
+    }
+
     /// The guard of `edge` at `x`, or zero where rounding and the tolerance leave open which side it is on.
     fn clear_of_zero(&mut self, edge: A::Edge, time: Time, x: &A::State) -> f64 {
         let t = time.seconds();
-        let g = self.automaton.guard(edge, t, x);
+        let g = self.guard(edge, t, x);
         if g.abs() > self.within_tolerance(edge, t, x, g) { g } else { 0.0 }
     }
 

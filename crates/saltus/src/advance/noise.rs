@@ -75,7 +75,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for k in 0..x.len() {
             self.memory.stats.guards += 1;
             let nudged = x.with(|i| if i == k { x.get(i) + by(i) } else { x.get(i) });
-            let change = (self.automaton.guard(edge, t, &nudged) - g).abs();
+            let change = (self.guard(edge, t, &nudged) - g).abs();
             sum += if change.is_finite() { change } else { 0.0 };
         }
         sum
@@ -86,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         const SOME: f64 = 1024.0;
         self.memory.stats.guards += 1;
         let ahead = t + SOME * resolution(t);
-        let change = (self.automaton.guard(edge, ahead, x) - g).abs() / SOME;
+        let change = (self.guard(edge, ahead, x) - g).abs() / SOME;
         if change.is_finite() { change } else { 0.0 }
     }
 
@@ -98,9 +98,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             && self.memory.wall(edge).is_none()
             && self.has(mode, edge)
         {
-            let (automaton, t, x, by) = (self.automaton, step.now.seconds(), &step.c[0], PROBE * step.scale);
+            let (t, x, by) = (step.now.seconds(), &step.c[0], PROBE * step.scale);
             self.memory.stats.guards += 2;
-            let guard = |s: f64| automaton.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+            let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
             if (guard(by) - guard(-by)).abs() <= LEAVES * slack {
                 self.memory.at_wall(edge, 0.0);
             }
@@ -132,7 +132,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding may take the rate of a guard from differences over `by`.
     fn rate_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
         self.memory.stats.guards += 1;
-        let g = self.automaton.guard(edge, t, x);
+        let g = self.guard(edge, t, x);
         ROUNDINGS * (self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)) / by
     }
 
@@ -164,7 +164,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn guard_rate(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
         let slope = self.flow(mode, t, x);
         self.memory.stats.guards += 4;
-        let guard = |s: f64| self.automaton.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+        let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
         let [far, near] = [by, 0.5 * by].map(|s| (guard(s) - guard(-s)) / (2.0 * s));
         (4.0 * near - far) / 3.0
     }
@@ -203,7 +203,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Some(Wall { edge, stays: true, .. }) = self.memory.walls[k].take() else { continue };
             if self.carried(mode, edge, t, x, h) == Carried::Along {
                 self.memory.stats.guards += 1;
-                let level = self.automaton.guard(edge, t, x);
+                let level = self.guard(edge, t, x);
                 self.memory.walls[k] = Some(Wall { edge, level, stays: true });
             }
         }

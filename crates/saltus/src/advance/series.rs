@@ -54,11 +54,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
-        self.smooth_from(mode, clock.now, &x)?;
         loop {
             let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
-                return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
+                return self.ended(mode, stop, clock.now, x);
             }
             let longest = remaining.min(self.options.longest_step).min(self.smooth.ahead(clock.now));
             let wanted = longest.min(AS_LAST * self.memory.last_duration - clock.now.since(began));
@@ -99,8 +98,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             self.tape.anew(ahead.kink.filter(|_| h == ahead.step && !at_stop));
             (x, first) = (end, false);
-            if at_stop {
-                self.smooth_from(mode, clock.now, &x)?;
+            if at_stop && let Some(edge) = self.pass_stop(mode, clock.now, &x)? {
+                return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
             }
             if self.memory.wall_count > 0 {
                 self.keep_staying(mode, clock.now, &x, h);

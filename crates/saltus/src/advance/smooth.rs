@@ -2,11 +2,12 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::clocks::{Clock, Source};
+use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::step::Stepper;
 use crate::time::{Span, Time, grace};
 
-use super::Advance;
+use super::{Advance, ArcEnd};
 
 /// The times strictly between two stops, at which a step asks for the flow: at a stop itself the flow may have the value of
 /// either side.
@@ -42,10 +43,43 @@ impl Smooth {
         t.max(self.from).min(self.until)
     }
 
+    /// The stop in which it begins, if it begins in one.
+    fn start(&self) -> Option<f64> {
+        (self.from > f64::NEG_INFINITY).then(|| self.from.next_down())
+    }
+
     /// How long it lasts from `now` on.
     #[inline]
     pub(super) fn ahead(&self, now: Time) -> f64 {
         if self.stop < f64::INFINITY { Time::new(self.stop).since(now) } else { f64::INFINITY }
+    }
+}
+
+/// The edges that were taken in a stop because their guards switch there: each is taken once in it.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Switched<E> {
+    edges: Vec<(f64, E)>,
+    /// The one to be taken next, and the stop.
+    next: Option<(f64, E)>,
+}
+
+impl<E: Copy + PartialEq> Switched<E> {
+    pub(super) const fn none() -> Self {
+        Self { edges: Vec::new(), next: None }
+    }
+
+    fn has(&self, stop: f64, edge: E) -> bool {
+        self.edges.contains(&(stop, edge))
+    }
+
+    /// `edge` is taken, for this or another reason.
+    #[inline]
+    pub(super) fn take(&mut self, edge: E) {
+        if let Some((stop, _)) = self.next.take().filter(|(_, next)| *next == edge) {
+            self.edges.retain(|(other, _)| *other == stop);
+            self.edges.push((stop, edge));
+        }
     }
 }
 
@@ -72,8 +106,54 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(super) fn smooth_from(&mut self, mode: A::Mode, now: Time, x: &A::State) -> Result<(), Error> {
         let stops = self.automaton.stops(mode);
-        self.smooth = if stops.is_empty() { Smooth::ALWAYS } else { self.between(stops, mode, now, x)? };
+        self.smooth = if stops.is_empty() { Smooth::ALWAYS } else { self.between(&stops, mode, now, x)? };
         Ok(())
+    }
+
+    /// Goes on behind a stop; the first edge whose guard falls across it is returned.
+    #[cold]
+    pub(super) fn pass_stop(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<Option<A::Edge>, Error> {
+        let before = self.smooth;
+        self.smooth_from(mode, time, x)?;
+        let fallen = self.automaton.edges(mode).iter().find(|&edge| self.fell_at_stop(edge, x));
+        if fallen.is_some() {
+            self.smooth = before; // in which the arc ends
+        }
+        Ok(fallen)
+    }
+
+    /// Whether the guard of `edge` switches from inside to outside in the stop behind which the state is: smooth in
+    /// time on both sides of it, as the flow is, it falls there all the same.
+    pub(super) fn fell_at_stop(&mut self, edge: A::Edge, x: &A::State) -> bool {
+        let Some(stop) = self.smooth.start().filter(|&stop| !self.memory.switched.has(stop, edge)) else {
+            return false;
+        };
+        self.memory.stats.guards += 2;
+        let [before, behind] = [stop.next_down(), stop.next_up()].map(|t| self.automaton.guard(edge, t, x));
+        let clear = self.memory.wall(edge).is_none() || -behind > self.guard_rounding(edge, stop, x, behind, x);
+        let fell = before >= 0.0 && behind < 0.0 && clear;
+        if fell {
+            self.memory.slack = 4.0 * before.max(-behind);
+            self.memory.switched.next = Some((stop, edge));
+        }
+        fell
+    }
+
+    /// The end of an arc for which no further step is taken; at a stop in its end a guard may yet fall.
+    pub(super) fn ended(
+        &mut self,
+        mode: A::Mode,
+        stop: Stop<A::Edge>,
+        time: Time,
+        x: A::State,
+    ) -> Result<ArcEnd<A>, Error> {
+        let t = time.seconds();
+        let fallen =
+            if stop == Stop::Time && self.smooth.stop <= t + grace(t) { self.pass_stop(mode, time, &x)? } else { None };
+        Ok(match fallen {
+            Some(edge) => ArcEnd::Crossing { edge, time, before: x },
+            None => ArcEnd::Stop { stop, time, state: x },
+        })
     }
 
     #[cold]

@@ -42,7 +42,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.gait.stiff {
             self.stepper = self.stepper.adapted(true);
         }
-        self.smooth_from(mode, clock.now, &x)?;
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
             let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
@@ -53,7 +52,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         loop {
             let remaining = remaining(&clock);
             if let Some(stop) = self.over(remaining) {
-                return Ok(ArcEnd::Stop { stop, time: clock.now, state: x });
+                return self.ended(mode, stop, clock.now, x);
             }
             let ahead = remaining.min(self.smooth.ahead(clock.now));
             let (h, trial) = match self.accepted(mode, clock.now, &x, &slope, ahead) {
@@ -65,37 +64,41 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             };
             let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
-            if clear && !observer.wants_pieces() {
-                (clock.now, x, first) = (arrival, trial.end, false);
-                slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
+            let state = if clear && !observer.wants_pieces() {
                 self.memory.wall_count = 0; // clear of zero
-                continue;
+                trial.end
+            } else {
+                let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
+                let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
+                if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
+                    self.memory.stats.steps -= 1;
+                    self.memory.stats.rejected += 1;
+                    self.memory.step = Some(0.1 * h);
+                    continue;
+                }
+                if first {
+                    self.find_staying(mode, step, &slope);
+                }
+                let limit = searched(h, remaining, clock.now.since(began), clock.end);
+                let found =
+                    if clear { None } else { self.first_crossing(mode, step, limit, first, Some(&mut *observer))? };
+                if let Some(rough) = found {
+                    return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
+                }
+                // Where guards were looked at, the state goes on from where they were seen last.
+                let state = if clear { trial.end } else { horner(step.c, 1.0) };
+                if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
+                    return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
+                }
+                state
+            };
+            (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
+            if at_stop {
+                if let Some(edge) = self.pass_stop(mode, clock.now, &x)? {
+                    return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
+                }
+                slope = self.slope(mode, clock.now, &x)?;
             }
-            let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
-            let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
-            if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
-                self.memory.stats.steps -= 1;
-                self.memory.stats.rejected += 1;
-                self.memory.step = Some(0.1 * h);
-                continue;
-            }
-            if first {
-                self.find_staying(mode, step, &slope);
-            }
-            let limit = searched(h, remaining, clock.now.since(began), clock.end);
-            let found = if clear { None } else { self.first_crossing(mode, step, limit, first, Some(&mut *observer))? };
-            if let Some(rough) = found {
-                return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
-            }
-            // Where guards were looked at, the state goes on from where they were seen last.
-            let state = if clear { trial.end } else { horner(step.c, 1.0) };
-            let told = observer.piece(mode, &Piece::new(clock.now, h, h, step.c));
-            clock.now = arrival;
-            if told.is_break() {
-                return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state });
-            }
-            (x, first) = (state, false);
-            slope = if at_stop { self.slope_behind(mode, clock.now, &x)? } else { trial.slope };
             if self.memory.wall_count > 0 {
                 self.keep_staying(mode, clock.now, &x, h);
             }
@@ -235,7 +238,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let ahead = |s: f64| x.with(|i| x.get(i) + s * slope.get(i));
         for edge in self.automaton.edges(mode).iter() {
             self.memory.stats.guards += 4;
-            let guard = |s: f64| self.automaton.guard(edge, now.after(s).seconds(), &ahead(s));
+            let guard = |s: f64| self.guard(edge, now.after(s).seconds(), &ahead(s));
             let (here, there) = (guard(0.0), guard(by));
             if here >= 0.0 && there < 0.0 {
                 let root = by * here / (here - there);
@@ -246,13 +249,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         None
-    }
-
-    /// The flow just behind a stop.
-    #[cold]
-    fn slope_behind(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
-        self.smooth_from(mode, time, x)?;
-        self.slope(mode, time, x)
     }
 
     /// The flow, of as many coordinates as the state.
@@ -298,10 +294,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let s = PROBE * h;
                 let rise = |rate: &A::State, by: f64| {
                     let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
-                    self.automaton.guard(edge, t + s, &at(by)) - self.automaton.guard(edge, t - s, &at(-by))
+                    self.guard(edge, t + s, &at(by)) - self.guard(edge, t - s, &at(-by))
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
-                let g = self.automaton.guard(edge, t, x);
+                let g = self.guard(edge, t, x);
                 (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, x))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
@@ -334,7 +330,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return false;
             }
             self.memory.stats.guards += x.len() as u64 + 2;
-            let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+            let guard = |x: &A::State| self.guard(edge, t, x);
             let (constant, start) = (guard(&x.with(|_| 0.0)), guard(x));
             let mut most = 0.0;
             for k in 0..x.len() {
@@ -370,7 +366,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let near = (crossing.inside - scale * 1e-3).max(0.0);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
-            self.automaton.guard(edge, step.time(s), &step.at(s))
+            self.guard(edge, step.time(s), &step.at(s))
         };
         let rise = guard(near) - guard(crossing.inside);
         let fall = rise / (crossing.inside - near); // -dg/dt
@@ -381,7 +377,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.memory.stats.guards += 1;
-            let shift = self.automaton.guard(edge, now.after(h).seconds(), &trial.end) / fall;
+            let shift = self.guard(edge, now.after(h).seconds(), &trial.end) / fall;
             if shift.is_nan() || shift.abs() > 0.1 * h {
                 return None;
             }

@@ -1,7 +1,9 @@
 //! Backwards in time, also through jumps, for automata whose resets have an inverse.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
+use crate::automaton::clocks::Clock;
 use crate::automaton::edges::Edges;
 use crate::automaton::solution::Solution;
 use crate::automaton::{About, Automaton, Entry};
@@ -112,6 +114,7 @@ pub trait Invertible: Automaton {
 /// | edges out of a mode, guards | edges into it, [images](Invertible::image) |
 /// | reset, x⁻ to x⁺ | [undo](Invertible::undo), x⁺ to x⁻ |
 /// | terminal edges, what lies beyond a Zeno limit | none: a limit has no last jump to undo |
+/// | [stops](Automaton::stops) at t | stops at s = -t; of a clock by a function they are an error |
 /// | clocks ([`Automaton::clocks`]) | none, unless [`edges_into`](Invertible::edges_into) lists them with a margin in time |
 ///
 /// Run it as it is, over [`Reversed::span`]; [`forwards`](Self::forwards) turns the trajectory round again.
@@ -222,6 +225,10 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
 
     fn reset(&self, _: A::Mode, edge: A::Edge, s: f64, x: &A::State) -> Result<(A::Mode, A::State), Refusal> {
         Ok(self.automaton.undo(edge, -s, x))
+    }
+
+    fn stops(&self, mode: A::Mode) -> Cow<'_, [Clock]> {
+        self.automaton.stops(mode).iter().map(Clock::reversed).collect()
     }
 
     #[inline]

@@ -27,18 +27,25 @@ type Function = dyn Fn(f64) -> Option<f64> + Send + Sync;
 /// ```
 #[derive(Clone)]
 pub struct Clock {
-    pub(crate) times: Times,
+    times: Times,
     from_start: bool,
+    /// Whether time runs backwards: it ticks at -t for each of its times t.
+    backwards: bool,
     /// Why it cannot tick.
     flaw: Option<Arc<str>>,
 }
 
 #[derive(Clone)]
-pub(crate) enum Times {
+enum Times {
     /// k·period for each integer k; with a phase, phase + k·period for k ≥ 0.
     Every {
         period: f64,
         phase: Option<f64>,
+    },
+    /// time + k·period for each integer k and each of the times, which rise within one period.
+    Cycle {
+        period: f64,
+        times: Arc<[f64]>,
     },
     At(Arc<[f64]>),
     Function(Arc<Function>),
@@ -111,6 +118,48 @@ impl Clock {
         Self::of(Times::Function(Arc::new(next)), None)
     }
 
+    /// The same over and over, before its first tick as well: at t + k·`period`, in seconds, for each
+    /// tick t and each integer k.
+    ///
+    /// It is for [`at`](Self::at), whose times are to lie within one period; of what repeats by
+    /// itself, and of a function, it is an error.
+    ///
+    /// ```
+    /// use saltus::{Clock, Hybrid, Simulation};
+    /// // Each minute two drops, 10 s apart.
+    /// let drops = Hybrid::new()
+    ///     .mode("wait", |_t, _x: &f64| 0.0)
+    ///     .clock("wait", "wait", Clock::at([20.0, 30.0]).repeated(60.0), |_t, x| x + 1.0);
+    /// let run = Simulation::of(&drops).run("wait", 0.0, 0.0..120.0)?;
+    /// let times: Vec<_> = run.trajectory.jumps().iter().map(|jump| jump.t()).collect();
+    /// assert_eq!(times, [20.0, 30.0, 80.0, 90.0]);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn repeated(self, period: f64) -> Self {
+        let Self { times, from_start, backwards, flaw } = self;
+        let wrong = match &times {
+            Times::At(times) if times.is_empty() => Some("has no tick to repeat: give Clock::at a time".into()),
+            Times::At(times) => {
+                let lasts = times[times.len() - 1] - times[0];
+                (!(period > lasts && period.is_finite())).then(|| {
+                    format!("repeats ticks over {lasts} s each {period} s: give Clock::repeated a longer period")
+                })
+            }
+            _ => Some("repeats what is no list of times: use Clock::repeated with Clock::at".into()),
+        };
+        let times = if let Times::At(times) = times { Times::Cycle { period, times } } else { times };
+        Self { times, from_start, backwards, flaw: flaw.or(wrong.map(Into::into)) }
+    }
+
+    /// The same in time that runs backwards, s = -t; a function has no way back, which is a flaw.
+    pub(crate) fn reversed(&self) -> Self {
+        let one_way = matches!(self.times, Times::Function(_)).then(|| {
+            "is a function of time, which cannot run backwards: use Clock::every, or Clock::at and repeated".into()
+        });
+        Self { backwards: !self.backwards, flaw: self.flaw.clone().or(one_way), ..self.clone() }
+    }
+
     /// The same shifted by `phase`, in seconds: a period ticks at phase + k·T for k = 0, 1, 2, …
     ///
     /// ```
@@ -125,7 +174,7 @@ impl Clock {
     /// ```
     #[must_use]
     pub fn after(self, phase: f64) -> Self {
-        let Self { times, from_start, flaw } = self;
+        let Self { times, from_start, backwards, flaw } = self;
         let flaw = flaw.or_else(|| {
             let wrong = (!phase.is_finite()).then(|| format!("has a phase of {phase} s: give a finite one"));
             wrong.map(Into::into)
@@ -134,10 +183,11 @@ impl Clock {
             Times::Every { period, phase: before } => {
                 Times::Every { period, phase: Some(before.unwrap_or(0.0) + phase) }
             }
-            Times::At(times) => Times::At(times.iter().map(|time| phase + time).collect()),
+            Times::Cycle { period, times } => Times::Cycle { period, times: shifted(&times, phase) },
+            Times::At(times) => Times::At(shifted(&times, phase)),
             Times::Function(next) => Times::Function(Arc::new(move |t| Some(next(t - phase)? + phase))),
         };
-        Self { times, from_start, flaw }
+        Self { times, from_start, backwards, flaw }
     }
 
     /// Takes also the tick that falls on the very start of a run, which is over by default: so that
@@ -157,7 +207,49 @@ impl Clock {
     }
 
     fn of(times: Times, flaw: Option<String>) -> Self {
-        Self { times, from_start: false, flaw: flaw.map(Into::into) }
+        Self { times, from_start: false, backwards: false, flaw: flaw.map(Into::into) }
+    }
+
+    /// How far a tick is from the next in its list, and the largest size of a time in that list.
+    pub(crate) fn period(&self) -> Option<(f64, f64)> {
+        match &self.times {
+            Times::Every { period, phase } => Some((*period, phase.map_or(0.0, f64::abs))),
+            Times::Cycle { .. } | Times::At(_) | Times::Function(_) => None,
+        }
+    }
+
+    /// The first tick at `from` or later, where that follows without asking; or whom to ask.
+    fn next(&self, from: f64) -> Result<Option<f64>, &Function> {
+        match &self.times {
+            Times::Function(next) => Err(&**next),
+            _ if self.backwards => Ok(self.latest(-from).map(|time| -time)),
+            Times::Every { period, phase } => {
+                let least = phase.map_or(f64::NEG_INFINITY, |_| 0.0);
+                Ok(multiples(*period, phase.unwrap_or(0.0), from, |k| k.max(least)).find(|&time| time >= from))
+            }
+            Times::Cycle { period, times } => Ok(cycles(*period, times, from).find_map(|k| {
+                let at = |time: &f64| k.mul_add(*period, *time);
+                times.get(times.partition_point(|time| at(time) < from)).map(at)
+            })),
+            Times::At(times) => Ok(times.get(times.partition_point(|&time| time < from)).copied()),
+        }
+    }
+
+    /// The last tick at `until` or earlier, of what is no function.
+    fn latest(&self, until: f64) -> Option<f64> {
+        match &self.times {
+            Times::Every { period, phase } => {
+                let (offset, least) = (phase.unwrap_or(0.0), phase.unwrap_or(f64::NEG_INFINITY));
+                let mut last = multiples(*period, offset, until, |k| k).filter(|&time| least <= time && time <= until);
+                last.next_back()
+            }
+            Times::Cycle { period, times } => cycles(*period, times, until).rev().find_map(|k| {
+                let at = |time: &f64| k.mul_add(*period, *time);
+                times[..times.partition_point(|time| at(time) <= until)].last().map(at)
+            }),
+            Times::At(times) => times[..times.partition_point(|&time| time <= until)].last().copied(),
+            Times::Function(_) => None,
+        }
     }
 
     /// Whether it can tick.
@@ -170,11 +262,12 @@ impl PartialEq for Clock {
     fn eq(&self, other: &Self) -> bool {
         let same = match (&self.times, &other.times) {
             (Times::Every { period: a, phase: p }, Times::Every { period: b, phase: q }) => a == b && p == q,
+            (Times::Cycle { period: a, times: p }, Times::Cycle { period: b, times: q }) => a == b && p == q,
             (Times::At(a), Times::At(b)) => a == b,
             (Times::Function(a), Times::Function(b)) => Arc::ptr_eq(a, b),
             _ => false,
         };
-        same && self.from_start == other.from_start
+        same && self.from_start == other.from_start && self.backwards == other.backwards
     }
 }
 
@@ -185,9 +278,11 @@ impl fmt::Debug for Clock {
                 write!(f, "every {period} s")?;
                 phase.map_or(Ok(()), |phase| write!(f, " after {phase} s"))
             }
+            Times::Cycle { period, times } => write!(f, "at {times:?} s, every {period} s"),
             Times::At(times) => write!(f, "at {times:?} s"),
             Times::Function(_) => f.write_str("as a function says"),
-        }
+        }?;
+        if self.backwards { f.write_str(", backwards") } else { Ok(()) }
     }
 }
 
@@ -342,14 +437,9 @@ impl Source<'_> {
 
     /// The first tick at `from` or later, where that follows without asking; or whom to ask.
     pub(crate) fn next(&self, from: f64) -> Result<Option<f64>, Ask<'_>> {
-        let clock = match self {
-            Self::Clock(clock) => clock,
-            Self::Asked(ticking) => return Err(Ask::Of(*ticking)),
-        };
-        match &clock.times {
-            Times::Every { period, phase } => Ok(first_multiple(*period, *phase, from)),
-            Times::At(times) => Ok(times.get(times.partition_point(|&time| time < from)).copied()),
-            Times::Function(next) => Err(Ask::To(&**next)),
+        match self {
+            Self::Clock(clock) => clock.next(from).map_err(Ask::To),
+            Self::Asked(ticking) => Err(Ask::Of(*ticking)),
         }
     }
 }
@@ -369,12 +459,20 @@ impl Ask<'_> {
     }
 }
 
-/// The first of phase + k·period that is no less than `from`, each rounded once, for a period longer
-/// than two instants.
-fn first_multiple(period: f64, phase: Option<f64>, from: f64) -> Option<f64> {
-    let (offset, least) = (phase.unwrap_or(0.0), if phase.is_some() { 0.0 } else { f64::NEG_INFINITY });
-    // The quotient is off by less than a half: k is below 2⁵⁰.
-    let near = ((from - offset) / period).round();
-    let multiple = |k: f64| k.max(least).mul_add(period, offset);
-    [near - 1.0, near, near + 1.0].into_iter().map(multiple).find(|&time| time >= from)
+/// The k of those repetitions of `times` between which `t` lies, in order.
+fn cycles(period: f64, times: &[f64], t: f64) -> impl DoubleEndedIterator<Item = f64> {
+    let near = times.first().map(|first| ((t - first) / period).floor());
+    near.into_iter().flat_map(|near| [near - 1.0, near, near + 1.0])
+}
+
+/// offset + k·period near `t`, each rounded once, in order, for k as `bounded` lets it be.
+///
+/// The quotient is off by less than a half, for a period longer than two instants: k is below 2⁵⁰.
+fn multiples(period: f64, offset: f64, t: f64, bounded: impl Fn(f64) -> f64) -> impl DoubleEndedIterator<Item = f64> {
+    let near = ((t - offset) / period).round();
+    [near - 1.0, near, near + 1.0].into_iter().map(move |k| bounded(k).mul_add(period, offset))
+}
+
+fn shifted(times: &[f64], phase: f64) -> Arc<[f64]> {
+    times.iter().map(|time| phase + time).collect()
 }

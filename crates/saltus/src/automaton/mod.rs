@@ -1,5 +1,6 @@
 //! The definition of a hybrid automaton: modes, flows, edges, guards, resets.
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 
 pub(crate) mod clocks;
@@ -126,14 +127,15 @@ pub trait Automaton {
 
     /// The times at which the flow of `mode` is not smooth: a step ends there, and nothing else happens.
     ///
-    /// A switch, a pulse or a kink of an input in time is then met exactly and never stepped over. A
-    /// step asks for the flow strictly between two stops: whether it has its value of before or after
-    /// a stop at the stop itself does not matter. An exact solution has no steps, and so no stops. By
-    /// default there are none.
+    /// A switch, a pulse or a kink of an input in time is then met exactly and never stepped over. Flow
+    /// and guards are asked for strictly between two stops: whether they have their values of before or
+    /// after a stop at the stop itself does not matter. A guard that is inside just before a stop and
+    /// outside just after it has fallen there: its edge is taken, at the time of the stop. An exact
+    /// solution has no steps, and so no stops. By default there are none.
     #[inline]
-    fn stops(&self, mode: Self::Mode) -> &[Clock] {
+    fn stops(&self, mode: Self::Mode) -> Cow<'_, [Clock]> {
         let _ = mode;
-        &[]
+        Cow::Borrowed(&[])
     }
 
     /// Whether a run can be in `mode`: asked as a run starts, before anything else, and of each

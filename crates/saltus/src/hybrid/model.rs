@@ -1,5 +1,7 @@
 //! What the engine asks of an automaton of closures.
 
+use std::borrow::Cow;
+
 use super::{Hybrid, Link, Mode};
 use crate::analysis::reverse::Invertible;
 use crate::automaton::clocks::{Clock, Clocks};
@@ -39,8 +41,8 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         self.find(mode).map_or(Clocks::none(), |mode| Clocks::kept(&mode.clocks))
     }
 
-    fn stops(&self, mode: &'static str) -> &[Clock] {
-        self.find(mode).map_or(&[], |mode| &mode.stops)
+    fn stops(&self, mode: &'static str) -> Cow<'_, [Clock]> {
+        self.find(mode).map_or(Cow::Borrowed(&[]), |mode| Cow::Borrowed(&mode.stops))
     }
 
     fn reset(&self, _: &'static str, link: Link, t: f64, x: &S) -> Result<(&'static str, S), Refusal> {

@@ -37,6 +37,68 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 ///
 /// Over a number D, `f64` becomes `D`, and `[f64; N]`, [`SVector<f64, N>`] and [`Coords<N>`](Coords) become `[D; N]`; where a state has
 /// fewer than N coordinates the rest are zeros, and ignored where they come back.
+///
+/// A struct is given the type of its numbers as a parameter, and `#[derive(Lift)]` (feature `derive`): over D, `Ball<f64>` becomes
+/// `Ball<D>`, and its fields keep their names. So do parameters.
+///
+#[cfg_attr(feature = "derive", doc = "```")]
+#[cfg_attr(not(feature = "derive"), doc = "```ignore")]
+/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Refusal, Sensitive, Simulation, State, Wrt};
+///
+/// #[derive(Clone, Copy, Debug, State, Lift)]
+/// struct Swing<D = f64> {
+///     #[unit("rad")]
+///     angle: D,
+///     #[unit("rad/s")]
+///     rate: D,
+/// }
+///
+/// #[derive(Clone, Copy, Debug, State, Lift)]
+/// struct Given<D = f64> {
+///     damping: D,
+/// }
+///
+/// struct Clapper(Given);
+///
+/// impl Linearize for Clapper {
+///     type Parameters = Given;
+///     fn parameters(&self) -> Given {
+///         self.0
+///     }
+///     fn flow_over<D: Number>(&self, (): (), _t: D, x: Swing<D>, p: Given<D>) -> Swing<D> {
+///         Swing { angle: x.rate, rate: -x.angle.sin() - p.damping * x.rate }
+///     }
+///     fn guard_over<D: Number>(&self, (): (), _t: D, x: Swing<D>, _: Given<D>) -> D {
+///         x.angle
+///     }
+///     fn reset_over<D: Number>(&self, (): (), _t: D, x: Swing<D>, _: Given<D>) -> Swing<D> {
+///         Swing { angle: D::zero(), rate: -x.rate }
+///     }
+/// }
+/// # impl Automaton for Clapper {
+/// #     type Mode = ();
+/// #     type State = Swing;
+/// #     type Edge = ();
+/// #     fn flow(&self, mode: (), t: f64, x: &Swing) -> Swing { self.flow_at(mode, t, x) }
+/// #     fn edges(&self, (): ()) -> Edges<'_, ()> { Edges::from([()]) }
+/// #     fn guard(&self, edge: (), t: f64, x: &Swing) -> f64 { self.guard_at(edge, t, x) }
+/// #     fn reset(&self, (): (), edge: (), t: f64, x: &Swing) -> Result<((), Swing), Refusal> {
+/// #         Ok(((), self.reset_at(edge, t, x)))
+/// #     }
+/// # }
+///
+/// let clapper = Clapper(Given { damping: 0.1 });
+/// let by_damping = Sensitive::of(&clapper, [Wrt::Parameter(0)]);
+/// let start = by_damping.start(0.0, Swing { angle: 0.5, rate: 0.0 });
+/// let run = Simulation::of(&by_damping).run((), start, 0.0..10.0)?;
+/// let at = |damping| {
+///     let clapper = Clapper(Given { damping });
+///     Ok::<_, saltus::Error>(Simulation::of(&clapper).run((), start.x, 0.0..10.0)?.end.state.angle)
+/// };
+/// let difference = (at(0.1001)? - at(0.0999)?) / 0.0002;
+/// assert!((run.end.state.columns[0].angle - difference).abs() < 1e-6);
+/// # Ok::<(), saltus::Error>(())
+/// ```
 pub trait Lift: State {
     /// The coordinates over another number.
     type Over<D: Number>: Copy;
@@ -44,8 +106,8 @@ pub trait Lift: State {
     /// The coordinates of a state of this shape, `f(i)` the i-th.
     fn lift<D: Number>(&self, f: impl FnMut(usize) -> D) -> Self::Over<D>;
 
-    /// Coordinate `i`.
-    fn pick<D: Number>(over: &Self::Over<D>, i: usize) -> D;
+    /// Coordinate `i` of one that has this shape.
+    fn pick<D: Number>(&self, over: &Self::Over<D>, i: usize) -> D;
 
     /// The coordinates as they are.
     fn over(&self) -> Self::Over<f64> {
@@ -63,7 +125,7 @@ impl Lift for f64 {
         f(0)
     }
     #[inline]
-    fn pick<D: Number>(over: &D, _: usize) -> D {
+    fn pick<D: Number>(&self, over: &D, _: usize) -> D {
         *over
     }
 }
@@ -75,7 +137,7 @@ impl<const N: usize> Lift for [f64; N] {
         std::array::from_fn(f)
     }
     #[inline]
-    fn pick<D: Number>(over: &[D; N], i: usize) -> D {
+    fn pick<D: Number>(&self, over: &[D; N], i: usize) -> D {
         over[i]
     }
 }
@@ -87,7 +149,7 @@ impl<const N: usize> Lift for SVector<f64, N> {
         std::array::from_fn(f)
     }
     #[inline]
-    fn pick<D: Number>(over: &[D; N], i: usize) -> D {
+    fn pick<D: Number>(&self, over: &[D; N], i: usize) -> D {
         over[i]
     }
 }
@@ -99,7 +161,7 @@ impl<const CAP: usize> Lift for Coords<CAP> {
         std::array::from_fn(|i| if i < self.len() { f(i) } else { D::zero() })
     }
     #[inline]
-    fn pick<D: Number>(over: &[D; CAP], i: usize) -> D {
+    fn pick<D: Number>(&self, over: &[D; CAP], i: usize) -> D {
         over[i]
     }
 }
@@ -230,6 +292,17 @@ pub trait Linearize: Automaton<State: Lift> {
         None
     }
 
+    /// Promises that no parameter moves the [stops](Automaton::stops) of `mode`.
+    ///
+    /// The state does not jump at a stop, and so its derivative by a parameter that moves the stop is
+    /// not carried across it. Without the promise a run with derivatives by parameters does not enter
+    /// a mode that has stops. Of a stop that a parameter moves make a clock, whose edge leaves the
+    /// state as it is and whose time is given by [`tick_over`](Self::tick_over).
+    fn stops_stand(&self, mode: Self::Mode) -> bool {
+        let _ = mode;
+        false
+    }
+
     /// The exact solution, as [`Automaton::solution`]. Without it, a run with derivatives takes steps.
     fn exact_over<D: Number>(
         &self,
@@ -246,7 +319,7 @@ pub trait Linearize: Automaton<State: Lift> {
     #[inline]
     fn flow_at(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Self::State {
         let slope = self.flow_over(mode, t, x.over(), self.parameters().over());
-        x.with(|i| Self::State::pick(&slope, i))
+        x.with(|i| x.pick(&slope, i))
     }
 
     /// What [`Automaton::guard`] may answer.
@@ -259,7 +332,7 @@ pub trait Linearize: Automaton<State: Lift> {
     #[inline]
     fn reset_at(&self, edge: Self::Edge, t: f64, x: &Self::State) -> Self::State {
         let after = self.reset_over(edge, t, x.over(), self.parameters().over());
-        x.with(|i| Self::State::pick(&after, i))
+        x.with(|i| x.pick(&after, i))
     }
 
     /// What [`Automaton::solution`] may answer: the exact solution where there is one, else steps.
@@ -269,7 +342,7 @@ pub trait Linearize: Automaton<State: Lift> {
         Self: Sized,
     {
         match self.exact_over(mode, t, x.over(), self.parameters().over()) {
-            Some(solution) => Solution::Polynomial(solution.map(|_, c| x.with(|i| Self::State::pick(c, i)))),
+            Some(solution) => Solution::Polynomial(solution.map(|_, c| x.with(|i| x.pick(c, i)))),
             None => Solution::Steps,
         }
     }
@@ -290,5 +363,5 @@ fn moving_in<S: Lift>(x: &S, moves: Option<usize>) -> Over<S, Dual64> {
 /// The velocity of coordinates, in the shape of `like`.
 #[inline]
 fn velocity<S: Lift>(over: &Over<S, Dual64>, like: &S) -> S {
-    like.with(|i| S::pick(over, i).eps)
+    like.with(|i| like.pick(over, i).eps)
 }

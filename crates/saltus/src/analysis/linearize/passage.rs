@@ -137,7 +137,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
         // Along the flow x moves with velocity f and acceleration df/dt.
         let f = &standing.flows.0;
         let changing = automaton.flow_over(mode, Dual64::new(t, 1.0), moving(x, f), moving_in(&p, None));
-        let along = x.lift(|i| Dual2_64::new(x.get(i), f.get(i), A::State::pick(&changing, i).eps));
+        let along = x.lift(|i| Dual2_64::new(x.get(i), f.get(i), x.pick(&changing, i).eps));
         let fixed = p.lift(|i| Dual2_64::new(p.get(i), 0.0, 0.0));
         let guard = automaton.guard_over(edge, Dual2_64::new(t, 1.0, 0.0), along, fixed);
         let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;

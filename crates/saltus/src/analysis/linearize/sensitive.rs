@@ -1,5 +1,7 @@
 //! Forward sensitivities as an automaton of its own: the state together with its derivatives.
 
+use std::borrow::Cow;
+
 use num_dual::Dual64;
 
 use super::passage::Passage;
@@ -52,6 +54,16 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
         let x = self.x.with(&mut f);
         let columns = std::array::from_fn(|k| self.columns[k].with(|i| f(n * (k + 1) + i)));
         Self { x, columns, ..*self }
+    }
+    /// That of the state; `voltage by q1` in the column of q₁.
+    fn name(&self, i: usize) -> Cow<'static, str> {
+        let n = self.x.len();
+        let name = self.x.name(i % n);
+        if i < n { name } else { format!("{name} by q{}", i / n).into() }
+    }
+    /// That of the state; in a column none, for it depends on that of q.
+    fn unit(&self, i: usize) -> &'static str {
+        if i < self.x.len() { self.x.unit(i) } else { "" }
     }
 }
 
@@ -286,15 +298,21 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
     }
 
     #[inline]
-    fn stops(&self, mode: A::Mode) -> &[Clock] {
+    fn stops(&self, mode: A::Mode) -> Cow<'_, [Clock]> {
         self.automaton.stops(mode)
     }
 
     fn validate(&self, mode: A::Mode) -> Result<(), String> {
         let count = self.automaton.parameters().len();
-        match (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
-            Some(p) => Err(format!("there is no parameter {p}: the model has {count}, counted from 0")),
-            None => self.automaton.validate(mode),
+        if let Some(p) = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
+            return Err(format!("there is no parameter {p}: the model has {count}, counted from 0"));
         }
+        let by_parameter = (0..K).any(|k| self.parameter(k).is_some());
+        if by_parameter && !self.automaton.stops(mode).is_empty() && !self.automaton.stops_stand(mode) {
+            return Err(format!(
+                "mode {mode:?} has stops, and whether a parameter moves them is not given: promise that none does with `Linearize::stops_stand`, or make each a clock with `Linearize::tick_over`"
+            ));
+        }
+        self.automaton.validate(mode)
     }
 }

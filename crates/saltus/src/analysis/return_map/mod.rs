@@ -224,7 +224,7 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         let (mode, shape) = self.section.start();
         let p = || self.simulation.automaton().parameters().over();
         let x = self.section.place(*q, p());
-        (mode, self.section.time(*q, p()), shape.with(|i| A::State::pick(&x, i)))
+        (mode, self.section.time(*q, p()), shape.with(|i| shape.pick(&x, i)))
     }
 
     /// The same section, of another automaton.
@@ -246,7 +246,7 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
             let moving = std::array::from_fn(|i| Dual64::new(q[i], unit(wrt == Wrt::Initial(i))));
             let (state, later) = (self.section.place(moving, p(wrt)), self.section.time(moving, p(wrt)).eps);
             // At one and the same time, a neighbour that starts later has not yet flowed so far.
-            *column = x.with(|i| A::State::pick(&state, i).eps - slope.get(i) * later);
+            *column = x.with(|i| x.pick(&state, i).eps - slope.get(i) * later);
         }
         let mut edges = Vec::new();
         let simulation = self.simulation.over(&sensitive);

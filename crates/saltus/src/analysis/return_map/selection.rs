@@ -92,7 +92,7 @@ impl<A: Linearize, const K: usize> Section<A, K> for Selection<A::Mode, A::State
         })
     }
     fn read<D: Number>(&self, _t: D, x: Over<A::State, D>, _: Over<A::Parameters, D>) -> [D; K] {
-        self.which.map(|i| A::State::pick(&x, i))
+        self.which.map(|i| self.state.pick(&x, i))
     }
 }
 
