@@ -4,7 +4,10 @@
 
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector3, vector};
-use saltus::{ErrorKind, Hybrid, Simulation, State};
+use saltus::{
+    Automaton, Clock, Clocks, Edges, ErrorKind, Hybrid, Lift, Linearize, Number, Over, Refusal, Sensitive, Simulation,
+    State, Wrt,
+};
 
 /// A buck converter: coil and capacitor, and the time since its switch was closed.
 #[derive(Clone, Copy, Debug, PartialEq, State, serde::Serialize, serde::Deserialize)]
@@ -110,4 +113,150 @@ fn errors_name_coordinates() {
     assert_eq!(failed.error.kind(), ErrorKind::Flow);
     let text = failed.to_string();
     assert!(text.contains("(current' = NaN)") && text.contains("state (current = "), "{text}");
+}
+
+/// Numbers, lists and a struct in a struct, over any number.
+#[derive(Clone, Copy, Debug, PartialEq, State, Lift)]
+struct Arm<const N: usize, D = f64> {
+    #[unit("rad")]
+    angles: [D; N],
+    load: Load<D>,
+    heat: D,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, State, Lift)]
+struct Load<D = f64>(D, [D; 2]);
+
+proptest! {
+    /// Lifted and picked again, each coordinate is where it was.
+    #[test]
+    fn a_struct_is_lifted(values in prop::array::uniform7(-1e3..1e3_f64)) {
+        let [a, b, c, d, e, f, g] = values;
+        let x = Arm { angles: [a, b, c], load: Load(d, [e, f]), heat: g };
+        let over: Arm<3, f64> = x.over();
+        prop_assert_eq!(over, x);
+        let doubled: Over<Arm<3>, f64> = x.lift(|i| 2.0 * x.get(i));
+        for i in 0..7 {
+            prop_assert_eq!(x.pick(&doubled, i), 2.0 * values[i]);
+        }
+        prop_assert!(x.pick(&doubled, 7).is_nan());
+    }
+}
+
+/// A converter whose switch closes each period and opens after a part of it, the duty.
+struct Converter {
+    duty: f64,
+    clocks: [(Clock, Switch); 2],
+    /// A load that changes, and whether it is promised that no parameter moves when it does.
+    stops: Vec<Clock>,
+    stand: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Switch {
+    Close,
+    Open,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, State, Lift)]
+struct Filter<D = f64> {
+    #[unit("A")]
+    current: D,
+    #[unit("V")]
+    voltage: D,
+    closed: D,
+}
+
+const PERIOD: f64 = 1e-4;
+
+impl Converter {
+    fn of(duty: f64) -> Self {
+        let clocks = [(Clock::every(PERIOD), Switch::Close), (Clock::every(PERIOD).after(duty * PERIOD), Switch::Open)];
+        Self { duty, clocks, stops: vec![Clock::at([0.5e-3])], stand: true }
+    }
+}
+
+impl Linearize for Converter {
+    type Parameters = [f64; 1];
+    fn parameters(&self) -> [f64; 1] {
+        [self.duty]
+    }
+    fn flow_over<D: Number>(&self, (): (), t: D, x: Filter<D>, _: [D; 1]) -> Filter<D> {
+        let load = if t.re() < 0.5e-3 { 4.0 } else { 8.0 };
+        Filter {
+            current: (x.closed * 12.0 - x.voltage) / 200e-6,
+            voltage: (x.current - x.voltage / load) / 100e-6,
+            closed: D::zero(),
+        }
+    }
+    fn guard_over<D: Number>(&self, _: Switch, _t: D, _: Filter<D>, _: [D; 1]) -> D {
+        D::one()
+    }
+    fn reset_over<D: Number>(&self, edge: Switch, _t: D, x: Filter<D>, _: [D; 1]) -> Filter<D> {
+        Filter { closed: D::from(f64::from(u8::from(edge == Switch::Close))), ..x }
+    }
+    fn tick_over<D: Number>(&self, (): (), edge: Switch, t: f64, [duty]: [D; 1]) -> Option<D> {
+        Some(if edge == Switch::Close { D::from(t) } else { D::from(t) + (duty - self.duty) * PERIOD })
+    }
+    fn stops_stand(&self, (): ()) -> bool {
+        self.stand
+    }
+}
+
+impl Automaton for Converter {
+    type Mode = ();
+    type State = Filter;
+    type Edge = Switch;
+    fn flow(&self, (): (), t: f64, x: &Filter) -> Filter {
+        self.flow_at((), t, x)
+    }
+    fn edges(&self, (): ()) -> Edges<'_, Switch> {
+        Edges::none()
+    }
+    fn guard(&self, edge: Switch, t: f64, x: &Filter) -> f64 {
+        self.guard_at(edge, t, x)
+    }
+    fn clocks(&self, (): ()) -> Clocks<'_, Switch> {
+        Clocks::kept(&self.clocks)
+    }
+    fn stops(&self, (): ()) -> std::borrow::Cow<'_, [Clock]> {
+        (&self.stops).into()
+    }
+    fn reset(&self, (): (), edge: Switch, t: f64, x: &Filter) -> Result<((), Filter), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
+    }
+}
+
+/// A named state is differentiated by a duty through clocks and stops as differences say, and its columns have names.
+#[test]
+fn a_named_state_has_derivatives() {
+    let start = Filter { current: 0.0, voltage: 0.0, closed: 1.0 };
+    let voltage = |duty| {
+        let converter = Converter::of(duty);
+        Simulation::of(&converter).tolerance(1e-12).run((), start, 0.0..1.03e-3).unwrap().end.state.voltage
+    };
+    let converter = Converter::of(0.4);
+    let by_duty = Sensitive::of(&converter, [Wrt::Parameter(0)]);
+    let run = Simulation::of(&by_duty).tolerance(1e-12).run((), by_duty.start(0.0, start), 0.0..1.03e-3).unwrap();
+    let difference = (voltage(0.4 + 1e-4) - voltage(0.4 - 1e-4)) / 2e-4;
+    let by = run.end.state.columns[0].voltage;
+    assert!((by / difference - 1.0).abs() < 1e-6, "{by}, {difference}");
+    let headings = run.trajectory.sampled(1e-3).to_string();
+    assert!(
+        headings.starts_with("t (s),j,mode,current (A),voltage (V),closed,current by q1,voltage by q1,closed by q1\n"),
+        "{headings}"
+    );
+}
+
+/// Whether a parameter moves a stop is not guessed: a derivative by a parameter wants the promise, others do not.
+#[test]
+fn stops_without_a_promise() {
+    let converter = Converter { stand: false, ..Converter::of(0.4) };
+    let start = Filter { current: 0.0, voltage: 0.0, closed: 1.0 };
+    let by_duty = Sensitive::of(&converter, [Wrt::Parameter(0)]);
+    let error = Simulation::of(&by_duty).run((), by_duty.start(0.0, start), 0.0..1e-3).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Model);
+    assert!(error.to_string().contains("has stops, and whether a parameter moves them is not given"), "{error}");
+    let by_start = Sensitive::of(&converter, [Wrt::Initial(1)]);
+    assert!(Simulation::of(&by_start).run((), by_start.start(0.0, start), 0.0..1e-3).is_ok());
 }

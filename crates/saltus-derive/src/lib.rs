@@ -1,10 +1,13 @@
-//! `#[derive(State)]`: a struct of numbers as the state of a hybrid automaton.
+//! `#[derive(State)]` and `#[derive(Lift)]`: a struct of numbers as the state of a hybrid automaton.
 //!
-//! Re-exported by `saltus` with its feature `derive`; see `saltus::State`.
+//! Re-exported by `saltus` with its feature `derive`; see `saltus::State` and `saltus::Lift`.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
-use syn::{Data, DeriveInput, Error, Field, Fields, Index, LitStr, Member, parse_macro_input, parse_quote};
+use quote::{ToTokens, format_ident, quote};
+use syn::{
+    Data, DataStruct, DeriveInput, Error, Field, Fields, GenericParam, Ident, Index, LitStr, Member, parse_macro_input,
+    parse_quote,
+};
 
 /// Implements `saltus::State` for a struct whose fields are states: numbers, arrays, vectors, and structs
 /// of the same kind.
@@ -20,14 +23,75 @@ pub fn state(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     implemented(input).unwrap_or_else(Error::into_compile_error).into()
 }
 
+/// Implements `saltus::Lift` for a struct that derives `State` and whose one type parameter is the type
+/// of its numbers, `struct Swing<D = f64> { angle: D, rates: [D; 2], load: Load<D> }`: over another
+/// number it is the same struct.
+///
+/// A struct with no type parameter, or more than one, is refused as the program is compiled.
+#[proc_macro_derive(Lift)]
+pub fn lift(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    let input = parse_macro_input!(item as DeriveInput);
+    lifted(input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+fn lifted(input: DeriveInput) -> Result<TokenStream, Error> {
+    let DeriveInput { ident, mut generics, data, .. } = input;
+    let (members, types) = parts(&structure(&ident, data)?.fields);
+    if generics.type_params().count() != 1 {
+        return Err(Error::new_spanned(
+            &ident,
+            format!("Lift needs the type of the numbers as the one type parameter: struct {ident}<D = f64>"),
+        ));
+    }
+    let arguments = |number: TokenStream| {
+        let arguments = generics.params.iter().map(move |parameter| match parameter {
+            GenericParam::Type(_) => number.clone(),
+            GenericParam::Const(constant) => constant.ident.to_token_stream(),
+            GenericParam::Lifetime(lifetime) => lifetime.lifetime.to_token_stream(),
+        });
+        quote!(#ident<#(#arguments),*>)
+    };
+    let (number, other) = (arguments(quote!(f64)), arguments(quote!(Lifted)));
+    let picked = members.iter().map(|member| quote!(::saltus::Lift::pick(&self.#member, &over.#member, i - first)));
+    let lens = members.iter().map(|member| quote!(::saltus::State::len(&self.#member)));
+    let pick = asked(lens, picked, quote!(<Lifted as ::core::convert::From<f64>>::from(f64::NAN)));
+    let made: Vec<_> = (0..types.len()).map(|place| format_ident!("part_{place}")).collect();
+    generics.params = generics.params.into_iter().filter(|p| !matches!(p, GenericParam::Type(_))).collect();
+    let (impls, _, clause) = generics.split_for_impl();
+    Ok(quote! {
+        #[automatically_derived]
+        impl #impls ::saltus::Lift for #number #clause {
+            type Over<Lifted: ::saltus::Number> = #other;
+
+            #[inline]
+            fn lift<Lifted: ::saltus::Number>(&self, mut f: impl FnMut(usize) -> Lifted) -> #other {
+                let mut first = 0;
+                #(
+                    let #made = ::saltus::Lift::lift(&self.#members, |i| f(first + i));
+                    first += ::saltus::State::len(&self.#members);
+                )*
+                let _ = first;
+                #ident { #(#members: #made),* }
+            }
+            #[inline]
+            fn pick<Lifted: ::saltus::Number>(&self, over: &#other, i: usize) -> Lifted {
+                #pick
+            }
+        }
+    })
+}
+
+fn structure(ident: &Ident, data: Data) -> Result<DataStruct, Error> {
+    let Data::Struct(data) = data else {
+        let advice = "a state is a struct: give an automaton modes in place of variants";
+        return Err(Error::new_spanned(ident, advice));
+    };
+    Ok(data)
+}
+
 fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     let DeriveInput { ident, mut generics, data, .. } = input;
-    let Data::Struct(data) = data else {
-        return Err(Error::new_spanned(
-            ident,
-            "State is derived for structs: give an automaton modes in place of variants",
-        ));
-    };
+    let data = structure(&ident, data)?;
     let (members, types) = parts(&data.fields);
     if members.is_empty() {
         return Err(Error::new_spanned(
@@ -45,9 +109,10 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     let units = data.fields.iter().zip(members.iter().zip(&types)).map(unit).collect::<Result<Vec<_>, _>>()?;
     let values =
         members.iter().zip(&types).map(|(member, ty)| quote!(<#ty as ::saltus::State>::get(&self.#member, i - first)));
-    let get = asked(&members, &types, values, quote!(f64::NAN));
-    let name = asked(&members, &types, names, quote!(::std::format!("x{i}").into()));
-    let unit = asked(&members, &types, units, quote!(""));
+    let lens = || members.iter().zip(&types).map(|(member, ty)| quote!(<#ty as ::saltus::State>::len(&self.#member)));
+    let get = asked(lens(), values, quote!(f64::NAN));
+    let name = asked(lens(), names, quote!(::std::format!("x{i}").into()));
+    let unit = asked(lens(), units, quote!(""));
     let made: Vec<_> = (0..members.len()).map(|place| format_ident!("part_{place}")).collect();
     let (impls, uses, clause) = generics.split_for_impl();
     Ok(quote! {
@@ -87,8 +152,7 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
 
 /// The answer about coordinate `i` of the field in which it lies, whose first coordinate is `first`; else `none`.
 fn asked(
-    members: &[Member],
-    types: &[syn::Type],
+    lens: impl Iterator<Item = TokenStream>,
     answers: impl IntoIterator<Item = TokenStream>,
     none: TokenStream,
 ) -> TokenStream {
@@ -96,7 +160,7 @@ fn asked(
     quote! {
         let mut first = 0;
         #({
-            let len = <#types as ::saltus::State>::len(&self.#members);
+            let len = #lens;
             if i < first + len {
                 return #answers;
             }

@@ -58,6 +58,8 @@ mod zeno;
 pub use nalgebra;
 #[cfg(feature = "num-dual")]
 pub use num_dual;
+#[cfg(all(feature = "derive", feature = "num-dual"))]
+pub use saltus_derive::Lift;
 #[cfg(feature = "derive")]
 pub use saltus_derive::State;
 
