@@ -5,8 +5,8 @@
 use proc_macro2::TokenStream;
 use quote::{ToTokens, format_ident, quote};
 use syn::{
-    Data, DataStruct, DeriveInput, Error, Field, Fields, GenericParam, Ident, Index, LitStr, Member, parse_macro_input,
-    parse_quote,
+    Data, DataStruct, DeriveInput, Error, Field, Fields, GenericParam, Ident, Index, LitStr, Member, WherePredicate,
+    parse_macro_input, parse_quote,
 };
 
 /// Implements `saltus::State` for a struct whose fields are states: numbers, arrays, vectors, and structs
@@ -101,6 +101,13 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     }
     for parameter in generics.type_params_mut() {
         parameter.bounds.push(parse_quote!(::saltus::State));
+    }
+    if generics.type_params().next().is_some() {
+        // A list or a struct of parameters is a state for some of them only.
+        generics
+            .make_where_clause()
+            .predicates
+            .extend(types.iter().map::<WherePredicate, _>(|ty| parse_quote!(#ty: ::saltus::State)));
     }
     let names = members.iter().zip(&types).map(|(member, ty)| {
         let name = member_name(member);
