@@ -49,7 +49,7 @@ fn relay_sine(case: &mut Report) {
         |_, x| *x,
         |_, _| 1.0,
     );
-    for relay in [relay, relay.affine()] {
+    for relay in [relay.clone(), relay.affine()] {
         let run = run(case, &Filippov::of(relay), x0, 20.0);
         let slides = into(&run, Side::Sliding);
         let exits: Vec<_> = run.trajectory.jumps().iter().filter(|jump| jump.from == Side::Sliding).collect();
