@@ -14,6 +14,10 @@ pub struct Model;
 pub struct Fitting;
 
 #[cfg(doctest)]
+#[doc = include_str!("../../docs/coming-from.md")]
+pub struct ComingFrom;
+
+#[cfg(doctest)]
 #[doc = include_str!("../../docs/sensitivities.md")]
 pub struct Sensitivities;
 
