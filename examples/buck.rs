@@ -70,7 +70,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let last = run.trajectory.jumps().iter().rfind(|jump| jump.to == "closed").ok_or("the switch never closes")?;
     println!("sampled at {:.3} ms: {:.12} V, duty {:.6}", 1e3 * last.t(), last.before.voltage, last.before.duty);
     assert!((last.before.voltage - WANTED).abs() < 1e-9);
-    // So much more each period as the current rises while the switch is closed; the ripple of the voltage is below a thousandth.
+    // So much more each period as the current rises while the switch is closed; the ripple of the
+    // voltage is below a thousandth.
     let ripple = run.trajectory.jumps().iter().rfind(|jump| jump.to == "open").ok_or("the switch never opens")?;
     let rise = ripple.before.current - last.before.current;
     let exact = (SOURCE - WANTED) * last.after.duty * PERIOD / INDUCTANCE;

@@ -1,6 +1,7 @@
 //! A ball on a vibrating table: order, period doubling, chaos.
 //!
-//! `cargo run --release --example chaos` draws the attractors of 1000 tables, from 1000 impacts on each.
+//! `cargo run --release --example chaos` draws the attractors of 1000 tables, from 1000 impacts on
+//! each.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
@@ -93,7 +94,8 @@ impl Observer<Table> for Phases {
 
 fn attractor(strength: f64) -> Result<Vec<[f64; 2]>, saltus::Error> {
     let mut phases = Phases { skip: 700, found: Vec::new() };
-    // Thrown up at 0.6 m/s, for about one period of the table. The guard varies with the table, faster than a flight does.
+    // Thrown up at 0.6 m/s, for about one period of the table. The guard varies with the table,
+    // faster than a flight does.
     let table = Table { amplitude: strength * G / (OMEGA * OMEGA) };
     let simulation = Simulation::of(&table).longest_step(0.25 * TAU / OMEGA).most_jumps(1000);
     let end = simulation.drive(Ball::Flies, vector![0.0, 0.6], 0.0..1e3, &mut phases)?;
@@ -112,7 +114,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             .up(-0.25, 0.75);
     gallery("chaos", &picture.svg())?;
 
-    // Until its period doubles, the ball is hit once in each period, where Γ cos φ = π (1 - e)/(1 + e).
+    // Until its period doubles, the ball is hit once in each period, where Γ cos φ = π (1 - e)/(1 +
+    // e).
     let cos = PI * (1.0 - COR) / (1.0 + COR);
     let doubles = cos.hypot(2.0 * (1.0 + COR * COR) / (1.0 + COR).powi(2));
     let ordered = attractors.concat().into_iter().filter(|[strength, _]| *strength < doubles - 0.02);

@@ -1,6 +1,8 @@
-//! A DC–DC buck converter under voltage control, chaotic above 32 V (J. Deane, D. Hamill, IEEE Trans. Power Electronics 5 (1990) 260).
+//! A DC–DC buck converter under voltage control, chaotic above 32 V (J. Deane, D. Hamill, IEEE
+//! Trans. Power Electronics 5 (1990) 260).
 //!
-//! `cargo run --release --example converter`: a ramp starts afresh each period; the switch is closed while the ramp is above the amplified error.
+//! `cargo run --release --example converter`: a ramp starts afresh each period; the switch is
+//! closed while the ramp is above the amplified error.
 
 use std::error::Error;
 

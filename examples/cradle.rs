@@ -1,6 +1,7 @@
 //! Newton's cradle: five balls that hang side by side and touch.
 //!
-//! `cargo run --example cradle`: at each impact the velocity passes from ball to ball, four jumps at one time.
+//! `cargo run --example cradle`: at each impact the velocity passes from ball to ball, four jumps
+//! at one time.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
@@ -9,7 +10,8 @@ use saltus::nalgebra::SVector;
 use saltus::{Hybrid, Simulation};
 use saltus_examples::{Figure, gallery};
 
-/// Displacements of the five balls, in ball diameters, then their velocities; time in units that give a swing 2π.
+/// Displacements of the five balls, in ball diameters, then their velocities; time in units that
+/// give a swing 2π.
 type Balls = SVector<f64, 10>;
 
 fn main() -> Result<(), Box<dyn Error>> {

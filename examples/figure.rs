@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito), and dashes for those who print in grey.
+/// Colours that people with any colour vision tell apart (Okabe and Ito), and dashes for those who
+/// print in grey.
 const INKS: [(&str, &str); 5] =
     [("#0072b2", ""), ("#d55e00", "7 3"), ("#009e73", "2 3"), ("#cc79a7", "9 3 2 3"), ("#444", "4 4")];
 const WIDTH: f64 = 760.0;
@@ -43,7 +44,8 @@ impl Figure {
         Self { title: title.to_owned(), labels, ranges: [None; 2], equal: false, series: Vec::new() }
     }
 
-    /// Adds a line through points; one that is not a number interrupts it. An empty label is not listed.
+    /// Adds a line through points; one that is not a number interrupts it. An empty label is not
+    /// listed.
     #[must_use]
     pub fn line(self, label: &str, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         self.with(Kind::Line, label, points)

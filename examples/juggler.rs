@@ -1,6 +1,8 @@
-//! A paddle that juggles one ball by a mirror law (M. Bühler, D. Koditschek, P. Kindlmann, IEEE Control Systems 10 (1990) 16).
+//! A paddle that juggles one ball by a mirror law (M. Bühler, D. Koditschek, P. Kindlmann, IEEE
+//! Control Systems 10 (1990) 16).
 //!
-//! `cargo run --example juggler`: the paddle moves as the ball's mirror image, the faster the less energy the ball has.
+//! `cargo run --example juggler`: the paddle moves as the ball's mirror image, the faster the less
+//! energy the ball has.
 
 use std::error::Error;
 

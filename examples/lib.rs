@@ -1,6 +1,8 @@
-//! Small programs that end in a picture: see the files beside this one, and run them with `cargo run --example NAME`.
+//! Small programs that end in a picture: see the files beside this one, and run them with
+//! `cargo run --example NAME`.
 //!
-//! What they share is here: a [`Figure`] with axes, and the place where the pictures of `docs/gallery.md` lie; and the [`study`] of a squash ball.
+//! What they share is here: a [`Figure`] with axes, and the place where the pictures of
+//! `docs/gallery.md` lie; and the [`study`] of a squash ball.
 
 mod figure;
 #[path = "study/mod.rs"] // beside the program of the same name

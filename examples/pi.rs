@@ -1,6 +1,7 @@
 //! A billiard that counts the digits of π (G. Galperin, Regular and Chaotic Dynamics 8 (2003) 375).
 //!
-//! `cargo run --example pi`: a heavy block pushes a light one against a wall. With 100ⁿ times the mass there are ⌊10ⁿ π⌋ collisions.
+//! `cargo run --example pi`: a heavy block pushes a light one against a wall. With 100ⁿ times the
+//! mass there are ⌊10ⁿ π⌋ collisions.
 
 use std::error::Error;
 
@@ -31,7 +32,8 @@ fn collide(blocks: &Hybrid<'static, Blocks>) -> Result<RunOf<Hybrid<'static, Blo
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Energy is a circle in the velocities √M V and v; each collision is a chord between two of its points.
+    // Energy is a circle in the velocities √M V and v; each collision is a chord between two of its
+    // points.
     let hundred = blocks(100.0);
     let run = collide(&hundred)?;
     let states = run.trajectory.arcs().iter().map(|arc| *arc.state());

@@ -1,4 +1,5 @@
-//! A relay under a swing that sometimes beats it: x' = -sign(x) + 1.2 sin t slides on x = 0 and leaves it again (A. F. Filippov, 1988).
+//! A relay under a swing that sometimes beats it: x' = -sign(x) + 1.2 sin t slides on x = 0 and
+//! leaves it again (A. F. Filippov, 1988).
 //!
 //! `cargo run --example relay`
 

@@ -1,6 +1,8 @@
-//! A scene without the command: run, then handed on as glTF, CSV and SVG, swept, and solved for a wish.
+//! A scene without the command: run, then handed on as glTF, CSV and SVG, swept, and solved for a
+//! wish.
 //!
-//! `cargo run --example scene` writes its files into a folder for temporary ones, and checks what it says.
+//! `cargo run --example scene` writes its files into a folder for temporary ones, and checks what
+//! it says.
 
 use std::error::Error;
 use std::fs;

@@ -1,6 +1,8 @@
-//! A spring–mass runner: a mass in flight, on a springy leg in stance, the leg put down at a fixed angle.
+//! A spring–mass runner: a mass in flight, on a springy leg in stance, the leg put down at a fixed
+//! angle.
 //!
-//! `cargo run --example slip` finds the stride that repeats itself. Flight has Cartesian coordinates, stance polar ones about the foot.
+//! `cargo run --example slip` finds the stride that repeats itself. Flight has Cartesian
+//! coordinates, stance polar ones about the foot.
 
 use saltus::return_map::{ReturnMap, Section};
 use saltus::{Automaton, Coords, Edges, Lift, Linearize, Number, Refusal, Simulation};
@@ -29,7 +31,8 @@ impl Linearize for Runner {
     fn parameters(&self) -> [f64; 2] {
         [self.stiffness, self.angle]
     }
-    /// In flight x, y and their rates; in stance the length of the leg, its angle from the vertical, their rates, and the foot.
+    /// In flight x, y and their rates; in stance the length of the leg, its angle from the
+    /// vertical, their rates, and the foot.
     fn flow_over<D: Number>(&self, phase: Phase, _t: D, x: [D; 5], [k, _]: [D; 2]) -> [D; 5] {
         let ([r, a, r1, a1, _], g, zero) = (x, self.g, D::zero());
         if phase != Phase::Stance {
@@ -77,7 +80,8 @@ impl Automaton for Runner {
     }
 }
 
-/// At the apex, with this energy (J), the height says everything: where along the road it is does not matter.
+/// At the apex, with this energy (J), the height says everything: where along the road it is does
+/// not matter.
 pub(crate) struct Apex(pub(crate) Runner, pub(crate) f64);
 
 impl Section<Runner, 1> for Apex {

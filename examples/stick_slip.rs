@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .background(Background::Adaptive);
     gallery("stick_slip", &picture.svg()?)?;
 
-    // It slips about drags/spring, from where the spring beats the holding friction, until it has the belt's velocity again.
+    // It slips about drags/spring, from where the spring beats the holding friction, until it has
+    // the belt's velocity again.
     let omega: f64 = (spring / mass).sqrt();
     let reach = (holds - drags) / spring;
     let slip = 2.0 * (std::f64::consts::PI - (reach * omega / belt).atan()) / omega;

@@ -1,6 +1,8 @@
-//! A squash ball on cement: the study that this project grows from, its formulas one after another, and what its film can tell.
+//! A squash ball on cement: the study that this project grows from, its formulas one after another,
+//! and what its film can tell.
 //!
-//! `cargo run --example study` compares each with the recorded motion, draws `docs/gallery/study-*.svg` and checks every number of `docs/study.md`.
+//! `cargo run --example study` compares each with the recorded motion, draws
+//! `docs/gallery/study-*.svg` and checks every number of `docs/study.md`.
 
 use std::error::Error;
 
@@ -146,7 +148,8 @@ fn rms(z: &[f64]) -> f64 {
     (z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64).sqrt()
 }
 
-/// What 0.01 s off each flight does: it lets the ball turn above the floor, by one radius after 1 m and by less after less.
+/// What 0.01 s off each flight does: it lets the ball turn above the floor, by one radius after 1 m
+/// and by less after less.
 fn a_hundredth_of_a_second() {
     println!("\n0.01 s off each flight\n  height     turns above the floor    a radius of 2 cm takes off");
     let mut rows = Vec::new();
@@ -233,7 +236,8 @@ fn reconciled(report: &Report) -> Done {
     save("study-reconciled", &picture)
 }
 
-/// What 30 frames a second do to heights and contacts: by formula, and from a thousand films of one motion.
+/// What 30 frames a second do to heights and contacts: by formula, and from a thousand films of one
+/// motion.
 fn film() -> Done {
     const FILMS: u32 = 1000;
     let cor = Cor::new(0.5)?;
@@ -256,7 +260,8 @@ fn film() -> Done {
             show(seen.worst, formula.worst)
         );
         let scale = formula.worst;
-        // The worst of a thousand films is short of the worst; of contacts the formulas leave out gravity from frame to frame, 7 % of the speed.
+        // The worst of a thousand films is short of the worst; of contacts the formulas leave out
+        // gravity from frame to frame, 7 % of the speed.
         let left_out = if name.contains("rebound") { 2.5e-3 } else { 0.05 };
         for (a, b) in [(seen.mean, formula.mean), (seen.spread, formula.spread), (seen.worst, formula.worst)] {
             assert!((a - b).abs() <= left_out * scale, "{name}: {a} is not {b}");
@@ -289,7 +294,8 @@ fn film() -> Done {
     save("study-film", &picture)
 }
 
-/// The mean of ten, as the study has it, against ten trials that are pooled. The drops are synthetic: those of the study are not published.
+/// The mean of ten, as the study has it, against ten trials that are pooled. The drops are
+/// synthetic: those of the study are not published.
 fn ten_drops() -> Done {
     const EXPERIMENTS: u64 = 200;
     let plan = Plan { drop: DROP, gravity: GRAVITY, cor: 0.55, spread: 0.05, camera: CAMERA };

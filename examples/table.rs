@@ -1,6 +1,8 @@
-//! A ball that a vibrating table hits once in n of its periods: where such orbits are born, and where they lose their stability.
+//! A ball that a vibrating table hits once in n of its periods: where such orbits are born, and
+//! where they lose their stability.
 //!
-//! `cargo run --example table` follows them and compares with the closed form. (The attractors are drawn by `chaos`.)
+//! `cargo run --example table` follows them and compares with the closed form. (The attractors are
+//! drawn by `chaos`.)
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
@@ -61,7 +63,8 @@ impl Automaton for Table {
     }
 }
 
-/// Just after an impact: the table's phase, and the ball's velocity. The ball comes back `periods` periods of the table later.
+/// Just after an impact: the table's phase, and the ball's velocity. The ball comes back `periods`
+/// periods of the table later.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Impact {
     pub(crate) table: Table,
@@ -94,7 +97,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let (mut births, mut doublings) = (Vec::new(), Vec::new());
     for n in 1..=3_u32 {
-        // Its flight takes n periods; stable and unstable orbits are born together where the table is just strong enough.
+        // Its flight takes n periods; stable and unstable orbits are born together where the table
+        // is just strong enough.
         let born = f64::from(n) * PI * (1.0 - cor) / (1.0 + cor);
         let table = Table { g, amplitude: 2.2 * g / (omega * omega), omega, cor };
         let map = ReturnMap::of(Simulation::of(&table).tolerance(1e-13), Impact { table, periods: f64::from(n) });

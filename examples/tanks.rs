@@ -1,6 +1,7 @@
 //! Two tanks and one hose: the textbook's Zeno automaton (R. Alur, T. Henzinger, CONCUR 1997).
 //!
-//! `cargo run --example tanks`: less comes in than runs out, so that the hose must be moved ever faster.
+//! `cargo run --example tanks`: less comes in than runs out, so that the hose must be moved ever
+//! faster.
 
 use std::error::Error;
 

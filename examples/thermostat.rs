@@ -1,6 +1,7 @@
 //! A thermostat: heat until 21 °C, wait until 19 °C.
 //!
-//! `cargo run --example thermostat` switches a hundred thousand times and compares with the closed form.
+//! `cargo run --example thermostat` switches a hundred thousand times and compares with the closed
+//! form.
 
 use std::error::Error;
 
@@ -29,7 +30,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .background(Background::Adaptive);
     gallery("thermostat", &picture.svg()?)?;
 
-    // Between two temperatures the room takes the logarithm of the ratio of their distances from where it tends.
+    // Between two temperatures the room takes the logarithm of the ratio of their distances from
+    // where it tends.
     let tends = outside + heater / loss;
     let time = |from: f64, to: f64, limit: f64| ((from - limit) / (to - limit)).ln() / loss;
     let period = time(high, low, outside) + time(low, high, tends);

@@ -1,6 +1,8 @@
-//! The simplest walker: two stiff legs, a hip, a slope, and no motor (M. Garcia, A. Chatterjee, A. Ruina, M. Coleman, J. Biomech. Eng. 120 (1998) 281).
+//! The simplest walker: two stiff legs, a hip, a slope, and no motor (M. Garcia, A. Chatterjee, A.
+//! Ruina, M. Coleman, J. Biomech. Eng. 120 (1998) 281).
 //!
-//! `cargo run --release --example walker` finds its gaits for every slope, and where they lose their stability.
+//! `cargo run --release --example walker` finds its gaits for every slope, and where they lose
+//! their stability.
 
 use std::error::Error;
 
@@ -73,7 +75,8 @@ impl Automaton for Walker {
     }
 }
 
-/// Just after a heel strike both feet are on the ground and the legs exchanged: the stance leg's angle and its rate say everything.
+/// Just after a heel strike both feet are on the ground and the legs exchanged: the stance leg's
+/// angle and its rate say everything.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeelStrike;
 

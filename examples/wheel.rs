@@ -1,4 +1,5 @@
-//! The rimless wheel: spokes that roll down a slope, each impact taking a part of the speed (T. McGeer, Int. J. Robotics Research 9 (1990) 62).
+//! The rimless wheel: spokes that roll down a slope, each impact taking a part of the speed (T.
+//! McGeer, Int. J. Robotics Research 9 (1990) 62).
 //!
 //! `cargo run --example wheel` finds its steady gait.
 

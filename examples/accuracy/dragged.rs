@@ -1,8 +1,10 @@
-//! A ball under quadratic drag as a model of one's own: its flow for steppers and, over jets, for series.
+//! A ball under quadratic drag as a model of one's own: its flow for steppers and, over jets, for
+//! series.
 
 use saltus::{About, Automaton, Edges, Refusal, Series, Solution};
 
-/// Height and velocity, in the smooth modes rising and falling or, `whole`, in one with the kink of v|v| at rest.
+/// Height and velocity, in the smooth modes rising and falling or, `whole`, in one with the kink of
+/// v|v| at rest.
 pub(crate) struct Dragged {
     pub(crate) gravity: f64,
     pub(crate) drag: f64,

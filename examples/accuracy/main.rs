@@ -1,6 +1,8 @@
-//! What accuracy costs: work–precision of seven systems, each against its closed form, a published value, or a tighter run.
+//! What accuracy costs: work–precision of seven systems, each against its closed form, a published
+//! value, or a tighter run.
 //!
-//! `cargo run --release --example accuracy` measures and rewrites the tables of `docs/accuracy.md` and its pictures.
+//! `cargo run --release --example accuracy` measures and rewrites the tables of `docs/accuracy.md`
+//! and its pictures.
 
 mod dragged;
 mod page;

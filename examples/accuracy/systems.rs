@@ -46,7 +46,8 @@ pub(crate) fn ball() -> Answer {
     })
 }
 
-/// Twenty impacts under quadratic drag: by formula, by steps through smooth modes, and by steps across the kink of v|v|.
+/// Twenty impacts under quadratic drag: by formula, by steps through smooth modes, and by steps
+/// across the kink of v|v|.
 pub(crate) fn drag() -> Answer {
     let (height, gravity, k, e) = (10.0, 9.8, 0.1, 0.9);
     let flight = QuadraticDragFlight::new(gravity, k)?;

@@ -1,9 +1,11 @@
 //! The study's equations as functions, each with its domain. All in m, s, m/s, m/s².
 //!
-//! The fall time √(2h/g), contact times and apex heights are [`saltus_bounce::Drop`]'s, the COR from two heights, (8), is
-//! [`Cor::from_heights`](saltus_bounce::Cor::from_heights), v⁺ = e v⁻ is [`Cor::rebound`](saltus_bounce::Cor::rebound): they are not repeated here.
+//! The fall time √(2h/g), contact times and apex heights are [`saltus_bounce::Drop`]'s, the COR
+//! from two heights, (8), is [`Cor::from_heights`](saltus_bounce::Cor::from_heights), v⁺ = e v⁻ is
+//! [`Cor::rebound`](saltus_bounce::Cor::rebound): they are not repeated here.
 
-/// The apex of a flight: when and how high. Every formula of the study is one flight, and differs by where it has its apex.
+/// The apex of a flight: when and how high. Every formula of the study is one flight, and differs
+/// by where it has its apex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apex {
     /// When, in s.
@@ -47,39 +49,47 @@ pub fn rise(speed: f64, gravity: f64) -> f64 {
     speed * speed / (2.0 * gravity)
 }
 
-/// A whole bounce, T = 2 √(2h/g) - c: two half bounces of equal height `height` ≥ 0. The study takes c = `early` = 0.01 s.
+/// A whole bounce, T = 2 √(2h/g) - c: two half bounces of equal height `height` ≥ 0. The study
+/// takes c = `early` = 0.01 s.
 ///
-/// It is the time from contact to contact of a flight h high; and from a drop to the next apex only if nothing is lost (e = 1).
+/// It is the time from contact to contact of a flight h high; and from a drop to the next apex only
+/// if nothing is lost (e = 1).
 #[must_use]
 pub fn whole_bounce(height: f64, gravity: f64, early: f64) -> f64 {
     2.0 * (2.0 * height / gravity).sqrt() - early
 }
 
-/// The height of a flight that lasts `duration` ≥ 0 from contact to contact: g Δ²/8, the inverse of [`whole_bounce`] with `early` = 0.
+/// The height of a flight that lasts `duration` ≥ 0 from contact to contact: g Δ²/8, the inverse of
+/// [`whole_bounce`] with `early` = 0.
 #[must_use]
 pub fn height_of(duration: f64, gravity: f64) -> f64 {
     gravity * duration * duration / 8.0
 }
 
-/// How much sooner a ball turns at its own radius than at the floor, there and back: 2 (√(2h/g) - √(2(h - r)/g)), for 0 ≤ r ≤ h.
+/// How much sooner a ball turns at its own radius than at the floor, there and back: 2 (√(2h/g) -
+/// √(2(h - r)/g)), for 0 ≤ r ≤ h.
 ///
-/// Heights count to the ball's centre here. Written without cancellation, as 4 r / (g (√(2h/g) + √(2(h - r)/g))).
+/// Heights count to the ball's centre here. Written without cancellation, as 4 r / (g (√(2h/g) +
+/// √(2(h - r)/g))).
 #[must_use]
 pub fn early_by_radius(height: f64, radius: f64, gravity: f64) -> f64 {
     let fall = |h: f64| (2.0 * h / gravity).sqrt();
     if radius == 0.0 { 0.0 } else { 4.0 * radius / (gravity * (fall(height) + fall(height - radius))) }
 }
 
-/// How high above the floor a ball turns whose [`whole_bounce`] is cut short by `early` ≤ 2 √(2h/g): h - ½ g (T/2)².
+/// How high above the floor a ball turns whose [`whole_bounce`] is cut short by `early` ≤ 2
+/// √(2h/g): h - ½ g (T/2)².
 #[must_use]
 pub fn turns_at(height: f64, gravity: f64, early: f64) -> f64 {
     let half = 0.5 * whole_bounce(height, gravity, early);
     height - 0.5 * gravity * half * half
 }
 
-/// The flights of the study's last formula, without end: at each contact V = e V, then h = V²/(2g) and T = 2 √(2h/g) - c.
+/// The flights of the study's last formula, without end: at each contact V = e V, then h = V²/(2g)
+/// and T = 2 √(2h/g) - c.
 ///
-/// The first contact is at √(2h₀/g), each next one T later, each apex midway. With c = 0 this is the bouncing ball itself.
+/// The first contact is at √(2h₀/g), each next one T later, each apex midway. With c = 0 this is
+/// the bouncing ball itself.
 pub fn flights(drop: f64, gravity: f64, cor: f64, early: f64) -> impl Iterator<Item = Flight> {
     let (mut speed, mut contact) = (impact_speed(drop, gravity), (2.0 * drop / gravity).sqrt());
     std::iter::repeat_with(move || {
@@ -128,7 +138,8 @@ impl Total {
         }
     }
 
-    /// The COR that gives `total`, for `total` ≥ `fall`: each reading has exactly one. It may be above 1; the time to rest has none above 1.
+    /// The COR that gives `total`, for `total` ≥ `fall`: each reading has exactly one. It may be
+    /// above 1; the time to rest has none above 1.
     #[must_use]
     pub fn cor(self, total: f64, fall: f64) -> f64 {
         let x = total / fall;

@@ -1,6 +1,7 @@
 //! What a camera sees of a bouncing ball, and how far readings off its frames are from the truth.
 //!
-//! A frame is a moment every 1/f s; where the first lies is a matter of chance. An apex is read in the highest frame, a contact in the lowest.
+//! A frame is a moment every 1/f s; where the first lies is a matter of chance. An apex is read in
+//! the highest frame, a contact in the lowest.
 
 use std::error::Error;
 
@@ -44,16 +45,19 @@ impl Camera {
         1.0 / self.rate
     }
 
-    /// The height of an apex, in m: too low by up to g τ²/8, by g τ²/24 on average. Exact for flights longer than two frames.
+    /// The height of an apex, in m: too low by up to g τ²/8, by g τ²/24 on average. Exact for
+    /// flights longer than two frames.
     #[must_use]
     pub fn apex(self, gravity: f64) -> Off {
         let drop = gravity * self.frame().powi(2);
         Off { mean: -drop / 24.0, spread: drop / (12.0 * 5.0_f64.sqrt()), worst: drop / 8.0 }
     }
 
-    /// The time of a contact, in s: too late by τ (1 - e)/(2 (1 + e)) on average, since a ball that leaves more slowly is low for longer.
+    /// The time of a contact, in s: too late by τ (1 - e)/(2 (1 + e)) on average, since a ball that
+    /// leaves more slowly is low for longer.
     ///
-    /// To first order in g τ/v, the share of its speed v that the ball gains from frame to frame; 0 ≤ `cor` ≤ 1.
+    /// To first order in g τ/v, the share of its speed v that the ball gains from frame to frame; 0
+    /// ≤ `cor` ≤ 1.
     #[must_use]
     pub fn contact(self, cor: f64) -> Off {
         let frame = self.frame();
@@ -64,7 +68,8 @@ impl Camera {
         }
     }
 
-    /// How high the ball is in its lowest frame, in m: up to v τ e/(1 + e) after an impact at the speed v = `impact`, half of that on average.
+    /// How high the ball is in its lowest frame, in m: up to v τ e/(1 + e) after an impact at the
+    /// speed v = `impact`, half of that on average.
     ///
     /// To first order in g τ/v, as [`contact`](Self::contact).
     #[must_use]
@@ -73,8 +78,10 @@ impl Camera {
         Off { mean: 0.5 * worst, spread: worst / 12.0_f64.sqrt(), worst }
     }
 
-    /// What readings of one motion are off by in fact, from `films` films whose shutters open one after another within a frame: of the height of the
-    /// apex after contact `number`, from 1, of the time of that contact, and how high the ball is in its lowest frame. A ball is dropped from `height` in m.
+    /// What readings of one motion are off by in fact, from `films` films whose shutters open one
+    /// after another within a frame: of the height of the apex after contact `number`, from 1, of
+    /// the time of that contact, and how high the ball is in its lowest frame. A ball is dropped
+    /// from `height` in m.
     ///
     /// # Errors
     /// If `gravity` is negative, or a film shows fewer contacts.
@@ -105,7 +112,8 @@ impl Camera {
         Ok(off.map(|off| Off::of(&off)))
     }
 
-    /// Frames until `end` in s, the first at `shutter`, 0 ≤ `shutter` < τ: (time, height), from the height at any time.
+    /// Frames until `end` in s, the first at `shutter`, 0 ≤ `shutter` < τ: (time, height), from the
+    /// height at any time.
     pub fn film(
         self,
         shutter: f64,
@@ -117,7 +125,8 @@ impl Camera {
     }
 }
 
-/// What is read off a film: a time and a height for each contact and each apex after the first contact.
+/// What is read off a film: a time and a height for each contact and each apex after the first
+/// contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The lowest frames, in s and m.

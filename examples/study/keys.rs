@@ -1,4 +1,5 @@
-//! The keyframes that the study's script would set: one for each contact, with the velocity on both sides of it.
+//! The keyframes that the study's script would set: one for each contact, with the velocity on both
+//! sides of it.
 
 use saltus_bounce::Cor;
 use saltus_motion::{Contact, Frames, Motion, MotionError, Piece, Stretch, Track};

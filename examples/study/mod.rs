@@ -1,7 +1,10 @@
-//! A study of a bouncing ball, reproduced: four formulas for one recorded motion, what holds of each, and what the film can tell.
+//! A study of a bouncing ball, reproduced: four formulas for one recorded motion, what holds of
+//! each, and what the film can tell.
 //!
-//! A squash ball was dropped from 1 m on cement and filmed at 30 frames per second, ten times; `data/squash-on-cement.csv` has the means. The program
-//! `study` runs what is here and draws it; `docs/study.md` tells it. Numbers in brackets, as in (8), are those that the study gives its equations.
+//! A squash ball was dropped from 1 m on cement and filmed at 30 frames per second, ten times;
+//! `data/squash-on-cement.csv` has the means. The program `study` runs what is here and draws it;
+//! `docs/study.md` tells it. Numbers in brackets, as in (8), are those that the study gives its
+//! equations.
 
 pub mod equations;
 pub mod film;

@@ -59,9 +59,11 @@ impl Start {
         Curve { gravity: self.gravity, parts: vec![(0.0, turn, self.apex()), (turn, landing, next)] }
     }
 
-    /// Stage 3, h₁ - ½ g (T - t)²: a measured `rebound` in m, its apex still at the time of stage 2.
+    /// Stage 3, h₁ - ½ g (T - t)²: a measured `rebound` in m, its apex still at the time of
+    /// stage 2.
     ///
-    /// (22) is printed with the ratio h₀/h₁ in the place of h₁. That is a pure number: taken as metres it is 3.33 m here.
+    /// (22) is printed with the ratio h₀/h₁ in the place of h₁. That is a pure number: taken as
+    /// metres it is 3.33 m here.
     #[must_use]
     pub fn measured_rebound(self, rebound: f64) -> Curve {
         let next = Apex { time: self.next_apex(), height: rebound };
@@ -72,7 +74,8 @@ impl Start {
 
     /// Stage 4: speed lost by the COR at every contact, `count` flights after the fall.
     ///
-    /// (25) is read with its apex midway through the flight. As printed, h - ½ g (T - t)² in the flight's own clock, the apex would be at its end.
+    /// (25) is read with its apex midway through the flight. As printed, h - ½ g (T - t)² in the
+    /// flight's own clock, the apex would be at its end.
     #[must_use]
     pub fn bounces(self, cor: Cor, count: usize) -> Curve {
         let mut parts = vec![(0.0, self.fall(), self.apex())];
@@ -81,7 +84,8 @@ impl Start {
         Curve { gravity: self.gravity, parts }
     }
 
-    /// The bouncing ball itself in closed form, for comparison: this start without anything taken off.
+    /// The bouncing ball itself in closed form, for comparison: this start without anything taken
+    /// off.
     #[must_use]
     pub const fn exact(self, cor: Cor) -> Drop {
         Drop::new(self.drop, self.gravity, cor)
@@ -89,7 +93,8 @@ impl Start {
 }
 
 impl Curve {
-    /// The height in m and upward velocity in m/s at `t` in s. The last flight goes on, below the floor if need be.
+    /// The height in m and upward velocity in m/s at `t` in s. The last flight goes on, below the
+    /// floor if need be.
     #[must_use]
     pub fn at(&self, t: f64) -> [f64; 2] {
         let part = self.parts.iter().rfind(|part| part.0 <= t).or(self.parts.first());
@@ -113,7 +118,8 @@ impl Curve {
         self.parts.iter().map(arc).collect()
     }
 
-    /// How far the recorded points are above the curve, in standard errors: the height's, and what the time's moves the curve by in the meantime.
+    /// How far the recorded points are above the curve, in standard errors: the height's, and what
+    /// the time's moves the curve by in the meantime.
     #[must_use]
     pub fn residuals(&self, report: &Report) -> Vec<f64> {
         let sigma = |s: Option<saltus_fit::Sourced>| s.map_or(0.0, |s| s.value);

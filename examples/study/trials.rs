@@ -1,6 +1,7 @@
 //! Ten drops that never were: the film of each is simulated, since the study gives means only.
 //!
-//! The COR differs from drop to drop, the shutter opens when it likes, heights are read to the centimetre and times to the frame.
+//! The COR differs from drop to drop, the shutter opens when it likes, heights are read to the
+//! centimetre and times to the frame.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -28,7 +29,8 @@ pub struct Plan {
     pub camera: Camera,
 }
 
-/// One drop as it was read: heights in m, times in s from the last frame in which the ball had not moved.
+/// One drop as it was read: heights in m, times in s from the last frame in which the ball had not
+/// moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     /// The COR it was made with.
@@ -50,7 +52,8 @@ impl Plan {
         (0..count).map(|_| self.drop(self.cor + self.spread * (2.0 * share() - 1.0), share())).collect()
     }
 
-    /// One drop with the COR `cor`, whose first frame after the release comes a share `shutter` of a frame after it, 0 ≤ `shutter` < 1.
+    /// One drop with the COR `cor`, whose first frame after the release comes a share `shutter` of
+    /// a frame after it, 0 ≤ `shutter` < 1.
     ///
     /// # Errors
     /// If the film shows fewer than three contacts.
@@ -70,7 +73,8 @@ impl Plan {
         Ok(Trial { cor, contacts, rebounds: [centimetre(one), centimetre(two)] })
     }
 
-    /// All drops as one table, each a trial of its own. When a ball was let go its film does not tell: that cell is empty.
+    /// All drops as one table, each a trial of its own. When a ball was let go its film does not
+    /// tell: that cell is empty.
     ///
     /// # Errors
     /// If the table cannot be fitted.
@@ -82,8 +86,8 @@ impl Plan {
         self.fitted("ten drops", &rows)
     }
 
-    /// One table of means, as the study has it; time zero is the last frame in which the ball has not moved. That this is the moment of release may be
-    /// believed (`timed`) or not.
+    /// One table of means, as the study has it; time zero is the last frame in which the ball has
+    /// not moved. That this is the moment of release may be believed (`timed`) or not.
     ///
     /// # Errors
     /// If the table cannot be fitted.
@@ -120,9 +124,11 @@ pub fn mean(trials: &[Trial]) -> Trial {
     }
 }
 
-/// The two CORs that the means of exact heights show, √⟨e²⟩ and √(⟨e⁴⟩/⟨e²⟩), for drops with the CORs `cors`, all above zero.
+/// The two CORs that the means of exact heights show, √⟨e²⟩ and √(⟨e⁴⟩/⟨e²⟩), for drops with the
+/// CORs `cors`, all above zero.
 ///
-/// Never less than the mean of the CORs, and the second never less than the first: averaging makes a COR seem to grow from bounce to bounce.
+/// Never less than the mean of the CORs, and the second never less than the first: averaging makes
+/// a COR seem to grow from bounce to bounce.
 #[must_use]
 pub fn of_mean_heights(cors: &[f64]) -> [f64; 2] {
     let mean = |power: i32| cors.iter().map(|e| e.powi(power)).sum::<f64>() / cors.len() as f64;

@@ -12,7 +12,8 @@ pub(crate) struct Entry {
     pub(crate) report: fn() -> &'static Report,
 }
 
-/// The cases of a family: the function that runs each, its name in the file of cases, and, of a long one, what it takes.
+/// The cases of a family: the function that runs each, its name in the file of cases, and, of a
+/// long one, what it takes.
 macro_rules! cases {
     ($($run:ident = $id:literal $(, long: $long:literal)?;)+) => {
         pub(crate) const CASES: &[$crate::cases::Entry] = &[$($crate::cases::Entry {

@@ -91,7 +91,8 @@ fn parabola(case: &mut Report) {
     case.check("rel_drift_beta_1e5", drift[1]);
 }
 
-/// Every operation is exact, so the orbit is that of the binary number it starts from: to the bit, until its digits have run out.
+/// Every operation is exact, so the orbit is that of the binary number it starts from: to the bit,
+/// until its digits have run out.
 fn doubling_map(case: &mut Report) {
     let map = Hybrid::new()
         .exact("run", |_t, x: &[f64; 2]| Polynomial::from([*x, [1.0, 0.0]]))

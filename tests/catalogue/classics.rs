@@ -1,4 +1,5 @@
-//! Known test problems for event location: orbits, Bessel functions, limits, stiff oscillators, chemistry.
+//! Known test problems for event location: orbits, Bessel functions, limits, stiff oscillators,
+//! chemistry.
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, RunOf, Simulation};

@@ -1,4 +1,5 @@
-//! Sliding, sticking, switching: relays, dry friction, tanks, a thermostat, and the switches of an optimal control that accumulate.
+//! Sliding, sticking, switching: relays, dry friction, tanks, a thermostat, and the switches of an
+//! optimal control that accumulate.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -183,8 +184,9 @@ fn water_tanks(case: &mut Report) {
     case.check("x2_at_zeno", run.end.state[1]);
 }
 
-/// Levels fall like squares and never below zero, so a margin that falls through zero is their root; the root is the better coordinate anyway:
-/// with h = u², u' = -k/2 while h' = -k √h has no unique past.
+/// Levels fall like squares and never below zero, so a margin that falls through zero is their
+/// root; the root is the better coordinate anyway: with h = u², u' = -k/2 while h' = -k √h has no
+/// unique past.
 fn torricelli(case: &mut Report) {
     let [k1, k2, h1, h2] = case.params(["k1", "k2", "h10", "h20"]);
     let tanks = Hybrid::new()

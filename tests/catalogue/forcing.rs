@@ -31,7 +31,8 @@ fn square_wave(case: &mut Report) {
     }
 }
 
-/// A ball reaches the floor at the moment at which its restitution changes: both happen, the impact first.
+/// A ball reaches the floor at the moment at which its restitution changes: both happen, the impact
+/// first.
 fn coincident(case: &mut Report) {
     let [g, e1, e2, h] = case.params(["g", "e1", "e2", "h"]);
     let fall = move |_t: f64, x: &Vector2<f64>| Polynomial::from([*x, vector![x[1], -g], vector![-0.5 * g, 0.0]]);

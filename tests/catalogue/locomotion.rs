@@ -1,4 +1,5 @@
-//! Hoppers, runners, walkers, a wheel and a juggler: runs, and the fixed points of their return maps with multipliers.
+//! Hoppers, runners, walkers, a wheel and a juggler: runs, and the fixed points of their return
+//! maps with multipliers.
 
 use saltus::nalgebra::vector;
 use saltus::return_map::{ReturnMap, Section, Selection};
@@ -65,7 +66,8 @@ fn slip_runner(case: &mut Report) {
     }
 }
 
-/// A mass on a springy leg. In flight the state is (height, speed); in stance the ground's impulse is a third coordinate.
+/// A mass on a springy leg. In flight the state is (height, speed); in stance the ground's impulse
+/// is a third coordinate.
 fn vertical_hopper(case: &mut Report) {
     let [m, k, l0, g, h] = case.params(["m", "k", "l0", "g", "h"]);
     let push = move |y: f64| k * (l0 - y);
@@ -84,7 +86,8 @@ fn vertical_hopper(case: &mut Report) {
     case.check("period", jumps[2].t() - jumps[0].t());
     let middle = 0.5 * (jumps[0].t() + jumps[1].t());
     case.check("y_min", run.trajectory.at(middle).unwrap()[0]);
-    // The ground turns the speed round: its impulse is that change of momentum and what gravity takes meanwhile.
+    // The ground turns the speed round: its impulse is that change of momentum and what gravity
+    // takes meanwhile.
     let (down, up) = (jumps[0].before, jumps[1].before);
     let impulse = m * (up[1] - down[1]) + m * g * (jumps[1].t() - jumps[0].t());
     assert!((up[2] / impulse - 1.0).abs() < 1e-12, "{}", up[2] / impulse);

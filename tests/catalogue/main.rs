@@ -1,9 +1,10 @@
-//! The catalogue of hard cases: each case of `hardcases.json` is run here, each of its observables is judged at the case's own tolerance, and
-//! `docs/hard-cases.md` shows what came out.
+//! The catalogue of hard cases: each case of `hardcases.json` is run here, each of its observables
+//! is judged at the case's own tolerance, and `docs/hard-cases.md` shows what came out.
 //!
-//! A case that is missed stays, marked with its reason; its test asserts that it is missed as it is known to be, so that a cure is noticed.
-//! The page is rewritten by `SALTUS_BLESS=1 cargo test --release -p saltus-tests --test catalogue -- --include-ignored`; without the last two words the
-//! long cases keep the rows they have.
+//! A case that is missed stays, marked with its reason; its test asserts that it is missed as it is
+//! known to be, so that a cure is noticed. The page is rewritten by
+//! `SALTUS_BLESS=1 cargo test --release -p saltus-tests --test catalogue -- --include-ignored`;
+//! without the last two words the long cases keep the rows they have.
 
 #![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -125,8 +125,9 @@ impl Row {
         })
     }
 
-    /// Another machine's libm may round otherwise, make another observable the worst, and a search take another turn: what must agree is the verdict, that each
-    /// reference is the file's, and the cost to a tenth.
+    /// Another machine's libm may round otherwise, make another observable the worst, and a search
+    /// take another turn: what must agree is the verdict, that each reference is the file's, and
+    /// the cost to a tenth.
     fn compare(&self, new: &Self) {
         let id = &self.id;
         assert_eq!(self.id, new.id);
@@ -194,7 +195,8 @@ fn section(out: &mut String, family: &str, cases: &[Entry], rows: &[Option<Row>]
     }
 }
 
-/// What a case is and what goes wrong with it elsewhere; what an earlier case has said is not said again.
+/// What a case is and what goes wrong with it elsewhere; what an earlier case has said is not said
+/// again.
 fn describe(out: &mut String, case: &Case, earlier: &[&Case], long: bool, ran: Option<&Report>) {
     let _ = write!(out, "- **`{}`** {}.", case.id, text(&case.title));
     let same = earlier.iter().find(|other| case.system.starts_with(&other.system));
@@ -222,7 +224,8 @@ fn describe(out: &mut String, case: &Case, earlier: &[&Case], long: bool, ran: O
     if !facts.is_empty() {
         let _ = write!(out, " *For orientation:* {}.", facts.join(", "));
     }
-    // Which of a long case's observables are marked or left out is said in its row only, unless it is run.
+    // Which of a long case's observables are marked or left out is said in its row only, unless it
+    // is run.
     if let Some(report) = ran.filter(|_| !long) {
         remarks(out, report);
     }

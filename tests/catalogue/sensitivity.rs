@@ -37,7 +37,8 @@ fn impact<M: Copy, E: Copy, S: State>(run: &Run<M, E, S>, n: usize) -> &Jump<M, 
     run.trajectory.jumps().iter().filter(|jump| jump.edge().is_some()).nth(n - 1).unwrap()
 }
 
-/// By the exact parabola and by steps; the values themselves are asked to the last digit of the parabola only.
+/// By the exact parabola and by steps; the values themselves are asked to the last digit of the
+/// parabola only.
 fn ball(case: &mut Report) {
     let [g, e, h] = case.params(["g", "e", "h"]);
     for exact in [true, false] {

@@ -1,4 +1,5 @@
-//! Several contacts at one time or nearly so: corners, cradles, cascades, collapse, and a billiard that counts the digits of π.
+//! Several contacts at one time or nearly so: corners, cradles, cascades, collapse, and a billiard
+//! that counts the digits of π.
 
 use std::f64::consts::PI;
 
@@ -94,7 +95,8 @@ fn wedge_60(case: &mut Report) {
     both_sides(case);
 }
 
-/// Into the vertex itself the future is not unique; that both walls are met at once is said by two jumps at one time.
+/// Into the vertex itself the future is not unique; that both walls are met at once is said by two
+/// jumps at one time.
 fn wedge_generic(case: &mut Report) {
     let sides = both_sides(case);
     let outcome = match wedge(case, 0.0) {

@@ -1,4 +1,5 @@
-//! Cases on which integrators in use were seen to fail: each with the right answer and the test that has it here.
+//! Cases on which integrators in use were seen to fail: each with the right answer and the test
+//! that has it here.
 
 /// What was seen, the right answer, the file of the test and its name.
 pub(crate) struct Seen(

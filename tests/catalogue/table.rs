@@ -73,7 +73,8 @@ fn period_one(case: &mut Report) {
     case.check("floquet_trace", orbit.jacobian.trace());
 }
 
-/// Trace and determinant of the map from impact to impact, in (phase, velocity after it), by central differences of fourth order.
+/// Trace and determinant of the map from impact to impact, in (phase, velocity after it), by
+/// central differences of fourth order.
 fn multipliers(ball: &OnTable, [amplitude, w, g]: [f64; 3], phase: f64, velocity: f64) -> [f64; 2] {
     let simulation = Simulation::of(ball).most_jumps(1);
     let map = |phase: f64, velocity: f64| {
@@ -90,8 +91,8 @@ fn multipliers(ball: &OnTable, [amplitude, w, g]: [f64; 3], phase: f64, velocity
     [by_phase[0] + by_velocity[1], by_phase[0] * by_velocity[1] - by_phase[1] * by_velocity[0]]
 }
 
-/// Where the orbits of period n are born, and where they double, as the table is shaken harder: by continuation, and where a multiplier of the known orbit
-/// is one or minus one.
+/// Where the orbits of period n are born, and where they double, as the table is shaken harder: by
+/// continuation, and where a multiplier of the known orbit is one or minus one.
 fn bifurcations(case: &mut Report) {
     let (e, g, w) = (case.param("e"), 9.81, 50.0);
     for n in 1..=3_u32 {

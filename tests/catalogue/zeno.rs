@@ -262,7 +262,8 @@ fn false_zeno(case: &mut Report) {
     case.check("v(2)", x[1]);
 }
 
-/// Place and velocity of the ball, and where the wall is; impacts accumulate at 1/u without a loss, and no ratio of durations says so.
+/// Place and velocity of the ball, and where the wall is; impacts accumulate at 1/u without a loss,
+/// and no ratio of durations says so.
 fn closing_wall(case: &mut Report) {
     let [u, v0] = case.params(["u", "v0"]);
     let ball = Hybrid::new()

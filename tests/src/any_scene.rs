@@ -5,11 +5,12 @@ use saltus_scene::{Scene, SceneError};
 
 /// How many evaluations of flows and guards a run may make.
 const BUDGET: u64 = 20_000;
-/// By how much it may go beyond that: a step that has begun is ended, and its crossings are searched.
+/// By how much it may go beyond that: a step that has begun is ended, and its crossings are
+/// searched.
 const ONE_STEP: u64 = 20_000;
 
-/// A reader that is given anything answers with a scene or with a place inside the file; a scene is planned and run within a budget, or refused
-/// with a sentence.
+/// A reader that is given anything answers with a scene or with a place inside the file; a scene is
+/// planned and run within a budget, or refused with a sentence.
 ///
 /// # Errors
 /// What does not hold, in words.

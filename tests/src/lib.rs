@@ -1,5 +1,5 @@
-//! Runs the code in the project's pages as documentation tests, and keeps what several tests share; those are in this package's `tests` folder,
-//! fuzz targets in `fuzz`.
+//! Runs the code in the project's pages as documentation tests, and keeps what several tests share;
+//! those are in this package's `tests` folder, fuzz targets in `fuzz`.
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

@@ -1,4 +1,5 @@
-//! The reference values of the hard cases, computed with sixty digits, each with the tolerance that double precision must meet.
+//! The reference values of the hard cases, computed with sixty digits, each with the tolerance that
+//! double precision must meet.
 
 use std::sync::OnceLock;
 

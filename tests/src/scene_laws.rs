@@ -1,11 +1,13 @@
-//! The laws a random scene has to keep: it is refused with a reason or runs to a named end; nothing sinks through a floor; energy is not gained.
+//! The laws a random scene has to keep: it is refused with a reason or runs to a named end; nothing
+//! sinks through a floor; energy is not gained.
 
 use saltus_scene::Scene;
 use saltus_scene::plan::{End, Moment, Record};
 
 use crate::random_scene::Made;
 
-/// How a scene ended after at most so many evaluations of flows and guards, for the summary; or the law it breaks.
+/// How a scene ended after at most so many evaluations of flows and guards, for the summary; or the
+/// law it breaks.
 ///
 /// # Errors
 /// The law in words, with the numbers that break it.

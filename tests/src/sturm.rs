@@ -1,5 +1,5 @@
-//! Guards that nearly touch zero, and how often they cross it by Sturm's theorem in exact rational arithmetic
-//! (B. L. van der Waerden, *Algebra* I, § 79).
+//! Guards that nearly touch zero, and how often they cross it by Sturm's theorem in exact rational
+//! arithmetic (B. L. van der Waerden, *Algebra* I, § 79).
 
 #![allow(clippy::unwrap_used)] // numbers that are finite can be made rational
 
@@ -107,11 +107,12 @@ fn falls(guard: impl Fn(f64) -> f64) -> usize {
     count
 }
 
-/// How many crossings of 2ᵏ q(s)² + r(s) in (0, 1] are found, and how many there are; `None` where counting has no say: no polynomial, a root at an
-/// end, or a multiple one.
+/// How many crossings of 2ᵏ q(s)² + r(s) in (0, 1] are found, and how many there are; `None` where
+/// counting has no say: no polynomial, a root at an end, or a multiple one.
 ///
-/// Each root of q becomes two roots some 2^(-k/2) apart, or none. Values are computed exactly and rounded once. A root that q and r share becomes two
-/// roots some 2⁻ᵏ apart, and from k = 51 on there may be no number between those: there k is kept below that.
+/// Each root of q becomes two roots some 2^(-k/2) apart, or none. Values are computed exactly and
+/// rounded once. A root that q and r share becomes two roots some 2⁻ᵏ apart, and from k = 51 on
+/// there may be no number between those: there k is kept below that.
 #[must_use]
 pub fn found_and_counted(q: &[i64], r: &[i64], k: usize) -> Option<(usize, usize)> {
     let rational = |p: &[i64]| p.iter().copied().map(integer).collect();

@@ -2,7 +2,8 @@
 
 use saltus::{Entry, Hybrid, State};
 
-/// A flow and a guard whose crossings in both directions are recorded and change nothing; the mode is `run`, and its first edge the falling one.
+/// A flow and a guard whose crossings in both directions are recorded and change nothing; the mode
+/// is `run`, and its first edge the falling one.
 pub fn watched<'a, S: State + 'a>(
     flow: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     guard: impl Fn(f64, &S) -> f64 + Send + Sync + Copy + 'a,

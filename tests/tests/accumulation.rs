@@ -1,4 +1,5 @@
-//! Where jumps accumulate: the two tanks of the textbooks, and what the rounding of coordinates makes of a limit.
+//! Where jumps accumulate: the two tanks of the textbooks, and what the rounding of coordinates
+//! makes of a limit.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
@@ -8,7 +9,8 @@ use saltus::{Cause, Hybrid, Simulation, Stop};
 /// Inflow and leaks, marks and volumes at the start.
 type Case = (f64, [f64; 2], [f64; 2], [f64; 2]);
 
-/// Johansson, Egerstedt, Lygeros, Sastry, Systems & Control Letters 38 (1999) 141: switching accumulates at Σ(x - r)/(v₁ + v₂ - w).
+/// Johansson, Egerstedt, Lygeros, Sastry, Systems & Control Letters 38 (1999) 141: switching
+/// accumulates at Σ(x - r)/(v₁ + v₂ - w).
 fn meets_the_limit(cases: &[Case]) {
     for &(w, v, marks, start) in cases {
         let limit = (start[0] + start[1] - marks[0] - marks[1]) / (v[0] + v[1] - w);
@@ -58,8 +60,9 @@ fn two_tanks_whose_rounding_is_coarser_than_that_of_time() {
     meets_the_limit(&[(30.0, [20.0, 16.0], [1e3, 1e2], [1005.0, 101.0])]);
 }
 
-/// A ball on a floor that is not at zero. Flights lower than half a rounding of the height end late by the time in which it is fallen through,
-/// which gives back as much speed as the impact takes: from 5.8e-9 s on, at a height of 1 m, they no longer shrink.
+/// A ball on a floor that is not at zero. Flights lower than half a rounding of the height end late
+/// by the time in which it is fallen through, which gives back as much speed as the impact takes:
+/// from 5.8e-9 s on, at a height of 1 m, they no longer shrink.
 #[test]
 fn a_floor_above_zero() {
     for floor in [1e-9, 1.0, 10.0, 1000.0] {
@@ -75,8 +78,9 @@ fn a_floor_above_zero() {
     }
 }
 
-/// A ball chatters on a table that shakes, in a model that knows no rest and whose reset leaves the height as it is: early and late in time the run ends at the
-/// limit, and the ball is never lost below the table.
+/// A ball chatters on a table that shakes, in a model that knows no rest and whose reset leaves the
+/// height as it is: early and late in time the run ends at the limit, and the ball is never lost
+/// below the table.
 #[test]
 fn no_ball_is_lost_at_the_end_of_a_chatter() {
     let mut seed = 1_u64;

@@ -1,4 +1,5 @@
-//! What accuracy costs: the advice keeps its promise against solutions that the advice does not know.
+//! What accuracy costs: the advice keeps its promise against solutions that the advice does not
+//! know.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)] // a test that cannot go on has failed
 
@@ -7,7 +8,8 @@ use saltus_bounce::flight::{LinearDragFlight, VerticalFlight};
 use saltus_scene::Scene;
 use saltus_scene::accuracy::{Accuracy, Outcome, Target, Way};
 
-/// A ball thrown sideways through a wind, held back in proportion to its speed: no formula of the planner solves it, yet there is one.
+/// A ball thrown sideways through a wind, held back in proportion to its speed: no formula of the
+/// planner solves it, yet there is one.
 #[derive(Clone, Copy, Debug)]
 struct Throw {
     height: f64,
@@ -94,7 +96,8 @@ fn example(name: &str) -> Scene {
     Scene::read(path).unwrap()
 }
 
-/// Steppers agree with formulas to rounding where a parabola is all there is, and frames do not come near.
+/// Steppers agree with formulas to rounding where a parabola is all there is, and frames do not
+/// come near.
 #[test]
 fn frames_are_a_foil() {
     let accuracy = Accuracy::counted(&example("squash")).unwrap();
@@ -112,7 +115,8 @@ fn frames_are_a_foil() {
     assert!(matches!(accuracy.cheapest(Target::DEFAULT).unwrap().way, Way::Formulas));
 }
 
-/// No formula is more exact than the numbers it is given: three balls in a box lose a digit every ten impacts, and nobody can promise a micrometre.
+/// No formula is more exact than the numbers it is given: three balls in a box lose a digit every
+/// ten impacts, and nobody can promise a micrometre.
 #[test]
 fn formulas_promise_no_more_than_rounding_leaves() {
     let mut balls = example("box");
@@ -149,7 +153,8 @@ fn the_frontier_has_the_advice_on_it() {
     }
 }
 
-/// Steps that end on the apex, where v|v| has a kink, keep their order: impact times from six digits to twelve.
+/// Steps that end on the apex, where v|v| has a kink, keep their order: impact times from six
+/// digits to twelve.
 #[test]
 fn digits_are_cheap_where_modes_are_smooth() {
     let toml = b"restitution = 0.9\nball = { height = '10 m' }\ndrag = { per_length = 0.1, rate = 1e-9 }\nrun = { until = '10 s' }\n";

@@ -1,6 +1,7 @@
 //! The loop does not allocate: not for a step, not for a crossing, not for a jump.
 //!
-//! Counting allocations takes an allocator of our own, and that takes `unsafe`; so they are counted by a library.
+//! Counting allocations takes an allocator of our own, and that takes `unsafe`; so they are counted
+//! by a library.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -17,7 +17,8 @@ fn impacts<M: Copy, E: Copy + PartialEq, S: State>(run: &Run<M, E, S>, floor: E)
     run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
 }
 
-/// The bounces of every flight under every restitution come to rest where the flights' own formulas say, and cost no step.
+/// The bounces of every flight under every restitution come to rest where the flights' own formulas
+/// say, and cost no step.
 #[test]
 fn every_flight_rests() {
     for e in [0.0, 0.01, 0.3, 0.5, 0.77, 0.8, 0.9, 0.95, 0.99] {
@@ -144,7 +145,8 @@ impl Automaton for Plain {
     }
 }
 
-/// An effect that is not named costs nothing: the same bits and the same counts as a ball that could have none.
+/// An effect that is not named costs nothing: the same bits and the same counts as a ball that
+/// could have none.
 #[test]
 fn what_is_not_named_costs_nothing() {
     for e in [0.0, 0.5, 0.9, 0.99] {

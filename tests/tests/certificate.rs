@@ -1,4 +1,5 @@
-//! What a run says of its own searches: doubts exactly where a crossing may have been missed, and nowhere else.
+//! What a run says of its own searches: doubts exactly where a crossing may have been missed, and
+//! nowhere else.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -66,7 +67,8 @@ fn a_double_root_in_noise_is_doubted_where_it_is() {
     assert!(when.start <= 0.5 && 0.5 <= when.end && when.end - when.start < 1e-5, "{when:?}");
 }
 
-/// Two edges, the later one in doubt from t = 0.5 on: what lies beyond the crossing that ends the arc is no doubt.
+/// Two edges, the later one in doubt from t = 0.5 on: what lies beyond the crossing that ends the
+/// arc is no doubt.
 #[test]
 fn doubts_after_the_crossing_are_none() {
     let noisy = |t: f64| (t - 0.5).powi(2) + 1e-13 * (1e9 * t).sin();
@@ -204,7 +206,8 @@ fn rows_have_a_limit() {
     assert!(certificate.to_string().contains("other edges"));
 }
 
-/// A jump and its certificate are told to the same observers, in the same order, however they are put together.
+/// A jump and its certificate are told to the same observers, in the same order, however they are
+/// put together.
 #[test]
 fn a_certificate_beside_a_trajectory() {
     let ball = ball();
@@ -225,7 +228,8 @@ fn a_certificate_beside_a_trajectory() {
     assert_eq!(certificate.total().taken, times.len() as u64);
 }
 
-/// g = 8 m/s², v₀ = 4 m/s: the apex is at 1 m exactly, after 0.5 s. A guard there is touched, not crossed.
+/// g = 8 m/s², v₀ = 4 m/s: the apex is at 1 m exactly, after 0.5 s. A guard there is touched, not
+/// crossed.
 #[test]
 fn an_exact_touch_is_shown_and_is_no_jump() {
     let ball = Hybrid::new()

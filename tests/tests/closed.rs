@@ -1,4 +1,5 @@
-//! Flows known by a formula: a ball with drag, its formula given with and without the time of its fall, and stepped.
+//! Flows known by a formula: a ball with drag, its formula given with and without the time of its
+//! fall, and stepped.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -34,7 +34,8 @@ fn gas<const D: usize>(columns: usize, gravity: f64, end: f64) -> (Cloud<D, 64>,
     (cloud, start, ending)
 }
 
-/// An elastic gas keeps its energy, in the plane and in space, with gravity and without; no ball leaves the box or enters another.
+/// An elastic gas keeps its energy, in the plane and in space, with gravity and without; no ball
+/// leaves the box or enters another.
 #[test]
 fn a_gas_of_sixty_four() {
     fn check<const D: usize>(columns: usize, gravity: f64) {
@@ -58,7 +59,8 @@ fn a_gas_of_sixty_four() {
     check::<3>(4, 9.81);
 }
 
-/// From event to event it is the same gas: the first hundred touches agree, in order and in time; and after ten thousand its energy is what it was.
+/// From event to event it is the same gas: the first hundred touches agree, in order and in time;
+/// and after ten thousand its energy is what it was.
 #[test]
 fn a_flight_is_the_automaton() {
     fn check<const D: usize>(columns: usize, gravity: f64) {

@@ -23,7 +23,8 @@ fn released(run: &Run<Stage, Moment, Vector2<f64>>) -> Vector2<f64> {
     run.trajectory.jumps().iter().find(|jump| jump.edge() == Some(Moment::LiftOff)).unwrap().before
 }
 
-/// What a contact at 10¹² in the law's own unit costs, and how far the COR is from the one announced.
+/// What a contact at 10¹² in the law's own unit costs, and how far the COR is from the one
+/// announced.
 fn stiffest<L: ContactLaw>(law: L, stepper: impl Stepper, tolerance: f64) -> (u64, f64) {
     let ball = Compliant::new(0.1, 0.0, law).unwrap();
     let (stage, start) = ball.released(0.2, -2.0);
@@ -34,7 +35,8 @@ fn stiffest<L: ContactLaw>(law: L, stepper: impl Stepper, tolerance: f64) -> (u6
     (run.end.stats.steps, (contact.cor.unwrap() - announced.cor.value()).abs())
 }
 
-/// Every law at 10¹² in its own unit of stiffness: fewer than 500 steps a contact, and the announced COR.
+/// Every law at 10¹² in its own unit of stiffness: fewer than 500 steps a contact, and the
+/// announced COR.
 #[test]
 fn the_stiffest_contacts() {
     fn each(stepper: impl Stepper + Debug, tolerance: f64, allowed: [u64; 4]) {
@@ -57,7 +59,8 @@ fn the_stiffest_contacts() {
     each(Dop853, 1e-12, [0, 70, 70, 140]);
 }
 
-/// The third contact of a ball dropped from 1 m comes later than without deformation, in proportion to the duration of a contact.
+/// The third contact of a ball dropped from 1 m comes later than without deformation, in proportion
+/// to the duration of a contact.
 #[test]
 fn rigid_impacts_are_the_limit() {
     let (g, m) = (9.81, 0.1);

@@ -227,7 +227,8 @@ impl Automaton for Converter {
     }
 }
 
-/// A named state is differentiated by a duty through clocks and stops as differences say, and its columns have names.
+/// A named state is differentiated by a duty through clocks and stops as differences say, and its
+/// columns have names.
 #[test]
 fn a_named_state_has_derivatives() {
     let start = Filter { current: 0.0, voltage: 0.0, closed: 1.0 };
@@ -248,7 +249,8 @@ fn a_named_state_has_derivatives() {
     );
 }
 
-/// Whether a parameter moves a stop is not guessed: a derivative by a parameter wants the promise, others do not.
+/// Whether a parameter moves a stop is not guessed: a derivative by a parameter wants the promise,
+/// others do not.
 #[test]
 fn stops_without_a_promise() {
     let converter = Converter { stand: false, ..Converter::of(0.4) };

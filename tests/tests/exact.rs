@@ -71,7 +71,8 @@ fn an_impact_at_the_end() {
     assert_eq!(run.trajectory.at(15.0).unwrap()[1], 30.0);
 }
 
-/// The same ball in closed form, exactly solved, and by steps with and without a promise about the guard: one list of impacts.
+/// The same ball in closed form, exactly solved, and by steps with and without a promise about the
+/// guard: one list of impacts.
 #[test]
 fn every_path_gives_the_same_impacts() {
     let (g, e) = (9.8, 0.8);
@@ -94,12 +95,14 @@ fn every_path_gives_the_same_impacts() {
             ("affine", affine.trajectory.jumps()[n - 1].t()),
             ("general", general.trajectory.jumps()[n - 1].t()),
         ] {
-            // A parabola is beyond no stepper; what is left is the rounding of stages whose weights are up to thirteen.
+            // A parabola is beyond no stepper; what is left is the rounding of stages whose weights
+            // are up to thirteen.
             let rounding = if path == "arcs" { 2e-15 } else { 2e-13 };
             assert!((got - t).abs() < rounding, "{path}, impact {n}: {got} instead of {t}");
         }
     }
-    // What it costs: the exact arc takes no step, and excluding or finding a crossing takes no more flow than the step it lies in, twice.
+    // What it costs: the exact arc takes no step, and excluding or finding a crossing takes no more
+    // flow than the step it lies in, twice.
     assert_eq!((arcs.end.stats.steps, arcs.end.stats.flows), (0, 0));
     assert_eq!((affine.end.stats.steps, affine.end.stats.rejected), (general.end.stats.steps, 0));
 }

@@ -1,8 +1,10 @@
-//! The fitting crate against tables: the study's own, and measurements made by other people, which lie outside the project.
+//! The fitting crate against tables: the study's own, and measurements made by other people, which
+//! lie outside the project.
 //!
-//! The latter carry no licence and are read where they lie, in a folder `shared` beside the project; without it those tests say so
-//! and pass. References are an analyst's, by numpy and scipy: match them within three standard errors or 0.005, and their standard
-//! errors within a factor of two.
+//! The latter carry no licence and are read where they lie, in a folder `shared` beside the
+//! project; without it those tests say so and pass. References are an analyst's, by numpy and
+//! scipy: match them within three standard errors or 0.005, and their standard errors within a
+//! factor of two.
 
 #![allow(clippy::expect_used, clippy::panic)]
 
@@ -90,7 +92,8 @@ fn twenty_launches_of_a_golf_ball() {
     let report = Fit::new().run(&table).expect("a report");
     matches(&report, 0.8960, 0.0010);
     assert_eq!(report.verdict(), Verdict::Trusted);
-    // With a stated reading error the bounces scatter far more than that; the COR and its error stay.
+    // With a stated reading error the bounces scatter far more than that; the COR and its error
+    // stay.
     matches(&Fit::new().sigma_time(0.002).run(&table).expect("a report"), 0.8960, 0.0010);
 }
 

@@ -1,4 +1,5 @@
-//! From readings to a scene: what is fitted, written as a scene and run again, moves as the readings did.
+//! From readings to a scene: what is fitted, written as a scene and run again, moves as the
+//! readings did.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -1,4 +1,5 @@
-//! Several balls that spin, rub, lie and fly in air: against each ball alone, against closed forms, against the cloud.
+//! Several balls that spin, rub, lie and fly in air: against each ball alone, against closed forms,
+//! against the cloud.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
@@ -22,7 +23,8 @@ fn run(toml: &str) -> (Model, Record) {
     (plan.explain().model, plan.run().unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// A ball that rolls hits an equal one full: what rolls at last is 2/7 and 5/7 of the speed. Nothing is stepped.
+/// A ball that rolls hits an equal one full: what rolls at last is 2/7 and 5/7 of the speed.
+/// Nothing is stepped.
 #[test]
 fn a_full_hit_on_a_table() {
     let (ball, e) = (Sphere::solid(0.03, 0.17).unwrap(), Cor::new(1.0).unwrap());
@@ -45,7 +47,8 @@ fn a_full_hit_on_a_table() {
     }
 }
 
-/// Far from each other balls move as each would alone: in air, with spin and friction, down stairs, on a table that shakes.
+/// Far from each other balls move as each would alone: in air, with spin and friction, down stairs,
+/// on a table that shakes.
 #[test]
 fn far_apart_each_is_alone() {
     let around = [
@@ -103,7 +106,8 @@ fn without_loss_it_is_the_cloud() {
     }
 }
 
-/// A lossy handful comes to rest: nothing overlaps, nothing sinks, energy only falls, and smooth flights are never stepped.
+/// A lossy handful comes to rest: nothing overlaps, nothing sinks, energy only falls, and smooth
+/// flights are never stepped.
 #[test]
 fn a_handful_comes_to_rest() {
     let balls: String = (0..4)
@@ -160,7 +164,8 @@ fn a_handful_comes_to_rest() {
     }
 }
 
-/// In air the heavier ball above catches up with the lighter one: when, by the closed forms of the two falls.
+/// In air the heavier ball above catches up with the lighter one: when, by the closed forms of the
+/// two falls.
 #[test]
 fn a_heavy_ball_catches_up_in_air() {
     let text = "restitution = 0.5\ndrag = { coefficient = 0.47 }\nfloor = []\n\

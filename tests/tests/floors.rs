@@ -1,4 +1,5 @@
-//! Balls among walls: inclines, boxes, stairs, lifts, curved ground, contact and its end, each against a closed form.
+//! Balls among walls: inclines, boxes, stairs, lifts, curved ground, contact and its end, each
+//! against a closed form.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -26,7 +27,8 @@ fn gravity(g: f64) -> Gravity {
     Gravity::new(g).unwrap()
 }
 
-/// A block on an incline, shot up it: it slides, stops, and stays or slides back as friction decides.
+/// A block on an incline, shot up it: it slides, stops, and stays or slides back as friction
+/// decides.
 #[test]
 fn a_block_shot_up_an_incline() {
     let (g, angle, v) = (9.81_f64, 0.5_f64, 3.0);
@@ -49,7 +51,8 @@ fn a_block_shot_up_an_incline() {
     }
 }
 
-/// A ball set down sliding begins to roll after v/(7/2 μ g), at 5/7 of its speed (a solid sphere); on a slope it rolls at 5/7 of what slides.
+/// A ball set down sliding begins to roll after v/(7/2 μ g), at 5/7 of its speed (a solid sphere);
+/// on a slope it rolls at 5/7 of what slides.
 #[test]
 fn from_sliding_to_rolling() {
     let (g, mu, radius) = (9.81, 0.3, 0.1);
@@ -73,7 +76,8 @@ fn from_sliding_to_rolling() {
     }
 }
 
-/// In space a ball that slides across its spin bends until it rolls, along the direction that impulse and angular momentum give.
+/// In space a ball that slides across its spin bends until it rolls, along the direction that
+/// impulse and angular momentum give.
 #[test]
 fn a_billiard_ball_with_side_spin() {
     let (g, mu, radius) = (9.81, 0.2, 0.03);
@@ -82,7 +86,8 @@ fn a_billiard_ball_with_side_spin() {
     let start = Moving::new(vector![0.0, 0.0, 0.0], vector![2.0, 0.0, 0.0]).spinning(vector![-40.0, 0.0, 5.0]);
     let (stance, x) = ball.lying(FLOOR, 0.0, start);
     let run = Simulation::of(&ball).tolerance(1e-12).run(stance, x, 0.0..3.0).unwrap();
-    // The slip keeps its direction, so the path is a parabola; v ends as (5 v + 2 R n×ω... )/7 of the start.
+    // The slip keeps its direction, so the path is a parabola; v ends as (5 v + 2 R n×ω... )/7 of
+    // the start.
     let rolls = vector![2.0 * 5.0 / 7.0, 40.0 * radius * 2.0 / 7.0, 0.0];
     assert_eq!(run.end.mode, Stance::Hold { face: FLOOR });
     assert!((run.end.state.velocity - rolls).norm() < 1e-9, "{:?}", run.end.state);
@@ -91,7 +96,8 @@ fn a_billiard_ball_with_side_spin() {
     assert_eq!(run.end.state.spin[2], 5.0);
 }
 
-/// A ball in a bowl slides for ever; one on a hilltop slides off, and leaves a sphere at the height 2R/3 (cos = 2/3).
+/// A ball in a bowl slides for ever; one on a hilltop slides off, and leaves a sphere at the height
+/// 2R/3 (cos = 2/3).
 #[test]
 fn curved_ground() {
     let (g, radius) = (9.81, 0.5);
@@ -113,7 +119,8 @@ fn curved_ground() {
     assert!((run.end.state.position.norm() - radius).abs() < 1e-8);
 }
 
-/// On curved ground in space the normal turns on the way: what rolls goes on rolling, spinning or not.
+/// On curved ground in space the normal turns on the way: what rolls goes on rolling, spinning or
+/// not.
 #[test]
 fn rolling_in_a_bowl() {
     let (g, mu, size, radius) = (9.81, 0.9, 0.5, 0.02);
@@ -145,7 +152,8 @@ fn rolling_in_a_bowl() {
     }
 }
 
-/// A ball that rolls off a hill begins to slip before it leaves. In space as in the plane, where a slip has one direction; and elsewhere by any stepper alike.
+/// A ball that rolls off a hill begins to slip before it leaves. In space as in the plane, where a
+/// slip has one direction; and elsewhere by any stepper alike.
 #[test]
 fn a_ball_that_rolls_off_a_hill() {
     let (g, mu, size, radius) = (9.81, 0.3, 1.0, 0.02);
@@ -206,7 +214,8 @@ fn a_ball_that_rolls_off_a_hill() {
     );
 }
 
-/// Wind presses a block on a table that shakes: it holds while μ(g + h'' + k h') > k w, slips from where that ends, and not before.
+/// Wind presses a block on a table that shakes: it holds while μ(g + h'' + k h') > k w, slips from
+/// where that ends, and not before.
 #[test]
 fn a_block_that_slips_when_the_table_sinks() {
     let (g, mu, rate, wind) = (9.81, 0.4, 0.5, 5.0);
@@ -239,7 +248,8 @@ fn a_block_that_slips_when_the_table_sinks() {
     assert_eq!(stop.to, Stance::Hold { face: FLOOR });
 }
 
-/// Down the stairs: each impact is on a tread or on a riser where there is one, and nothing is ever inside a step.
+/// Down the stairs: each impact is on a tread or on a riser where there is one, and nothing is ever
+/// inside a step.
 #[test]
 fn stairs() {
     let stairs = Stairs::down(5, 1.0, 0.3, 0.2).unwrap();
@@ -289,7 +299,8 @@ fn lifts() {
     let (stance, x) = ball.lying(FLOOR, 0.0, Moving::new(vector![0.0], vector![0.0]));
     let run = Simulation::of(&ball).run(stance, x, 0.0..4.0).unwrap();
     let edges: Vec<_> = run.trajectory.jumps().iter().map(|jump| (jump.t(), jump.edge().unwrap())).collect();
-    // It falls freely from 1 s; the floor sinks at 10 m/s from 2.5 m below: 5 s² = 2.5 + 10 (s - 1/2) at s = 1 + 1/√2.
+    // It falls freely from 1 s; the floor sinks at 10 m/s from 2.5 m below: 5 s² = 2.5 + 10 (s -
+    // 1/2) at s = 1 + 1/√2.
     assert_eq!(edges.iter().filter(|edge| edge.1 == Event::Change).count(), 2);
     assert!((edges[0].0 - 1.0).abs() < 2e-16 && matches!(edges[0].1, Event::Leave(_)), "{edges:?}");
     let lands = edges.last().unwrap().0;
@@ -298,7 +309,8 @@ fn lifts() {
     assert!((run.end.state.position[0] + 2.5 + 10.0 * 2.5).abs() < 1e-13);
 }
 
-/// On a floor that rises a ball that hardly rebounds soon does so by less than its velocity can tell: it has come to lie there.
+/// On a floor that rises a ball that hardly rebounds soon does so by less than its velocity can
+/// tell: it has come to lie there.
 #[test]
 fn a_rebound_below_the_rounding_of_velocity() {
     for e in [1e-7, 1e-8, 1e-9, 1e-10, 1e-12] {
@@ -315,8 +327,8 @@ fn a_rebound_below_the_rounding_of_velocity() {
     }
 }
 
-/// Balls on a table that shakes, from the first second to the last of a quarter of an hour: each lands, lies, is let go and lands again, once each time,
-/// and is recorded in a few pieces.
+/// Balls on a table that shakes, from the first second to the last of a quarter of an hour: each
+/// lands, lies, is let go and lands again, once each time, and is recorded in a few pieces.
 #[test]
 fn a_shaken_table_from_any_hour() {
     let (mut runner, turns) = (TestRunner::deterministic(), 20.0);
@@ -401,8 +413,9 @@ fn coordinates() {
     assert_eq!(Walls::<2>::faces(&Cuboid::between(vector![0.0, 0.0], vector![1.0, 1.0]).unwrap(), 0), 4);
 }
 
-/// A ball rolls down a hill that curves away below it, so fast that its way in flight is hardly flatter than the hill: it leaves as the third power of time, for
-/// long below the rounding of the hill's distance, and does not come back.
+/// A ball rolls down a hill that curves away below it, so fast that its way in flight is hardly
+/// flatter than the hill: it leaves as the third power of time, for long below the rounding of the
+/// hill's distance, and does not come back.
 #[test]
 fn hills_are_left_at_hardly_more_than_the_speed_to_leave_them() {
     let mut runner = TestRunner::deterministic();
@@ -421,7 +434,8 @@ fn hills_are_left_at_hardly_more_than_the_speed_to_leave_them() {
         let Some(lift) = record.events().into_iter().find(|event| event.edge == "lift-off") else { continue };
         left += 1;
         assert_eq!(record.events().last(), Some(&lift), "{toml}");
-        // In flight only gravity acts, and a drag of next to nothing, by which it is stepped: the speed across does not change any more.
+        // In flight only gravity acts, and a drag of next to nothing, by which it is stepped: the
+        // speed across does not change any more.
         let [across, end] = [lift.t, 1.0].map(|t| record.at(0, t).unwrap().velocity.x);
         assert!((across - end).abs() < 1e-6, "{across} {end}\n{toml}");
     }

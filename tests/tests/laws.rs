@@ -1,4 +1,5 @@
-//! What holds for every ball: the floor holds, time goes forwards, energy is not made, spans may be split and units changed.
+//! What holds for every ball: the floor holds, time goes forwards, energy is not made, spans may be
+//! split and units changed.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -82,8 +82,9 @@ proptest! {
         }
     }
 
-    /// Whatever is stacked and dropped, energy never rises, no ball passes another, and the run ends as it should. A ball that bounces on one that
-    /// bounces waits for infinitely many impacts below it at each of its own: a stack of four may take a million before it lies.
+    /// Whatever is stacked and dropped, energy never rises, no ball passes another, and the run
+    /// ends as it should. A ball that bounces on one that bounces waits for infinitely many impacts
+    /// below it at each of its own: a stack of four may take a million before it lies.
     #[test]
     fn stacks(
         logs in prop::array::uniform4(-1.0..1.0_f64), gaps in prop::array::uniform4(0.0..0.5_f64), e in 0.0..0.8_f64,

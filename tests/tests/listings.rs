@@ -1,5 +1,5 @@
-//! Every code listing in README and docs compiles in a crate of its own, with only the dependencies that it names and
-//! the features that its page names.
+//! Every code listing in README and docs compiles in a crate of its own, with only the dependencies
+//! that it names and the features that its page names.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// The crates of the project, as a program names them, with their place and the features that a page may name.
+/// The crates of the project, as a program names them, with their place and the features that a
+/// page may name.
 const CRATES: [(&str, &str, &[&str]); 7] = [
     ("saltus", "crates/saltus", &["num-dual", "rayon", "serde", "derive"]),
     ("saltus_bounce", "crates/saltus-bounce", &[]),

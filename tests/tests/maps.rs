@@ -25,7 +25,8 @@ fn questions_without_an_answer() {
     }
 }
 
-/// x'' = cos ωt - x - 2ζx', a wall at `wall`; beside place and velocity the time since the period began.
+/// x'' = cos ωt - x - 2ζx', a wall at `wall`; beside place and velocity the time since the period
+/// began.
 #[derive(Clone, Copy, Debug)]
 struct Oscillator {
     wall: f64,
@@ -109,8 +110,9 @@ fn fates_of_starts() {
     assert_eq!(fates[1], Fate::Attracted { to: 0, returns: 11 });
 }
 
-/// A population counted once a year, which grows by a factor `a` and is held back by that of the year before (the delayed logistic map of
-/// J. Maynard Smith, Mathematical Ideas in Biology, 1968): (x, y) becomes (a x (1 - y), x).
+/// A population counted once a year, which grows by a factor `a` and is held back by that of the
+/// year before (the delayed logistic map of J. Maynard Smith, Mathematical Ideas in Biology, 1968):
+/// (x, y) becomes (a x (1 - y), x).
 #[derive(Clone, Copy, Debug)]
 struct Yearly {
     a: f64,

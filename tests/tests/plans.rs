@@ -17,7 +17,8 @@ fn run(scene: &Scene) -> Record {
     scene.plan().unwrap_or_else(|error| panic!("{error}")).run().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Every example and every scene of the page runs to its end, and everything asked of its record is a number.
+/// Every example and every scene of the page runs to its end, and everything asked of its record is
+/// a number.
 #[test]
 fn every_scene_runs() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -111,7 +112,8 @@ proptest! {
         }
     }
 
-    /// Several balls, contacts that take time, floors that move, scenes in space: read, planned and run within a budget, or refused with a sentence.
+    /// Several balls, contacts that take time, floors that move, scenes in space: read, planned and
+    /// run within a budget, or refused with a sentence.
     #[test]
     fn random_scenes_of_every_kind_end(
         e in 0.0..=1.0_f64, kind in 0..6_usize, count in 1..=5_usize, gravity in prop::option::of(0.0..30.0_f64),

@@ -1,7 +1,10 @@
-//! Guards with planted roots: every fall is to be found once, whatever the roots' order, distance and multiplicity.
+//! Guards with planted roots: every fall is to be found once, whatever the roots' order, distance
+//! and multiplicity.
 //!
-//! The roots are multiples of 2⁻⁵³, the spacing of numbers just below one, so the sign of the guard anywhere is that of a product of exact differences, and the right list
-//! of crossings follows by counting. `PLANTED=10000000 cargo test --release -p saltus-tests --test planted` is the long run.
+//! The roots are multiples of 2⁻⁵³, the spacing of numbers just below one, so the sign of the guard
+//! anywhere is that of a product of exact differences, and the right list of crossings follows by
+//! counting. `PLANTED=10000000 cargo test --release -p saltus-tests --test planted` is the long
+//! run.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -60,7 +63,8 @@ fn guard(roots: &[(i64, u32)], s: f64) -> f64 {
 
 /// Where the guard falls in [0, 1) and, with `up`, where it rises: signs are counted with integers.
 ///
-/// A root at the start counts if the guard falls from it; one at the end does not, since the guard is not negative before it.
+/// A root at the start counts if the guard falls from it; one at the end does not, since the guard
+/// is not negative before it.
 fn expected(roots: &[(i64, u32)], up: bool) -> Vec<(f64, bool)> {
     let mut positive = true; // left of all roots every difference is positive
     let mut list = Vec::new();
@@ -115,8 +119,9 @@ fn the_search_finds_each_fall_once() {
     }
 }
 
-/// Two units in the last place after a root, a guard falls for good. Of millions such guards one seems, on one stretch, to be known so well there that it would have
-/// to rise first, within its rounding.
+/// Two units in the last place after a root, a guard falls for good. Of millions such guards one
+/// seems, on one stretch, to be known so well there that it would have to rise first, within its
+/// rounding.
 #[test]
 fn a_slope_that_seems_well_known_by_chance_is_not_believed() {
     let clustered = [
@@ -164,7 +169,8 @@ fn a_run_finds_each_crossing_once() {
     }
 }
 
-/// Affine guards on a cubic arc: the roots are those of the arc, and both paths, promised and not, give one list.
+/// Affine guards on a cubic arc: the roots are those of the arc, and both paths, promised and not,
+/// give one list.
 #[test]
 fn promised_and_unpromised_guards_agree() {
     let mut random = Random(3);

@@ -1,4 +1,5 @@
-//! Ways of running: recorded, observed, pulled, paused and resumed, sampled; and what the loop does not do.
+//! Ways of running: recorded, observed, pulled, paused and resumed, sampled; and what the loop does
+//! not do.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -64,7 +65,8 @@ impl Automaton for Drag {
 
 const START: Vector2<f64> = vector![10.0, 0.0];
 
-/// The closed form: fall from h in acosh(exp(kh))/sqrt(gk) to v² = g/k (1 - exp(-2kh)); rise from v in atan(v sqrt(k/g))/sqrt(gk) to ln(1 + kv²/g)/2k.
+/// The closed form: fall from h in acosh(exp(kh))/sqrt(gk) to v² = g/k (1 - exp(-2kh)); rise from v
+/// in atan(v sqrt(k/g))/sqrt(gk) to ln(1 + kv²/g)/2k.
 fn impact_times(count: usize) -> Vec<f64> {
     let (g, k, e) = (9.8_f64, 0.1_f64, 0.9_f64);
     let (mut t, mut h) = (0.0, START[0]);
@@ -125,7 +127,8 @@ fn resumed_to_the_bit() {
     }
 }
 
-/// A checkpoint of another format, or of none, is refused by name: it would be gone on from otherwise.
+/// A checkpoint of another format, or of none, is refused by name: it would be gone on from
+/// otherwise.
 #[test]
 fn another_format_is_refused() {
     let course = Simulation::of(&Drag).start(Mode::Falling, START, 0.0..10.0).unwrap();
@@ -156,7 +159,8 @@ fn a_trajectory_written_and_read_back() {
     assert_eq!(read.jumps().len(), run.trajectory.jumps().len());
 }
 
-/// A limit ends a run; raised, it lets the run go on: at a jump to the bit, within an arc but for a rounding.
+/// A limit ends a run; raised, it lets the run go on: at a jump to the bit, within an arc but for a
+/// rounding.
 #[test]
 fn limits_raised() {
     let simulation = Simulation::of(&Drag);
@@ -265,7 +269,8 @@ fn runs_can_be_shared_between_threads() {
     shared::<Hybrid<'_, Vector2<f64>>>();
 }
 
-/// A checkpoint of closures goes through a file, with jumps that rounding may take again, clocks and a Zeno run under way.
+/// A checkpoint of closures goes through a file, with jumps that rounding may take again, clocks
+/// and a Zeno run under way.
 #[test]
 fn a_hybrid_goes_on_from_a_file() {
     let model = Hybrid::new()

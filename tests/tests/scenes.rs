@@ -1,6 +1,8 @@
-//! Scene files: the examples, the page about them, the schema, and whatever else a reader may be given.
+//! Scene files: the examples, the page about them, the schema, and whatever else a reader may be
+//! given.
 //!
-//! `SCENES=1000000 cargo test --release -p saltus-tests --test scenes` is the long run of the fuzzing.
+//! `SCENES=1000000 cargo test --release -p saltus-tests --test scenes` is the long run of the
+//! fuzzing.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
@@ -67,7 +69,8 @@ fn what_examples_say_is_what_is_read() {
     assert!((motion.offset(0.01) - 1e-3).abs() < 1e-15);
 }
 
-/// From impact to impact the billiard balls keep v + (2/5) R ω along the cloth, so what rolls has 5/7 of it; ω counts as topspin.
+/// From impact to impact the billiard balls keep v + (2/5) R ω along the cloth, so what rolls has
+/// 5/7 of it; ω counts as topspin.
 #[test]
 fn a_draw_shot_by_the_textbook() {
     let scene = example("billiards");
@@ -123,7 +126,8 @@ fn keys() -> Vec<(String, String)> {
     keys
 }
 
-/// The schema beside the examples is the one that is printed, every key in it says what it is, and the reader knows every one.
+/// The schema beside the examples is the one that is printed, every key in it says what it is, and
+/// the reader knows every one.
 #[test]
 fn the_schema_is_that_of_the_reader() {
     let path = root().join("examples/scenes/scene.schema.json");

@@ -29,7 +29,8 @@ fn many_ticks() {
     assert!(run.trajectory.jumps().iter().all(|jump| jump.t() == jump.j as f64 * 1e-3));
 }
 
-/// The same moments as guards of time: a pulse of a microsecond is as long as it should be only to the rounding of the step it lies in.
+/// The same moments as guards of time: a pulse of a microsecond is as long as it should be only to
+/// the rounding of the step it lies in.
 #[test]
 #[ignore = "9.5e-12 off: a crossing of a guard of time is placed to the rounding of the step; let the clock take such edges"]
 fn moments_by_guards() {

@@ -184,7 +184,8 @@ fn landing_without_rebound() {
     }
 }
 
-/// With exact arcs, the events are those of a run without derivatives, to the bit, also where a formula tells them.
+/// With exact arcs, the events are those of a run without derivatives, to the bit, also where a
+/// formula tells them.
 #[test]
 fn derivatives_do_not_move_events() {
     for (g, e, told) in

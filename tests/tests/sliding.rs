@@ -5,7 +5,8 @@
 use nalgebra::{Vector2, vector};
 use saltus::{Automaton, ErrorKind, Filippov, Side, Sides, Simulation, Stop, TwoSided};
 
-/// Slides begin and end many times, at every phase, on a surface that moves and is no coordinate: each slide is one arc, and nothing chatters.
+/// Slides begin and end many times, at every phase, on a surface that moves and is no coordinate:
+/// each slide is one arc, and nothing chatters.
 #[test]
 fn tangential_exits_do_not_chatter() {
     for k in 0..210_u32 {
@@ -28,7 +29,8 @@ fn tangential_exits_do_not_chatter() {
         let mode = system.side(0.0, &x).unwrap();
         let run = Simulation::of(&system).run(mode, x, 0.0..50.0).unwrap();
         let jumps = run.trajectory.jumps();
-        // Sliding ends where |force| grows past 1, to the side the force points to; at most a way out and a way in per half period.
+        // Sliding ends where |force| grows past 1, to the side the force points to; at most a way
+        // out and a way in per half period.
         let half_periods = 50.0 * w / std::f64::consts::PI + 2.0;
         assert!((jumps.len() as f64) <= 2.0 * half_periods, "{k}: {} jumps", jumps.len());
         for (jump, next) in jumps.iter().zip(&jumps[1..]) {
@@ -38,7 +40,8 @@ fn tangential_exits_do_not_chatter() {
             let up = jump.to == Side::Above;
             let expected = if up { 1.0 } else { -1.0 };
             assert!((force(jump.t()) - expected).abs() < 1e-7, "{k}: {jump:?}");
-            // The surface is left tangentially: the state is on it but for the rounding of its coordinates.
+            // The surface is left tangentially: the state is on it but for the rounding of its
+            // coordinates.
             let edge = if up { saltus::Passage::FromAbove } else { saltus::Passage::FromBelow };
             let size = unit * (jump.after[0].abs() + origin + c * jump.after[1].abs() + 0.2);
             let h = system.guard(edge, jump.t(), &jump.after);
@@ -47,7 +50,8 @@ fn tangential_exits_do_not_chatter() {
     }
 }
 
-/// Both flows push towards a circle, and a wind along its radius grows until it carries the state off, to either side in turn.
+/// Both flows push towards a circle, and a wind along its radius grows until it carries the state
+/// off, to either side in turn.
 fn windy_circle(w: f64) -> Filippov<impl TwoSided<State = Vector2<f64>>> {
     let flow = move |t: f64, x: &Vector2<f64>, push: f64| {
         let radial = push + 1.1 * (w * t).sin();

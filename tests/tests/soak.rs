@@ -1,8 +1,10 @@
-//! Random scenes, of everything a scene file may say: each is refused with a reason or runs to a named end, and keeps the laws it has to keep.
+//! Random scenes, of everything a scene file may say: each is refused with a reason or runs to a
+//! named end, and keeps the laws it has to keep.
 //!
-//! A few thousand run with the tests; a soak is `SOAK=1000000 cargo test --release -p saltus-tests --test soak -- --nocapture`, which ends in a
-//! summary and takes some five minutes on two cores. `SOAK_FROM` is the number of the first scene: any that fails is run again by
-//! `SOAK=1 SOAK_FROM=<its number>`.
+//! A few thousand run with the tests; a soak is
+//! `SOAK=1000000 cargo test --release -p saltus-tests --test soak -- --nocapture`, which ends in a
+//! summary and takes some five minutes on two cores. `SOAK_FROM` is the number of the first scene:
+//! any that fails is run again by `SOAK=1 SOAK_FROM=<its number>`.
 
 #![allow(clippy::print_stdout)] // a soak is watched
 
@@ -15,9 +17,10 @@ use saltus_tests::scene_laws::lived;
 /// After so many evaluations a scene's run ends that says nothing of it.
 const EVALUATIONS: u64 = 200_000_000;
 
-/// Of the first six million, those that have broken a law: a floor not met again by a bounce below the rounding of its motion or of a long stiff step, a corner, an impact
-/// while sliding, friction that held what it could not, rolling on curved ground, a light ball
-/// between the floor and a heavy one, a COR of 1e-9 whose rebounds left the range of numbers.
+/// Of the first six million, those that have broken a law: a floor not met again by a bounce below
+/// the rounding of its motion or of a long stiff step, a corner, an impact while sliding, friction
+/// that held what it could not, rolling on curved ground, a light ball between the floor and a
+/// heavy one, a COR of 1e-9 whose rebounds left the range of numbers.
 const BROKEN_ONCE: [u64; 16] = [
     10_188, 16_544, 76_643, 141_099, 331_928, 348_293, 430_915, 836_149, 849_809, 960_723, 961_866, 995_019, 1_768_841,
     5_204_027, 5_230_418, 5_245_312,
@@ -32,8 +35,9 @@ fn scenes_that_broke_a_law_keep_it() {
     }
 }
 
-/// Of two million and four hundred thousand, those that end in an error and should not: a slip in space that turns too fast for Rodas5P at 2e-11 to 4e-11, twice;
-/// a ball that bounces ever lower on a rising floor and is 1e-11 m inside it where the schedule ends.
+/// Of two million and four hundred thousand, those that end in an error and should not: a slip in
+/// space that turns too fast for Rodas5P at 2e-11 to 4e-11, twice; a ball that bounces ever lower
+/// on a rising floor and is 1e-11 m inside it where the schedule ends.
 #[test]
 #[ignore = "ends in an error that says where"]
 fn scenes_that_end_in_an_error_still() {

@@ -50,7 +50,8 @@ fn the_ratio_of_heights_is_no_height() {
         close(printed.at(t)[0], as_printed, 6e-3);
         close(meant.at(t)[0], as_meant, 6e-4);
     }
-    // Its apex is at the time of one that comes back to 1 m, so the ball leaves the floor a fifth of a second after it met it.
+    // Its apex is at the time of one that comes back to 1 m, so the ball leaves the floor a fifth
+    // of a second after it met it.
     let [leaves, lands] = Apex { time: STUDY.next_apex(), height: REBOUNDS[0] }.floor(GRAVITY);
     close(leaves - STUDY.fall(), 0.194, 6e-4);
     close(lands, 1.141, 6e-4);

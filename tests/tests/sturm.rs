@@ -1,4 +1,5 @@
-//! Guards that nearly touch zero: the crossings found are as many as Sturm's theorem counts in exact rational arithmetic.
+//! Guards that nearly touch zero: the crossings found are as many as Sturm's theorem counts in
+//! exact rational arithmetic.
 
 use proptest::prelude::*;
 use saltus_tests::sturm::found_and_counted;

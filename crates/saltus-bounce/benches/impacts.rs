@@ -1,4 +1,5 @@
-//! What an impact costs: the ball through the public interface against the same recursion written by hand.
+//! What an impact costs: the ball through the public interface against the same recursion written
+//! by hand.
 //!
 //! `cargo bench -p saltus-bounce`; quote ratios of one run on one machine, not times.
 

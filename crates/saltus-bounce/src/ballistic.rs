@@ -1,13 +1,16 @@
-//! Free flight and constant restitution in closed form: when the ball lands, how high it flies, when it comes to rest.
+//! Free flight and constant restitution in closed form: when the ball lands, how high it flies,
+//! when it comes to rest.
 
 use crate::restitution::Cor;
 
-/// A ball dropped from rest at height h onto a level floor, with constant gravity g and constant COR e, in closed form.
+/// A ball dropped from rest at height h onto a level floor, with constant gravity g and constant
+/// COR e, in closed form.
 ///
 /// With t₀ = √(2h/g), for n = 1, 2, …:
 /// impact n at tₙ = t₀ (1 + 2 (e + … + eⁿ⁻¹)), apex n at height h e²ⁿ, rest at t₀ (1 + e)/(1 - e).
 ///
-/// Units: m, s, m/s². The reference against which stepped runs are checked, and the model that the fit uses.
+/// Units: m, s, m/s². The reference against which stepped runs are checked, and the model that the
+/// fit uses.
 ///
 /// ```
 /// use saltus_bounce::{Cor, Drop};
@@ -25,7 +28,8 @@ pub struct Drop {
 }
 
 impl Drop {
-    /// A drop from `height` in m under `gravity` in m/s², both positive (otherwise the times are not numbers).
+    /// A drop from `height` in m under `gravity` in m/s², both positive (otherwise the times are
+    /// not numbers).
     #[must_use]
     pub const fn new(height: f64, gravity: f64, cor: Cor) -> Self {
         Self { height, gravity, cor }
@@ -52,7 +56,8 @@ impl Drop {
         self.height * self.cor.value().powf(2.0 * f64::from(n))
     }
 
-    /// When the bounces have died out, t₀ (1 + e)/(1 - e), in s; `None` for e = 1, which never rests.
+    /// When the bounces have died out, t₀ (1 + e)/(1 - e), in s; `None` for e = 1, which never
+    /// rests.
     #[must_use]
     pub fn rest_time(&self) -> Option<f64> {
         let e = self.cor.value();

@@ -7,19 +7,22 @@ use crate::parameter::{ParameterError, between, not_negative};
 use crate::restitution::Restitution;
 use crate::sphere::Sphere;
 
-/// Friction at an impact, by Walton's three numbers: the impulse along the wall is that of sliding, μ times the normal impulse, but no
-/// more than turns the slip u of the point of contact into -β₀ u.
+/// Friction at an impact, by Walton's three numbers: the impulse along the wall is that of sliding,
+/// μ times the normal impulse, but no more than turns the slip u of the point of contact into -β₀
+/// u.
 ///
 /// Per unit of mass, with the speed vₙ of approach, its rebound e vₙ and α = I/(m R²):
 /// J = min( μ (1 + e) vₙ, (1 + β₀) |u| α/(1 + α) ), against the slip.
 ///
-/// μ ≥ 0: Coulomb's coefficient. β₀, 0..=1: tangential restitution of an impact that grips; at 0 ([`Friction::rigid`]) a gripping ball
-/// leaves rolling, at 1 the slip comes back whole (a superball).
+/// μ ≥ 0: Coulomb's coefficient. β₀, 0..=1: tangential restitution of an impact that grips; at 0
+/// ([`Friction::rigid`]) a gripping ball leaves rolling, at 1 the slip comes back whole (a
+/// superball).
 ///
-/// Guarantees: energy never rises; a tangential impulse opposes the slip; the spin about the normal is not touched. Limits: no
-/// microslip, so measured balls pass more gradually from sliding to gripping; no pivoting friction.
-/// Sources: E. J. Routh, *Dynamics of a System of Rigid Bodies* (1905), part 1, chapter 4; O. R. Walton in M. C. Roco (ed.), *Particulate
-/// Two-Phase Flow* (1993), chapter 25; S. F. Foerster et al., Phys. Fluids 6, 1108 (1994), doi:10.1063/1.868282.
+/// Guarantees: energy never rises; a tangential impulse opposes the slip; the spin about the normal
+/// is not touched. Limits: no microslip, so measured balls pass more gradually from sliding to
+/// gripping; no pivoting friction. Sources: E. J. Routh, *Dynamics of a System of Rigid Bodies*
+/// (1905), part 1, chapter 4; O. R. Walton in M. C. Roco (ed.), *Particulate Two-Phase Flow*
+/// (1993), chapter 25; S. F. Foerster et al., Phys. Fluids 6, 1108 (1994), doi:10.1063/1.868282.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -54,7 +57,8 @@ impl Friction {
     /// No friction: velocity along the wall and spin stay.
     pub const NONE: Self = Self { coefficient: 0.0, gripping: 0.0 };
 
-    /// A rigid sphere: it slides throughout with Coulomb's `coefficient` μ, or grips and leaves rolling.
+    /// A rigid sphere: it slides throughout with Coulomb's `coefficient` μ, or grips and leaves
+    /// rolling.
     ///
     /// # Errors
     /// [`ParameterError`] unless μ is finite and not negative.
@@ -62,7 +66,8 @@ impl Friction {
         Self::walton(coefficient, 0.0)
     }
 
-    /// Walton's law: `coefficient` μ, and the tangential restitution β₀ = `gripping` of an impact that does not slide throughout.
+    /// Walton's law: `coefficient` μ, and the tangential restitution β₀ = `gripping` of an impact
+    /// that does not slide throughout.
     ///
     /// # Errors
     /// [`ParameterError`] unless μ is finite and not negative and 0 ≤ β₀ ≤ 1.
@@ -87,8 +92,9 @@ impl Friction {
 
     /// The impact of a sphere on a wall in the plane.
     ///
-    /// `normal`: unit vector out of the wall; `velocity` of the centre relative to the wall in m/s; `spin` in rad/s, positive from the
-    /// first axis towards the second. A ball that is not approaching (v·n ≥ 0) is left alone.
+    /// `normal`: unit vector out of the wall; `velocity` of the centre relative to the wall in m/s;
+    /// `spin` in rad/s, positive from the first axis towards the second. A ball that is not
+    /// approaching (v·n ≥ 0) is left alone.
     #[must_use]
     pub fn planar(
         &self,
@@ -104,7 +110,8 @@ impl Friction {
         }
         let gain = approach + restitution.rebound(approach);
         let tangent = Vector2::new(normal[1], -normal[0]);
-        // The point of contact lies at -R n: seen with the wall below, its velocity along the wall is v + R ω.
+        // The point of contact lies at -R n: seen with the wall below, its velocity along the wall
+        // is v + R ω.
         let slip = velocity.dot(&tangent) + ball.radius() * spin;
         let push = -self.push(ball, slip.abs(), gain) * slip.signum();
         Rebound {
@@ -113,7 +120,8 @@ impl Friction {
         }
     }
 
-    /// The impact of a sphere on a wall in space: as [`planar`](Self::planar), `spin` a vector by the right-hand rule.
+    /// The impact of a sphere on a wall in space: as [`planar`](Self::planar), `spin` a vector by
+    /// the right-hand rule.
     #[must_use]
     pub fn spatial(
         &self,
@@ -137,11 +145,14 @@ impl Friction {
         }
     }
 
-    /// The impact of two spheres in space; `normal`: unit vector from the first centre to the second.
+    /// The impact of two spheres in space; `normal`: unit vector from the first centre to the
+    /// second.
     ///
-    /// The law of a wall with the mass mᵣ = m₁m₂/(m₁ + m₂) for the normal impulse (1 + e) mᵣ vₙ, and 1/(Σ (1 + 1/α)/m) for the one that stops the slip
-    /// **v** - (R₁**ω**₁ + R₂**ω**₂) × **n** of the relative velocity **v** along the plane of contact. Momentum and angular momentum stay, energy never rises. Balls that do
-    /// not approach are left alone. Domain and sources as for the law itself.
+    /// The law of a wall with the mass mᵣ = m₁m₂/(m₁ + m₂) for the normal impulse (1 + e) mᵣ vₙ,
+    /// and 1/(Σ (1 + 1/α)/m) for the one that stops the slip **v** - (R₁**ω**₁ + R₂**ω**₂) × **n**
+    /// of the relative velocity **v** along the plane of contact. Momentum and angular momentum
+    /// stay, energy never rises. Balls that do not approach are left alone. Domain and sources as
+    /// for the law itself.
     ///
     /// ```
     /// use nalgebra::{Vector3, vector};
@@ -175,7 +186,8 @@ impl Friction {
         let turned = spins[0] * balls[0].radius() + spins[1] * balls[1].radius();
         let slip = velocities[1] - velocities[0] + normal * approach - turned.cross(&normal);
         let speed = slip.norm();
-        // Each impulse as what it does to the lighter ball, so that no mass is too large beside the other.
+        // Each impulse as what it does to the lighter ball, so that no mass is too large beside the
+        // other.
         let (light, heavy) = if masses[0] <= masses[1] { (0, 1) } else { (1, 0) };
         let ratio = masses[light] / masses[heavy];
         let ease = (1.0 + 1.0 / balls[light].inertia_factor()) + (1.0 + 1.0 / balls[heavy].inertia_factor()) * ratio;
@@ -192,7 +204,8 @@ impl Friction {
         after
     }
 
-    /// The tangential impulse per mass: what sliding gives, or what gripping needs, whichever is less.
+    /// The tangential impulse per mass: what sliding gives, or what gripping needs, whichever is
+    /// less.
     #[inline]
     fn push(&self, ball: &Sphere, slip: f64, gain: f64) -> f64 {
         let alpha = ball.inertia_factor();
@@ -212,7 +225,8 @@ mod tests {
     }
 
     proptest! {
-        /// Energy never rises, the slip shrinks or turns round by at most β₀, and angular momentum about the point of contact stays.
+        /// Energy never rises, the slip shrinks or turns round by at most β₀, and angular momentum
+        /// about the point of contact stays.
         #[test]
         fn planar_impacts(
             mu in 0.0..3.0_f64, beta in 0.0..=1.0_f64, e in 0.0..=1.0_f64, alpha in 0.01..0.66_f64, radius in 0.001..2.0_f64,
@@ -261,7 +275,8 @@ mod tests {
     }
 
     proptest! {
-        /// Momentum and angular momentum stay, energy never rises, the slip shrinks or turns round by at most β₀.
+        /// Momentum and angular momentum stay, energy never rises, the slip shrinks or turns round
+        /// by at most β₀.
         #[test]
         fn collisions(
             mu in 0.0..2.0_f64, beta in 0.0..=1.0_f64, e in 0.0..=1.0_f64, ratio in -6.0..6.0_f64,

@@ -1,9 +1,10 @@
 //! Bouncing balls as hybrid automata.
 //!
-//! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`] on a floor that gives, [`Line`],
-//! [`Cloud`] and [`Flock`] are several balls; run them with [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
-//! and apexes in closed form. [`units`] reads quantities as people write them; whole scenes from TOML are
-//! the crate `saltus-scene`.
+//! [`Ball`] bounces up and down, [`Flyer`] in the plane and in space among [`walls`], [`Compliant`]
+//! on a floor that gives, [`Line`], [`Cloud`] and [`Flock`] are several balls; run them with
+//! [`saltus::Simulation`], or frame by frame as [`Live`]. [`Drop`] has the simplest ball's impacts
+//! and apexes in closed form. [`units`] reads quantities as people write them; whole scenes from
+//! TOML are the crate `saltus-scene`.
 
 mod ball;
 mod ballistic;

@@ -13,12 +13,15 @@ const COEFFICIENTS: usize = 9;
 
 /// A run that a game or an animation advances frame by frame.
 ///
-/// Impacts are found ahead of the frames, by the same arcs and jumps as in a [`Simulation`]: they are the same to the bit for every frame rate. Between them a
-/// frame evaluates a formula where the mode has one. Each jump is handed out once, in the frame in which it happens, as many as happen.
+/// Impacts are found ahead of the frames, by the same arcs and jumps as in a [`Simulation`]: they
+/// are the same to the bit for every frame rate. Between them a frame evaluates a formula where the
+/// mode has one. Each jump is handed out once, in the frame in which it happens, as many as happen.
 ///
-/// Work per frame is bounded: at most [`most_jumps`](Self::most_jumps) jumps; then the frame says that it is late, and the next ones catch up. Nothing is
-/// allocated, but for a stepped mode's room for 64 pieces when the first one is entered. A stepped arc of more steps than that is begun again for each
-/// further 64. The span's end should be finite: a mode that is never left is searched to it once.
+/// Work per frame is bounded: at most [`most_jumps`](Self::most_jumps) jumps; then the frame says
+/// that it is late, and the next ones catch up. Nothing is allocated, but for a stepped mode's room
+/// for 64 pieces when the first one is entered. A stepped arc of more steps than that is begun
+/// again for each further 64. The span's end should be finite: a mode that is never left is
+/// searched to it once.
 ///
 /// ```
 /// use saltus::Simulation;
@@ -62,7 +65,8 @@ pub struct Frame<A: Automaton> {
     pub mode: A::Mode,
     /// The state.
     pub state: A::State,
-    /// Whether the limit on jumps in one frame was reached: t is that of the last jump, and the next frames catch up.
+    /// Whether the limit on jumps in one frame was reached: t is that of the last jump, and the
+    /// next frames catch up.
     pub late: bool,
 }
 
@@ -166,7 +170,8 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         self.now.seconds()
     }
 
-    /// Advances by `dt` ≥ 0 in s, at most to the end of the span; each jump on the way is told to `event`, in order.
+    /// Advances by `dt` ≥ 0 in s, at most to the end of the span; each jump on the way is told to
+    /// `event`, in order.
     ///
     /// # Errors
     /// See [`Error`].
@@ -175,7 +180,8 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         self.show(event)
     }
 
-    /// Advances to time `t` in s, if that is later: frame times that are given keep the run from collecting roundings of `dt`.
+    /// Advances to time `t` in s, if that is later: frame times that are given keep the run from
+    /// collecting roundings of `dt`.
     ///
     /// # Errors
     /// See [`Error`].

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// A number that is outside the domain of a law's parameter: what it was to be, what was given, what to give instead.
+/// A number that is outside the domain of a law's parameter: what it was to be, what was given,
+/// what to give instead.
 ///
 /// ```
 /// use saltus_bounce::effects::LinearDrag;

@@ -1,4 +1,5 @@
-//! Small functions whose textbook form cancels or divides zero by zero, and the root of a monotone function.
+//! Small functions whose textbook form cancels or divides zero by zero, and the root of a monotone
+//! function.
 
 /// (eᶻ - 1)/z, 1 at z = 0.
 #[inline]
@@ -22,7 +23,8 @@ pub(crate) fn log_excess(z: f64) -> f64 {
     if !(-0.2..=0.25).contains(&z) {
         return (1.0 - z.ln_1p() / z) / z;
     }
-    // ln(1 + z) = 2 artanh w with w = z/(2 + z), so z - ln(1 + z) = z w - 2 (w³/3 + w⁵/5 + …), and w/z = 1/(2 + z).
+    // ln(1 + z) = 2 artanh w with w = z/(2 + z), so z - ln(1 + z) = z w - 2 (w³/3 + w⁵/5 + …), and
+    // w/z = 1/(2 + z).
     let w = z / (2.0 + z);
     let tail = (0..10).rev().fold(0.0, |sum, k| sum * w * w + 1.0 / f64::from(2 * k + 3));
     (1.0 - 2.0 * w * tail / (2.0 + z)) / (2.0 + z)
@@ -40,7 +42,8 @@ pub(crate) fn artanh_ratio(z: f64) -> f64 {
     log_ratio(2.0 * z / (1.0 - z)) / (1.0 - z)
 }
 
-/// ln(1 + z), from the logarithm of the sum and what was lost in summing: in half the time of the function of this name in many systems' libraries.
+/// ln(1 + z), from the logarithm of the sum and what was lost in summing: in half the time of the
+/// function of this name in many systems' libraries.
 #[inline]
 pub(crate) fn ln_1p(z: f64) -> f64 {
     let sum = 1.0 + z;
@@ -54,9 +57,11 @@ pub(crate) fn ratio(f: impl Fn(f64) -> f64, z: f64) -> f64 {
     if z == 0.0 { 1.0 } else { f(z) / z }
 }
 
-/// The root of an increasing function with its slope, between `low` (where it is not positive) and `high`, from `guess`.
+/// The root of an increasing function with its slope, between `low` (where it is not positive) and
+/// `high`, from `guess`.
 ///
-/// Newton's steps where they stay inside what is known of the root, halving where they do not; ends when the bracket no longer shrinks.
+/// Newton's steps where they stay inside what is known of the root, halving where they do not; ends
+/// when the bracket no longer shrinks.
 pub(crate) fn increasing_root(f: impl Fn(f64) -> (f64, f64), mut low: f64, mut high: f64, guess: f64) -> f64 {
     let mut x = guess.clamp(low, high);
     for _ in 0..200 {

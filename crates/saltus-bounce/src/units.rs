@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// What a quantity measures; decides which units are understood and which SI unit the number comes back in.
+/// What a quantity measures; decides which units are understood and which SI unit the number comes
+/// back in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
@@ -132,11 +133,13 @@ impl Quantity {
         }
     }
 
-    /// The largest number in the SI unit, positive or negative, with which a simulation can be right.
+    /// The largest number in the SI unit, positive or negative, with which a simulation can be
+    /// right.
     ///
-    /// Places up to 10¹² m and times up to 10¹² s are kept to a tenth of a millimetre and of a millisecond, for the rounding of a number is 1.1 × 10⁻¹⁶
-    /// of it; angles and what they change by in a second likewise. Speeds end where Newton's mechanics does, at that of light. Anything else may be
-    /// as large as 10³⁰: the product of ten such numbers is still one.
+    /// Places up to 10¹² m and times up to 10¹² s are kept to a tenth of a millimetre and of a
+    /// millisecond, for the rounding of a number is 1.1 × 10⁻¹⁶ of it; angles and what they change
+    /// by in a second likewise. Speeds end where Newton's mechanics does, at that of light.
+    /// Anything else may be as large as 10³⁰: the product of ten such numbers is still one.
     ///
     /// ```
     /// use saltus_bounce::units::Quantity;
@@ -191,7 +194,8 @@ impl Quantity {
         }
     }
 
-    /// The value of one `unit` in the SI unit of this quantity, or `None` if the unit does not measure it.
+    /// The value of one `unit` in the SI unit of this quantity, or `None` if the unit does not
+    /// measure it.
     ///
     /// ```
     /// use saltus_bounce::units::Quantity;
@@ -205,7 +209,8 @@ impl Quantity {
 
     /// Reads a number with a unit, such as `1m`, `100 cm` or `9.81 m/s^2`, into the SI unit.
     ///
-    /// The unit is required: a bare number is refused rather than guessed, except zero, which is the same in every unit.
+    /// The unit is required: a bare number is refused rather than guessed, except zero, which is
+    /// the same in every unit.
     ///
     /// ```
     /// use saltus_bounce::units::Quantity;
@@ -215,7 +220,8 @@ impl Quantity {
     /// ```
     ///
     /// # Errors
-    /// [`UnitError`] when the text is not a finite number followed by a unit of this quantity, or is beyond [`largest`](Self::largest).
+    /// [`UnitError`] when the text is not a finite number followed by a unit of this quantity, or
+    /// is beyond [`largest`](Self::largest).
     pub fn parse(self, text: &str) -> Result<f64, UnitError> {
         let fail = |problem| UnitError { text: text.trim().to_owned(), quantity: self, problem };
         let trimmed = text.trim();
@@ -229,7 +235,8 @@ impl Quantity {
             return if value == 0.0 { Ok(0.0) } else { Err(fail(Problem::NoUnit)) };
         }
         let scale = self.scale(unit).ok_or_else(|| fail(Problem::UnknownUnit(unit.to_owned())))?;
-        // Dividing by a whole number is exact where multiplying by its rounded inverse is not: 33 ms is 0.033 s.
+        // Dividing by a whole number is exact where multiplying by its rounded inverse is not: 33
+        // ms is 0.033 s.
         let inverse = (1.0 / scale).round();
         let si =
             if scale < 1.0 && (inverse * scale - 1.0).abs() < f64::EPSILON { value / inverse } else { value * scale };
@@ -288,7 +295,8 @@ fn number_end(text: &str) -> usize {
     end
 }
 
-/// A quantity that could not be read: what was written, what was expected, and what to write instead.
+/// A quantity that could not be read: what was written, what was expected, and what to write
+/// instead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitError {
     text: String,

@@ -62,7 +62,8 @@ fn measured(scene: &Scene) -> Result<Measured, String> {
     })
 }
 
-/// The rows as a table: the first as it is, of the others how far they move each impact and each apex.
+/// The rows as a table: the first as it is, of the others how far they move each impact and each
+/// apex.
 pub(crate) fn table(rows: &[Row<Measured>]) -> String {
     let mut text = format!(
         "\nWhat each effect changes and costs: of the other runs, how much later the first {FIRST} impacts and how much higher the first {FIRST} apexes are.\nTime is the median of up to {REPEATS} runs (least to greatest).\n"

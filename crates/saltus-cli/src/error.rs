@@ -42,7 +42,8 @@ impl Error {
         Self::new(format!("cannot write '{}': {error}", path.display()))
     }
 
-    /// Says it on standard error; `json`: as an object on standard output, where the report would have been.
+    /// Says it on standard error; `json`: as an object on standard output, where the report would
+    /// have been.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
         if self.broken_pipe {
             return ExitCode::SUCCESS;

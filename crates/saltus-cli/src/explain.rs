@@ -43,13 +43,15 @@ struct Mode<'a> {
 
 /// Say how a scene would be run, and why.
 ///
-/// Which effects act and which are left out, how many coordinates are carried, how each mode is advanced (an exact arc, a closed form, an explicit or
-/// a stiff stepper), and which edges are watched.
+/// Which effects act and which are left out, how many coordinates are carried, how each mode is
+/// advanced (an exact arc, a closed form, an explicit or a stiff stepper), and which edges are
+/// watched.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Explain {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// Run the scene with each effect toggled: what that changes in the first impacts and apexes, and what it costs.
+    /// Run the scene with each effect toggled: what that changes in the first impacts and apexes,
+    /// and what it costs.
     #[arg(long)]
     pub(crate) cost: bool,
     /// When to stop these runs, such as `4s`; otherwise when the scene says.

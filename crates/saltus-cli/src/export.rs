@@ -14,9 +14,10 @@ use crate::staging::Staging;
 
 /// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
 ///
-/// Every flight is one exact parabola between two contacts where the format can hold it. Hops shorter than a frame are left out. It ends in one line:
-/// how many keys, how far a contact is from a frame, how far the file is from the motion, and by how much squash and stretch depart from it. See
-/// docs/motion.md.
+/// Every flight is one exact parabola between two contacts where the format can hold it. Hops
+/// shorter than a frame are left out. It ends in one line: how many keys, how far a contact is from
+/// a frame, how far the file is from the motion, and by how much squash and stretch depart from it.
+/// See docs/motion.md.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Export {
     /// The scene; `-` for standard input.

@@ -31,13 +31,15 @@ const NAME: usize = 100;
 
 /// Write many motions like one for animators: a file for each, and an index of them.
 ///
-/// The one is a scene, or a table of bounces, whose fitted motion is varied. A key is the path of a value in the scene file, as in `ball.height`, or says how the
-/// motion is shown: fps, snap, on-twos, squash, stretch, exaggerate, hold, loop, mirror. `index.json` has the values, frames and contacts of every motion. See
-/// docs/motion.md.
+/// The one is a scene, or a table of bounces, whose fitted motion is varied. A key is the path of a
+/// value in the scene file, as in `ball.height`, or says how the motion is shown: fps, snap,
+/// on-twos, squash, stretch, exaggerate, hold, loop, mirror. `index.json` has the values, frames
+/// and contacts of every motion. See docs/motion.md.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = VARIATIONS)]
 pub(crate) struct Library {
-    /// The scene, `-` for standard input; or a table of bounces (.csv, .tsv, .txt, .xlsx, .xls, .zip).
+    /// The scene, `-` for standard input; or a table of bounces (.csv, .tsv, .txt, .xlsx, .xls,
+    /// .zip).
     pub(crate) source: PathBuf,
     #[command(flatten)]
     pub(crate) vary: Varying,
@@ -69,7 +71,8 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     let template = Template::parse(&name, &toml, &of_scene).map_err(Error::new)?;
     let maker = Maker { args, vary: &vary, template: &template, digits: (runs - 1).to_string().len() };
 
-    // What is wrong with the first motion is wrong with the library, and is said before anything is written.
+    // What is wrong with the first motion is wrong with the library, and is said before anything is
+    // written.
     let first = maker.made(0).map_err(|error| Error::new(format!("motion 0, {}: {error}", vary.says(0))))?;
     if let Some(drawn) = &first.drawn {
         say(quiet, drawn);
@@ -242,7 +245,8 @@ impl Maker<'_> {
         Ok(Made { files, says, drawn, off, miss })
     }
 
-    /// `07-restitution=0.7-ball.height=1m`: for people to tell files apart; the number alone does for programs.
+    /// `07-restitution=0.7-ball.height=1m`: for people to tell files apart; the number alone does
+    /// for programs.
     fn name(&self, run: u64, values: &[Value]) -> String {
         let mut name = format!("{run:0width$}", width = self.digits);
         for (variation, value) in self.vary.variations.iter().zip(values) {

@@ -1,7 +1,8 @@
 //! The command `saltus`: fit a coefficient of restitution to a table, simulate a bounce, draw it.
 //!
-//! A file for each command, with what can be asked of it; below them those that several need: `staging` and `varying` (options), `scenes` (reading and
-//! running), `parse` (values of options), `output`, `progress`, `row`, `error`. No file names one above it.
+//! A file for each command, with what can be asked of it; below them those that several need:
+//! `staging` and `varying` (options), `scenes` (reading and running), `parse` (values of options),
+//! `output`, `progress`, `row`, `error`. No file names one above it.
 
 mod accuracy;
 mod check;
@@ -31,8 +32,8 @@ use error::Error;
 
 /// Bouncing balls: from a table to a coefficient of restitution, from a coefficient to a motion.
 ///
-/// Data goes to standard output, talk to standard error. Exit status: 0 done; 1 with --strict, when a verdict is doubtful or refused;
-/// 2 bad input or failure.
+/// Data goes to standard output, talk to standard error. Exit status: 0 done; 1 with --strict, when
+/// a verdict is doubtful or refused; 2 bad input or failure.
 #[derive(Debug, Parser)]
 #[command(name = "saltus", version, propagate_version = true, arg_required_else_help = true)]
 struct Args {
@@ -65,8 +66,8 @@ enum Command {
     Man,
     /// Write the JSON Schema of scene files to standard output.
     ///
-    /// Editors complete and check scenes by it: saltus schema > scene.schema.json, and `#:schema scene.schema.json` as the first line of the
-    /// scene.
+    /// Editors complete and check scenes by it: saltus schema > scene.schema.json, and
+    /// `#:schema scene.schema.json` as the first line of the scene.
     Schema,
 }
 

@@ -43,7 +43,8 @@ impl Seconds {
     }
 }
 
-/// A refusal in one line: what is wrong and what to do, without the place in a scene that nobody wrote.
+/// A refusal in one line: what is wrong and what to do, without the place in a scene that nobody
+/// wrote.
 pub(crate) fn plainly(refused: &str) -> String {
     let mut lines = refused.lines();
     let first = lines.next().unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Scenes as commands take them: read from a file, ended by options, planned, run, and what is said of them.
+//! Scenes as commands take them: read from a file, ended by options, planned, run, and what is said
+//! of them.
 
 use std::fs::File;
 use std::io::Read;
@@ -52,7 +53,8 @@ pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
     run
 }
 
-/// The scene of a file or of standard input; what the command line says in `run` goes before what the scene says.
+/// The scene of a file or of standard input; what the command line says in `run` goes before what
+/// the scene says.
 pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
     let (name, toml) = read(path)?;
     Scene::parse_with(&name, &toml, run).map_err(|error| match extension(path).as_deref() {

@@ -19,8 +19,9 @@ use crate::scenes::{ended, ending, note, planned, scene};
 
 /// Simulate a scene, or a ball that bounces on a level floor.
 ///
-/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is: gravity and a constant coefficient of
-/// restitution, every flight an exact parabola. Without --until the run ends when the ball has come to rest.
+/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is:
+/// gravity and a constant coefficient of restitution, every flight an exact parabola. Without
+/// --until the run ends when the ball has come to rest.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Simulate {
     /// The scene; `-` for standard input.
@@ -50,16 +51,19 @@ pub(crate) struct Simulate {
     /// Sample the motion at this many frames per second.
     #[arg(long, value_name = "NUMBER", value_parser = rate)]
     pub(crate) fps: Option<f64>,
-    /// How to write the motion; without it, after the extension of the output file, or else as text.
+    /// How to write the motion; without it, after the extension of the output file, or else as
+    /// text.
     #[arg(long, value_enum)]
     pub(crate) format: Option<MotionFormat>,
     /// Write the motion to a file; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to standard output, and nothing else goes there.
+    /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to
+    /// standard output, and nothing else goes there.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
-    /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact, such as `1mm`, `0.1ms`, or `1mm,1ms`.
+    /// Choose the cheapest stepper and tolerance that keep every place and every impact this exact,
+    /// such as `1mm`, `0.1ms`, or `1mm,1ms`.
     #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
     pub(crate) target: Option<Target>,
     /// What is drawn; without it what the scene says, or else height.

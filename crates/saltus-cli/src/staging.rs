@@ -25,7 +25,8 @@ pub(crate) struct Staging {
     /// Draw every second frame only, and let it stand for two.
     #[arg(long)]
     pub(crate) on_twos: bool,
-    /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law` for what a contact that takes time says.
+    /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law`
+    /// for what a contact that takes time says.
     #[arg(long, value_name = "PART", value_parser = squash)]
     pub(crate) squash: Option<Squash>,
     /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
@@ -34,10 +35,12 @@ pub(crate) struct Staging {
     /// Squash and stretch so many times as much.
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
     pub(crate) exaggerate: f64,
-    /// Hold each contact for this many frames at least; what comes after is later. Where a contact is an instant, --squash holds it for 2.
+    /// Hold each contact for this many frames at least; what comes after is later. Where a contact
+    /// is an instant, --squash holds it for 2.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) hold: Option<u32>,
-    /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole frames, its end its start.
+    /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole
+    /// frames, its end its start.
     #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) looped: Option<u32>,
     /// Turn left and right around.

@@ -21,7 +21,8 @@ pub(crate) struct Varying {
     /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
     #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
     variations: Vec<Variation>,
-    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all; COUNT does not matter then.
+    /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for
+    /// `log`, instead of all; COUNT does not matter then.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
     random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.

@@ -62,7 +62,8 @@ fn reasons_are_lines_without_places_in_a_scene_that_nobody_wrote() {
     }
 }
 
-/// In five seconds three balls in a box hit each other so often that the last bit of gravity moves them by millimetres.
+/// In five seconds three balls in a box hit each other so often that the last bit of gravity moves
+/// them by millimetres.
 #[test]
 fn chaos_is_said() {
     let (text, _) = done(&["accuracy", "examples/scenes/box.toml", "--target", "1um", "--until", "5s"]);

@@ -1,4 +1,5 @@
-//! `saltus fit` as a newcomer meets it: the first example of its guide, several films, options without a unit.
+//! `saltus fit` as a newcomer meets it: the first example of its guide, several films, options
+//! without a unit.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -57,7 +58,8 @@ fn trials_and_groups_are_all_drawn() {
     assert!(groups.contains(">A<") && groups.contains(">B<") && groups.contains("95 % interval"), "{groups}");
 }
 
-/// A plan before the first drop, as the guide prints it; with a table, for its ball; wrong numbers are refused.
+/// A plan before the first drop, as the guide prints it; with a table, for its ball; wrong numbers
+/// are refused.
 #[test]
 fn a_measurement_is_planned() {
     let folder = TempDir::new().unwrap();

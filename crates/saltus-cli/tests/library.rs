@@ -1,4 +1,5 @@
-//! `saltus library` and the way to it from a table: folders whole or not at all, and every file as its index says.
+//! `saltus library` and the way to it from a table: folders whole or not at all, and every file as
+//! its index says.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -145,7 +145,8 @@ fn a_picture_to_standard_output_is_alone_there() {
     }
 }
 
-/// A ball on a table that shakes too little to throw it moves with it; the run has no rest, and nothing slides.
+/// A ball on a table that shakes too little to throw it moves with it; the run has no rest, and
+/// nothing slides.
 #[test]
 fn a_ball_on_a_shaken_table_rests_on_it() {
     let (_folder, path) = scene(
@@ -197,7 +198,8 @@ fn a_scene_is_explained() {
     assert_eq!((&json["schema"], &json["model"]), (&Value::from(1), &Value::from("flyer")));
     assert_eq!(json["coordinates"].as_array().unwrap().len(), 5);
     assert_eq!(json["modes"][0]["advance"], "explicit stepper Dop853");
-    // What spin does, with numbers: k = ρ π R³/(2m), and lift k ω v/(1 + 2 R ω/v) of a spin across the velocity.
+    // What spin does, with numbers: k = ρ π R³/(2m), and lift k ω v/(1 + 2 R ω/v) of a spin across
+    // the velocity.
     let (radius, mass, v): (f64, f64, f64) = (0.033, 0.058, 30.0_f64.hypot(2.0));
     let spin = 80.0 * std::f64::consts::PI;
     let k = 1.225 * std::f64::consts::PI * radius.powi(3) / (2.0 * mass);
@@ -213,7 +215,8 @@ fn a_scene_is_explained() {
     assert!(done(&["explain", &light]).contains("added mass, which leaves 0.8 of every acceleration\n"));
 }
 
-/// What each effect changes and costs: exact where nothing changes, refused in words where there is nothing to toggle.
+/// What each effect changes and costs: exact where nothing changes, refused in words where there is
+/// nothing to toggle.
 #[test]
 fn what_effects_cost() {
     let tennis = root().join("examples/scenes/table-tennis.toml");
@@ -257,7 +260,8 @@ fn what_effects_cost() {
     );
 }
 
-/// A scene without an end is refused, unless the command line gives one, wherever its table for that stands.
+/// A scene without an end is refused, unless the command line gives one, wherever its table for
+/// that stands.
 #[test]
 fn the_command_line_ends_a_scene() {
     let endless = "restitution = 1\nball = { height = 1 }\n";

@@ -1,4 +1,5 @@
-//! `saltus solve` as its user meets it: every answer is run again, and compared with a formula that the command does not use.
+//! `saltus solve` as its user meets it: every answer is run again, and compared with a formula that
+//! the command does not use.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 

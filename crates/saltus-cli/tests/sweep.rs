@@ -277,7 +277,8 @@ fn a_torn_row_is_made_again() {
     }
 }
 
-/// Killed where it stands, as often as need be, it ends in the bytes of a sweep that nobody touched.
+/// Killed where it stands, as often as need be, it ends in the bytes of a sweep that nobody
+/// touched.
 #[cfg(unix)]
 #[test]
 fn killed_and_gone_on_with() {

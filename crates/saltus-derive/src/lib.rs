@@ -1,4 +1,5 @@
-//! `#[derive(State)]` and `#[derive(Lift)]`: a struct of numbers as the state of a hybrid automaton.
+//! `#[derive(State)]` and `#[derive(Lift)]`: a struct of numbers as the state of a hybrid
+//! automaton.
 //!
 //! Re-exported by `saltus` with its feature `derive`; see `saltus::State` and `saltus::Lift`.
 
@@ -9,12 +10,13 @@ use syn::{
     parse_macro_input, parse_quote,
 };
 
-/// Implements `saltus::State` for a struct whose fields are states: numbers, arrays, vectors, and structs
-/// of the same kind.
+/// Implements `saltus::State` for a struct whose fields are states: numbers, arrays, vectors, and
+/// structs of the same kind.
 ///
-/// Coordinates are counted field by field, in the order in which the fields stand. Each is named by its
-/// field: `voltage`, `arm[2]`, `load.speed`. `#[unit("V")]` before a field is the unit of all its
-/// coordinates; without it they have their own, if any. The struct is to be `Copy` and `Debug` as well.
+/// Coordinates are counted field by field, in the order in which the fields stand. Each is named by
+/// its field: `voltage`, `arm[2]`, `load.speed`. `#[unit("V")]` before a field is the unit of all
+/// its coordinates; without it they have their own, if any. The struct is to be `Copy` and `Debug`
+/// as well.
 ///
 /// A struct without fields, an enum and a union are refused as the program is compiled.
 #[proc_macro_derive(State, attributes(unit))]
@@ -23,9 +25,9 @@ pub fn state(item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     implemented(input).unwrap_or_else(Error::into_compile_error).into()
 }
 
-/// Implements `saltus::Lift` for a struct that derives `State` and whose one type parameter is the type
-/// of its numbers, `struct Swing<D = f64> { angle: D, rates: [D; 2], load: Load<D> }`: over another
-/// number it is the same struct.
+/// Implements `saltus::Lift` for a struct that derives `State` and whose one type parameter is the
+/// type of its numbers, `struct Swing<D = f64> { angle: D, rates: [D; 2], load: Load<D> }`: over
+/// another number it is the same struct.
 ///
 /// A struct with no type parameter, or more than one, is refused as the program is compiled.
 #[proc_macro_derive(Lift)]
@@ -157,7 +159,8 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     })
 }
 
-/// The answer about coordinate `i` of the field in which it lies, whose first coordinate is `first`; else `none`.
+/// The answer about coordinate `i` of the field in which it lies, whose first coordinate is
+/// `first`; else `none`.
 fn asked(
     lens: impl Iterator<Item = TokenStream>,
     answers: impl IntoIterator<Item = TokenStream>,

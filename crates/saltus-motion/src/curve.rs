@@ -27,7 +27,8 @@ pub struct Key {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Between {
-    /// The cubic with the places and velocities at both ends (Hermite's); a flight under gravity is one.
+    /// The cubic with the places and velocities at both ends (Hermite's); a flight under gravity is
+    /// one.
     Cubic,
     /// A straight line.
     Line,
@@ -59,8 +60,9 @@ impl Curve {
         }
     }
 
-    /// The greatest distance between curve and motion in m: in height, and along all axes. It is that of 16 points between neighbours among keys and contacts: of a
-    /// parabola and a line exact, else up to 1 % too small. Of drawings that stand it is that at their own times.
+    /// The greatest distance between curve and motion in m: in height, and along all axes. It is
+    /// that of 16 points between neighbours among keys and contacts: of a parabola and a line
+    /// exact, else up to 1 % too small. Of drawings that stand it is that at their own times.
     #[must_use]
     pub fn error(&self, track: &Track) -> Miss {
         let mut miss = Miss::default();
@@ -95,7 +97,8 @@ impl Curve {
 }
 
 impl Curve {
-    /// The same curve with keys at more times, where it has none nearer than `apart` in s: they change nothing.
+    /// The same curve with keys at more times, where it has none nearer than `apart` in s: they
+    /// change nothing.
     pub(crate) fn with(mut self, times: impl Iterator<Item = f64>, apart: f64) -> Self {
         for t in times {
             let next = self.keys.partition_point(|key| key.t <= t);
@@ -174,9 +177,11 @@ fn key(stretch: &Stretch, t: f64) -> Key {
 }
 
 impl Track {
-    /// The fewest cubics that stay within `tolerance` in m of the motion: one for each flight under gravity alone, and that one exact.
+    /// The fewest cubics that stay within `tolerance` in m of the motion: one for each flight under
+    /// gravity alone, and that one exact.
     ///
-    /// Where more acts, each cubic is as long as the tolerance lets it be. Keys closer than 0.01 frame are one.
+    /// Where more acts, each cubic is as long as the tolerance lets it be. Keys closer than 0.01
+    /// frame are one.
     #[must_use]
     pub fn keys(&self, tolerance: f64, frames: Frames) -> Curve {
         let mut keys: Vec<Key> = Vec::new();
@@ -200,8 +205,8 @@ impl Track {
         curve
     }
 
-    /// The motion on frames, straight from one to the next; `exact_contacts` also puts a sample where a contact begins between two frames. On twos every
-    /// second frame, held.
+    /// The motion on frames, straight from one to the next; `exact_contacts` also puts a sample
+    /// where a contact begins between two frames. On twos every second frame, held.
     #[must_use]
     pub fn samples(&self, frames: Frames, exact_contacts: bool) -> Curve {
         let (step, end) = (frames.step(), self.end());
@@ -253,7 +258,8 @@ pub(crate) fn longest(a: f64, b: f64, fits: impl Fn(f64) -> bool) -> f64 {
     if low > a { low } else { high }
 }
 
-/// Makes keys that are closer than `apart` in s one: the place and the way out of the later, the way in of the earlier; contacts stay.
+/// Makes keys that are closer than `apart` in s one: the place and the way out of the later, the
+/// way in of the earlier; contacts stay.
 fn part(keys: &mut Vec<Key>, apart: f64) {
     keys.dedup_by(|later, earlier| {
         let one = later.t - earlier.t < apart;

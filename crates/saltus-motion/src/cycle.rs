@@ -8,13 +8,16 @@ use crate::motion::{Motion, MotionError, Piece, Point, Stretch, Track};
 const SAME: f64 = 1e-6;
 
 impl Motion {
-    /// Hop `number`, from contact `number` to the next, counted from 1, to be played for ever: it ends in the place, and as far turned, as it starts.
+    /// Hop `number`, from contact `number` to the next, counted from 1, to be played for ever: it
+    /// ends in the place, and as far turned, as it starts.
     ///
-    /// A ball that travels stays where it is: its way sideways is taken out, evenly. One that turns makes the nearest number of whole turns. The loop
-    /// starts at 0 s; it has whole frames once it is [snapped](Self::snapped).
+    /// A ball that travels stays where it is: its way sideways is taken out, evenly. One that turns
+    /// makes the nearest number of whole turns. The loop starts at 0 s; it has whole frames once it
+    /// is [snapped](Self::snapped).
     ///
     /// # Errors
-    /// [`MotionError`] with several balls, where there is no such hop, and where it ends higher or lower than it starts.
+    /// [`MotionError`] with several balls, where there is no such hop, and where it ends higher or
+    /// lower than it starts.
     pub fn looped(&self, number: usize) -> Result<Self, MotionError> {
         let fail = |says: String| Err(MotionError(says));
         let [track] = &self.tracks[..] else {

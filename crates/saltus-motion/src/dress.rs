@@ -1,4 +1,5 @@
-//! What moves besides the place: form and orientation as keys, and how far the picture is from the motion.
+//! What moves besides the place: form and orientation as keys, and how far the picture is from the
+//! motion.
 
 use crate::curve::{APART, Between, COMPARED, Curve, Key, between, longest};
 use crate::motion::{Point, Stretch, Track, UP};
@@ -10,15 +11,17 @@ use crate::turn::{
 
 /// How exact a form is between keys, as a part of the ball's radius.
 const FINE: f64 = 1e-4;
-/// How far apart two keys stand where an orientation leaps, as a share of a frame. Blender merges keys that are 0.01 frame apart, and so turns through the
-/// leap for a whole frame; the test `a_leap_of_the_axis_has_keys_that_blender_keeps_apart` holds it.
+/// How far apart two keys stand where an orientation leaps, as a share of a frame. Blender merges
+/// keys that are 0.01 frame apart, and so turns through the leap for a whole frame; the test
+/// `a_leap_of_the_axis_has_keys_that_blender_keeps_apart` holds it.
 const BESIDE: f64 = 0.02;
 /// How exact an orientation is between keys, in rad.
 const TURNED: f64 = 0.01;
 
 /// The form and the orientation of one ball as keys.
 ///
-/// A point of a round ball about its centre is turned by `spin`, made longer by `scale`, turned by `aim`, and moved by `offset` and by the path.
+/// A point of a round ball about its centre is turned by `spin`, made longer by `scale`, turned by
+/// `aim`, and moved by `offset` and by the path.
 #[derive(Clone, Debug)]
 pub(crate) struct Dress {
     /// From the path to the centre that is shown.
@@ -42,7 +45,8 @@ pub struct Shown {
     pub moved: f64,
     /// How far the volume is from that of the ball, as a part of it, at most, between keys too.
     pub volume: f64,
-    /// How far the ball gets below the height of its lowest point, or into what it touches, in m, at most.
+    /// How far the ball gets below the height of its lowest point, or into what it touches, in m,
+    /// at most.
     pub sunk: f64,
     /// How many keys of orientation had to be added so that none is half a turn from the next.
     pub added: usize,
@@ -142,7 +146,8 @@ fn sampled(track: &Track, form: &Form, path: &Curve) -> [Curve; 2] {
     [offsets, scales].map(|keys| Curve { keys, between: path.between })
 }
 
-/// The axis, which has two directions, in the one that is given. A ball that goes straight up and down has one axis for both.
+/// The axis, which has two directions, in the one that is given. A ball that goes straight up and
+/// down has one axis for both.
 fn direction(form: &Form, track: &Track, (index, sign): (usize, f64), t: f64) -> Point {
     let [x, y, up] = form.pose(track, index, t).axis;
     if x.hypot(y) < 1e-9 { UP.map(|c| c * sign) } else { [x, y, up].map(|c| c * sign) }
@@ -160,7 +165,8 @@ fn signs(form: &Form, track: &Track) -> Vec<f64> {
     track.stretches.iter().enumerate().map(near).collect()
 }
 
-/// Keys of an orientation, by stretch; `at` gives it with how exact it has to be, `rate` bounds its rate in a stretch, in rad/s.
+/// Keys of an orientation, by stretch; `at` gives it with how exact it has to be, `rate` bounds its
+/// rate in a stretch, in rad/s.
 fn keyed(
     track: &Track,
     frames: Frames,
@@ -180,7 +186,8 @@ fn keyed(
             let q = at(n, t).0;
             let last = keys.last().copied().filter(|(last, _)| t - last < close);
             match last {
-                // Where a stretch ends one way and the next begins another, two keys stand close together, in the air: in contact the axis is the normal.
+                // Where a stretch ends one way and the next begins another, two keys stand close
+                // together, in the air: in contact the axis is the normal.
                 Some((last, before)) if k == 0 && dot(&before, &q).abs() < 1.0 - 1e-12 => {
                     if stretch.flight {
                         keys.push((last + close, q));
@@ -283,7 +290,8 @@ impl Dress {
                     Some(contact) => {
                         let touch = stretch.at(stretch.start());
                         let (n, p) = (contact.normal, path.at(t));
-                        // From where a round ball touches, which is its lowest point on a level floor only.
+                        // From where a round ball touches, which is its lowest point on a level
+                        // floor only.
                         let at = |k: usize| p[k] + offset[k] - touch[k] - r * UP[k] + r * n[k];
                         (n, dot(&n, &std::array::from_fn(at)))
                     }

@@ -2,7 +2,8 @@
 
 use crate::curve::{Between, Curve};
 
-/// One axis from one value to the next, along a cubic Bézier curve whose handles stand at a third and two thirds of the time.
+/// One axis from one value to the next, along a cubic Bézier curve whose handles stand at a third
+/// and two thirds of the time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ease {
     /// In s.
@@ -12,7 +13,8 @@ pub(crate) struct Ease {
     pub(crate) handles: Option<[f64; 2]>,
 }
 
-/// The eases of one axis. A cubic is parted where it turns back: an ease that ends where it began has no room to move.
+/// The eases of one axis. A cubic is parted where it turns back: an ease that ends where it began
+/// has no room to move.
 pub(crate) fn eases(curve: &Curve, axis: usize) -> Vec<Ease> {
     let mut eases = Vec::new();
     for pair in curve.keys.windows(2) {

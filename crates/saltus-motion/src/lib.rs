@@ -1,8 +1,10 @@
-//! Bouncing motion as animation: the fewest keys that are exact, whole frames where they are wanted, and files that animators load.
+//! Bouncing motion as animation: the fewest keys that are exact, whole frames where they are
+//! wanted, and files that animators load.
 //!
-//! A [`Motion`] is data: for each ball, polynomials in time from contact to contact. [`Motion::cut`] ends the infinitely many last hops,
-//! [`Motion::snapped`] moves contacts to whole frames, and an [`Export`] writes it as any [`Format`] and says how exact that is. Metres and seconds
-//! throughout; places are (x, y, up) of the ball's lowest point, so that 0 is touch.
+//! A [`Motion`] is data: for each ball, polynomials in time from contact to contact.
+//! [`Motion::cut`] ends the infinitely many last hops, [`Motion::snapped`] moves contacts to whole
+//! frames, and an [`Export`] writes it as any [`Format`] and says how exact that is. Metres and
+//! seconds throughout; places are (x, y, up) of the ball's lowest point, so that 0 is touch.
 //!
 //! ```
 //! use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};

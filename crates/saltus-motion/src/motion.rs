@@ -1,11 +1,13 @@
-//! A motion as exact polynomials: pieces, the smooth stretches they make, and one track of stretches for each ball.
+//! A motion as exact polynomials: pieces, the smooth stretches they make, and one track of
+//! stretches for each ball.
 
 use std::fmt;
 
 /// A place in m: (x, y, up).
 pub type Point = [f64; 3];
 
-/// A stretch of time in which the place is one polynomial, Σ cₖ (t - start)ᵏ; of a flight under gravity alone, a quadratic.
+/// A stretch of time in which the place is one polynomial, Σ cₖ (t - start)ᵏ; of a flight under
+/// gravity alone, a quadratic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// When it starts, in s.
@@ -14,7 +16,8 @@ pub struct Piece {
     pub span: f64,
     /// cₖ in m/sᵏ.
     pub coefficients: Vec<Point>,
-    /// The spin in rad/s, a polynomial likewise, right-handed about (x, y, up); empty for a ball that does not turn.
+    /// The spin in rad/s, a polynomial likewise, right-handed about (x, y, up); empty for a ball
+    /// that does not turn.
     pub spin: Vec<Point>,
 }
 
@@ -74,7 +77,8 @@ pub struct Contact {
     pub normal: Point,
     /// The speed of approach along it, in m/s.
     pub speed: f64,
-    /// Whether it takes time: what begins with it are the places of a ball pressed in by as much as it is deformed.
+    /// Whether it takes time: what begins with it are the places of a ball pressed in by as much as
+    /// it is deformed.
     pub pressed: bool,
 }
 
@@ -289,7 +293,8 @@ impl Motion {
         if off < 1e-9 { 0.0 } else { off * frames.step() / frames.rate.frame() }
     }
 
-    /// The least and the greatest x, and the least and the greatest height, of all balls and of the ground, in m.
+    /// The least and the greatest x, and the least and the greatest height, of all balls and of the
+    /// ground, in m.
     #[must_use]
     pub fn reach(&self) -> [[f64; 2]; 2] {
         let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];

@@ -69,7 +69,8 @@ impl fmt::Display for Rate {
 impl FromStr for Rate {
     type Err = RateError;
 
-    /// Reads `24`, `12.5`, `24000/1001`, and `23.976`, `23.98`, `29.97`, `47.952`, `59.94`, `119.88` as the fractions they stand for.
+    /// Reads `24`, `12.5`, `24000/1001`, and `23.976`, `23.98`, `29.97`, `47.952`, `59.94`,
+    /// `119.88` as the fractions they stand for.
     fn from_str(text: &str) -> Result<Self, RateError> {
         let bad = || RateError(text.to_owned());
         let text = text.trim();
@@ -115,7 +116,8 @@ impl fmt::Display for RateError {
 
 impl std::error::Error for RateError {}
 
-/// How time is counted in frames: the rate, the number of the first frame, and how many frames a drawing stands.
+/// How time is counted in frames: the rate, the number of the first frame, and how many frames a
+/// drawing stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
     /// How many in a second.

@@ -6,10 +6,12 @@ use crate::turn::{dot, norm};
 
 /// How much a ball is squashed and stretched.
 ///
-/// A ball that is 1 + a as long along one axis is 1/√(1 + a) as wide across it, so that its volume stays. In flight the axis is that of the velocity, and
-/// a = `stretch` · (speed/greatest speed)², which comes and goes within a drawing of a contact: at touch the ball is round. In contact the axis is the normal
-/// of what is met. A contact that takes time squashes as its law has it, by a multiple that makes the greatest deformation `squash`; one that
-/// is held squashes by a = -`squash` · (speed/fastest impact) · 4u(1 - u), where u goes from 0 to 1 while it is held.
+/// A ball that is 1 + a as long along one axis is 1/√(1 + a) as wide across it, so that its volume
+/// stays. In flight the axis is that of the velocity, and a = `stretch` · (speed/greatest speed)²,
+/// which comes and goes within a drawing of a contact: at touch the ball is round. In contact the
+/// axis is the normal of what is met. A contact that takes time squashes as its law has it, by a
+/// multiple that makes the greatest deformation `squash`; one that is held squashes by a =
+/// -`squash` · (speed/fastest impact) · 4u(1 - u), where u goes from 0 to 1 while it is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shape {
     /// By which part the ball is shorter at its greatest squash: from 0 to 0.9.
@@ -77,7 +79,8 @@ fn looks(piece: &Piece) -> impl Iterator<Item = f64> {
 }
 
 impl Motion {
-    /// The greatest deformation of a contact that takes time, of the ball's radius: what its law says; 0 where no contact does.
+    /// The greatest deformation of a contact that takes time, of the ball's radius: what its law
+    /// says; 0 where no contact does.
     #[must_use]
     pub fn deformation(&self) -> f64 {
         let of = |track: &Track| {
@@ -91,8 +94,9 @@ impl Motion {
         self.tracks.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// Makes every contact last `hold` in s at least: one of an instant as a pause, with the ball where it touches; one that takes time by slowing it down.
-    /// What comes after is as much later. A ball that stays where it lands is not held.
+    /// Makes every contact last `hold` in s at least: one of an instant as a pause, with the ball
+    /// where it touches; one that takes time by slowing it down. What comes after is as much later.
+    /// A ball that stays where it lands is not held.
     ///
     /// # Errors
     /// [`MotionError`] with several balls: they would not meet any more.
@@ -209,7 +213,8 @@ impl Form {
     }
 }
 
-/// How far an ellipsoid of semi-axes `along` and 1/√`along` reaches in a direction of which `cos` is the part along the axis.
+/// How far an ellipsoid of semi-axes `along` and 1/√`along` reaches in a direction of which `cos`
+/// is the part along the axis.
 pub(crate) fn support(along: f64, cos: f64) -> f64 {
     ((along * cos).powi(2) + (1.0 - cos * cos).max(0.0) / along).sqrt()
 }

@@ -1,4 +1,5 @@
-//! From infinitely many hops to finitely many, and from contacts anywhere to contacts on whole frames.
+//! From infinitely many hops to finitely many, and from contacts anywhere to contacts on whole
+//! frames.
 
 use crate::motion::{Motion, MotionError, Piece, Point, Stretch, Track};
 use crate::rate::Frames;
@@ -6,16 +7,20 @@ use crate::rate::Frames;
 /// What stays as it was when contacts move to whole frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Snap {
-    /// Gravity: every flight lasts the nearest whole number n of frames, so a hop on a level floor is g n²/(8 fps²) high.
+    /// Gravity: every flight lasts the nearest whole number n of frames, so a hop on a level floor
+    /// is g n²/(8 fps²) high.
     Gravity,
-    /// Every place the ball goes through: each contact moves to the nearest frame, and each flight is as much slower or faster.
+    /// Every place the ball goes through: each contact moves to the nearest frame, and each flight
+    /// is as much slower or faster.
     Heights,
 }
 
 impl Motion {
-    /// Ends runs of hops that are each shorter than `span` in s: there the ball lies, or moves straight along what it bounces on.
+    /// Ends runs of hops that are each shorter than `span` in s: there the ball lies, or moves
+    /// straight along what it bounces on.
     ///
-    /// Bounces that lose a part of their speed are infinitely many; no file can hold them. The last height that is left out is below g `span`²/8.
+    /// Bounces that lose a part of their speed are infinitely many; no file can hold them. The last
+    /// height that is left out is below g `span`²/8.
     #[must_use]
     pub fn cut(&self, span: f64) -> Self {
         let tracks = self.tracks.iter().map(|track| Track { stretches: cut(&track.stretches, span), ..track.clone() });
@@ -24,11 +29,13 @@ impl Motion {
 
     /// Moves every contact to a whole frame; on twos to every second one.
     ///
-    /// By [`Snap::Gravity`] the places of contacts stay, and so does what pulls: a ball let go from rest starts higher or lower, one that is thrown is
-    /// thrown faster or slower. By [`Snap::Heights`] every place stays.
+    /// By [`Snap::Gravity`] the places of contacts stay, and so does what pulls: a ball let go from
+    /// rest starts higher or lower, one that is thrown is thrown faster or slower. By
+    /// [`Snap::Heights`] every place stays.
     ///
     /// # Errors
-    /// [`MotionError`] by [`Snap::Gravity`] with several balls, or where something besides gravity acts in flight.
+    /// [`MotionError`] by [`Snap::Gravity`] with several balls, or where something besides gravity
+    /// acts in flight.
     pub fn snapped(&self, snap: Snap, frames: Frames) -> Result<Self, MotionError> {
         match (snap, &self.tracks[..]) {
             (Snap::Heights, _) => Ok(self.paced(frames)),
@@ -60,7 +67,8 @@ impl Motion {
         Self { tracks: tracks.collect(), ..self.clone() }
     }
 
-    /// How far the tops of flights are from those of another version of the same motion, in m, at most.
+    /// How far the tops of flights are from those of another version of the same motion, in m, at
+    /// most.
     #[must_use]
     pub fn tops_differ(&self, other: &Self) -> f64 {
         let pairs = self.tracks.iter().zip(&other.tracks).flat_map(|(a, b)| a.stretches.iter().zip(&b.stretches));
@@ -100,7 +108,8 @@ fn cut(stretches: &[Stretch], span: f64) -> Vec<Stretch> {
     join_still(kept)
 }
 
-/// A spin that goes evenly from that at the start of a run of stretches to that at its end, over `span` in s.
+/// A spin that goes evenly from that at the start of a run of stretches to that at its end, over
+/// `span` in s.
 fn evenly(run: &[Stretch], span: f64) -> Vec<Point> {
     let mut pieces = run.iter().flat_map(|stretch| &stretch.pieces);
     let (Some(first), Some(last)) = (pieces.next(), run.last().and_then(|stretch| stretch.pieces.last())) else {
@@ -132,7 +141,8 @@ fn join_still(stretches: Vec<Stretch>) -> Vec<Stretch> {
     joined
 }
 
-/// One stretch under a map of time that is straight between knots; where it bends the stretch is parted.
+/// One stretch under a map of time that is straight between knots; where it bends the stretch is
+/// parted.
 fn pace(stretch: &Stretch, knots: &[[f64; 2]]) -> Vec<Stretch> {
     let mut parts: Vec<Stretch> = Vec::new();
     for piece in &stretch.pieces {
@@ -157,7 +167,8 @@ fn pace(stretch: &Stretch, knots: &[[f64; 2]]) -> Vec<Stretch> {
     parts
 }
 
-/// A track whose every stretch lasts whole frames, under the same gravity, through the same places of contact.
+/// A track whose every stretch lasts whole frames, under the same gravity, through the same places
+/// of contact.
 fn thrown(track: &Track, frames: Frames, loops: bool) -> Result<Track, MotionError> {
     let step = frames.step();
     let mut stretches = Vec::with_capacity(track.stretches.len());

@@ -22,7 +22,8 @@ pub struct Turn {
     pub t: f64,
     /// The orientation as a quaternion (x, y, up, w).
     pub quaternion: [f64; 4],
-    /// The angle in rad from x towards up, counted on over whole turns: what a picture of the plane of x and up shows.
+    /// The angle in rad from x towards up, counted on over whole turns: what a picture of the plane
+    /// of x and up shows.
     pub angle: f64,
 }
 
@@ -133,7 +134,8 @@ impl<'a> Orientation<'a> {
     }
 }
 
-/// How a ball has turned `s` seconds into a piece: exact where the axis stands, else in steps of the middle's spin.
+/// How a ball has turned `s` seconds into a piece: exact where the axis stands, else in steps of
+/// the middle's spin.
 fn spun(piece: &Piece, s: f64) -> Quaternion {
     let Some(first) = piece.spin.iter().find(|c| norm(c) > 0.0) else { return STRAIGHT };
     let aside = |c: &Point| {
@@ -165,8 +167,9 @@ pub(crate) fn fastest(stretch: &Stretch) -> f64 {
     stretch.pieces.iter().map(points).fold(0.0, f64::max)
 }
 
-/// The times of keys from `from` to `to`, as few as keep even turns between them within what is `allowed` in rad, and each less than half a turn;
-/// `fastest` in rad/s bounds what cannot be seen from points.
+/// The times of keys from `from` to `to`, as few as keep even turns between them within what is
+/// `allowed` in rad, and each less than half a turn; `fastest` in rad/s bounds what cannot be seen
+/// from points.
 pub(crate) fn times(
     [from, to]: [f64; 2],
     fastest: f64,

@@ -1,4 +1,5 @@
-//! Loops and mirrors: what is played for ever closes, and what is turned around twice is what it was.
+//! Loops and mirrors: what is played for ever closes, and what is turned around twice is what it
+//! was.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -293,7 +293,8 @@ fn blender_handles_are_at_a_third_and_touch_at_zero() {
         assert!((number(&key[0]) - 1.0 - start * 24.0 / 1.001).abs() < 1e-9);
     }
     for pair in keys.windows(2).take(4) {
-        // The middle of a Bézier curve is the mean of its ends and its handles, once and three times.
+        // The middle of a Bézier curve is the mean of its ends and its handles, once and three
+        // times.
         let [a, b] = [&pair[0], &pair[1]];
         let middle = (number(&a[1]) + 3.0 * number(&a[3][1]) + 3.0 * number(&b[2][1]) + number(&b[1])) / 8.0;
         let t = (0.5 * (number(&a[0]) + number(&b[0])) - 1.0) * 1.001 / 24.0;

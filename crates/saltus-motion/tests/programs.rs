@@ -1,4 +1,5 @@
-//! What programs that load the files have stumbled over, each on the content of the file; and the formats for the browser, for text and for sound.
+//! What programs that load the files have stumbled over, each on the content of the file; and the
+//! formats for the browser, for text and for sound.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -33,7 +34,8 @@ fn data(script: &str) -> Value {
     serde_json::from_str(rest.split_once("'''").unwrap().0).unwrap()
 }
 
-/// Blender merges keys that are a hundredth of a frame apart: then an axis that leaps turns through the leap for a whole frame, the ball leans and sinks.
+/// Blender merges keys that are a hundredth of a frame apart: then an axis that leaps turns through
+/// the leap for a whole frame, the ball leans and sinks.
 #[test]
 fn a_leap_of_the_axis_has_keys_that_blender_keeps_apart() {
     let data = data(&text(written(&travels(), Format::Blender, SQUASHED)));
@@ -80,7 +82,8 @@ fn lottie_has_whole_sides_and_types_first() {
     assert_eq!(json.matches("{\"ty\":").count(), types);
 }
 
-/// A ball in space whose axis leaves the plane of the picture, in contact with a wall across y: the plane sees a spheroid end on.
+/// A ball in space whose axis leaves the plane of the picture, in contact with a wall across y: the
+/// plane sees a spheroid end on.
 #[test]
 fn a_squash_out_of_the_plane_is_seen_from_the_side() {
     let wall = Contact { normal: [0.0, 1.0, 0.0], speed: 2.0, pressed: false };
@@ -159,7 +162,8 @@ fn maya_bakes_contacts_and_sets_corners() {
     assert!(script.contains("cmds.xform(\"%s.vtx[%d]\" % (item, number), worldSpace=True, translation=corner)"));
 }
 
-/// Materials have a colour in what is rendered; all objects are in one collection that is replaced; there are a camera and a light.
+/// Materials have a colour in what is rendered; all objects are in one collection that is replaced;
+/// there are a camera and a light.
 #[test]
 fn a_blender_script_keeps_house() {
     let script = text(written(&travels(), Format::Blender, SQUASHED));
@@ -172,7 +176,8 @@ fn a_blender_script_keeps_house() {
     assert_eq!(data(&script)["collection"], "saltus: drop");
 }
 
-/// A motion shorter than any frame is refused in every format, and no file is made that readers refuse.
+/// A motion shorter than any frame is refused in every format, and no file is made that readers
+/// refuse.
 #[test]
 fn a_motion_without_a_frame_is_refused() {
     let piece = Piece { start: 0.0, span: 1e-9, coefficients: vec![[0.0, 0.0, 1.0]], spin: Vec::new() };
@@ -238,7 +243,8 @@ fn gltf_as_text_has_the_same_numbers() {
     assert_eq!(&bytes, glb.blob.as_ref().unwrap());
 }
 
-/// Every tick starts at the first sample not before its contact, and is as loud as the contact is fast.
+/// Every tick starts at the first sample not before its contact, and is as loud as the contact is
+/// fast.
 #[test]
 fn a_tick_at_every_contact() {
     let motion = drop(1.0, 0.7, 4, 0.0, [0.0; 3], 0.05);
@@ -273,7 +279,8 @@ fn contacts_are_a_table() {
     assert!((rows[1][1] - fall * 2.4).abs() < 1e-12);
 }
 
-/// One page, whole: nothing is loaded from anywhere, names of the scene stay text, and the numbers are those of the motion.
+/// One page, whole: nothing is loaded from anywhere, names of the scene stay text, and the numbers
+/// are those of the motion.
 #[test]
 fn a_page_that_plays() {
     let mut motion = travels();

@@ -1,4 +1,5 @@
-//! Squash, stretch and spin, read back from glTF by its own crate, and from the other formats by plain parsing.
+//! Squash, stretch and spin, read back from glTF by its own crate, and from the other formats by
+//! plain parsing.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
@@ -127,7 +128,8 @@ proptest! {
         let shape = Shape { squash, stretch, hold };
         let file = Export { motion: &held, frames: frames(), tolerance: 1e-4, shape, apexes: false }.file(Format::Glb).unwrap();
         let both = channels(&file.bytes);
-        // On its keys a form is exact to single precision; between them cubics are within 0.1 %, straight lines as far off as said.
+        // On its keys a form is exact to single precision; between them cubics are within 0.1 %,
+        // straight lines as far off as said.
         for scale in both.iter().flatten().filter(|c| c.property == Property::Scale) {
             for t in &scale.times {
                 prop_assert!((scale.at(*t).iter().product::<f64>() - 1.0).abs() < 2e-6);
@@ -139,7 +141,8 @@ proptest! {
             let t = held.end() * f64::from(k) / 1000.0;
             let (volume, lowest) = seen(&both[1], radius, t);
             prop_assert!((volume - 1.0).abs() < 1e-3, "volume {volume} at {t} s");
-            // Next to a contact the axis turns to the normal within a hundredth of a frame, in the air.
+            // Next to a contact the axis turns to the normal within a hundredth of a frame, in the
+            // air.
             let place = held.tracks[0].at(t)[2];
             prop_assert!((lowest - place).abs() < 0.01 * radius + 2e-6, "lowest {lowest} at {t} s, not {place}");
             prop_assert!(lowest > -1e-3 * radius - 2e-6, "lowest {lowest} at {t} s");
@@ -251,7 +254,8 @@ fn soft() -> Motion {
 fn a_contact_that_takes_time_squashes_as_its_law_has_it() {
     let motion = soft();
     assert!((motion.deformation() - 0.2).abs() < 1e-12);
-    // With the law's own amount the middle of the ball goes where the motion has it; twice as much puts it lower.
+    // With the law's own amount the middle of the ball goes where the motion has it; twice as much
+    // puts it lower.
     for factor in [1.0, 2.0] {
         let shape = Shape { squash: factor * motion.deformation(), stretch: 0.0, hold: 0.0 };
         let file = Export { motion: &motion, frames: frames(), tolerance: 1e-6, shape, apexes: false }
@@ -288,7 +292,8 @@ fn every_format_holds_the_squash() {
             Export { motion: &held, frames: frames(), tolerance: 1e-4, shape, apexes: false }.file(format).unwrap();
         String::from_utf8(file.bytes).unwrap()
     };
-    // The middle of the first hold is frame 12, where the ball is shortest: 0.6 of its height, and 1/√0.6 of its width.
+    // The middle of the first hold is frame 12, where the ball is shortest: 0.6 of its height, and
+    // 1/√0.6 of its width.
     let (least, most) = (0.6, 1.0 / 0.6_f64.sqrt());
     let close = |a: f64, b: f64| assert!((a - b).abs() < 2e-4, "{a} is not {b}");
 
@@ -372,7 +377,8 @@ fn a_timing_chart_has_a_tick_for_every_frame() {
         let document = roxmltree::Document::parse(&text).unwrap();
         let count = |class: &str| document.descendants().filter(|n| n.attribute("class") == Some(class)).count() - 1;
         let contacts = motion.tracks[0].contacts().count();
-        // In columns a contact stands at the end of one and at the start of the next; the last leads nowhere.
+        // In columns a contact stands at the end of one and at the start of the next; the last
+        // leads nowhere.
         assert_eq!(count("contact"), contacts + ends - usize::from(ends > 0));
         assert!(count("top") >= 3);
         let frames = (motion.end() * 24.0).round() as usize + 1;

@@ -54,7 +54,8 @@ impl Axis {
         self
     }
 
-    /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px between them on `length` px.
+    /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px
+    /// between them on `length` px.
     pub(crate) fn thinned(mut self, length: f64, gap: f64, width: impl Fn(&str) -> f64) -> Self {
         for _ in 0..12 {
             let apart = self.step / (self.high - self.low) * length;

@@ -9,8 +9,8 @@ use crate::stroke::Stroke;
 
 /// What an axis measures; data are given in SI units.
 ///
-/// A unit by name, `"V".into()`, gets a prefix where its numbers would be long, if it is one of the SI that takes
-/// prefixes; `bar`, `1/min` and any other stay as they are.
+/// A unit by name, `"V".into()`, gets a prefix where its numbers would be long, if it is one of the
+/// SI that takes prefixes; `bar`, `1/min` and any other stay as they are.
 ///
 /// ```
 /// use saltus_plot::{Chart, Measure, Stroke};
@@ -67,8 +67,8 @@ pub struct Disc {
 
 /// A picture of one quantity against another.
 ///
-/// Lines are solid, dashed, dotted, dash-dotted, in that order; jumps are thin and dashed and never join two lines with a solid stroke. The same input
-/// gives the same bytes.
+/// Lines are solid, dashed, dotted, dash-dotted, in that order; jumps are thin and dashed and never
+/// join two lines with a solid stroke. The same input gives the same bytes.
 ///
 /// ```
 /// use saltus_plot::{Chart, Measure, Stroke};
@@ -217,7 +217,8 @@ impl Chart {
         self
     }
 
-    /// Draws what is less than `least` across, zero for one, at `least`, whose tick then says so: what a logarithmic axis cannot show otherwise.
+    /// Draws what is less than `least` across, zero for one, at `least`, whose tick then says so:
+    /// what a logarithmic axis cannot show otherwise.
     ///
     /// ```
     /// use saltus_plot::{Chart, Measure};
@@ -242,7 +243,8 @@ impl Chart {
     /// The picture as an SVG document.
     ///
     /// # Errors
-    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and [`PlotError::Negative`] naming the number at fault.
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
+    /// [`PlotError::Negative`] naming the number at fault.
     pub fn svg(&self) -> Result<String, PlotError> {
         chart_page::draw(self, self.reach()?)
     }

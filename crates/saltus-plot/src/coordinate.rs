@@ -2,7 +2,8 @@
 
 use crate::error::PlotError;
 
-/// A coordinate of the state of a run: by its place, or by its name ([`saltus::State::name`], or as a picture names it).
+/// A coordinate of the state of a run: by its place, or by its name ([`saltus::State::name`], or as
+/// a picture names it).
 ///
 /// ```
 /// use saltus_plot::Coordinate;
@@ -13,7 +14,8 @@ use crate::error::PlotError;
 pub enum Coordinate {
     /// The place, counted from 0.
     Place(usize),
-    /// The name. That of a list or of a struct of coordinates is the name of all of them, where several may be.
+    /// The name. That of a list or of a struct of coordinates is the name of all of them, where
+    /// several may be.
     Name(String),
 }
 

@@ -1,8 +1,9 @@
 //! From polynomials in time to Bézier curves on the page.
 //!
-//! Time and height go to the page by affine maps, so a polynomial of degree two *is* one quadratic Bézier curve and one of
-//! degree three one cubic; nothing is sampled. Higher degrees are cut into cubic pieces until a bound on the error, taken
-//! from the fourth derivative, is below [`TOLERANCE`].
+//! Time and height go to the page by affine maps, so a polynomial of degree two *is* one quadratic
+//! Bézier curve and one of degree three one cubic; nothing is sampled. Higher degrees are cut into
+//! cubic pieces until a bound on the error, taken from the fourth derivative, is below
+//! [`TOLERANCE`].
 
 use std::fmt::Write;
 
@@ -62,7 +63,8 @@ pub(crate) fn shifted(c: &[f64], shift: f64) -> Vec<f64> {
 
 /// Where the polynomial changes sign in (0, span), in rising order.
 ///
-/// Between two neighbouring turning points it is monotone, so bisection there finds every change of sign.
+/// Between two neighbouring turning points it is monotone, so bisection there finds every change of
+/// sign.
 fn sign_changes(c: &[f64], span: f64) -> Vec<f64> {
     let c = trimmed(c);
     if c.len() < 2 {
@@ -107,7 +109,8 @@ pub(crate) fn extent(c: &[f64], span: f64) -> (f64, f64) {
     (low, high)
 }
 
-/// The path data of one motion; one curve command per flight, one subpath as long as the arcs join up.
+/// The path data of one motion; one curve command per flight, one subpath as long as the arcs join
+/// up.
 pub(crate) fn path(arcs: &[Arc], x: Affine, y: Affine) -> String {
     let mut pen = Pen { data: String::new(), at: None };
     let mut rest = arcs;
@@ -179,7 +182,8 @@ impl Pen {
         }
     }
 
-    /// The cubic that shares values and slopes at both ends of `part`, halved until it is close enough.
+    /// The cubic that shares values and slopes at both ends of `part`, halved until it is close
+    /// enough.
     fn cubics(&mut self, c: &[f64], span: f64, part: (f64, f64), across: &impl Fn(f64) -> f64, y: Affine, depth: u32) {
         let width = span * (part.1 - part.0);
         let middle = 0.5 * (part.0 + part.1);
@@ -211,7 +215,8 @@ impl Pen {
         );
     }
 
-    /// Arcs too narrow to tell apart: up to the highest point they reach, down to the lowest, on to where they end.
+    /// Arcs too narrow to tell apart: up to the highest point they reach, down to the lowest, on to
+    /// where they end.
     fn together(&mut self, arcs: &[Arc], x: Affine, y: Affine) {
         let (Some(first), Some(last)) = (arcs.first(), arcs.last()) else {
             return;
@@ -287,7 +292,8 @@ mod tests {
         let data = path(std::slice::from_ref(&arc), X, Y);
         let kinds: String = commands(&data).iter().map(|c| c.0).collect();
         assert_eq!(kinds, "MQ");
-        // Rounding to thousandths of a px is all that is lost; the slope turns a step aside into a step up.
+        // Rounding to thousandths of a px is all that is lost; the slope turns a step aside into a
+        // step up.
         assert!(farthest(&data, |t| arc.height(t)) < 3e-3, "{data}");
     }
 
@@ -334,7 +340,8 @@ mod tests {
     fn extremes_are_found_for_any_degree() {
         let parabola = Arc::new(0.0, 1.0, vec![1.0, 2.0, -4.9]);
         assert!((parabola.extent().1 - (1.0 + 1.0 / 4.9)).abs() < 1e-12);
-        // (s - 0.2)² (s - 0.7)² has its lowest points at 0.2 and 0.7, and the value 0.0625² between.
+        // (s - 0.2)² (s - 0.7)² has its lowest points at 0.2 and 0.7, and the value 0.0625²
+        // between.
         let quartic = [0.0196, -0.252, 1.09, -1.8, 1.0];
         let (low, high) = extent(&quartic, 0.8);
         assert!(low.abs() < 1e-15, "{low}");

@@ -5,8 +5,8 @@ use crate::error::{PlotError, finite, magnitude};
 
 /// One smooth stretch of motion: a polynomial in the time since its start.
 ///
-/// h(t) = Σ cₖ (t − start)ᵏ for start ≤ t ≤ start + span, in metres and seconds. A flight under gravity has three
-/// coefficients (height, velocity, −g/2); a ball at rest has one.
+/// h(t) = Σ cₖ (t − start)ᵏ for start ≤ t ≤ start + span, in metres and seconds. A flight under
+/// gravity has three coefficients (height, velocity, −g/2); a ball at rest has one.
 ///
 /// # Example
 ///
@@ -26,7 +26,8 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// An arc from `start` (s) over `span` (s) with `coefficients` in rising powers (m, m/s, m/s², ...).
+    /// An arc from `start` (s) over `span` (s) with `coefficients` in rising powers (m, m/s, m/s²,
+    /// ...).
     ///
     /// No coefficients at all mean height zero. A span of zero draws nothing.
     #[must_use]
@@ -34,7 +35,8 @@ impl Arc {
         Self { start, span, scale: 1.0, coefficients }
     }
 
-    /// The same with coefficients of the powers of (t − start)/`scale`: those of a short step neither overflow nor vanish.
+    /// The same with coefficients of the powers of (t − start)/`scale`: those of a short step
+    /// neither overflow nor vanish.
     pub(crate) fn scaled(start: f64, span: f64, scale: f64, coefficients: Vec<f64>) -> Self {
         Self { start, span, scale, coefficients }
     }

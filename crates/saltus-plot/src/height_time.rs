@@ -42,10 +42,10 @@ pub(crate) struct Motion {
 
 /// A picture of height against time.
 ///
-/// Time runs to the right, height upwards from the floor at zero. Each motion is a line (solid, dashed, dotted,
-/// dash-dotted, in that order) in which every flight is one smooth curve; measurements are marks with bars of one standard
-/// error; model contacts are ticks under the floor line; residuals stand in a panel of their own below. The same input
-/// gives the same bytes.
+/// Time runs to the right, height upwards from the floor at zero. Each motion is a line (solid,
+/// dashed, dotted, dash-dotted, in that order) in which every flight is one smooth curve;
+/// measurements are marks with bars of one standard error; model contacts are ticks under the floor
+/// line; residuals stand in a panel of their own below. The same input gives the same bytes.
 ///
 /// # Example
 ///
@@ -105,7 +105,8 @@ impl HeightTime {
         }
     }
 
-    /// What the picture shows, for those who cannot see it. Without one, a sentence is made from the data.
+    /// What the picture shows, for those who cannot see it. Without one, a sentence is made from
+    /// the data.
     #[must_use]
     pub fn description(mut self, text: &str) -> Self {
         self.description = Some(text.to_owned());
@@ -156,8 +157,8 @@ impl HeightTime {
 
     /// The size of the picture in px; 800 by 560 without it, or 800 by 680 with residuals.
     ///
-    /// Type grows and shrinks with the picture, but never below what can be read: when there are more words than the
-    /// height has room for, the picture becomes taller.
+    /// Type grows and shrinks with the picture, but never below what can be read: when there are
+    /// more words than the height has room for, the picture becomes taller.
     #[must_use]
     pub fn size(mut self, width: f64, height: f64) -> Self {
         self.size = Some((width, height));
@@ -175,8 +176,9 @@ impl HeightTime {
     ///
     /// # Errors
     ///
-    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and [`PlotError::Negative`] naming the
-    /// number at fault, [`PlotError::Size`] when a side is shorter than 160 px or longer than 20 000 px.
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
+    /// [`PlotError::Negative`] naming the number at fault, [`PlotError::Size`] when a side is
+    /// shorter than 160 px or longer than 20 000 px.
     pub fn svg(&self) -> Result<String, PlotError> {
         let (width, height) = self.checked_size()?;
         let bounds = self.bounds()?;

@@ -1,6 +1,7 @@
 //! SVG pictures of hybrid motion.
 //!
-//! A run in one line: [`Panels`] shows the coordinates of any trajectory of the engine against time, [`Phase`] one against another.
+//! A run in one line: [`Panels`] shows the coordinates of any trajectory of the engine against
+//! time, [`Phase`] one against another.
 //!
 //! ```
 //! use saltus::{Hybrid, Simulation};
@@ -16,10 +17,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Or data in, text out: a [`HeightTime`] picture takes arcs, measurements, contacts and residuals in seconds and metres, and
-//! gives one SVG document. Flights are drawn as what they are: a parabola is one quadratic Bézier curve, not a polyline. The
-//! document names itself (`<title>`, `<desc>`, `role="img"`), scales (`viewBox`), follows light and dark surroundings, needs no
-//! fonts of its own, and tells lines and marks apart by shape as well as by colour.
+//! Or data in, text out: a [`HeightTime`] picture takes arcs, measurements, contacts and residuals
+//! in seconds and metres, and gives one SVG document. Flights are drawn as what they are: a
+//! parabola is one quadratic Bézier curve, not a polyline. The document names itself (`<title>`,
+//! `<desc>`, `role="img"`), scales (`viewBox`), follows light and dark surroundings, needs no fonts
+//! of its own, and tells lines and marks apart by shape as well as by colour.
 //!
 //! # Example
 //!
@@ -36,12 +38,14 @@
 //! # Ok::<(), saltus_plot::PlotError>(())
 //! ```
 //!
-//! A [`Chart`] shows any two quantities against each other: velocity or energy against time, phase portraits, paths to scale, loops.
+//! A [`Chart`] shows any two quantities against each other: velocity or energy against time, phase
+//! portraits, paths to scale, loops.
 //!
 //! # Limits
 //!
-//! The floor of a [`HeightTime`] is at height zero. Letters are measured with the widths of Helvetica; a much wider face may let neighbouring
-//! labels come close. Arcs that together are narrower than 0.3 px are drawn as one stroke.
+//! The floor of a [`HeightTime`] is at height zero. Letters are measured with the widths of
+//! Helvetica; a much wider face may let neighbouring labels come close. Arcs that together are
+//! narrower than 0.3 px are drawn as one stroke.
 
 mod axis;
 mod callout;

@@ -12,7 +12,8 @@ use crate::theme::{Dash, Ink, Type};
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
-/// A ready-made path in px. It has no points of its own: plotters would pull a control point outside the panel back in.
+/// A ready-made path in px. It has no points of its own: plotters would pull a control point
+/// outside the panel back in.
 #[derive(Debug)]
 pub(crate) struct Trace {
     pub(crate) data: String,

@@ -23,8 +23,9 @@ const NEAR: f64 = 0.2;
 
 /// A phase portrait of a run: one coordinate against another.
 ///
-/// Each mode is a line of its own, named in the legend. Curves are the run's own polynomials, within a third of a px of it. Jumps are
-/// thin and dashed; arrows show the direction, a dot the start. Names, units and errors are those of [`Panels`](crate::Panels).
+/// Each mode is a line of its own, named in the legend. Curves are the run's own polynomials,
+/// within a third of a px of it. Jumps are thin and dashed; arrows show the direction, a dot the
+/// start. Names, units and errors are those of [`Panels`](crate::Panels).
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
@@ -40,7 +41,8 @@ const NEAR: f64 = 0.2;
 /// ```
 ///
 /// # Limits
-/// The file grows with the run: [`over`](Self::over) draws a part of one that turns a thousand times.
+/// The file grows with the run: [`over`](Self::over) draws a part of one that turns a thousand
+/// times.
 pub struct Phase<'a, M, E, S> {
     trajectory: &'a Trajectory<M, E, S>,
     axes: [Coordinate; 2],

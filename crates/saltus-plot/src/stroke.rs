@@ -150,7 +150,8 @@ impl Pen {
         }
     }
 
-    /// The cubic that shares points and slopes at both ends of `part`, halved until it is close enough.
+    /// The cubic that shares points and slopes at both ends of `part`, halved until it is close
+    /// enough.
     fn cubics(&mut self, stroke: &Stroke, part: (f64, f64), x: Affine, y: Affine, depth: u32) {
         let width = stroke.span * (part.1 - part.0);
         let middle = 0.5 * (part.0 + part.1);

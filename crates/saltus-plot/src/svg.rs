@@ -1,8 +1,9 @@
 //! A drawing backend for plotters that writes SVG and keeps fractions of a pixel.
 //!
-//! plotters places everything on whole numbers. Here those numbers are *grains*, hundredths of a px: plotters sees a very
-//! large sheet, and what it draws is divided back as it is written. Neighbouring elements that share a pen become one
-//! group, and neighbouring strokes or areas in it one path, which keeps files small.
+//! plotters places everything on whole numbers. Here those numbers are *grains*, hundredths of a
+//! px: plotters sees a very large sheet, and what it draws is divided back as it is written.
+//! Neighbouring elements that share a pen become one group, and neighbouring strokes or areas in it
+//! one path, which keeps files small.
 
 use std::collections::BTreeSet;
 use std::convert::Infallible;
@@ -135,7 +136,8 @@ impl Canvas {
         }
         self.take(pen);
         self.pending.push_str(data);
-        // A dash pattern runs on from one subpath to the next in some renderers, and dashed curves are whole anyway.
+        // A dash pattern runs on from one subpath to the next in some renderers, and dashed curves
+        // are whole anyway.
         let dashed = matches!(pen.kind, Kind::Stroke(_, dash) if dash != Dash::Solid);
         // Areas that show through one another must not melt into one.
         let glazed = pen.kind == Kind::Fill && pen.alpha < 1.0;
@@ -211,7 +213,8 @@ impl Canvas {
              <desc id=\"{id}-desc\">{description}</desc>\n",
             theme::FAMILY
         );
-        // The scaling stylesheet rule lets the picture shrink with a narrow page; attributes alone carry every colour.
+        // The scaling stylesheet rule lets the picture shrink with a narrow page; attributes alone
+        // carry every colour.
         let _ = write!(svg, "<style>#{id}{{max-width:100%;height:auto;font-variant-numeric:tabular-nums");
         if sheet.adaptive {
             svg.push_str(";color-scheme:light dark}@media (prefers-color-scheme:dark){");

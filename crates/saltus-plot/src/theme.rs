@@ -9,7 +9,8 @@ pub(crate) const SMALLEST: f64 = 160.0;
 /// Longest side a picture may have, in px.
 pub(crate) const LARGEST: f64 = 20_000.0;
 
-/// Faces with the same metrics on nearly every system, so that what is measured here is what is seen.
+/// Faces with the same metrics on nearly every system, so that what is measured here is what is
+/// seen.
 pub(crate) const FAMILY: &str = "'Helvetica Neue',Helvetica,Arial,'Liberation Sans',system-ui,sans-serif";
 
 /// What a stroke or a word is for. Each ink has a colour on light paper and one on dark.
@@ -60,7 +61,8 @@ impl Ink {
         }
     }
 
-    /// On light paper. Blue, vermilion, green and purple stay apart for every common kind of colour blindness.
+    /// On light paper. Blue, vermilion, green and purple stay apart for every common kind of colour
+    /// blindness.
     pub(crate) fn light(self) -> (u8, u8, u8) {
         match self {
             Self::Text => (0x1b, 0x20, 0x27),
@@ -197,7 +199,8 @@ pub(crate) fn words(ink: Ink, size: f64, weight: FontStyle, h: HPos, v: VPos) ->
 /// Height of a capital letter as a part of the type size.
 pub(crate) const CAPITAL: f64 = 0.717;
 
-/// The advance widths of Helvetica for the characters from space to tilde, in thousandths of the type size.
+/// The advance widths of Helvetica for the characters from space to tilde, in thousandths of the
+/// type size.
 const WIDTHS: [u16; 95] = [
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556, 556, 556,
     556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833,
@@ -229,7 +232,8 @@ fn advance(c: char) -> f64 {
     }
 }
 
-/// Room left for faces wider than Helvetica where text must not be cut off or run into what follows.
+/// Room left for faces wider than Helvetica where text must not be cut off or run into what
+/// follows.
 const GENEROUS: f64 = 1.1;
 
 /// The width of `text` at `size` in a rather wide face.

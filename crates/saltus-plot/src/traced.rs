@@ -1,4 +1,5 @@
-//! What a picture needs of a trajectory: the polynomials of some coordinates in a window of time, mode by mode, and the jumps.
+//! What a picture needs of a trajectory: the polynomials of some coordinates in a window of time,
+//! mode by mode, and the jumps.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -34,7 +35,8 @@ pub(crate) struct Stay {
     pub(crate) parts: Vec<Part>,
 }
 
-/// A piece: each coordinate as the coefficients of the powers of (t - start)/scale; empty where the state has it not.
+/// A piece: each coordinate as the coefficients of the powers of (t - start)/scale; empty where the
+/// state has it not.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part {
     pub(crate) start: f64,
@@ -53,7 +55,8 @@ pub(crate) struct Leap {
     pub(crate) after: Vec<Option<f64>>,
 }
 
-/// The names and units of the coordinates, of the mode that has most of them; `named` go before those of the state.
+/// The names and units of the coordinates, of the mode that has most of them; `named` go before
+/// those of the state.
 pub(crate) fn labels<M: Copy, E, S: State>(trajectory: &Trajectory<M, E, S>, named: &[String]) -> Vec<Label> {
     let Some(widest) = trajectory.arcs().iter().map(saltus::Arc::state).max_by_key(|state| state.len()) else {
         return Vec::new();
@@ -63,7 +66,8 @@ pub(crate) fn labels<M: Copy, E, S: State>(trajectory: &Trajectory<M, E, S>, nam
 }
 
 impl Traced {
-    /// The coordinates at `places` over a part of the trajectory, or all of it; if that has no end, until a little after its last jump.
+    /// The coordinates at `places` over a part of the trajectory, or all of it; if that has no end,
+    /// until a little after its last jump.
     pub(crate) fn of<M: Copy + Debug, E, S: State>(
         trajectory: &Trajectory<M, E, S>,
         over: Option<&Range<f64>>,
@@ -72,7 +76,8 @@ impl Traced {
         let window = window(trajectory, over)?;
         let mut traced = Self { window, modes: Vec::new(), stays: Vec::new(), leaps: Vec::new() };
         let (start, last) = (trajectory.start().seconds(), trajectory.end().seconds());
-        // A jump on the edge of a part belongs to what lies beyond; at the ends of the run nothing does.
+        // A jump on the edge of a part belongs to what lies beyond; at the ends of the run nothing
+        // does.
         let inside = |t: f64| (t > window.0 || window.0 == start) && (t < window.1 || window.1 == last);
         for (index, arc) in trajectory.arcs().iter().enumerate() {
             let next = trajectory.jumps().get(index);
@@ -110,7 +115,8 @@ impl Traced {
         self.modes = kept.iter().map(|&mode| self.modes[mode].clone()).collect();
     }
 
-    /// Where a coordinate breaks: the time, and the limits before the first and after the last jump at that time.
+    /// Where a coordinate breaks: the time, and the limits before the first and after the last jump
+    /// at that time.
     pub(crate) fn breaks(&self, line: usize) -> impl Iterator<Item = (f64, f64, f64)> {
         let instants = self.leaps.chunk_by(|a, b| a.t == b.t);
         instants.filter_map(move |leaps| {
@@ -174,7 +180,8 @@ fn side(state: &impl State, places: &[usize]) -> Vec<Option<f64>> {
     places.iter().map(|&place| (place < state.len()).then(|| state.get(place))).collect()
 }
 
-/// A mode in words: a name that is text as it is, of any other the first word, so that a mode that carries numbers is one mode.
+/// A mode in words: a name that is text as it is, of any other the first word, so that a mode that
+/// carries numbers is one mode.
 fn mode_name(mode: &impl Debug) -> String {
     let text = format!("{mode:?}");
     match text.strip_prefix('"').and_then(|text| text.strip_suffix('"')) {

@@ -60,7 +60,8 @@ impl HeightUnit {
         }
     }
 
-    /// The unit in which heights up to `largest` metres read best: centimetres up to 2.5 m, as in a school laboratory.
+    /// The unit in which heights up to `largest` metres read best: centimetres up to 2.5 m, as in a
+    /// school laboratory.
     fn fitting(largest: f64) -> Self {
         match largest {
             l if l >= 5e3 => Self::Kilometres,
@@ -78,7 +79,8 @@ const PLAIN: [&str; 16] = ["m", "A", "V", "W", "J", "N", "Pa", "Hz", "C", "F", "
 /// Numbers that need no prefix: 0.3 A and 1500 V are read as they are.
 const READABLE: std::ops::Range<f64> = 0.1..1e4;
 
-/// A unit as an axis shows it: how large it is in metres or seconds, and what is written in the brackets.
+/// A unit as an axis shows it: how large it is in metres or seconds, and what is written in the
+/// brackets.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) size: f64,
@@ -100,7 +102,8 @@ impl Unit {
         }
     }
 
-    /// A unit by name: one of the SI gets a prefix where its numbers would be long; any other stays as it is.
+    /// A unit by name: one of the SI gets a prefix where its numbers would be long; any other stays
+    /// as it is.
     pub(crate) fn named(name: &str, largest: f64, span: f64) -> Self {
         if name == "s" {
             Self::of_time(largest, span)
@@ -121,8 +124,8 @@ impl Unit {
         Self::scaled(&format!("{prefix}{symbol}"), size, largest, span)
     }
 
-    /// Values beyond 10⁵ or below 10⁻² of the unit are written as so many powers of ten of it, unless the axis shows only
-    /// a short stretch far from zero: there the whole number says more.
+    /// Values beyond 10⁵ or below 10⁻² of the unit are written as so many powers of ten of it,
+    /// unless the axis shows only a short stretch far from zero: there the whole number says more.
     pub(crate) fn scaled(symbol: &str, size: f64, largest: f64, span: f64) -> Self {
         let ratio = largest / size;
         let most = if span < 0.1 * largest { 1e9 } else { 1e5 };

@@ -1,4 +1,5 @@
-//! Charts: dots in the colour of their line, limits, points that are called out, and what is too small for an axis by powers of ten.
+//! Charts: dots in the colour of their line, limits, points that are called out, and what is too
+//! small for an axis by powers of ten.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 

@@ -1,4 +1,5 @@
-//! Data at the edge: each gives a picture or one clear error, never a panic and never a strange number.
+//! Data at the edge: each gives a picture or one clear error, never a panic and never a strange
+//! number.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 

@@ -112,7 +112,8 @@ fn the_flights_of_the_squash_ball_are_exact_parabolas() {
             let t = (mix(a.0, b.0, c.0) - x0) / (x1 - x0);
             let expected = top + scale * (truth(t) - 1.0);
             let found = mix(a.1, b.1, c.1);
-            // The labels are placed to hundredths of a px, and up to 10 times that is lost on a steep flight.
+            // The labels are placed to hundredths of a px, and up to 10 times that is lost on a
+            // steep flight.
             assert!((found - expected).abs() < 0.08, "flight {flight}, t = {t}: {found} against {expected}");
         }
     }

@@ -1,4 +1,5 @@
-//! Pictures of runs: the curve is the run, both limits of a jump are shown, names and units are there, and no words overlap.
+//! Pictures of runs: the curve is the run, both limits of a jump are shown, names and units are
+//! there, and no words overlap.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
@@ -57,7 +58,8 @@ fn drawn(data: &str) -> Vec<Point> {
     points
 }
 
-/// The map from numbers on an axis to px, read off its first and its last label; of several panels that of the first.
+/// The map from numbers on an axis to px, read off its first and its last label; of several panels
+/// that of the first.
 fn axis(document: &Document<'_>, way: &str) -> impl Fn(f64) -> f64 + use<> {
     let anchor = if way == "x" { "middle" } else { "end" };
     let label = |node: Node<'_, '_>| {
@@ -73,7 +75,8 @@ fn axis(document: &Document<'_>, way: &str) -> impl Fn(f64) -> f64 + use<> {
     move |value| pa + (value - a) * (pb - pa) / (b - a)
 }
 
-/// How far the nearest of these points, which follow each other across, is up or down, at most a third of a px aside.
+/// How far the nearest of these points, which follow each other across, is up or down, at most a
+/// third of a px aside.
 fn off(points: &[Point], (x, y): Point) -> f64 {
     let first = points.partition_point(|p| p.0 < x - 0.34);
     let near = points[first..].iter().take_while(|p| p.0 < x + 0.34).map(|p| p.1);
@@ -109,7 +112,8 @@ fn pulse(t: f64, &(at, high, wide): &(f64, f64, f64)) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Wherever the run is, the curve is within a third of a px, on peaks that are narrower than that as well.
+    /// Wherever the run is, the curve is within a third of a px, on peaks that are narrower than
+    /// that as well.
     #[test]
     fn the_curve_is_the_run(
         peaks in prop::collection::vec((0.2..3.8_f64, 2.0..8.0_f64, -3.0..-0.5_f64), 1..4),
@@ -134,7 +138,8 @@ proptest! {
         prop_assert!((top - y(most)).abs() < 0.1, "{top} is not {}", y(most));
     }
 
-    /// A ring before and a dot after each jump, at its limits; between two jumps one unbroken curve.
+    /// A ring before and a dot after each jump, at its limits; between two jumps one unbroken
+    /// curve.
     #[test]
     fn jumps_have_both_limits(period in 0.3..1.5_f64) {
         let run = kicked(&[], period);

@@ -1,4 +1,5 @@
-//! What accuracy costs in a scene: the same scene by several steppers, to several tolerances, and frame by frame, each against one reference.
+//! What accuracy costs in a scene: the same scene by several steppers, to several tolerances, and
+//! frame by frame, each against one reference.
 
 use std::fmt;
 
@@ -10,7 +11,8 @@ use saltus_bounce::effects::Gravity;
 
 /// The tolerances tried.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
-/// The tolerance of the reference where no formula solves the scene, and of the run by which its own error is estimated.
+/// The tolerance of the reference where no formula solves the scene, and of the run by which its
+/// own error is estimated.
 const REFERENCE: f64 = 1e-14;
 const SECOND: f64 = 1e-13;
 /// Frames per second tried.
@@ -55,13 +57,15 @@ impl fmt::Display for Way {
 /// How far one run of a scene is from another. Infinite where the other run breaks off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Of the times of impacts, in s: the largest. Impacts slower than a thousandth of the fastest are not compared one by one.
+    /// Of the times of impacts, in s: the largest. Impacts slower than a thousandth of the fastest
+    /// are not compared one by one.
     pub impacts: f64,
     /// Of the heights of apexes between those impacts, in m: the largest.
     pub apexes: f64,
     /// Of the places of the balls at 1001 times from start to end, in m: the largest.
     pub position: f64,
-    /// Of the energy halfway between those impacts and at the end, as a share of its greatest: the largest.
+    /// Of the energy halfway between those impacts and at the end, as a share of its greatest: the
+    /// largest.
     pub energy: f64,
     /// How many impacts it lacks or has in another order.
     pub missed: usize,
@@ -103,7 +107,8 @@ impl Difference {
             }
         }
 
-        // Halfway between two impacts, by each run's own clock: near an impact a hair of time is all the energy it costs.
+        // Halfway between two impacts, by each run's own clock: near an impact a hair of time is
+        // all the energy it costs.
         let mut largest = energy(scene, reference, 0.0).abs();
         let mut gap = 0.0_f64;
         let mut compare = |a: f64, b: f64| {
@@ -125,7 +130,8 @@ impl Difference {
         self.share(target, doubt) <= 1.0
     }
 
-    /// How much of `target` it takes up, if the reference is off by `doubt`: up to 1 it is within it. Infinite where an impact is missed.
+    /// How much of `target` it takes up, if the reference is off by `doubt`: up to 1 it is within
+    /// it. Infinite where an impact is missed.
     #[must_use]
     pub fn share(&self, target: Target, doubt: &Self) -> f64 {
         if self.missed > 0 {
@@ -308,14 +314,17 @@ impl Accuracy {
         Ok(Outcome { difference, cost: record.cost(), timing })
     }
 
-    /// How the reference was made: by formulas where they solve the scene, or else to a tolerance two orders tighter than any trial.
+    /// How the reference was made: by formulas where they solve the scene, or else to a tolerance
+    /// two orders tighter than any trial.
     #[must_use]
     pub const fn reference(&self) -> (Way, &Record) {
         (self.by, &self.reference)
     }
 
-    /// How far off the reference itself may be: its difference from a run to ten times its tolerance. Where formulas made it, what rounding leaves of it: its
-    /// difference from the scene whose gravity and velocities are a unit in the last place larger. That is next to nothing, but for balls that hit each other often.
+    /// How far off the reference itself may be: its difference from a run to ten times its
+    /// tolerance. Where formulas made it, what rounding leaves of it: its difference from the scene
+    /// whose gravity and velocities are a unit in the last place larger. That is next to nothing,
+    /// but for balls that hit each other often.
     #[must_use]
     pub const fn doubt(&self) -> &Difference {
         &self.doubt
@@ -327,8 +336,9 @@ impl Accuracy {
         &self.trials
     }
 
-    /// The ways that cost least for what they give, from the cheapest to the most exact: none of the others comes as near to `target` for as few
-    /// evaluations. Frames are left aside; where formulas solve the scene, they alone are on it.
+    /// The ways that cost least for what they give, from the cheapest to the most exact: none of
+    /// the others comes as near to `target` for as few evaluations. Frames are left aside; where
+    /// formulas solve the scene, they alone are on it.
     #[must_use]
     pub fn frontier(&self, target: Target) -> Vec<&Trial> {
         if let Some(formulas) = self.trials.iter().find(|trial| matches!(trial.way, Way::Formulas)) {
@@ -350,8 +360,9 @@ impl Accuracy {
         points.into_iter().map(|(_, trial)| trial).collect()
     }
 
-    /// The way that meets `target` with the fewest evaluations, frames left aside; `None` if none does. Where formulas solve the scene, they do: a run takes
-    /// them whatever stepper and tolerance it is given.
+    /// The way that meets `target` with the fewest evaluations, frames left aside; `None` if none
+    /// does. Where formulas solve the scene, they do: a run takes them whatever stepper and
+    /// tolerance it is given.
     #[must_use]
     pub fn cheapest(&self, target: Target) -> Option<&Trial> {
         let meets =
@@ -359,8 +370,9 @@ impl Accuracy {
         self.frontier(target).into_iter().find(meets)
     }
 
-    /// What a further digit costs by a stepper: the factor by which the evaluations grow as the error falls to a tenth, by least squares of the logarithms
-    /// over the trials whose error stands clear of the reference's; `None` if there are fewer than three.
+    /// What a further digit costs by a stepper: the factor by which the evaluations grow as the
+    /// error falls to a tenth, by least squares of the logarithms over the trials whose error
+    /// stands clear of the reference's; `None` if there are fewer than three.
     #[must_use]
     pub fn per_digit(&self, by: Stepper) -> Option<f64> {
         let point = |trial: &Trial| match (trial.way, &trial.outcome) {
@@ -383,7 +395,8 @@ impl Accuracy {
         (xx > 0.0).then(|| 10_f64.powf(xy / xx))
     }
 
-    /// What each effect changes and costs: the scene with it left out or put in, against the reference, to the tolerance that the plan would choose.
+    /// What each effect changes and costs: the scene with it left out or put in, against the
+    /// reference, to the tolerance that the plan would choose.
     #[must_use]
     pub fn toggled(&self, scene: &Scene) -> Vec<Toggle> {
         let until = self.reference.until();

@@ -13,7 +13,8 @@ use saltus_bounce::effects::{
     AIR_DENSITY, AIR_VISCOSITY, Buoyancy, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay,
 };
 
-/// What acts on the balls of a scene in flight, beside gravity: each effect only if the scene names it.
+/// What acts on the balls of a scene in flight, beside gravity: each effect only if the scene names
+/// it.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -126,11 +127,13 @@ pub(super) struct AirTable {
     density: Option<At<Measure<Density>>>,
     /// Its viscosity; 17.894 µPa s, the same air, unless given.
     viscosity: Option<At<Measure<Viscosity>>>,
-    /// The velocity of the air: along x, or [x, up] or [x, y, up]; still unless given. Felt by drag and lift.
+    /// The velocity of the air: along x, or [x, up] or [x, y, up]; still unless given. Felt by drag
+    /// and lift.
     pub(super) wind: Option<At<OneOrMany<Measure<Speed>>>>,
 }
 
-/// Drag: linear by `rate` or `viscous`, quadratic by `per_length` or `coefficient`; one of each kind may act together.
+/// Drag: linear by `rate` or `viscous`, quadratic by `per_length` or `coefficient`; one of each
+/// kind may act together.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -142,11 +145,13 @@ pub(super) struct DragTable {
     viscous: Option<At<bool>>,
     /// Quadratic, a = -k |v| v: k.
     per_length: Option<At<Measure<PerLength>>>,
-    /// Quadratic: the drag coefficient, with the density of the air and the ball's radius and mass; 0.47 for a smooth sphere.
+    /// Quadratic: the drag coefficient, with the density of the air and the ball's radius and mass;
+    /// 0.47 for a smooth sphere.
     coefficient: Option<At<Number>>,
 }
 
-/// Lift by spin (the Magnus effect): C = slope × S/(1 + saturation × S), S the surface's speed over the ball's.
+/// Lift by spin (the Magnus effect): C = slope × S/(1 + saturation × S), S the surface's speed over
+/// the ball's.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[cfg_attr(test, derive(JsonSchema))]
 #[serde(deny_unknown_fields)]

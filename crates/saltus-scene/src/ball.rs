@@ -10,7 +10,8 @@ use super::space::Space;
 use super::value::{AngularSpeed, At, Length, Mass, Measure, Number, OneOrMany, Real, Speed};
 use saltus_bounce::Sphere;
 
-/// One ball: what it is, and how it starts. Vectors are (x, y, up) in m, m/s and rad/s; what a scene does not name is zero.
+/// One ball: what it is, and how it starts. Vectors are (x, y, up) in m, m/s and rad/s; what a
+/// scene does not name is zero.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -35,7 +36,8 @@ pub struct Ball {
     pub start: Start,
     /// In m/s.
     pub velocity: Vector3<f64>,
-    /// In rad/s, by the right-hand rule; in a planar scene only -y turns. `None` where the scene names no spin.
+    /// In rad/s, by the right-hand rule; in a planar scene only -y turns. `None` where the scene
+    /// names no spin.
     pub spin: Option<Vector3<f64>>,
 }
 
@@ -110,7 +112,8 @@ pub(super) struct BallTable {
     pub(super) radius: Option<At<Measure<Length>>>,
     /// Its diameter, instead of the radius.
     diameter: Option<At<Measure<Length>>>,
-    /// Its mass; needed by buoyancy, lift, drag with a coefficient, contact that takes time, and several balls.
+    /// Its mass; needed by buoyancy, lift, drag with a coefficient, contact that takes time, and
+    /// several balls.
     mass: Option<At<Measure<Mass>>>,
     /// Where the mass sits: "solid" unless given.
     shape: Option<At<Kind>>,
@@ -122,7 +125,8 @@ pub(super) struct BallTable {
     position: Option<At<OneOrMany<Measure<Length>>>>,
     /// The velocity it starts with: upwards, or [x, up] or [x, y, up]; at rest unless given.
     velocity: Option<At<OneOrMany<Measure<Speed>>>>,
-    /// The spin it starts with: from x towards up (topspin of a ball that flies towards x is negative), or a vector [x, y, up].
+    /// The spin it starts with: from x towards up (topspin of a ball that flies towards x is
+    /// negative), or a vector [x, y, up].
     pub(super) spin: Option<At<OneOrMany<Measure<AngularSpeed>>>>,
 }
 

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
-/// A scene that could not be read: what is wrong, in which line and column, and what to do about it.
+/// A scene that could not be read: what is wrong, in which line and column, and what to do about
+/// it.
 ///
 /// Its `Display` form shows the line itself with a caret below the place:
 ///
@@ -35,7 +36,8 @@ pub struct SceneError {
 const SHOWN: usize = 90;
 
 impl SceneError {
-    /// The problem at bytes `fault.span` of `source`; a byte that is no text counts as one character.
+    /// The problem at bytes `fault.span` of `source`; a byte that is no text counts as one
+    /// character.
     pub(super) fn new(name: &str, source: &[u8], fault: Fault) -> Self {
         let start = fault.span.start.min(source.len());
         let first = source[..start].iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);

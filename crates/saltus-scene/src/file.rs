@@ -31,9 +31,11 @@ use saltus_bounce::materials;
 pub(super) struct File {
     /// Gravity, downwards, or the name of a body ("moon"); 9.80665 m/s^2 unless given.
     gravity: Option<At<GravityValue>>,
-    /// Restitution on every floor that has none of its own: a coefficient, a range [low, high], or a table.
+    /// Restitution on every floor that has none of its own: a coefficient, a range [low, high], or
+    /// a table.
     restitution: Option<At<Short<RestitutionTable>>>,
-    /// Friction on every floor that has none of its own: a coefficient, or a table; none unless given.
+    /// Friction on every floor that has none of its own: a coefficient, or a table; none unless
+    /// given.
     friction: Option<At<Short<FrictionTable>>>,
     /// The ball, or several.
     ball: Option<At<OneOrMany<BallTable>>>,
@@ -313,7 +315,8 @@ impl File {
     }
 }
 
-/// The law of a ball on a floor: what is said of the floor, then of the scene, then what the materials have.
+/// The law of a ball on a floor: what is said of the floor, then of the scene, then what the
+/// materials have.
 fn law(said: Option<Said>, ball: Option<&str>, floor: Option<&str>, at: &Range<usize>) -> Result<Law, Fault> {
     let pick = match said {
         Some(Said::Law(law)) => return Ok(law),

@@ -142,7 +142,8 @@ pub(super) struct FloorTable {
     pub(super) material: Option<At<String>>,
     /// The shape: "level" unless given.
     kind: Option<At<Kind>>,
-    /// Its height: of a level floor, of an incline at x = 0, of the top step, of a box's bottom, of a curve's middle; 0 unless given.
+    /// Its height: of a level floor, of an incline at x = 0, of the top step, of a box's bottom, of
+    /// a curve's middle; 0 unless given.
     height: Option<At<Measure<Length>>>,
     /// Of an incline: above the horizontal, rising towards x.
     angle: Option<At<Measure<Angle>>>,

@@ -1,7 +1,9 @@
-//! Scenes as people write them: a TOML file with balls, floors and the effects that are wanted, read into a [`Scene`].
+//! Scenes as people write them: a TOML file with balls, floors and the effects that are wanted,
+//! read into a [`Scene`].
 //!
-//! A scene is data. It does not say how it is to be run; every number in it has been checked, every law is made. What the keys mean, with units
-//! and defaults, is in `docs/scenes.md`; [`schema`] gives it to editors.
+//! A scene is data. It does not say how it is to be run; every number in it has been checked, every
+//! law is made. What the keys mean, with units and defaults, is in `docs/scenes.md`; [`schema`]
+//! gives it to editors.
 
 pub mod accuracy;
 mod air;
@@ -102,16 +104,19 @@ impl Scene {
     /// The largest file that is read, in bytes.
     pub const LARGEST: usize = 1 << 20;
 
-    /// Reads a scene from TOML; `name` stands for the file in messages. A byte-order mark is passed over.
+    /// Reads a scene from TOML; `name` stands for the file in messages. A byte-order mark is passed
+    /// over.
     ///
     /// # Errors
-    /// [`SceneError`], with line, column and advice, when the text is no TOML or no scene: an unknown key, a wrong unit, a number outside its
-    /// domain, settings that contradict each other, a ball inside a floor, a run without end.
+    /// [`SceneError`], with line, column and advice, when the text is no TOML or no scene: an
+    /// unknown key, a wrong unit, a number outside its domain, settings that contradict each other,
+    /// a ball inside a floor, a run without end.
     pub fn parse(name: &str, toml: &[u8]) -> Result<Self, SceneError> {
         Self::parse_with(name, toml, Run::default())
     }
 
-    /// The same, where what `run` says goes before what the text says under `[run]`: so a scene that says no end can be given one.
+    /// The same, where what `run` says goes before what the text says under `[run]`: so a scene
+    /// that says no end can be given one.
     ///
     /// ```
     /// use saltus_scene::{Run, Scene};
@@ -150,7 +155,8 @@ impl Scene {
         name.unwrap_or_else(|| format!("ball {}", ball + 1))
     }
 
-    /// The law of restitution of a ball on a floor, both counted from 0; `None` where contact takes time or there is no such pair.
+    /// The law of restitution of a ball on a floor, both counted from 0; `None` where contact takes
+    /// time or there is no such pair.
     #[must_use]
     pub fn law(&self, ball: usize, floor: usize) -> Option<&Law> {
         self.laws.get(floor)?.get(ball)

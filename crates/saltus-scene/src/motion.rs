@@ -20,7 +20,8 @@ pub enum Motion {
         /// In rad.
         phase: f64,
     },
-    /// At these times in s this far above its height in m, straight between, still before and after.
+    /// At these times in s this far above its height in m, straight between, still before and
+    /// after.
     Schedule(Vec<[f64; 2]>),
 }
 
@@ -56,7 +57,8 @@ pub(super) struct MotionTable {
     frequency: Option<At<Measure<Frequency>>>,
     /// Of a vibration: its phase at the start; 0 unless given, the floor in the middle and rising.
     phase: Option<At<Measure<Angle>>>,
-    /// Pairs of a time and how far the floor is above its height then; straight between, still before and after.
+    /// Pairs of a time and how far the floor is above its height then; straight between, still
+    /// before and after.
     schedule: Option<At<Pairs<Measure<Time>, Measure<Length>>>>,
 }
 

@@ -1,4 +1,5 @@
-//! What an impact leaves of the speed: a number, a range, a law, or what is known of a material on another.
+//! What an impact leaves of the speed: a number, a range, a law, or what is known of a material on
+//! another.
 
 #[cfg(test)]
 use schemars::JsonSchema;
@@ -111,7 +112,8 @@ pub(super) struct RestitutionTable {
     law: Option<At<Kind>>,
     /// The lowest and the highest coefficient known.
     range: Option<At<[Number; 2]>>,
-    /// Where in the range, or between the bounds of the materials, a run is made: 0 the lowest, 1 the highest, 0.5 unless given.
+    /// Where in the range, or between the bounds of the materials, a run is made: 0 the lowest, 1
+    /// the highest, 0.5 unless given.
     pick: Option<At<Number>>,
     /// The coefficient: at speed zero for `linear`; at `speed` for `viscoelastic` and `plastic`.
     cor: Option<At<Number>>,
@@ -269,7 +271,8 @@ impl RestitutionTable {
 pub(super) struct FrictionTable {
     /// The coefficient of sliding friction μ.
     coefficient: At<Number>,
-    /// How much of the slip of a gripping ball comes back: 0, the ball leaves rolling, to 1; 0 unless given.
+    /// How much of the slip of a gripping ball comes back: 0, the ball leaves rolling, to 1; 0
+    /// unless given.
     gripping: Option<At<Number>>,
 }
 

@@ -7,7 +7,8 @@ const SCHEMA: &str = include_str!("scene.schema.json");
 
 /// The JSON Schema (draft 7) of scene files, as text.
 ///
-/// An editor that knows schemas for TOML checks and completes by it when the file begins with `#:schema scene.schema.json`.
+/// An editor that knows schemas for TOML checks and completes by it when the file begins with
+/// `#:schema scene.schema.json`.
 ///
 /// ```
 /// let schema = saltus_scene::schema();
@@ -74,8 +75,8 @@ mod tests {
         }
     }
 
-    /// Every kind of a table has a row in docs/scenes.md that names its keys; the kinds and keys are those of the schema, which come from the one
-    /// declaration of each table.
+    /// Every kind of a table has a row in docs/scenes.md that names its keys; the kinds and keys
+    /// are those of the schema, which come from the one declaration of each table.
     #[test]
     fn docs_have_every_kind_with_its_keys() {
         let docs = include_str!("../../../docs/scenes.md");

@@ -1,7 +1,8 @@
-//! What is asked of the shape of a floor: whether a ball may start there, which way it pushes, and what it looks like.
+//! What is asked of the shape of a floor: whether a ball may start there, which way it pushes, and
+//! what it looks like.
 //!
-//! One match for each question, all of them here: who adds a shape answers them, and gives it its keys in `floor.rs` and its wall in
-//! `plan/surroundings.rs`.
+//! One match for each question, all of them here: who adds a shape answers them, and gives it its
+//! keys in `floor.rs` and its wall in `plan/surroundings.rs`.
 
 use std::f64::consts::TAU;
 
@@ -50,7 +51,8 @@ impl Shape {
         }
     }
 
-    /// The greatest second derivative of a curve: a ball whose radius is not below its inverse may not fit into it.
+    /// The greatest second derivative of a curve: a ball whose radius is not below its inverse may
+    /// not fit into it.
     pub(super) fn hollow(&self) -> f64 {
         match self {
             Self::Parabola { curvature, .. } => *curvature,
@@ -146,7 +148,8 @@ impl Floor {
             Shape::Parabola { .. } | Shape::Sine { .. } => {
                 vec![steep(self.shape.curve(x).map_or(0.0, |[_, slope, _]| slope))]
             }
-            // A corner pushes along the change of the velocity itself, between the normals of its sides.
+            // A corner pushes along the change of the velocity itself, between the normals of its
+            // sides.
             Shape::Polyline { .. } => vec![change.try_normalize(0.0).unwrap_or(up)],
             Shape::Level { .. } => vec![up],
         };
@@ -156,7 +159,8 @@ impl Floor {
             .unwrap_or(up)
     }
 
-    /// The outline, in x and up, of a floor or wall that has any, within `[[left, right], [low, high]]`; none of one across y.
+    /// The outline, in x and up, of a floor or wall that has any, within
+    /// `[[left, right], [low, high]]`; none of one across y.
     #[must_use]
     pub fn outline(&self, [[left, right], [low, high]]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
         match self.shape {

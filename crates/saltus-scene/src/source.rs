@@ -1,4 +1,5 @@
-//! The text that a scene was read from, kept so that what is wrong with the scene as a whole can be shown in it.
+//! The text that a scene was read from, kept so that what is wrong with the scene as a whole can be
+//! shown in it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,7 +25,8 @@ impl Source {
         Self(Some(Arc::new((name.to_owned(), text.to_owned()))))
     }
 
-    /// What `says` says of the item `number`, from 0 and the last without one, of a table or list under `key`, shown where it stands.
+    /// What `says` says of the item `number`, from 0 and the last without one, of a table or list
+    /// under `key`, shown where it stands.
     pub(super) fn fault(&self, key: &str, number: Option<usize>, says: &str) -> Option<SceneError> {
         let (name, text) = self.0.as_deref()?;
         let span = found(text, key, number)?;

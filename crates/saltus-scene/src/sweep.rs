@@ -1,4 +1,5 @@
-//! A scene run many times with other values, and each run as a row: what of it a table of many runs wants.
+//! A scene run many times with other values, and each run as a row: what of it a table of many runs
+//! wants.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +22,8 @@ pub enum Column {
     FirstApex,
     /// From when on everything was at rest.
     Rest,
-    /// Why the run ended: "time", "jumps", "zeno", "evaluations", "cascade"; or "refused" or "failed", and there was no run.
+    /// Why the run ended: "time", "jumps", "zeno", "evaluations", "cascade"; or "refused" or
+    /// "failed", and there was no run.
     End,
     /// When it ended.
     EndTime,
@@ -137,7 +139,8 @@ impl RowFormat {
     }
 }
 
-/// The runs of a scene with other values. A row depends on the number of its run alone, so runs may be made in any order and anywhere.
+/// The runs of a scene with other values. A row depends on the number of its run alone, so runs may
+/// be made in any order and anywhere.
 ///
 /// ```
 /// use saltus_scene::sweep::{RowFormat, Sweep};
@@ -180,11 +183,12 @@ pub struct Nothing {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep of the scene `toml`, which messages call `name`; what `run` says goes before what the scene says. The rows have `columns`, or all
-    /// that the scene has.
+    /// A sweep of the scene `toml`, which messages call `name`; what `run` says goes before what
+    /// the scene says. The rows have `columns`, or all that the scene has.
     ///
     /// # Errors
-    /// [`Error`] if a key varies twice, the number of runs is not known, or the first run cannot be planned.
+    /// [`Error`] if a key varies twice, the number of runs is not known, or the first run cannot be
+    /// planned.
     pub fn new(
         name: &str,
         toml: &'a [u8],

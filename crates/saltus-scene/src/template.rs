@@ -9,10 +9,12 @@ use toml::de::{DeTable, DeValue};
 use super::error::{Fault, SceneError};
 use super::{Run, Scene, read};
 
-/// A scene file, read once, that is made into many scenes: each with its own values under the same keys.
+/// A scene file, read once, that is made into many scenes: each with its own values under the same
+/// keys.
 ///
-/// A key is the path of a value in the file, such as `restitution`, `ball.height` or, in lists, `floor.0.friction`, counted from 0; what the file
-/// does not say may be set as well. A value is written as TOML writes it: a number, text in quotes, `true` or `false`. Every check of
+/// A key is the path of a value in the file, such as `restitution`, `ball.height` or, in lists,
+/// `floor.0.friction`, counted from 0; what the file does not say may be set as well. A value is
+/// written as TOML writes it: a number, text in quotes, `true` or `false`. Every check of
 /// [`Scene::parse`] is made of every scene.
 ///
 /// ```
@@ -43,7 +45,8 @@ impl<'a> Template<'a> {
     /// Reads a file in which `keys` are to be set; `name` stands for it in messages.
     ///
     /// # Errors
-    /// [`SceneError`] when the text is no TOML. Whether it is a scene is seen when it is made into one.
+    /// [`SceneError`] when the text is no TOML. Whether it is a scene is seen when it is made into
+    /// one.
     pub fn parse(name: &str, toml: &'a [u8], keys: &[&'a str]) -> Result<Self, SceneError> {
         let bytes = read::unmarked(toml);
         let parsed = read::text(bytes).and_then(|text| Ok((text, read::table(text)?)));
@@ -51,8 +54,8 @@ impl<'a> Template<'a> {
         Ok(Self { name: name.to_owned(), bytes, text, table, keys: keys.to_vec() })
     }
 
-    /// The scene with `values`, one for each key, in the order of the keys; a key without a value is as the file says. What `run` says goes
-    /// before what the file says.
+    /// The scene with `values`, one for each key, in the order of the keys; a key without a value
+    /// is as the file says. What `run` says goes before what the file says.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a message about a value that was set shows that value.

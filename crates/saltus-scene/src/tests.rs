@@ -188,7 +188,8 @@ fn a_mark_and_windows_line_ends_change_nothing() {
     assert!(!error.to_string().contains('\r'));
 }
 
-/// The middle ball of three hands the impact on to the one that touches it: its event has both sides of all three.
+/// The middle ball of three hands the impact on to the one that touches it: its event has both
+/// sides of all three.
 #[test]
 fn an_impact_that_is_handed_on_has_a_side_of_each_ball() {
     let ball = |height: f64, mass: f64| format!("[[ball]]\nradius = 0.0625\nmass = {mass:?}\nheight = {height:?}\n");
@@ -224,7 +225,8 @@ fn what_rests_from_the_start_is_shown_at_rest() {
     }
 }
 
-/// What is watched for is what a record would show, times and apexes to the bit, in every example and where nothing says when to stop.
+/// What is watched for is what a record would show, times and apexes to the bit, in every example
+/// and where nothing says when to stop.
 #[test]
 fn an_outcome_is_what_the_record_shows() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes");
@@ -277,7 +279,8 @@ fn what_no_model_can_do_is_said_where_it_stands() {
         assert_eq!((found.line(), found.column()), place, "{error}");
         assert!(error.to_string().contains("\n  help: "), "{error}");
     }
-    // A scene changed by hand is no longer what stands in the text, but still says where that key is.
+    // A scene changed by hand is no longer what stands in the text, but still says where that key
+    // is.
     let mut scene = Scene::parse("s.toml", format!("restitution = 0.8\n[run]\nuntil = 1\n{two}").as_bytes()).unwrap();
     scene.effects.buoyancy = true;
     let error = scene.plan().unwrap_err();

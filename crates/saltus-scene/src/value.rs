@@ -1,4 +1,5 @@
-//! The values that stand in a scene file: quantities with units, plain numbers, vectors, one thing or a list of it.
+//! The values that stand in a scene file: quantities with units, plain numbers, vectors, one thing
+//! or a list of it.
 
 #[cfg(test)]
 use std::borrow::Cow;
@@ -36,7 +37,8 @@ impl<T> At<T> {
     }
 }
 
-/// The smallest of what is above zero: the product of ten such numbers is not zero yet. Where it is a size, it is far below anything that bounces.
+/// The smallest of what is above zero: the product of ten such numbers is not zero yet. Where it is
+/// a size, it is far below anything that bounces.
 const SMALLEST: f64 = 1e-30;
 
 impl<T: Real> At<T> {

@@ -1,4 +1,5 @@
-//! A ball on ground that goes straight from point to point, against a reference that knows only distances.
+//! A ball on ground that goes straight from point to point, against a reference that knows only
+//! distances.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -22,7 +23,8 @@ fn nearest(points: &[[f64; 2]], p: Vector2<f64>) -> Vector2<f64> {
     all.min_by(|a, b| (a - p).norm().total_cmp(&(b - p).norm())).unwrap()
 }
 
-/// Impact times of a ball that loses a part of its normal speed where its centre comes within a radius of the ground: small steps, then halving.
+/// Impact times of a ball that loses a part of its normal speed where its centre comes within a
+/// radius of the ground: small steps, then halving.
 fn reference(points: &[[f64; 2]], radius: f64, cor: f64, start: [[f64; 2]; 2], count: usize) -> Vec<f64> {
     const STEP: f64 = 2e-4;
     let (mut x, mut v): (Vector2<f64>, Vector2<f64>) = (start[0].into(), start[1].into());
@@ -81,7 +83,8 @@ fn impacts_are_those_of_the_distance_to_the_ground() {
     assert!(met >= 120);
 }
 
-/// A point that slides without friction down a side of 45° into the corner of a right angle meets the other side head on, and stays.
+/// A point that slides without friction down a side of 45° into the corner of a right angle meets
+/// the other side head on, and stays.
 #[test]
 fn who_slides_into_an_inward_corner_meets_the_other_side() {
     let points = [[-1.0, 1.0], [0.0, 0.0], [1.0, 1.0]];

@@ -1,6 +1,7 @@
 //! What a step costs, what a guard adds to it that never fires, and what a crossing costs.
 //!
-//! `cargo bench -p saltus`; quote ratios of one run on one machine, not times. Times are per step, or per crossing where there are some.
+//! `cargo bench -p saltus`; quote ratios of one run on one machine, not times. Times are per step,
+//! or per crossing where there are some.
 
 #![allow(clippy::unwrap_used)] // a benchmark of a run that fails should stop
 
@@ -25,7 +26,8 @@ enum Watch {
     Unpromised,
 }
 
-/// N coordinates that turn into each other in pairs, and a wall that none ever reaches (`wall` = 2) or that each half turn crosses (0).
+/// N coordinates that turn into each other in pairs, and a wall that none ever reaches (`wall` = 2)
+/// or that each half turn crosses (0).
 struct Turning<const N: usize> {
     watch: Watch,
     wall: f64,
@@ -98,7 +100,8 @@ fn step_of_rodas5p<const N: usize>(bencher: Bencher) {
     steps::<N>(bencher, Rodas5P, Watch::Nothing);
 }
 
-/// Against `step_of_tsit5`: what a guard costs that never fires, with the dense output that it looks at.
+/// Against `step_of_tsit5`: what a guard costs that never fires, with the dense output that it
+/// looks at.
 #[divan::bench(consts = [2, 4, 8])]
 fn step_with_a_promised_guard<const N: usize>(bencher: Bencher) {
     steps::<N>(bencher, Tsit5, Watch::Promised);

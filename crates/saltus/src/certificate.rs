@@ -1,4 +1,5 @@
-//! What a run can show for itself: how each guard was searched, and where a crossing may have been missed.
+//! What a run can show for itself: how each guard was searched, and where a crossing may have been
+//! missed.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -13,11 +14,14 @@ use crate::time::Time;
 
 /// An observer that keeps, for each edge, how the searches of its guard came out, and every doubt.
 ///
-/// A search is **excluded** (bounds leave no room for a crossing), **isolated** (no crossing in any part, or a first one that is the only one
-/// in its part) or **doubtful** (see [`Inspection::doubt`]). There is one search per step and edge, or per exact arc and edge.
-/// Doubts at times after the crossing that ended the arc are none, and those of neighbouring steps are one.
+/// A search is **excluded** (bounds leave no room for a crossing), **isolated** (no crossing in any
+/// part, or a first one that is the only one in its part) or **doubtful** (see
+/// [`Inspection::doubt`]). There is one search per step and edge, or per exact arc and edge. Doubts
+/// at times after the crossing that ended the arc are none, and those of neighbouring steps are
+/// one.
 ///
-/// Of edges that carry data (`Liftoff { foot: f64 }`) the first 64 have rows of their own, the rest share one.
+/// Of edges that carry data (`Liftoff { foot: f64 }`) the first 64 have rows of their own, the rest
+/// share one.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};

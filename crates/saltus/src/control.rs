@@ -3,7 +3,8 @@
 use crate::state::State;
 use crate::step::Stepper;
 
-/// Local error allowed per step: in coordinate i, absolute + relative · max(|xᵢ| before, |xᵢ| after).
+/// Local error allowed per step: in coordinate i, absolute + relative · max(|xᵢ| before, |xᵢ|
+/// after).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tolerance {
     pub(crate) relative: f64,
@@ -36,8 +37,9 @@ impl Tolerance {
     }
 }
 
-/// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K. Gustafsson, ACM TOMS 17 (1991) 533), or
-/// one that predicts how the error will go on changing and is no bolder than without memory (IV.8; K. Gustafsson, ACM TOMS 20 (1994) 496).
+/// A PI controller (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2; K.
+/// Gustafsson, ACM TOMS 17 (1991) 533), or one that predicts how the error will go on changing and
+/// is no bolder than without memory (IV.8; K. Gustafsson, ACM TOMS 20 (1994) 496).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
@@ -62,7 +64,8 @@ impl Controller {
         Self { order, predictive: stepper.predictive(), previous: Self::LEAST, step: 0.0, rejected: false }
     }
 
-    /// By which factor to change the step `h` after an error of this `square`, and whether to accept it.
+    /// By which factor to change the step `h` after an error of this `square`, and whether to
+    /// accept it.
     #[inline]
     pub(crate) fn judge(&mut self, square: f64, h: f64) -> (bool, f64) {
         if square <= 1.0 {

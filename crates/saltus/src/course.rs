@@ -19,7 +19,8 @@ use crate::ticks::Ticks;
 use crate::time::{Span, Time};
 use crate::zeno::{Cascade, Contraction};
 
-/// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody else, and for runs that must survive a pause.
+/// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody
+/// else, and for runs that must survive a pause.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -48,7 +49,8 @@ pub struct Course<'a, A: Automaton, M = Auto> {
     held: Held<A>,
 }
 
-/// Where a run stands just after a jump, handed on to the next arc: read back from where it is kept, it would be waited for, by a fifth of a ball's impact.
+/// Where a run stands just after a jump, handed on to the next arc: read back from where it is
+/// kept, it would be waited for, by a fifth of a ball's impact.
 struct Stand<A: Automaton> {
     mode: A::Mode,
     state: A::State,
@@ -60,7 +62,8 @@ struct Stand<A: Automaton> {
 /// What comes after an arc and the jump at its end.
 enum Next<A: Automaton> {
     Arc,
-    /// Infinitely many jumps in the time that remains; not `certified` where rounding hides whether.
+    /// Infinitely many jumps in the time that remains; not `certified` where rounding hides
+    /// whether.
     Limit {
         remaining: f64,
         certified: bool,
@@ -68,12 +71,14 @@ enum Next<A: Automaton> {
     Stop(Stop<A::Edge>),
 }
 
-/// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes it, [`Simulation::resume`](crate::Simulation::resume)
-/// goes on from it; the feature `serde` writes and reads it.
+/// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes
+/// it, [`Simulation::resume`](crate::Simulation::resume) goes on from it; the feature `serde`
+/// writes and reads it.
 ///
-/// What is written bears the number of its format, and one of another number is refused: a run goes on
-/// to the bit only with what it was begun with. Modes and edges of a [`Hybrid`](crate::Hybrid) are names, which are borrowed from the text that is
-/// read: let it last by [`String::leak`]. Lists of more than 32 coordinates are read and written as `SVector`.
+/// What is written bears the number of its format, and one of another number is refused: a run goes
+/// on to the bit only with what it was begun with. Modes and edges of a [`Hybrid`](crate::Hybrid)
+/// are names, which are borrowed from the text that is read: let it last by [`String::leak`]. Lists
+/// of more than 32 coordinates are read and written as `SVector`.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation, Stop};
@@ -109,8 +114,8 @@ pub struct Checkpoint<M, E, S> {
     stop: Option<Stop<E>>,
 }
 
-/// The format of a checkpoint that is written: a number, raised whenever a field is added, removed or
-/// changes its meaning (tests/running.rs, `another_format_is_refused`).
+/// The format of a checkpoint that is written: a number, raised whenever a field is added, removed
+/// or changes its meaning (tests/running.rs, `another_format_is_refused`).
 #[derive(Clone, Copy, Debug)]
 struct Format;
 
@@ -233,7 +238,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// Advances to the end.
     ///
     /// # Errors
-    /// See [`Error`]; the observer has been told of everything before it, and the course stays where it was.
+    /// See [`Error`]; the observer has been told of everything before it, and the course stays
+    /// where it was.
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
         let stop = match self.at.stop {
             Some(stop) => stop,
@@ -344,7 +350,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 let (kind, note) = wrong(*automaton, to, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
-            // From where it was computed, not by way of the jump, which lies in memory: that copy alone took a fifth of a ball's impact.
+            // From where it was computed, not by way of the jump, which lies in memory: that copy
+            // alone took a fifth of a ball's impact.
             (at.span.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
             let jump = Jump { time: instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {
@@ -369,11 +376,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Ok(next)
     }
 
-    /// What follows a jump at time `t`: another arc, unless jumps at one time contract or a limit of the run is reached.
+    /// What follows a jump at time `t`: another arc, unless jumps at one time contract or a limit
+    /// of the run is reached.
     #[inline]
     fn after_jump(&self, edge: A::Edge, t: f64) -> Next<A> {
         let Self { automaton, options, at, .. } = self;
-        // Collisions that go on at one time: where they contract, what lies beyond them is the model's to say.
+        // Collisions that go on at one time: where they contract, what lies beyond them is the
+        // model's to say.
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
         if at.jumps >= options.most_jumps {
             Next::Stop(Stop::Jumps { most: at.jumps })
@@ -388,7 +397,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
     }
 
-    /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to resolve, and the model says what lies beyond.
+    /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to
+    /// resolve, and the model says what lies beyond.
     #[cold]
     fn at_limit(
         &mut self,

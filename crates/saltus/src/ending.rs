@@ -79,8 +79,8 @@ pub enum Stop<E> {
         /// The accumulation time, in seconds.
         limit: f64,
     },
-    /// Jumps come closer together at `limit` than rounding can tell apart, without the contraction that would certify that they accumulate there,
-    /// and the model does not say what lies beyond.
+    /// Jumps come closer together at `limit` than rounding can tell apart, without the contraction
+    /// that would certify that they accumulate there, and the model does not say what lies beyond.
     Resolution {
         /// When, in seconds.
         limit: f64,
@@ -125,8 +125,8 @@ pub enum Stop<E> {
 }
 
 impl<E> Stop<E> {
-    /// Whether it is an end that was asked for: that of the span, a terminal edge, the observer's. Else
-    /// the run is not where it was to go.
+    /// Whether it is an end that was asked for: that of the span, a terminal edge, the observer's.
+    /// Else the run is not where it was to go.
     #[must_use]
     pub const fn is_asked(&self) -> bool {
         matches!(self, Self::Time | Self::Forever | Self::Terminal { .. } | Self::Observer)
@@ -277,8 +277,8 @@ pub struct Run<M, E, S> {
 pub type RunOf<A> = Run<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
 impl<M: fmt::Debug, E: fmt::Debug, S: State> Run<M, E, S> {
-    /// The run, if it came to an end that was asked for: that of the span, or at a terminal edge. What
-    /// ended before, by a limit or where jumps accumulate, has the state of another time.
+    /// The run, if it came to an end that was asked for: that of the span, or at a terminal edge.
+    /// What ended before, by a limit or where jumps accumulate, has the state of another time.
     ///
     /// ```
     /// use saltus::{ErrorKind, Hybrid, Simulation};

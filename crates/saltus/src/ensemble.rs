@@ -2,14 +2,18 @@
 
 use std::ops::{ControlFlow, Range};
 
-/// Makes the runs of `range` and hands what comes of each to `each`, in their order; `each` may end the ensemble.
+/// Makes the runs of `range` and hands what comes of each to `each`, in their order; `each` may end
+/// the ensemble.
 ///
-/// `run` is given a number and makes of it whatever is wanted: a parameter, a start, an automaton, a run, and of that run what is to be kept. A
-/// run that fails is a value like any other. With the cargo feature `rayon` the runs are made on all cores, or on those of the pool it is called
-/// in; what `each` is given, and in which order, is the same to the bit on any number of threads as long as `run` depends on its number alone.
+/// `run` is given a number and makes of it whatever is wanted: a parameter, a start, an automaton,
+/// a run, and of that run what is to be kept. A run that fails is a value like any other. With the
+/// cargo feature `rayon` the runs are made on all cores, or on those of the pool it is called in;
+/// what `each` is given, and in which order, is the same to the bit on any number of threads as
+/// long as `run` depends on its number alone.
 ///
-/// Results wait for their turn in chunks, which grow from one run for each thread to what takes about a twentieth of a second: so little is
-/// in memory at once, and what is slow is handed over soon. When `each` ends the ensemble, some runs beyond may have been made in vain.
+/// Results wait for their turn in chunks, which grow from one run for each thread to what takes
+/// about a twentieth of a second: so little is in memory at once, and what is slow is handed over
+/// soon. When `each` ends the ensemble, some runs beyond may have been made in vain.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -72,7 +76,8 @@ fn chunks<T: Send, B>(
     /// What a chunk may take before the next is no larger, and how large one gets.
     const LONG: Duration = Duration::from_millis(25);
     const LARGEST: usize = 1 << 14;
-    /// In how many parts for each thread a chunk is made, so that none waits long for the last of another.
+    /// In how many parts for each thread a chunk is made, so that none waits long for the last of
+    /// another.
     const PARTS: usize = 64;
 
     let threads = rayon::current_num_threads();

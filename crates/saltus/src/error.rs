@@ -5,7 +5,8 @@ use std::fmt;
 
 use crate::state::State;
 
-/// Why a run failed, with the time, mode, edge and state where it did. Written with `{}` or `{:?}`, it is a sentence that says what to do.
+/// Why a run failed, with the time, mode, edge and state where it did. Written with `{}` or `{:?}`,
+/// it is a sentence that says what to do.
 ///
 /// ```
 /// use saltus::{ErrorKind, Hybrid, Simulation};
@@ -278,8 +279,8 @@ impl fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// Why a reset gives no state: what [`Automaton::reset`](crate::Automaton::reset) answers in place of
-/// one. The run fails with an [`Error`] that says it, with time, mode, edge and state.
+/// Why a reset gives no state: what [`Automaton::reset`](crate::Automaton::reset) answers in place
+/// of one. The run fails with an [`Error`] that says it, with time, mode, edge and state.
 ///
 /// Any error becomes one by `?`.
 ///

@@ -37,7 +37,8 @@ pub struct Inspection<M, E> {
     pub start: Time,
     /// How far the search went, in seconds; infinite on an exact arc of a run without an end.
     pub span: f64,
-    /// What is known: no crossing, one that was isolated, or where rounding or haste hides one. Times count from `start`.
+    /// What is known: no crossing, one that was isolated, or where rounding or haste hides one.
+    /// Times count from `start`.
     pub evidence: Evidence,
 }
 
@@ -45,7 +46,8 @@ pub struct Inspection<M, E> {
 pub type InspectionOf<A> = Inspection<<A as Automaton>::Mode, <A as Automaton>::Edge>;
 
 impl<M: Copy, E: Copy> Inspection<M, E> {
-    /// Between which times, in seconds, a crossing may have been missed; `None` where the search leaves no doubt.
+    /// Between which times, in seconds, a crossing may have been missed; `None` where the search
+    /// leaves no doubt.
     #[must_use]
     pub fn doubt(&self) -> Option<Range<f64>> {
         let (from, to) = when(self.evidence)?;
@@ -146,7 +148,8 @@ const fn advice(why: Doubt) -> &'static str {
     }
 }
 
-/// The doubts of a run: first those that stand, then those of the step in progress, whose end is not known yet.
+/// The doubts of a run: first those that stand, then those of the step in progress, whose end is
+/// not known yet.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Clone)]
 pub(crate) struct Doubts<M, E> {

@@ -1,8 +1,9 @@
-//! `saltus` integrates **hybrid automata**: continuous flow, guards, resets. Every fall of a guard is
-//! found that a step's samples show, and none of an affine guard is missed; where rounding or haste
-//! may hide one, the run says so; and every run ends, by name.
+//! `saltus` integrates **hybrid automata**: continuous flow, guards, resets. Every fall of a guard
+//! is found that a step's samples show, and none of an affine guard is missed; where rounding or
+//! haste may hide one, the run says so; and every run ends, by name.
 //!
-//! Describe a system with closures ([`Hybrid`]) or as a type ([`Automaton`]), then run it ([`Simulation`]).
+//! Describe a system with closures ([`Hybrid`]) or as a type ([`Automaton`]), then run it
+//! ([`Simulation`]).
 //!
 //! ```
 //! use saltus::nalgebra::{self, Vector2, vector};
@@ -21,8 +22,8 @@
 //! # Ok::<(), saltus::Error>(())
 //! ```
 //!
-//! A run is a hybrid arc on hybrid time (t, j): j counts jumps, so several jumps may share one t. At a jump the state has two limits,
-//! [`Trajectory::before`] and [`Trajectory::at`].
+//! A run is a hybrid arc on hybrid time (t, j): j counts jumps, so several jumps may share one t.
+//! At a jump the state has two limits, [`Trajectory::before`] and [`Trajectory::at`].
 
 mod advance;
 mod analysis;

@@ -1,14 +1,17 @@
 //! How much memory a recorded run may take.
 
-/// The part of the free memory that a record may take. A list that grows takes twice what it holds, and
-/// three times while it is copied to where it has room: with a quarter, as much is left to all else.
+/// The part of the free memory that a record may take. A list that grows takes twice what it holds,
+/// and three times while it is copied to where it has room: with a quarter, as much is left to all
+/// else.
 const PART: u64 = 4;
 /// No record takes more than this without being allowed to: 4 GiB.
 const MOST: u64 = 4 << 30;
-/// Records smaller than this, 16 MiB, do not ask how much is free: that takes a fifth of a millisecond.
+/// Records smaller than this, 16 MiB, do not ask how much is free: that takes a fifth of a
+/// millisecond.
 const FIRST: usize = 16 << 20;
-/// A record asks again when it has grown by this part, since others may have grown beside it: with n of them each
-/// ends at 1/(n + 3) of what was free, so that up to 48, each a sixteenth beyond, find room together.
+/// A record asks again when it has grown by this part, since others may have grown beside it: with
+/// n of them each ends at 1/(n + 3) of what was free, so that up to 48, each a sixteenth beyond,
+/// find room together.
 const AGAIN: usize = 16;
 
 /// The limit on what a record takes.

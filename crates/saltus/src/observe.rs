@@ -9,9 +9,10 @@ use crate::piece::Piece;
 
 /// Is told of each piece and each jump of a run, in order; may end the run.
 ///
-/// The order of a step is: one [`inspection`](Self::inspection) per edge, the [`piece`](Self::piece) up to the first crossing or the end of
-/// the step (none if it has no duration), the [`jump`](Self::jump) if there is one.
-/// The methods do nothing unless written. `()` observes nothing, for free; a pair of observers are two; `&mut` an observer is one;
+/// The order of a step is: one [`inspection`](Self::inspection) per edge, the
+/// [`piece`](Self::piece) up to the first crossing or the end of the step (none if it has no
+/// duration), the [`jump`](Self::jump) if there is one. The methods do nothing unless written. `()`
+/// observes nothing, for free; a pair of observers are two; `&mut` an observer is one;
 /// [`Trajectory`](crate::Trajectory) and [`Certificate`](crate::Certificate) are observers.
 ///
 /// ```
@@ -36,13 +37,15 @@ use crate::piece::Piece;
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub trait Observer<A: Automaton> {
-    /// A stretch of the arc in `mode` is done. `Break` ends the run with [`Stop::Observer`](crate::Stop::Observer).
+    /// A stretch of the arc in `mode` is done. `Break` ends the run with
+    /// [`Stop::Observer`](crate::Stop::Observer).
     fn piece(&mut self, mode: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         let _ = (mode, piece);
         ControlFlow::Continue(())
     }
 
-    /// Whether pieces are wanted. If not, some may not be told of: those of a mode without edges are then not even computed.
+    /// Whether pieces are wanted. If not, some may not be told of: those of a mode without edges
+    /// are then not even computed.
     fn wants_pieces(&self) -> bool {
         true
     }
@@ -53,7 +56,8 @@ pub trait Observer<A: Automaton> {
         ControlFlow::Continue(())
     }
 
-    /// The guard of an edge was searched for a crossing, over the whole step: also beyond a crossing of another edge that ends it.
+    /// The guard of an edge was searched for a crossing, over the whole step: also beyond a
+    /// crossing of another edge that ends it.
     fn inspection(&mut self, inspection: &InspectionOf<A>) {
         let _ = inspection;
     }

@@ -17,7 +17,8 @@ pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
 /// More coefficients than any stepper's dense output has.
 pub(crate) const LONG: usize = 9;
 
-/// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is solved exactly.
+/// A stretch of an arc on which the state is one polynomial in time: a step, or a whole arc that is
+/// solved exactly.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
@@ -67,7 +68,8 @@ impl<'a, S: State> Piece<'a, S> {
         self.coefficients
     }
 
-    /// The time unit of the coefficients, in seconds: the step's size, or 1 where the flow is solved exactly.
+    /// The time unit of the coefficients, in seconds: the step's size, or 1 where the flow is
+    /// solved exactly.
     #[must_use]
     pub const fn scale(&self) -> f64 {
         self.scale

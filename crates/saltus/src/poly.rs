@@ -1,4 +1,5 @@
-//! Polynomials over a step, in the Bernstein basis: their coefficients bound them, and halving them isolates their roots.
+//! Polynomials over a step, in the Bernstein basis: their coefficients bound them, and halving them
+//! isolates their roots.
 
 /// The highest degree handled.
 pub(crate) const MAX_DEGREE: usize = 28;
@@ -21,8 +22,9 @@ const BINOMIALS: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
 
 /// A polynomial on `[0, 1]` by its Bernstein coefficients, p(u) = Σ bᵢ C(n,i) uⁱ (1-u)ⁿ⁻ⁱ.
 ///
-/// p lies between the smallest and the largest bᵢ, starts at b₀ and ends at bₙ; if the bᵢ fall (rise) throughout, so does p
-/// (R. Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29 (2012) 379, doi:10.1016/j.cagd.2012.03.001).
+/// p lies between the smallest and the largest bᵢ, starts at b₀ and ends at bₙ; if the bᵢ fall
+/// (rise) throughout, so does p (R. Farouki, *The Bernstein polynomial basis: a centennial
+/// retrospective*, CAGD 29 (2012) 379, doi:10.1016/j.cagd.2012.03.001).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bernstein {
     b: [f64; MAX_DEGREE + 1],
@@ -36,7 +38,8 @@ pub(crate) enum Shape {
     Above,
     /// Negative throughout.
     Below,
-    /// Falling throughout, faster than the margin could undo, and not within the margin of zero throughout.
+    /// Falling throughout, faster than the margin could undo, and not within the margin of zero
+    /// throughout.
     Falling,
     /// Rising throughout, likewise.
     Rising,
@@ -133,8 +136,9 @@ impl Bernstein {
         weighted
     }
 
-    /// Where it changes sign, if its signs at both ends differ: by regula falsi, to rounding. An end that stays is weighed down as if a parabola ran through
-    /// the last three points (N. Anderson, Å. Björck, BIT 13 (1973) 253, doi:10.1007/BF01951936).
+    /// Where it changes sign, if its signs at both ends differ: by regula falsi, to rounding. An
+    /// end that stays is weighed down as if a parabola ran through the last three points (N.
+    /// Anderson, Å. Björck, BIT 13 (1973) 253, doi:10.1007/BF01951936).
     pub(crate) fn root(&self) -> Option<f64> {
         let (mut a, mut b, mut at_a, mut at_b) = (0.0, 1.0, self.start(), self.end());
         if at_a == 0.0 || at_b == 0.0 || (at_a > 0.0) == (at_b > 0.0) {
@@ -170,7 +174,8 @@ impl Bernstein {
         Self { b, degree: self.degree }
     }
 
-    /// What changes from the start on, divided by u: (p(u) - p(0)) / u. The root at the start is spent, and its value there is rounding.
+    /// What changes from the start on, divided by u: (p(u) - p(0)) / u. The root at the start is
+    /// spent, and its value there is rounding.
     pub(crate) fn without_root_at_start(&self) -> Self {
         let mut b = [0.0; MAX_DEGREE + 1];
         #[allow(clippy::cast_precision_loss)]
@@ -195,8 +200,9 @@ impl Bernstein {
     }
 }
 
-/// The value at `u` of the polynomial of these weighted coefficients, by Horner's rule in u/(1-u) or its reciprocal, whichever is at most one
-/// (L. Schumaker, W. Volk, *Efficient evaluation of multivariate polynomials*, CAGD 3 (1986) 149).
+/// The value at `u` of the polynomial of these weighted coefficients, by Horner's rule in u/(1-u)
+/// or its reciprocal, whichever is at most one (L. Schumaker, W. Volk, *Efficient evaluation of
+/// multivariate polynomials*, CAGD 3 (1986) 149).
 #[inline]
 fn value(weighted: &[f64], u: f64) -> f64 {
     let v = 1.0 - u;
@@ -211,7 +217,8 @@ fn value(weighted: &[f64], u: f64) -> f64 {
     sum * power
 }
 
-/// Σ aₖ uᵏ and its derivative, where `of` gives aₖ of the list's number k: even and odd powers apart, half as long a chain.
+/// Σ aₖ uᵏ and its derivative, where `of` gives aₖ of the list's number k: even and odd powers
+/// apart, half as long a chain.
 #[inline]
 pub(crate) fn value_and_slope<T>(a: &[T], of: impl Fn(&T) -> f64, u: f64) -> (f64, f64) {
     let square = u * u;
@@ -227,15 +234,18 @@ pub(crate) fn value_and_slope<T>(a: &[T], of: impl Fn(&T) -> f64, u: f64) -> (f6
     (even + u * odd, odd + 2.0 * (u * even_slope + square * odd_slope))
 }
 
-/// The first fall through zero of c₀ + c₁ s + c₂ s² at s ≥ 0, with c₀ taken to be zero and its root skipped if `spent`.
+/// The first fall through zero of c₀ + c₁ s + c₂ s² at s ≥ 0, with c₀ taken to be zero and its root
+/// skipped if `spent`.
 ///
-/// The roots come from the form that does not cancel; the discriminant is computed with a fused multiply-add
-/// (W. Kahan, *On the cost of floating-point computation without extra-precise arithmetic*, 2004).
+/// The roots come from the form that does not cancel; the discriminant is computed with a fused
+/// multiply-add (W. Kahan, *On the cost of floating-point computation without extra-precise
+/// arithmetic*, 2004).
 #[inline]
 pub(crate) fn quadratic_fall(c: [f64; 3], spent: bool) -> Option<f64> {
     let [c0, c1, c2] = c;
     if spent {
-        // s (c₁ + c₂ s): what is left falls at -c₁/c₂ if it starts positive; from a double root it falls at once.
+        // s (c₁ + c₂ s): what is left falls at -c₁/c₂ if it starts positive; from a double root it
+        // falls at once.
         return if c1 > 0.0 && c2 < 0.0 {
             Some(-c1 / c2)
         } else if c1 == 0.0 && c2 < 0.0 {

@@ -26,13 +26,14 @@ pub struct Sample<M, S> {
     pub state: S,
 }
 
-/// Keeps a run at the times t₀ + k·dt, and where each arc begins and ends: at a jump x⁻ and then x⁺.
+/// Keeps a run at the times t₀ + k·dt, and where each arc begins and ends: at a jump x⁻ and then
+/// x⁺.
 ///
-/// As an observer it keeps only these rows, so that a long run takes the memory of its table. Tick k
-/// is rounded once, never added up; one that falls on an end of an arc is that end. An arc that never
-/// ends has its first row and its last. More than 10⁷ rows end the run, with
-/// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the names and units of
-/// the state's coordinates ([`State::name`], [`State::unit`]) as headings.
+/// As an observer it keeps only these rows, so that a long run takes the memory of its table. Tick
+/// k is rounded once, never added up; one that falls on an end of an arc is that end. An arc that
+/// never ends has its first row and its last. More than 10⁷ rows end the run, with
+/// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the
+/// names and units of the state's coordinates ([`State::name`], [`State::unit`]) as headings.
 ///
 /// ```
 /// use saltus::{Hybrid, Sampler, Simulation};
@@ -77,7 +78,8 @@ impl<M: Copy, S: State> Sampler<M, S> {
         Self { dt, start: None, next: 1, rows: Vec::new(), end: None, j: 0, names: Vec::new() }
     }
 
-    /// Names the coordinates in the table, units in brackets at the end; those left over keep the names of the state.
+    /// Names the coordinates in the table, units in brackets at the end; those left over keep the
+    /// names of the state.
     #[must_use]
     pub fn named<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.names = names.into_iter().map(Into::into).collect();

@@ -15,14 +15,14 @@ use crate::automaton::clocks::Clock;
 ///
 /// The slope mₖ of a cubic is the harmonic mean of the slopes to both sides, weighted by their
 /// lengths, and zero at a peak (F. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300,
-/// doi:10.1137/0905021); at an end it is that of the parabola through three samples, limited so that
-/// the cubic stays monotone.
+/// doi:10.1137/0905021); at an end it is that of the parabola through three samples, limited so
+/// that the cubic stays monotone.
 ///
 /// Times are in seconds and rise; values are in any unit. Before the first sample the input has its
 /// value, after the last one that one's, unless the input is [`repeated`](Self::repeated).
 ///
-/// Its knots are [`stops`](Self::stops) of a flow that uses it: steps end there, and none goes over a
-/// short pulse.
+/// Its knots are [`stops`](Self::stops) of a flow that uses it: steps end there, and none goes over
+/// a short pulse.
 ///
 /// ```
 /// use saltus::{Hybrid, Signal, Simulation};
@@ -35,8 +35,8 @@ use crate::automaton::clocks::Clock;
 /// ```
 ///
 /// # Limits
-/// Each knot costs a step. Of a long record of smooth measurements, with many samples in the time in
-/// which the state changes, leave the stops out: what a kink costs is then below the tolerance.
+/// Each knot costs a step. Of a long record of smooth measurements, with many samples in the time
+/// in which the state changes, leave the stops out: what a kink costs is then below the tolerance.
 #[derive(Clone, Debug)]
 pub struct Signal {
     knots: Arc<[Knot]>,
@@ -158,8 +158,8 @@ impl Signal {
 
     /// The same over and over, before the first sample as well: u(t + `period`) = u(t).
     ///
-    /// The last sample is joined to the first of the next period. If they are a whole period apart, they must be equal, unless
-    /// samples are held.
+    /// The last sample is joined to the first of the next period. If they are a whole period apart,
+    /// they must be equal, unless samples are held.
     ///
     /// ```
     /// use saltus::Signal;
@@ -209,7 +209,8 @@ impl Signal {
         }
     }
 
-    /// When it is not smooth: at its knots, for [`Hybrid::stops`](crate::Hybrid::stops) or [`Automaton::stops`](crate::Automaton::stops).
+    /// When it is not smooth: at its knots, for [`Hybrid::stops`](crate::Hybrid::stops) or
+    /// [`Automaton::stops`](crate::Automaton::stops).
     #[must_use]
     pub fn stops(&self) -> Clock {
         let knots = Clock::at(self.knots.iter().map(|knot| knot.t).collect::<Vec<_>>());

@@ -106,9 +106,10 @@ impl<A: Automaton> Observer<A> for Bounded<'_, A> {
 }
 
 impl<'a, A: Automaton> Simulation<'a, A> {
-    /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance 1e-12,
-    /// and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and, of what is recorded, a quarter of the
-    /// memory that is free, at most 4 GiB ([`most_bytes`](Self::most_bytes)); evaluations and time on the wall are not limited.
+    /// A simulation of `automaton` with [`Auto`], relative tolerance 1e-9, absolute tolerance
+    /// 1e-12, and limits of 10⁷ jumps, 10⁸ steps, 10⁴ jumps at one time and, of what is recorded, a
+    /// quarter of the memory that is free, at most 4 GiB ([`most_bytes`](Self::most_bytes));
+    /// evaluations and time on the wall are not limited.
     #[must_use]
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
@@ -135,7 +136,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         Simulation { automaton: self.automaton, stepper, options: self.options }
     }
 
-    /// The local error allowed per step, relative to each coordinate, at least 1e-15; the absolute tolerance becomes a thousandth of it.
+    /// The local error allowed per step, relative to each coordinate, at least 1e-15; the absolute
+    /// tolerance becomes a thousandth of it.
     #[must_use]
     pub const fn tolerance(mut self, relative: f64) -> Self {
         self.options.tolerance = Tolerance { relative, absolute: relative * 1e-3 };
@@ -156,8 +158,9 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// The longest step, in seconds, and the longest stretch of an exact arc that is searched at once. Needed for a guard that varies faster than the
-    /// state: a floor that vibrates under a long flight.
+    /// The longest step, in seconds, and the longest stretch of an exact arc that is searched at
+    /// once. Needed for a guard that varies faster than the state: a floor that vibrates under a
+    /// long flight.
     #[must_use]
     pub const fn longest_step(mut self, h: f64) -> Self {
         self.options.longest_step = h;
@@ -171,15 +174,16 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// After how many steps the run ends with [`Stop::Steps`]; a further stretch of an exact arc that is
-    /// searched or recorded by itself counts as one.
+    /// After how many steps the run ends with [`Stop::Steps`]; a further stretch of an exact arc
+    /// that is searched or recorded by itself counts as one.
     #[must_use]
     pub const fn most_steps(mut self, count: u64) -> Self {
         self.options.most_steps = count;
         self
     }
 
-    /// After how many evaluations of flows and guards together the run ends with [`Stop::Evaluations`].
+    /// After how many evaluations of flows and guards together the run ends with
+    /// [`Stop::Evaluations`].
     ///
     /// Looked at between steps and between jumps: one step may go over it by its own evaluations.
     ///
@@ -200,9 +204,9 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// After how many bytes of its trajectory [`run`](Self::run) ends with [`Stop::Bytes`], counted
     /// between pieces and between jumps. Memory for up to twice as many may be set aside.
     ///
-    /// Without it, a quarter of the memory that is free, of the machine or of the container, and at most 4 GiB. It is
-    /// asked for from 16 MiB on, and again as the record grows, so that runs side by side leave room for each other.
-    /// In a browser it is 1 GiB.
+    /// Without it, a quarter of the memory that is free, of the machine or of the container, and at
+    /// most 4 GiB. It is asked for from 16 MiB on, and again as the record grows, so that runs side
+    /// by side leave room for each other. In a browser it is 1 GiB.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation, Stop};
@@ -217,8 +221,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         self
     }
 
-    /// After how long, by the clock on the wall, the run ends with [`Stop::Deadline`]; a run that is
-    /// resumed has as much again. Looked at between steps and between jumps.
+    /// After how long, by the clock on the wall, the run ends with [`Stop::Deadline`]; a run that
+    /// is resumed has as much again. Looked at between steps and between jumps.
     ///
     /// ```
     /// use std::time::Duration;
@@ -266,7 +270,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// [`Stop::Forever`], its state that at 10³⁰⁰ s, the last time to which guards are searched.
     ///
     /// # Errors
-    /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`] where a function returns that.
+    /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`]
+    /// where a function returns that.
     pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<RunOf<A>, Box<FailedOf<A>>> {
         let mut trajectory = Trajectory::starting(mode, state, Time::new(span.start));
         let mut course = match self.start(mode, state, span) {
@@ -316,9 +321,11 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
 
     /// Goes on from a checkpoint, to the bit as if there had been no pause.
     ///
-    /// A run that has ended stays ended, unless it was by a limit on jumps, steps or evaluations that is higher now.
+    /// A run that has ended stays ended, unless it was by a limit on jumps, steps or evaluations
+    /// that is higher now.
     ///
-    /// The automaton, stepper and options are taken to be those of the run that the checkpoint comes from.
+    /// The automaton, stepper and options are taken to be those of the run that the checkpoint
+    /// comes from.
     #[must_use]
     pub fn resume(&self, checkpoint: CheckpointOf<A>) -> Course<'a, A, M> {
         Course::new(self.automaton, self.fitted(), self.options.begun(), checkpoint.under(&self.options))

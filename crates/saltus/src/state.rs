@@ -1,4 +1,5 @@
-//! What a mode's coordinates may be: anything with a length, a way to read one coordinate and a way to rebuild itself.
+//! What a mode's coordinates may be: anything with a length, a way to read one coordinate and a way
+//! to rebuild itself.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -7,8 +8,9 @@ use nalgebra::SVector;
 
 /// The continuous state x of a hybrid automaton: a short list of real coordinates, passed by value.
 ///
-/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may differ from mode to mode; and, with the feature `derive`, by
-/// `#[derive(State)]` for a struct of these, whose fields then name its coordinates in flows, tables and errors.
+/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may
+/// differ from mode to mode; and, with the feature `derive`, by `#[derive(State)]` for a struct of
+/// these, whose fields then name its coordinates in flows, tables and errors.
 ///
 /// ```
 /// use saltus::State;
@@ -31,14 +33,15 @@ pub trait State: Copy + Debug {
         format!("x{i}").into()
     }
 
-    /// The unit of coordinate `i`, for tables and pictures: `V`, `1/min`; empty unless the state names one. With the feature
-    /// `derive`, `#[unit("V")]` before a field says it.
+    /// The unit of coordinate `i`, for tables and pictures: `V`, `1/min`; empty unless the state
+    /// names one. With the feature `derive`, `#[unit("V")]` before a field says it.
     fn unit(&self, i: usize) -> &'static str {
         let _ = i;
         ""
     }
 
-    /// What follows the name of a field of this type in the name of its coordinate `i`: nothing for a number, `[i]` for a list.
+    /// What follows the name of a field of this type in the name of its coordinate `i`: nothing for
+    /// a number, `[i]` for a list.
     #[doc(hidden)]
     fn within(&self, i: usize) -> String {
         format!("[{i}]")
@@ -103,7 +106,8 @@ impl<const N: usize> State for SVector<f64, N> {
     }
 }
 
-/// Up to `CAP` coordinates, for automata whose modes differ in dimension: a hopper has three in flight and two in stance.
+/// Up to `CAP` coordinates, for automata whose modes differ in dimension: a hopper has three in
+/// flight and two in stance.
 ///
 /// ```
 /// use saltus::{Coords, State};

@@ -14,10 +14,11 @@ pub(crate) const MOST_ROWS: usize = 10_000_000;
 
 /// Keeps the jumps of a run, and writes them as a table.
 ///
-/// As an observer it keeps nothing else, so that a long run takes the memory of its table; more than 10⁷ jumps end
-/// the run, with [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is CSV, one row for each jump: when, the number of
-/// jumps with it, the edge, the modes, and the state before and after, with the names and units of its
-/// coordinates ([`State::name`], [`State::unit`]). A jump beyond an accumulation of jumps is by `limit`.
+/// As an observer it keeps nothing else, so that a long run takes the memory of its table; more
+/// than 10⁷ jumps end the run, with [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it
+/// is CSV, one row for each jump: when, the number of jumps with it, the edge, the modes, and the
+/// state before and after, with the names and units of its coordinates ([`State::name`],
+/// [`State::unit`]). A jump beyond an accumulation of jumps is by `limit`.
 ///
 /// ```
 /// use saltus::{Hybrid, JumpTable, Simulation};
@@ -56,7 +57,8 @@ impl<M, E, S> JumpTable<M, E, S> {
         Self { jumps: Vec::new(), names: Vec::new() }
     }
 
-    /// Names the coordinates in the table, units in brackets at the end; those left over keep the names of the state.
+    /// Names the coordinates in the table, units in brackets at the end; those left over keep the
+    /// names of the state.
     #[must_use]
     pub fn named<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.names = names.into_iter().map(Into::into).collect();
@@ -87,7 +89,8 @@ impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for JumpTable<M, E, S> {
 }
 
 impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Display for JumpTable<M, E, S> {
-    /// As CSV. Where modes differ in dimension, the cells of coordinates that a state has not are empty.
+    /// As CSV. Where modes differ in dimension, the cells of coordinates that a state has not are
+    /// empty.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = [0, 1].map(|side| self.jumps.iter().map(|jump| limits(jump)[side]).max_by_key(|x| x.len()));
         f.write_str("t (s),j,edge,from,to")?;
@@ -143,7 +146,8 @@ impl<M: Copy, E: Copy, S: State> Trajectory<M, E, S> {
     }
 }
 
-/// The heading of coordinate `i`: as it is named, else by the state, with its unit in brackets; `side` stands before the brackets.
+/// The heading of coordinate `i`: as it is named, else by the state, with its unit in brackets;
+/// `side` stands before the brackets.
 pub(crate) fn heading(names: &[String], state: &impl State, i: usize, side: &str) -> String {
     let (name, unit) = match names.get(i) {
         Some(name) => match name.strip_suffix(')').and_then(|rest| rest.rsplit_once(" (")) {

@@ -78,7 +78,8 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
     ) -> Result<Option<Due<M, A::Edge>>, Error> {
         let (now, start, end) = (span.now.seconds(), span.start.seconds(), span.end.seconds());
         let instant = grace(now, start);
-        // A tick of the last instant is no later than its end, and looked for from one instant before now.
+        // A tick of the last instant is no later than its end, and looked for from one instant
+        // before now.
         self.taken.retain(|tick| tick.time >= now - 2.0 * instant);
         self.named.retain(|tick| tick.time >= now - instant);
         let mut first: Option<Due<M, A::Edge>> = None;
@@ -90,7 +91,8 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
             };
             let look = Look { automaton, clocks, mode, place, source, start, instant };
             let Some(time) = look.next(self, now).or_else(failed)? else { continue };
-            // Of those within one instant the one listed first; so an earlier one must be earlier by more.
+            // Of those within one instant the one listed first; so an earlier one must be earlier
+            // by more.
             if first.as_ref().is_none_or(|first| time < first.tick.time - instant) {
                 let tick = Tick { mode, place, time };
                 first = Some(Due { edge, time: Time::new(time), tick });

@@ -1,9 +1,11 @@
 //! Time kept as a sum of two doubles, so that a jump late in a run is as exact as an early one.
 
-/// A moment t = hi + lo in seconds, the unevaluated sum of two doubles with |lo| at most half a unit in the last place of hi.
+/// A moment t = hi + lo in seconds, the unevaluated sum of two doubles with |lo| at most half a
+/// unit in the last place of hi.
 ///
-/// A flight of a microsecond that starts at t = 10^6 s keeps its sixteen digits: [`Time::since`] returns the
-/// difference of two moments without the cancellation that subtracting two doubles would suffer.
+/// A flight of a microsecond that starts at t = 10^6 s keeps its sixteen digits: [`Time::since`]
+/// returns the difference of two moments without the cancellation that subtracting two doubles
+/// would suffer.
 ///
 /// ```
 /// use saltus::Time;
@@ -15,7 +17,8 @@
 /// assert_eq!(t.since(start), 1e-3);
 /// ```
 ///
-/// The sum is Knuth's two-sum (D. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2, theorem B).
+/// The sum is Knuth's two-sum (D. Knuth, *The Art of Computer Programming*, vol. 2, 4.2.2, theorem
+/// B).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Time {
@@ -29,10 +32,10 @@ pub(crate) fn resolution(t: f64) -> f64 {
     t.abs().next_up() - t.abs()
 }
 
-/// How many units in the last place two times may differ by and be at one instant. A tick k·T is off
-/// the time that is meant by the relative roundings of T and of the product, 2⁻⁵³ each, and so is
-/// what it is compared with, a tick of another clock, a crossing or the end of a span: by 2⁻⁵¹ of
-/// the time together, which is less than four units.
+/// How many units in the last place two times may differ by and be at one instant. A tick k·T is
+/// off the time that is meant by the relative roundings of T and of the product, 2⁻⁵³ each, and so
+/// is what it is compared with, a tick of another clock, a crossing or the end of a span: by 2⁻⁵¹
+/// of the time together, which is less than four units.
 ///
 /// Without it a clock of a tenth of a second misses the instants of one of three tenths
 /// (tests/clocks.rs, `ticks_against_integers`), and a crossing is taken after a tick at the same

@@ -1,4 +1,5 @@
-//! What a run leaves behind: arcs on hybrid time (t, j), the jumps between them, and both limits at each jump.
+//! What a run leaves behind: arcs on hybrid time (t, j), the jumps between them, and both limits at
+//! each jump.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -11,7 +12,8 @@ use crate::piece::Piece;
 use crate::state::State;
 use crate::time::Time;
 
-/// An arc: the stay in one mode between two jumps. Between two jumps at one time it has no duration.
+/// An arc: the stay in one mode between two jumps. Between two jumps at one time it has no
+/// duration.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
@@ -81,8 +83,8 @@ struct Stored {
 
 /// A hybrid arc: the state as a function of hybrid time (t, j).
 ///
-/// At a jump the state has two limits: [`before`](Self::before) and [`at`](Self::at). Several jumps may share one time.
-/// Any time within it can be asked for; that changes nothing about the jumps.
+/// At a jump the state has two limits: [`before`](Self::before) and [`at`](Self::at). Several jumps
+/// may share one time. Any time within it can be asked for; that changes nothing about the jumps.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
@@ -125,7 +127,8 @@ impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Debug for Trajectory<M, E, S> 
 pub type TrajectoryOf<A> = Trajectory<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
 impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
-    /// Empty, from `state` in `mode` at `start`: for [`Simulation::drive`](crate::Simulation::drive), where others observe beside it.
+    /// Empty, from `state` in `mode` at `start`: for
+    /// [`Simulation::drive`](crate::Simulation::drive), where others observe beside it.
     ///
     /// ```
     /// use saltus::{Certificate, Hybrid, Simulation, Time, Trajectory};
@@ -205,14 +208,17 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
         &self.arcs
     }
 
-    /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no duration or there is no such arc.
+    /// The pieces of arc `index` (as in [`arcs`](Self::arcs)) in order; none if the arc has no
+    /// duration or there is no such arc.
     pub fn pieces(&self, index: usize) -> impl Iterator<Item = Piece<'_, S>> {
         self.pieces[self.piece_range(index)].iter().map(|p| self.piece(p))
     }
 
-    /// Where a crossing may have been missed: the searches of guards that left a doubt, in order; empty where none was.
+    /// Where a crossing may have been missed: the searches of guards that left a doubt, in order;
+    /// empty where none was.
     ///
-    /// Each says for people which edge, when, why and what to do; see [`Inspection`]. [`Certificate`](crate::Certificate) has all searches.
+    /// Each says for people which edge, when, why and what to do; see [`Inspection`].
+    /// [`Certificate`](crate::Certificate) has all searches.
     #[must_use]
     pub fn doubts(&self) -> &[Inspection<M, E>] {
         self.doubts.list()
@@ -261,7 +267,8 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
     }
 
     fn state_in(&self, index: usize, t: f64) -> S {
-        // At its own time an arc starts from x⁺, though the double may lie a rounding after the moment.
+        // At its own time an arc starts from x⁺, though the double may lie a rounding after the
+        // moment.
         if t == self.arcs[index].start.seconds() {
             return self.arcs[index].state;
         }

@@ -13,8 +13,8 @@ const FAR: f64 = 1e6 * f64::EPSILON;
 /// A ratio of durations that rounding has not brought below one.
 const CLEARLY_BELOW_ONE: f64 = 0.995;
 
-/// Ratios of durations are of one contraction if they differ by no more than this: one that is far below the others is of jumps that rounding keeps from being at
-/// one time.
+/// Ratios of durations are of one contraction if they differ by no more than this: one that is far
+/// below the others is of jumps that rounding keeps from being at one time.
 const ALIKE: f64 = 1e-3;
 
 /// A coordinate that differs by this part of itself from a cycle ago has been rounded: a landing
@@ -62,8 +62,8 @@ impl<S: State> Contraction<S> {
         }
     }
 
-    /// How far x⁺ went in the last cycles. Looked at while jumps are few, and now and then: a longest
-    /// way that is missed makes the test of the displacements stricter.
+    /// How far x⁺ went in the last cycles. Looked at while jumps are few, and now and then: a
+    /// longest way that is missed makes the test of the displacements stricter.
     #[inline(never)]
     fn measure(&mut self, after: &S) {
         for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
@@ -89,13 +89,15 @@ impl<S: State> Contraction<S> {
         now == 0.0 || now < before && now * now <= longest * (before - now)
     }
 
-    /// The time from the last jump to the limit, if the durations contract and the next one is shorter than the resolution of the time `elapsed`.
+    /// The time from the last jump to the limit, if the durations contract and the next one is
+    /// shorter than the resolution of the time `elapsed`.
     ///
-    /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are alike and all below one; with r the largest
-    /// of them and S the last cycle's duration, what remains is at most S r/(1-r).
+    /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are alike
+    /// and all below one; with r the largest of them and S the last cycle's duration, what remains
+    /// is at most S r/(1-r).
     ///
-    /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing better can be had later:
-    /// the ratios decide if they are clearly below one.
+    /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing
+    /// better can be had later: the ratios decide if they are clearly below one.
     #[inline]
     pub(crate) fn remaining(&self, elapsed: f64, hidden: bool) -> Option<f64> {
         if self.count == 0 || self.last(0) > FAR * elapsed && !hidden {
@@ -123,28 +125,30 @@ impl<S: State> Contraction<S> {
             (ratio < most && longest * ratio < resolution && self.displacements_contract(cycle))
                 .then(|| last_cycle * ratio / (1.0 - ratio))
         };
-        // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of one would seem to hardly contract.
+        // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of
+        // one would seem to hardly contract.
         (1..=LONGEST_CYCLE).filter_map(bound).reduce(|best, next| if next < 0.5 * best { next } else { best })
     }
 }
 
 /// Jumps at one time, one after the other, and how far they move the state.
 ///
-/// What lies beyond them is a limit where they contract: a ball between two that close on it. Jumps that
-/// change nothing, or as much as ever, have none: a relay that switches to and fro.
+/// What lies beyond them is a limit where they contract: a ball between two that close on it. Jumps
+/// that change nothing, or as much as ever, have none: a relay that switches to and fro.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Cascade {
     jumps: usize,
-    /// The square of the longest way of a jump among the first ones, and since the last power of two of them.
+    /// The square of the longest way of a jump among the first ones, and since the last power of
+    /// two of them.
     first: f64,
     late: f64,
 }
 
 /// How many jumps are the first ones of a cascade: two of the longest cycles.
 const FIRST: usize = 2 * LONGEST_CYCLE;
-/// The part of the first ways of jumps that contract to which the ways have shrunk by the end; a harmonic
-/// series, which has no limit, would still be larger after a million jumps.
+/// The part of the first ways of jumps that contract to which the ways have shrunk by the end; a
+/// harmonic series, which has no limit, would still be larger after a million jumps.
 const SHRUNK: f64 = 1e-6;
 
 impl Cascade {
@@ -164,8 +168,8 @@ impl Cascade {
         self.jumps
     }
 
-    /// Whether the jumps moved the state, and hardly do so any more: so many that no more are looked at,
-    /// or by no more than rounding leaves of the first ones.
+    /// Whether the jumps moved the state, and hardly do so any more: so many that no more are
+    /// looked at, or by no more than rounding leaves of the first ones.
     pub(crate) fn contracts(&self, most: usize) -> bool {
         let to = if self.jumps >= most { SHRUNK } else { f64::EPSILON };
         self.jumps > FIRST && self.first > 0.0 && self.late <= to * to * self.first

@@ -140,7 +140,8 @@ fn a_thermostat_runs_backwards() {
     }
 }
 
-/// A clock with marks at 0, 1e-8 and 2e-8: forwards and backwards each is met once, in order, and the one at 0 at 0 exactly.
+/// A clock with marks at 0, 1e-8 and 2e-8: forwards and backwards each is met once, in order, and
+/// the one at 0 at 0 exactly.
 struct Marks;
 
 const MARKS: [f64; 3] = [0.0, 1e-8, 2e-8];

@@ -1,4 +1,5 @@
-//! What is not a number, or cannot be gone on from, is an error at once: with its kind, mode, edge, time and state.
+//! What is not a number, or cannot be gone on from, is an error at once: with its kind, mode, edge,
+//! time and state.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -22,7 +23,8 @@ enum Place {
     LeadsNowhere,
 }
 
-/// A tank that fills by 1 L/s from 0, is emptied at 1 L, and leaks by ever shorter cycles in its other mode.
+/// A tank that fills by 1 L/s from 0, is emptied at 1 L, and leaks by ever shorter cycles in its
+/// other mode.
 struct Tank {
     bad: Place,
     number: f64,
@@ -104,8 +106,8 @@ fn is_placed(error: &Error, mode: &str, edge: Option<&str>, t: impl Fn(f64) -> b
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Whatever a model gives that is no number, from whichever time: the error says what, where and when; the run up
-    /// to it is kept.
+    /// Whatever a model gives that is no number, from whichever time: the error says what, where
+    /// and when; the run up to it is kept.
     #[test]
     fn what_is_no_number(number in 0..BAD.len(), from in 0.0..20.0_f64, solved: bool) {
         let number = BAD[number];
@@ -136,7 +138,8 @@ proptest! {
             is_placed(&error, "Fill", Some("Full"), |t| (t - next).abs() < 1e-9);
             prop_assert_eq!(jumps, next as usize - 1);
         }
-        // A clock that answers infinity has no further tick; any other answer is not after the time it was asked about.
+        // A clock that answers infinity has no further tick; any other answer is not after the time
+        // it was asked about.
         if number != f64::INFINITY || from > 0.0 {
             let clock = Tank::new(Place::Clock, number, from, solved);
             let failed = Simulation::of(&clock).run(Mode::Fill, [0.0, 1.0], 0.0..40.0).unwrap_err();

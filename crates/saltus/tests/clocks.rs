@@ -154,7 +154,8 @@ proptest! {
         prop_assert_eq!(rest, integers);
     }
 
-    /// Clocks that are listed by two modes in different order tick once, whichever mode the run is in.
+    /// Clocks that are listed by two modes in different order tick once, whichever mode the run is
+    /// in.
     #[test]
     fn modes_that_share_clocks(list in periods(), unit in units(), to in 1_u64..200) {
         let mut model = Clocked::new(clocks(&list, unit));
@@ -202,7 +203,8 @@ proptest! {
     }
 }
 
-/// A hundred thousand ticks of two clocks, as many as `CLOCKS=1000000` asks for: counted, and each at k times its period.
+/// A hundred thousand ticks of two clocks, as many as `CLOCKS=1000000` asks for: counted, and each
+/// at k times its period.
 #[test]
 fn many_ticks() {
     let count: u64 = std::env::var("CLOCKS").ok().and_then(|count| count.parse().ok()).unwrap_or(100_000);

@@ -1,10 +1,12 @@
-//! What the engine asks of a model and promises it: edges, resets that refuse, limits, modes, clocks with derivatives.
+//! What the engine asks of a model and promises it: edges, resets that refuse, limits, modes,
+//! clocks with derivatives.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::{About, Automaton, Edges, ErrorKind, Hybrid, Limit, Refusal, Simulation, Solution, Stop};
 
-/// A rising line with a mark at each integer, watched by as many edges, listed in one of three ways.
+/// A rising line with a mark at each integer, watched by as many edges, listed in one of three
+/// ways.
 struct Ladder {
     count: usize,
     list: Option<Vec<usize>>,
@@ -196,7 +198,8 @@ mod derivatives {
             Self { duty, clocks: [(on, true), (off, false)], says }
         }
 
-        /// At the end of n periods from x = 0: each adds what its last part has left, e^-(1-d) - e^-1.
+        /// At the end of n periods from x = 0: each adds what its last part has left, e^-(1-d) -
+        /// e^-1.
         fn after(&self, periods: u32) -> (f64, f64) {
             let left: f64 = (0..periods).map(|k| (-f64::from(k)).exp()).sum();
             let e = |s: f64| (-s).exp();
@@ -287,7 +290,8 @@ mod derivatives {
     }
 }
 
-/// What a run leaves behind is as free as its parts: it can be sent, stored and returned, whatever the automaton is.
+/// What a run leaves behind is as free as its parts: it can be sent, stored and returned, whatever
+/// the automaton is.
 #[test]
 fn what_a_run_leaves_can_be_sent() {
     /// Not `Send`.
@@ -345,7 +349,8 @@ fn edges_alike_differ() {
     }
 }
 
-/// Names that are made as a program runs are names like any other, also beside the same ones written down.
+/// Names that are made as a program runs are names like any other, also beside the same ones
+/// written down.
 #[test]
 fn names_made_as_a_program_runs() {
     for count in [1, 2, 17] {

@@ -59,8 +59,8 @@ fn equal_runs_have_no_distance() {
     assert_eq!(Closeness::new(1.0, [1.0]).distance(&one.trajectory, &other.trajectory), 0.0);
 }
 
-/// The lines x = t and x = t + d: between the ends half of d is time and half is state; at the ends, where one line has nothing
-/// earlier or later, all of it is state.
+/// The lines x = t and x = t + d: between the ends half of d is time and half is state; at the
+/// ends, where one line has nothing earlier or later, all of it is state.
 #[test]
 fn time_and_state_share_the_distance() {
     let line = Hybrid::new().mode("on", |_, _: &f64| 1.0).exact("on", |_, x| Polynomial::from([*x, 1.0]));
@@ -76,7 +76,8 @@ fn time_and_state_share_the_distance() {
     assert!((apart - 0.25).abs() < 1e-6, "{apart}");
 }
 
-/// Two sines d apart in phase: the distance has its peak where they are steepest, between samples, and is d/2 there at equal scales.
+/// Two sines d apart in phase: the distance has its peak where they are steepest, between samples,
+/// and is d/2 there at equal scales.
 #[test]
 fn a_peak_between_samples_is_found() {
     let wave = |d: f64| Hybrid::new().mode("on", move |t: f64, _: &f64| (t + d).cos());

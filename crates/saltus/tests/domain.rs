@@ -5,8 +5,8 @@ use saltus::{Dop853, ErrorKind, FailedOf, Hybrid, Rodas5P, RunOf, Simulation, St
 
 type Ball<'a> = Hybrid<'a, [f64; 2]>;
 
-/// A ball that is pushed back by stiffness · depthᵖ, where depth is not cut off at zero (NaN outside), or
-/// is.
+/// A ball that is pushed back by stiffness · depthᵖ, where depth is not cut off at zero (NaN
+/// outside), or is.
 fn ball<'a>(stiffness: f64, power: f64, cut_off: bool) -> Ball<'a> {
     Hybrid::new()
         .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
@@ -30,8 +30,8 @@ fn run<'a>(ball: &'a Ball<'a>, method: usize, tolerance: f64) -> Result<RunOf<Ba
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// The last of the bounces comes as with a force that is defined everywhere, within what both runs'
-    /// tolerance leaves open.
+    /// The last of the bounces comes as with a force that is defined everywhere, within what both
+    /// runs' tolerance leaves open.
     #[test]
     fn a_contact_ends_where_its_force_does(
         method in 0..3_usize,

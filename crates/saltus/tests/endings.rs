@@ -1,4 +1,5 @@
-//! Each run ends, and its ending has a name: limits, endless spans, limits of jumps, what cannot go on.
+//! Each run ends, and its ending has a name: limits, endless spans, limits of jumps, what cannot go
+//! on.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -122,7 +123,8 @@ fn ending(kind: Endless, method: usize, most: Most, longest: Option<f64>, end: f
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Every limit stops every run, whatever the span: it ends by the limit that was set, or before it.
+    /// Every limit stops every run, whatever the span: it ends by the limit that was set, or before
+    /// it.
     #[test]
     fn every_limit_stops_every_run(
         kind in 0..KINDS.len(),
@@ -152,7 +154,8 @@ proptest! {
     }
 }
 
-/// What stands still, or a formula that is searched to the end of numbers, ends an endless span by name.
+/// What stands still, or a formula that is searched to the end of numbers, ends an endless span by
+/// name.
 #[test]
 fn what_lasts_for_ever() {
     for kind in [Endless::Still, Endless::SolvedStill] {
@@ -233,7 +236,8 @@ fn a_record_is_bounded() {
     }
 }
 
-/// The limits that a run goes beyond are counted, and the last one is said: a ball that is thrown up again and again.
+/// The limits that a run goes beyond are counted, and the last one is said: a ball that is thrown
+/// up again and again.
 #[test]
 fn limits_are_reported() {
     let ball = Hybrid::new()
@@ -270,8 +274,8 @@ fn decided<F: Fn(f64, &[f64; 2]) -> [f64; 2], G: Fn(f64, &[f64; 2]) -> [f64; 2]>
 }
 
 proptest! {
-    /// Where neither flow pushes against the surface, a slide ends at once and by name: from the start, as the surface
-    /// is met, and where a slide loses both pushes together.
+    /// Where neither flow pushes against the surface, a slide ends at once and by name: from the
+    /// start, as the surface is met, and where a slide loses both pushes together.
     #[test]
     fn neither_side_wins(scale in -6.0..6.0_f64, lean in 0.1..10.0_f64, at in 0.1..10.0_f64) {
         let k = 10_f64.powf(scale);
@@ -318,8 +322,9 @@ fn chattering_is_advised() {
     assert!(run.end.stop.to_string().contains("Filippov"));
 }
 
-/// A ball that hardly bounces, on a table that shakes, late in a run: after one or two bounces rounding hides the next. That is
-/// the end of what can be resolved, and called so, unless a contraction certifies a limit.
+/// A ball that hardly bounces, on a table that shakes, late in a run: after one or two bounces
+/// rounding hides the next. That is the end of what can be resolved, and called so, unless a
+/// contraction certifies a limit.
 #[test]
 fn what_rounding_hides_is_no_limit() {
     let (mut hidden, mut certified) = (0, 0);
@@ -348,7 +353,8 @@ fn what_rounding_hides_is_no_limit() {
     assert!(hidden > 10 && certified > 10, "{hidden} {certified}");
 }
 
-/// A deadline stops steps, exact arcs and jumps alike, keeps what the run had, and a resumed run has as much again.
+/// A deadline stops steps, exact arcs and jumps alike, keeps what the run had, and a resumed run
+/// has as much again.
 #[test]
 fn a_deadline_stops_every_run() {
     let after = Duration::from_millis(5);

@@ -1,4 +1,5 @@
-//! Spans of any length, endless ones among them, and runs of very many jumps: the same motion, at the same cost a jump.
+//! Spans of any length, endless ones among them, and runs of very many jumps: the same motion, at
+//! the same cost a jump.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -44,8 +45,8 @@ fn bounces_as_it_should(ball: &Ball, stepper: impl Stepper, e: f64, height: f64,
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
-    /// A parabola's error estimate is zero, and the step would grow tenfold with every arc until the
-    /// next crossing was lost in the rounding at its start.
+    /// A parabola's error estimate is zero, and the step would grow tenfold with every arc until
+    /// the next crossing was lost in the rounding at its start.
     #[test]
     fn a_span_of_any_length_shows_the_same_bounces(
         e in 0.2..1.0_f64,
@@ -74,8 +75,9 @@ impl Observer<Ball> for Energies {
     }
 }
 
-/// A random walk of roundings is some √n of them after n bounces: 7e-14 after 10⁵. What the crossing
-/// on the dense output of a step much longer than the arc is off by, always to one side, was 5e-9.
+/// A random walk of roundings is some √n of them after n bounces: 7e-14 after 10⁵. What the
+/// crossing on the dense output of a step much longer than the arc is off by, always to one side,
+/// was 5e-9.
 fn keeps_its_energy(stepper: impl Stepper, of_one: f64) {
     let mut energies = Energies(Vec::new(), 0);
     let ball = ball(1.0);

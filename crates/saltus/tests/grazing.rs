@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Dop853, Entry, Hybrid, Rodas5P, Simulation, Tsit5};
 
-/// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1 of
-/// an oscillator, in three forms; and how often that is doubted.
+/// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1
+/// of an oscillator, in three forms; and how often that is doubted.
 fn falls(
     method: usize,
     tolerance: f64,
@@ -71,8 +71,8 @@ proptest! {
     }
 }
 
-/// The end of ten bounces of a ball with drag, dropped from a height in a unit in which that is `size`;
-/// and the doubts.
+/// The end of ten bounces of a ball with drag, dropped from a height in a unit in which that is
+/// `size`; and the doubts.
 fn bounces(size: f64, tolerance: f64) -> (f64, usize) {
     let ball = Hybrid::new()
         .mode("flight", move |_t, x: &[f64; 2]| [x[1], -9.81 * size - 0.3 / size * x[1] * x[1].abs()])

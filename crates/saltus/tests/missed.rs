@@ -1,4 +1,5 @@
-//! A crossing that a false promise of the model hides leaves a doubt: a guard is below zero where an arc ends.
+//! A crossing that a false promise of the model hides leaves a doubt: a guard is below zero where
+//! an arc ends.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -83,7 +84,8 @@ fn run(runner: &Runner, start: f64, span: f64) -> Result<(Option<To>, Vec<Doubte
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
-    /// At a jump by another edge, and at the end of the span; by steps and exactly, whatever the entry.
+    /// At a jump by another edge, and at the end of the span; by steps and exactly, whatever the
+    /// entry.
     #[test]
     fn a_false_promise_is_doubted(
         power in -6..6_i32, line in 0.2..0.8_f64, ends in prop::sample::select(vec![true, false]), exact: bool,

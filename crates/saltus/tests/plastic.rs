@@ -1,4 +1,5 @@
-//! Impacts that are nearly plastic, on floors that move: rebounds too low for the guard's values to show them, and no ball that falls through.
+//! Impacts that are nearly plastic, on floors that move: rebounds too low for the guard's values to
+//! show them, and no ball that falls through.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
@@ -16,7 +17,8 @@ struct Floor {
     omega: f64,
 }
 
-/// How a ball falls onto a floor: with which restitution, from where, and whether a rebound sets its height to the floor's or leaves it as it is.
+/// How a ball falls onto a floor: with which restitution, from where, and whether a rebound sets
+/// its height to the floor's or leaves it as it is.
 #[derive(Clone, Copy, Debug)]
 struct Drop {
     e: f64,
@@ -44,7 +46,8 @@ impl Floor {
         16.0 * f64::EPSILON * (x.abs() + self.amplitude * (1.0 + self.omega * t.abs()))
     }
 
-    /// A ball that flies above it, and lies on it where its impacts accumulate, for as long as it is pressed.
+    /// A ball that flies above it, and lies on it where its impacts accumulate, for as long as it
+    /// is pressed.
     fn ball(self, Drop { e, set, .. }: Drop) -> Hybrid<'static, [f64; 2]> {
         Hybrid::new()
             .mode("flight", |_t, x: &[f64; 2]| [x[1], -GRAVITY])
@@ -63,7 +66,8 @@ impl Floor {
             .entry("rest", "flight", Entry::Fire)
     }
 
-    /// Runs to the end of three seconds: the ball is never below the floor, and leaves it where that falls away. Says how often it came to rest.
+    /// Runs to the end of three seconds: the ball is never below the floor, and leaves it where
+    /// that falls away. Says how often it came to rest.
     fn holds(self, drop: Drop, stepper: impl Stepper, tolerance: f64) -> usize {
         let ball = self.ball(drop);
         let run = Simulation::of(&ball)

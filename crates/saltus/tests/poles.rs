@@ -1,4 +1,5 @@
-//! Guards that change sign without coming to zero: a pole is no crossing, a leap is one that is doubted, and a steep root is neither.
+//! Guards that change sign without coming to zero: a pole is no crossing, a leap is one that is
+//! doubted, and a steep root is neither.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -8,7 +9,8 @@ use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
 
-/// The times of the jumps where `guard` of time falls, and of the doubts that its continuity leaves.
+/// The times of the jumps where `guard` of time falls, and of the doubts that its continuity
+/// leaves.
 fn falls(guard: impl Fn(f64) -> f64 + Send + Sync, start: f64, span: f64) -> (Vec<f64>, Vec<f64>) {
     let clock = Hybrid::new()
         .mode("run", |_t, _x: &f64| 1.0)

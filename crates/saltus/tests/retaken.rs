@@ -1,4 +1,5 @@
-//! Edges of a mode to itself whose resets change nothing: each fall is one jump, however near two of them lie and however coarse the numbers of time are.
+//! Edges of a mode to itself whose resets change nothing: each fall is one jump, however near two
+//! of them lie and however coarse the numbers of time are.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -62,7 +63,8 @@ proptest! {
         prop_assert_eq!(run.trajectory.jumps().len() as f64, turns(end) - turns(0.0));
     }
 
-    /// A ball whose reset forgets to turn it round is refused at the impact; where the edge waits, it falls on and is counted once.
+    /// A ball whose reset forgets to turn it round is refused at the impact; where the edge waits,
+    /// it falls on and is counted once.
     #[test]
     fn a_reset_that_does_not_turn_the_motion_is_refused(
         kept in 0.01..1.5_f64, height in -3.0..3.0_f64, affine: bool, solved: bool, elsewhere in -10.0..10.0_f64,
@@ -86,7 +88,8 @@ proptest! {
         prop_assert_eq!((run.end.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
     }
 
-    /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other: each once, the earlier one first.
+    /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other:
+    /// each once, the earlier one first.
     #[test]
     fn falls_a_hair_apart_are_taken_once_each(first in 0.01..0.99_f64, apart in 0_u64..1500, swapped: bool) {
         let second = f64::from_bits(first.to_bits() + apart);

@@ -17,8 +17,8 @@ fn saw(top: f64, kick: f64) -> Hybrid<'static, f64> {
 }
 
 proptest! {
-    /// The rows of an observer are those of the recorded run; each is the state there; ticks and ends
-    /// of arcs are there, each once, in the order of hybrid time.
+    /// The rows of an observer are those of the recorded run; each is the state there; ticks and
+    /// ends of arcs are there, each once, in the order of hybrid time.
     #[test]
     fn rows_are_the_run(top in 0.3..3.0_f64, kick in 0.1..2.0_f64, ticks in 1..60_u32, from in -3.0..3.0_f64) {
         let dt = f64::from(ticks) / 32.0;

@@ -5,7 +5,8 @@
 use proptest::prelude::*;
 use saltus::{About, Automaton, Coords, Dop853, Edges, ErrorKind, Hybrid, Refusal, Series, Simulation, Solution, Stop};
 
-/// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a kink at rest.
+/// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a
+/// kink at rest.
 struct Ball {
     gravity: f64,
     drag: f64,
@@ -108,7 +109,8 @@ fn a_step_ends_at_a_kink() {
 
 #[test]
 fn kinks_of_all_kinds() {
-    // x'' = -x |x|: v²/2 + |x|³/3 stays. It starts on the kink, at rest there, or an eyelash before it; the last two numbers see it twice, and a touch.
+    // x'' = -x |x|: v²/2 + |x|³/3 stays. It starts on the kink, at rest there, or an eyelash before
+    // it; the last two numbers see it twice, and a touch.
     let swing = |shift: f64| {
         Hybrid::new()
             .mode("swing", move |_t, &[x, v, y, z]: &[f64; 4]| {
@@ -224,7 +226,8 @@ fn infinitely_many_impacts_have_their_limit() {
 }
 
 proptest! {
-    /// Damped oscillators, their guards and their trajectories by two methods that share nothing but the search.
+    /// Damped oscillators, their guards and their trajectories by two methods that share nothing
+    /// but the search.
     #[test]
     fn series_and_steps_agree(
         rate in 0.3..8.0_f64, damping in 0.0..1.0_f64, force in -1.0..1.0_f64, level in -0.5..0.5_f64, kick in 0.5..2.0_f64,

@@ -63,8 +63,8 @@ proptest! {
         }
     }
 
-    /// A cubic has one slope to both sides of a knot; that of a parabola's samples, evenly spaced, is
-    /// the parabola's to second order.
+    /// A cubic has one slope to both sides of a knot; that of a parabola's samples, evenly spaced,
+    /// is the parabola's to second order.
     #[test]
     fn a_cubic_has_a_slope(samples in samples()) {
         let signal = made(2, &samples);

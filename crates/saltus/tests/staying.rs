@@ -1,5 +1,5 @@
-//! A flow that runs along a guard's surface: an edge whose guard stays zero has not fallen, however the
-//! steps drift, and falls where the flow carries it down.
+//! A flow that runs along a guard's surface: an edge whose guard stays zero has not fallen, however
+//! the steps drift, and falls where the flow carries it down.
 
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, Vector3, vector};
@@ -22,8 +22,9 @@ fn run<'a, X: State>(
     }
 }
 
-/// How late a fall as (t - t₀)ᵐ⁺¹ may be found at most, where its rate (t - t₀)ᵐ is beyond the error
-/// of a step and the rounding of differences over a thousandth of one that a kink has made short.
+/// How late a fall as (t - t₀)ᵐ⁺¹ may be found at most, where its rate (t - t₀)ᵐ is beyond the
+/// error of a step and the rounding of differences over a thousandth of one that a kink has made
+/// short.
 fn lateness(tolerance: f64, power: i32) -> f64 {
     (1e3 * tolerance + 1e-7).powf(1.0 / f64::from(power.max(1)))
 }
@@ -88,8 +89,8 @@ proptest! {
         }
     }
 
-    /// An edge of a mode to itself, just taken, stays like any other: a bead that comes from the centre
-    /// and turns at a radius.
+    /// An edge of a mode to itself, just taken, stays like any other: a bead that comes from the
+    /// centre and turns at a radius.
     #[test]
     fn an_edge_just_taken_stays(method in 0..3_usize, digits in 2.0..12.5_f64, radius in -2.0..3.0_f64) {
         let radius = 10_f64.powf(radius);
@@ -103,8 +104,8 @@ proptest! {
         prop_assert_eq!((run.end.stop, run.trajectory.jumps().len()), (Stop::Time, 1));
     }
 
-    /// A ball that lies on a lift, until its floor falls away faster: exact zeros for long, then a fall
-    /// as a power of time.
+    /// A ball that lies on a lift, until its floor falls away faster: exact zeros for long, then a
+    /// fall as a power of time.
     #[test]
     fn what_lies_falls_when_it_is_pulled(method in 0..3_usize, digits in 2.0..12.0_f64, pulled in 2.0..6.0_f64) {
         let model = Hybrid::new()

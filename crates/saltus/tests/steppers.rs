@@ -1,6 +1,8 @@
-//! The steppers on the problems that the field measures itself by: errors reached, and what they cost.
+//! The steppers on the problems that the field measures itself by: errors reached, and what they
+//! cost.
 //!
-//! The counts are pinned, so that a change of the methods or of the step control shows here as a change of price.
+//! The counts are pinned, so that a change of the methods or of the step control shows here as a
+//! change of price.
 
 #![allow(clippy::unwrap_used)] // in what the tests share
 
@@ -29,10 +31,11 @@ fn cost<S: State>(run: &RunOf<Hybrid<'_, S>>) -> (u64, u64, u64) {
 
 // --- the Arenstorf orbit ---
 //
-// (That Dop853 takes the very steps of the program dop853.f under that program's own step control is a test beside the method.)
+// (That Dop853 takes the very steps of the program dop853.f under that program's own step control
+// is a test beside the method.)
 //
-// Three bodies in a plane, one without mass, on a closed orbit that passes close by the other two: E. Hairer, S. P. Nørsett, G. Wanner,
-// Solving Ordinary Differential Equations I, II.0, p. 129.
+// Three bodies in a plane, one without mass, on a closed orbit that passes close by the other two:
+// E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, II.0, p. 129.
 
 const PERIOD: f64 = 17.065_216_560_157_964;
 
@@ -89,7 +92,8 @@ fn dop853_on_the_arenstorf_orbit() {
 
 #[test]
 fn rodas5p_on_van_der_pol() {
-    // The problem VDPOL of F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers, release 2.4 (2008), in its unscaled form.
+    // The problem VDPOL of F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers,
+    // release 2.4 (2008), in its unscaled form.
     let system =
         Hybrid::new().mode("flow", |_t, x: &Vector2<f64>| vector![x[1], 1e3 * (1.0 - x[0] * x[0]) * x[1] - x[0]]);
     let exact = vector![1.706_167_732_170_469, -0.892_809_701_024_812_5e-3];
@@ -100,7 +104,8 @@ fn rodas5p_on_van_der_pol() {
         assert!(error < bound, "{tolerance:e}: {error:e}");
         let (steps, rejected, flows) = cost(&run);
         assert_eq!((steps, rejected), counts, "{tolerance:e}");
-        // Eight for the stages, four for the Jacobian, one to see that time does not matter; now and then rounding asks for a second.
+        // Eight for the stages, four for the Jacobian, one to see that time does not matter; now
+        // and then rounding asks for a second.
         let least = 13 * (steps + rejected) + 2;
         assert!((least..least + least / 100).contains(&flows), "{tolerance:e}: {flows}");
     }
@@ -111,7 +116,8 @@ fn rodas5p_on_van_der_pol() {
 
 #[test]
 fn rodas5p_on_robertson() {
-    // The problem ROBER of the same test set, at t = 1e11: three species, and rates over eleven powers of ten.
+    // The problem ROBER of the same test set, at t = 1e11: three species, and rates over eleven
+    // powers of ten.
     let system = Hybrid::new().mode("flow", |_t, x: &Vector3<f64>| {
         let (a, b, c) = (0.04 * x[0], 1e4 * x[1] * x[2], 3e7 * x[1] * x[1]);
         vector![b - a, a - b - c, c]
@@ -141,8 +147,8 @@ fn an_explicit_stepper_pays_for_stiffness() {
 
 // --- what every stepper owes ---
 
-/// An oscillator that carries a clock as its third coordinate. When it passes the middle it is held for a second; only the clock is left
-/// then, with its falling rate: two coordinates.
+/// An oscillator that carries a clock as its third coordinate. When it passes the middle it is held
+/// for a second; only the clock is left then, with its falling rate: two coordinates.
 fn two_dimensions() -> Hybrid<'static, Coords<3>> {
     Hybrid::new()
         .mode("free", |_t, x: &Coords<3>| [x[1], -x[0], 1.0].into())
@@ -158,7 +164,8 @@ fn modes_of_different_dimension_suit_every_stepper() {
         let run =
             Simulation::of(&system).stepper(stepper).tolerance(1e-9).run("free", [1.0, 0.0, 0.0].into(), 0.0..6.0);
         let run = run.unwrap();
-        // Free for a quarter turn, held for one second (while the clock goes on by a quarter), and so on.
+        // Free for a quarter turn, held for one second (while the clock goes on by a quarter), and
+        // so on.
         let quarter = std::f64::consts::FRAC_PI_2;
         let times: Vec<f64> = run.trajectory.jumps().iter().map(|jump| jump.t()).collect();
         let expected = [quarter, quarter + 1.0, 2.0 * quarter + 1.0, 2.0 * quarter + 2.0];
@@ -176,8 +183,8 @@ fn modes_of_different_dimension_suit_every_stepper() {
 
 #[test]
 fn a_ball_comes_to_rest_on_every_stepper() {
-    // The last bounces last a billionth of a step, and still begin with the speed of the reset. The air resists with the speed,
-    // so the flow is linear and not polynomial in time.
+    // The last bounces last a billionth of a step, and still begin with the speed of the reset. The
+    // air resists with the speed, so the flow is linear and not polynomial in time.
     fn check(stepper: impl Stepper, drag: f64, limits: [f64; 3]) {
         for (kept, limit) in [0.5, 0.7, 0.9].into_iter().zip(limits) {
             let ball = Hybrid::new()

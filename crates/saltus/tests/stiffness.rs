@@ -25,12 +25,12 @@ fn by_hand<S: State>(
     (run.end.stop == Stop::Time).then_some(run)
 }
 
-/// What it takes at most to notice that a flow is stiff: some forty steps accepted and ten rejected, of twelve evaluations, and five
-/// looks.
+/// What it takes at most to notice that a flow is stiff: some forty steps accepted and ten
+/// rejected, of twelve evaluations, and five looks.
 const NOTICED: f64 = 750.0;
 
-/// How many times as many evaluations of the flow the default takes as the best of three methods chosen by hand, beyond what it
-/// takes to notice.
+/// How many times as many evaluations of the flow the default takes as the best of three methods
+/// chosen by hand, beyond what it takes to notice.
 fn ratio<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     let auto = Simulation::of(&case.model).tolerance(tolerance).most_evaluations(3_000_000);
     let auto = auto.run("run", case.start, 0.0..case.end).unwrap().end;
@@ -105,7 +105,8 @@ fn no_more_than_twice_the_best_choice() {
     assert!(worst <= 2.0, "{worst}");
 }
 
-/// The place, the speed and the pull of two masses of a restricted problem of three bodies (Arenstorf).
+/// The place, the speed and the pull of two masses of a restricted problem of three bodies
+/// (Arenstorf).
 fn arenstorf() -> Case<[f64; 4]> {
     let moon = 0.012_277_471;
     let model = Hybrid::new().mode("run", move |_t, x: &[f64; 4]| {
@@ -129,7 +130,8 @@ fn pendulum() -> Case<[f64; 2]> {
     Case { name: "pendulum".into(), model, start: [3.0, 0.0], end: 200.0 }
 }
 
-/// The evaluations that the default takes beyond those of the method that it uses, in parts of them; it changes no method.
+/// The evaluations that the default takes beyond those of the method that it uses, in parts of
+/// them; it changes no method.
 fn overhead<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     let auto = Simulation::of(&case.model).tolerance(tolerance).run("run", case.start, 0.0..case.end).unwrap();
     assert_eq!(auto.end.stats.stiff, 0, "{} at {tolerance:e}: {:?}", case.name, auto.end.stats);
@@ -144,7 +146,8 @@ fn overhead<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     auto.end.stats.flows as f64 / same.end.stats.flows as f64 - 1.0
 }
 
-/// Where nothing is stiff the default gives the numbers of the method that it uses, to the bit, for hardly more evaluations.
+/// Where nothing is stiff the default gives the numbers of the method that it uses, to the bit, for
+/// hardly more evaluations.
 #[test]
 fn what_is_not_stiff_loses_little() {
     for tolerance in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
@@ -155,7 +158,8 @@ fn what_is_not_stiff_loses_little() {
     }
 }
 
-/// A flow that is stiff for a while: the default goes back to explicit steps, and a run that is paused anywhere goes on to the bit.
+/// A flow that is stiff for a while: the default goes back to explicit steps, and a run that is
+/// paused anywhere goes on to the bit.
 #[test]
 fn there_and_back() {
     let model = Hybrid::new()

@@ -60,8 +60,8 @@ fn run<'a>(model: &Integrator<'a>, stepper: usize, end: f64) -> RunOf<Integrator
 }
 
 proptest! {
-    /// The integral is exact to rounding by every stepper, whichever side a knot belongs to; steps are
-    /// not tried in vain, and no knot is a jump.
+    /// The integral is exact to rounding by every stepper, whichever side a knot belongs to; steps
+    /// are not tried in vain, and no knot is a jump.
     #[test]
     fn an_input_that_switches(input in held(), stepper in 0..4_usize, end in 1e-3..12.0_f64) {
         let model = integrator(&input);
@@ -92,7 +92,8 @@ proptest! {
         prop_assert!(run.trajectory.doubts().is_empty());
     }
 
-    /// A clock that ticks at the knots loses none, and a run that is paused at a tick goes on to the bit.
+    /// A clock that ticks at the knots loses none, and a run that is paused at a tick goes on to
+    /// the bit.
     #[test]
     fn clocks_at_stops(input in held()) {
         let model = integrator(&input).clock("run", "run", Clock::at(input.knots.clone()), |_t, x| *x);
@@ -235,7 +236,8 @@ fn what_cannot_be_repeated() {
 /// Dry friction under a force that is given by samples: each knot is met, also while it slides.
 #[test]
 fn friction_under_a_switched_force() {
-    // Held by 2 N; pushed by 5 N in each tenth second, for 10 ms, and pulled by 5 N half a period later.
+    // Held by 2 N; pushed by 5 N in each tenth second, for 10 ms, and pulled by 5 N half a period
+    // later.
     let knots = [0.0, 0.01, 0.05, 0.06];
     let push = |t: f64| match t.rem_euclid(0.1) {
         u if u < 0.01 => 5.0,
@@ -281,8 +283,9 @@ fn margin(level: f64, u: f64) -> f64 {
 }
 
 proptest! {
-    /// Which comparator falls at which knot, each once and in the order declared, follows from the input on both sides
-    /// of the knot, whichever side it belongs to; also at both ends of the span, and before the clock of the same instant.
+    /// Which comparator falls at which knot, each once and in the order declared, follows from the
+    /// input on both sides of the knot, whichever side it belongs to; also at both ends of the
+    /// span, and before the clock of the same instant.
     #[test]
     fn guards_that_switch_at_stops(
         input in held(),
@@ -322,7 +325,8 @@ proptest! {
         prop_assert!((run.end.state[0] - input.integral(end) + input.integral(start)).abs() < 1e-9);
     }
 
-    /// A switch that follows the sign of an input goes over and back at its knots, by the edge that falls there.
+    /// A switch that follows the sign of an input goes over and back at its knots, by the edge that
+    /// falls there.
     #[test]
     fn modes_that_switch_at_stops(input in held(), stepper in 0..4_usize) {
         let high = input.at(0.0) >= 0.0;

@@ -1,4 +1,5 @@
-//! Bodies that touch each other and lie still but for rounding, which moves them by 1e-17 and lets them collide without end or order.
+//! Bodies that touch each other and lie still but for rounding, which moves them by 1e-17 and lets
+//! them collide without end or order.
 
 #![allow(clippy::unwrap_used)] // in what the tests share
 

@@ -1,9 +1,11 @@
-//! What a guard's value may be off for rounding, as a mode is entered, is the same part of the motion in every unit.
+//! What a guard's value may be off for rounding, as a mode is entered, is the same part of the
+//! motion in every unit.
 
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Edge, ErrorKind, Hybrid, Simulation, Stop};
 
-/// A ball that falls from one `unit` on a floor, whose reset leaves it `below` the floor by this part of the fall.
+/// A ball that falls from one `unit` on a floor, whose reset leaves it `below` the floor by this
+/// part of the fall.
 fn bounces(unit: f64, below: f64) -> Result<usize, ErrorKind> {
     let floor = Edge::new(|_t, x: &Vector2<f64>| x[0], move |_t, x: &Vector2<f64>| vector![-below * unit, -0.8 * x[1]]);
     let flight = move |_t: f64, x: &Vector2<f64>| vector![x[1], -unit];
@@ -23,7 +25,8 @@ fn a_reset_is_off_by_the_rounding_of_the_motion() {
     for unit in (-40..=40).map(|k| 10_f64.powi(k)) {
         // A fall of √2 s, and flights of 1.6 √2 s and 0.8 times that: three impacts in 6 s.
         assert_eq!(bounces(unit, 0.0), Ok(3), "{unit:e}");
-        // A few units in the last place of the fall are rounding; a millionth of a millionth is not.
+        // A few units in the last place of the fall are rounding; a millionth of a millionth is
+        // not.
         for roundings in [0.5, 1.0, 2.0, 4.0] {
             assert_eq!(bounces(unit, roundings * f64::EPSILON), Ok(3), "{unit:e}, {roundings} roundings");
         }

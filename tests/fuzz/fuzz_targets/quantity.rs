@@ -1,4 +1,5 @@
-//! Any text as a quantity and as a frame rate: what is read is finite, and what is printed of it is read back as itself.
+//! Any text as a quantity and as a frame rate: what is read is finite, and what is printed of it is
+//! read back as itself.
 
 #![no_main]
 

@@ -16,7 +16,8 @@ struct Drawn(Made);
 
 impl<'a> Arbitrary<'a> for Drawn {
     fn arbitrary(bytes: &mut Unstructured<'a>) -> arbitrary::Result<Self> {
-        // Four bytes are both halves of a number: the upper one decides a size, the lower one a choice. Where they end, zeros follow.
+        // Four bytes are both halves of a number: the upper one decides a size, the lower one a
+        // choice. Where they end, zeros follow.
         Ok(Self(drawn(&mut || bytes.arbitrary::<u32>().map_or(0, |n| u64::from(n) << 32 | u64::from(n)))))
     }
 }

@@ -1,4 +1,5 @@
-//! Any bytes as a scene: refused with a place in the file, or read, planned and run within a budget.
+//! Any bytes as a scene: refused with a place in the file, or read, planned and run within a
+//! budget.
 
 #![no_main]
 

@@ -1,6 +1,8 @@
-//! Any bytes as a table, in several ways to read it: a table of finite numbers, or an error that says something.
+//! Any bytes as a table, in several ways to read it: a table of finite numbers, or an error that
+//! says something.
 //!
-//! Bytes that begin with `<` are the rows of a sheet in a workbook: chance alone does not come past its checksums.
+//! Bytes that begin with `<` are the rows of a sheet in a workbook: chance alone does not come past
+//! its checksums.
 
 #![no_main]
 
@@ -13,7 +15,8 @@ use std::panic;
 use libfuzzer_sys::fuzz_target;
 use saltus_fit::{ReadOptions, Table};
 
-/// A panic in the reader of old workbooks is caught by design, so that it alone does not end the run.
+/// A panic in the reader of old workbooks is caught by design, so that it alone does not end the
+/// run.
 fn quiet() {
     let ends = panic::take_hook();
     panic::set_hook(Box::new(move |info| {

@@ -1,4 +1,5 @@
-//! A key, a value and a scene, a line each and the rest: the value is set under the key, or refused with a place.
+//! A key, a value and a scene, a line each and the rest: the value is set under the key, or refused
+//! with a place.
 
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! The comparison of saltus with other Rust integrators: what it measures, and how. `docs/comparison.md` has the results.
+//! The comparison of saltus with other Rust integrators: what it measures, and how.
+//! `docs/comparison.md` has the results.
 
 pub mod machine;
 pub mod right;

@@ -3,7 +3,8 @@
 use saltus::nalgebra::{Vector3, vector};
 use saltus::{Hybrid, Polynomial, Simulation};
 
-/// A kick follows the impact at once and drives the ball back to the floor; it meets it however slow the rebound was.
+/// A kick follows the impact at once and drives the ball back to the floor; it meets it however
+/// slow the rebound was.
 #[test]
 fn a_rebound_too_short_to_time_is_a_rebound() {
     for rebound in [1e-3, 1e-12, 3e-16] {

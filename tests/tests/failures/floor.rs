@@ -40,7 +40,8 @@ fn a_ball_comes_to_rest_on_every_path_on(paths: &[Path]) {
     }
 }
 
-/// A code that waits after each impact falls through the floor once flights are shorter than the wait; here it rests, once, above the floor.
+/// A code that waits after each impact falls through the floor once flights are shorter than the
+/// wait; here it rests, once, above the floor.
 #[test]
 fn a_ball_comes_to_rest_on_every_path() {
     a_ball_comes_to_rest_on_every_path_on(&[Path::ExactAffine, Path::Exact]);
@@ -81,7 +82,8 @@ fn a_floor_at_any_height_on(paths: &[Path]) {
                 run.end.stop
             );
             let rest = run.trajectory.jumps().last().unwrap().t();
-            // Heights are resolved to the spacing of numbers at the floor, and so are flights to its root.
+            // Heights are resolved to the spacing of numbers at the floor, and so are flights to
+            // its root.
             let resolved = 4.0 * (8.0 * f64::EPSILON * (1.0 + floor.abs()) / G).sqrt();
             assert!((rest - 1.355_261_854_357_876_9).abs() < resolved, "{path:?}, floor at {floor}: rest at {rest}");
             assert!(lowest(&run) >= floor, "{path:?}, floor at {floor}: lowest {}", lowest(&run));
@@ -89,7 +91,8 @@ fn a_floor_at_any_height_on(paths: &[Path]) {
     }
 }
 
-/// The impacts accumulate on a floor that is not at zero, where rounding hides the flights long before time does.
+/// The impacts accumulate on a floor that is not at zero, where rounding hides the flights long
+/// before time does.
 #[test]
 fn a_floor_at_any_height() {
     a_floor_at_any_height_on(&[Path::ExactAffine]);
@@ -101,7 +104,8 @@ fn a_floor_at_any_height_by_steps() {
     a_floor_at_any_height_on(&[Path::Exact, Path::Affine, Path::General]);
 }
 
-/// Without rebound a re-armed guard never fires again and the ball falls; here it lies in contact for ever.
+/// Without rebound a re-armed guard never fires again and the ball falls; here it lies in contact
+/// for ever.
 #[test]
 fn a_plastic_impact_happens_once() {
     for path in PATHS {
@@ -122,7 +126,8 @@ fn a_plastic_impact_happens_once() {
     assert_eq!((run.trajectory.jumps().len(), run.end.mode, run.end.state), (1, "contact", vector![0.0, 0.0]));
 }
 
-/// Lifting the ball by a hair after each impact stores millions of points past the limit; the record is as long as the impacts are many.
+/// Lifting the ball by a hair after each impact stores millions of points past the limit; the
+/// record is as long as the impacts are many.
 #[test]
 fn the_record_grows_with_the_impacts_only() {
     for path in PATHS {
@@ -164,7 +169,8 @@ fn a_ball_stopped_below_a_least_speed_by_steps() {
     a_ball_stopped_below_a_least_speed_on(&[Path::Affine, Path::General]);
 }
 
-/// A rimless wheel too slow to go on rocks between two legs, each reset swapping the guards; it comes to stand on both.
+/// A rimless wheel too slow to go on rocks between two legs, each reset swapping the guards; it
+/// comes to stand on both.
 #[test]
 fn a_wheel_that_rocks_comes_to_stand() {
     let (alpha, gamma) = (std::f64::consts::FRAC_PI_8, 0.03);
@@ -187,10 +193,12 @@ fn a_wheel_that_rocks_comes_to_stand() {
     assert!(on_leg.abs() < 1e-12 && run.end.state[1] == 0.0, "{:?}", run.end.state);
 }
 
-/// A ball at rest has a guard that stays at zero: no sign changes, so a search alone keeps it on the floor for ever or lets it fall.
+/// A ball at rest has a guard that stays at zero: no sign changes, so a search alone keeps it on
+/// the floor for ever or lets it fall.
 #[test]
 fn a_resting_ball_is_pulled_off() {
-    // The pull F = m g t exceeds the weight from t = 1 on: the force of contact m g (1 - t) falls through zero.
+    // The pull F = m g t exceeds the weight from t = 1 on: the force of contact m g (1 - t) falls
+    // through zero.
     let automaton = Hybrid::new()
         .mode("contact", |_t, _x: &Flight| vector![0.0, 0.0])
         .edge("contact", "flight", |t, _x| G * (1.0 - t), |_t, x| *x)
@@ -221,7 +229,8 @@ fn a_resting_ball_is_pulled_off_with_an_affine_floor() {
     assert!((run.end.state[0] - G / 6.0).abs() < 1e-12, "{:?}", run.end.state);
 }
 
-/// A threshold on the impact speed swallows the last visible bounces; here the heights go down by e² each until far below one frame.
+/// A threshold on the impact speed swallows the last visible bounces; here the heights go down by
+/// e² each until far below one frame.
 #[test]
 fn bounces_shrink_evenly_below_one_frame() {
     let run = dropped(0.5, 2.0, Path::ExactAffine);
@@ -235,7 +244,8 @@ fn bounces_shrink_evenly_below_one_frame() {
         shown += usize::from(got >= 1.0 / 60.0);
     }
     assert_eq!(shown, 5); // 0.452, 0.226, 0.113, 0.056 and 0.028 s
-    // Drawn at 60 frames a second, no frame is above the envelope of its bounce nor below the floor.
+    // Drawn at 60 frames a second, no frame is above the envelope of its bounce nor below the
+    // floor.
     for frame in 0..=120_u32 {
         let t = f64::from(frame) / 60.0;
         let bounce = jumps.iter().filter(|jump| jump.edge().is_some() && jump.t() <= t).count();
@@ -259,7 +269,8 @@ fn an_elastic_ball_keeps_its_height_on(paths: &[Path]) {
     }
 }
 
-/// An elastic ball loses height in steps, more with finer ones at times; here a thousand impacts leave it at 10 m.
+/// An elastic ball loses height in steps, more with finer ones at times; here a thousand impacts
+/// leave it at 10 m.
 #[test]
 fn an_elastic_ball_keeps_its_height() {
     an_elastic_ball_keeps_its_height_on(&[Path::ExactAffine, Path::Exact]);
@@ -271,7 +282,8 @@ fn an_elastic_ball_keeps_its_height_by_steps() {
     an_elastic_ball_keeps_its_height_on(&[Path::Affine, Path::General]);
 }
 
-/// A rebound that depends on the step gives one height for every COR; here the heights are e² to twelve digits.
+/// A rebound that depends on the step gives one height for every COR; here the heights are e² to
+/// twelve digits.
 #[test]
 fn rebounds_are_as_high_as_the_cor_says() {
     for path in PATHS {

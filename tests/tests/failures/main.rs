@@ -67,7 +67,8 @@ fn parabola(g: f64) -> impl Fn(f64, &Flight) -> Polynomial<Flight> + Send + Sync
     move |_t, x| Polynomial::from([*x, vector![x[1], -g], vector![-0.5 * g, 0.0]])
 }
 
-/// A ball that keeps `e` of its speed at each impact on a floor at height zero, by the given path; beyond the limit it rests.
+/// A ball that keeps `e` of its speed at each impact on a floor at height zero, by the given path;
+/// beyond the limit it rests.
 fn ball(g: f64, e: f64, path: Path) -> Hybrid<'static, Flight> {
     let automaton = Hybrid::new()
         .mode("flight", move |_t, x: &Flight| vector![x[1], -g])

@@ -31,7 +31,8 @@ fn a_line_through_a_guard_of_degree_three() {
     }
 }
 
-/// Near the apex of a throw two crossings lie milliseconds to nanoseconds apart; both step ends are on one side.
+/// Near the apex of a throw two crossings lie milliseconds to nanoseconds apart; both step ends are
+/// on one side.
 #[test]
 fn two_crossings_nine_milliseconds_apart() {
     let cases = [
@@ -42,7 +43,8 @@ fn two_crossings_nine_milliseconds_apart() {
     for path in PATHS {
         for (above, up, down) in cases {
             let v = (2.0 * G * (5.0 + above)).sqrt();
-            // The crossing speed turns roundings of a height of 5 m, and of v, into roundings of time.
+            // The crossing speed turns roundings of a height of 5 m, and of v, into roundings of
+            // time.
             let crossing_speed = (2.0 * G * above).sqrt();
             let roundings = if matches!(path, Path::ExactAffine | Path::Exact) { 4.0 } else { 64.0 };
             let tolerance = roundings * 5.0 * f64::EPSILON / crossing_speed;
@@ -51,7 +53,8 @@ fn two_crossings_nine_milliseconds_apart() {
     }
 }
 
-/// A throw that just reaches the level, in representable numbers: a touch is no crossing, and no impact.
+/// A throw that just reaches the level, in representable numbers: a touch is no crossing, and no
+/// impact.
 #[test]
 fn a_touch_at_the_apex_is_no_crossing() {
     for path in [Path::ExactAffine, Path::Exact] {
@@ -59,7 +62,8 @@ fn a_touch_at_the_apex_is_no_crossing() {
     }
 }
 
-/// A root that lies exactly on the start of the flight hides the impact; launched from zero the ball comes down after 2 v / g.
+/// A root that lies exactly on the start of the flight hides the impact; launched from zero the
+/// ball comes down after 2 v / g.
 #[test]
 fn a_launch_from_exactly_the_floor() {
     for path in PATHS {
@@ -76,7 +80,8 @@ fn crossings_at_dyadic_fractions_on(paths: &[Path], last: i32) {
         for k in (4..=last).step_by(2) {
             let level = 1.0 - 0.5_f64.powi(k);
             let half = 0.5_f64.powi(k / 2 + 1);
-            // The slope is 8 half; the height near one is resolved to a quarter of EPSILON, in steps to a few roundings.
+            // The slope is 8 half; the height near one is resolved to a quarter of EPSILON, in
+            // steps to a few roundings.
             let roundings = if matches!(path, Path::ExactAffine | Path::Exact) { 2.0 } else { 64.0 };
             let tolerance = roundings * 0.25 * f64::EPSILON / (8.0 * half) + f64::EPSILON;
             let deep = 0.5_f64.powi(k) >= 8.0 * f64::EPSILON || matches!(path, Path::ExactAffine);
@@ -89,19 +94,22 @@ fn crossings_at_dyadic_fractions_on(paths: &[Path], last: i32) {
     }
 }
 
-/// Roots on round fractions of the flight are found once each: heights 1 - 2^-k are crossed at 0.5 -+ 2^-(k/2+1).
+/// Roots on round fractions of the flight are found once each: heights 1 - 2^-k are crossed at
+/// 0.5 -+ 2^-(k/2+1).
 #[test]
 fn crossings_at_dyadic_fractions() {
     crossings_at_dyadic_fractions_on(&[Path::ExactAffine], 48);
 }
 
-/// The same on every path, within a few units in the last place of the apex; where a formula tells, within two.
+/// The same on every path, within a few units in the last place of the apex; where a formula tells,
+/// within two.
 #[test]
 fn crossings_at_dyadic_fractions_to_the_last_digit() {
     crossings_at_dyadic_fractions_on(&PATHS, 52);
 }
 
-/// One step spans the whole flight and both its ends are below the floor; the impact inside is found without a limit on the step.
+/// One step spans the whole flight and both its ends are below the floor; the impact inside is
+/// found without a limit on the step.
 #[test]
 fn a_flight_inside_one_step() {
     let impact = (5.0 + (25.0_f64 - 2.0 * G * 0.1).sqrt()) / G;
@@ -122,7 +130,8 @@ fn a_flight_inside_one_step() {
     }
 }
 
-/// Crossings on the ends of fixed steps are seen twice or not at all; 0.5 and 0.6 are found once each.
+/// Crossings on the ends of fixed steps are seen twice or not at all; 0.5 and 0.6 are found once
+/// each.
 #[test]
 fn crossings_on_the_ends_of_fixed_steps() {
     let automaton = watched(|_t, _x: &f64| 1.0, |t, _x| (t - 0.5) * (t - 0.6));
@@ -138,7 +147,8 @@ fn oscillator<M: Stepper>(stepper: M) -> Vec<(f64, Way)> {
     crossings(&run.unwrap())
 }
 
-/// A dense output that is completed too late loses events with some methods; every method gives the same list.
+/// A dense output that is completed too late loses events with some methods; every method gives the
+/// same list.
 #[test]
 fn every_method_finds_the_same_crossings() {
     let (turn, first) = (std::f64::consts::TAU, 0.999_f64.asin());
@@ -153,7 +163,8 @@ fn every_method_finds_the_same_crossings() {
     }
 }
 
-/// A condition that holds for 25 ms between two outputs is not seen at either; it starts a delay that ends at 0.55.
+/// A condition that holds for 25 ms between two outputs is not seen at either; it starts a delay
+/// that ends at 0.55.
 #[test]
 fn a_short_condition_between_outputs() {
     let automaton = Hybrid::new()
@@ -168,7 +179,8 @@ fn a_short_condition_between_outputs() {
     assert!((jumps[0].t() - 0.45).abs() < 1e-15 && (jumps[1].t() - 0.55).abs() < 1e-15, "{jumps:?}");
 }
 
-/// The condition "time is 10" is met exactly or not at all, depending on the outputs; here always, also at the end of the span.
+/// The condition "time is 10" is met exactly or not at all, depending on the outputs; here always,
+/// also at the end of the span.
 #[test]
 fn a_moment_is_met_whatever_the_steps() {
     for end in [10.0, 10.5, 20.0] {
@@ -207,7 +219,8 @@ impl Observer<Hybrid<'static, Flight>> for Grid {
     }
 }
 
-/// Events are late by up to an output step, or lost inside one; here the list is the same to the last bit for every grid.
+/// Events are late by up to an output step, or lost inside one; here the list is the same to the
+/// last bit for every grid.
 #[test]
 fn the_events_do_not_depend_on_the_output() {
     for path in PATHS {
@@ -222,7 +235,8 @@ fn the_events_do_not_depend_on_the_output() {
     }
 }
 
-/// A guard cubed has the same crossings, to a third of the digits by interpolation and to all of them by sign.
+/// A guard cubed has the same crossings, to a third of the digits by interpolation and to all of
+/// them by sign.
 #[test]
 fn a_guard_cubed() {
     for steep in [1, 3] {
@@ -244,7 +258,8 @@ fn a_guard_squared_makes_no_jump() {
     assert_crossings(&crossings(&run), &[], 0.0);
 }
 
-/// A guard narrower than any sample of the search but for its zeros: 32 roots of a Chebyshev polynomial in one span.
+/// A guard narrower than any sample of the search but for its zeros: 32 roots of a Chebyshev
+/// polynomial in one span.
 #[test]
 fn thirty_two_crossings_in_one_span() {
     let expected: Vec<(f64, Way)> = (0..32)

@@ -6,7 +6,8 @@ use saltus::{Automaton, Edges, Entry, ErrorKind, Hybrid, Refusal, Reversed, Simu
 
 use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, of_time, throw};
 
-/// A crossing at absolute time zero is missed where the spacing of numbers is taken at zero; it is found at exactly zero.
+/// A crossing at absolute time zero is missed where the spacing of numbers is taken at zero; it is
+/// found at exactly zero.
 #[test]
 fn a_crossing_at_time_zero() {
     assert_crossings(&of_time(|t| -t, -10.0..10.0), &[(0.0, Down)], 0.0);
@@ -14,10 +15,12 @@ fn a_crossing_at_time_zero() {
     assert_crossings(&of_time(|t| -t, -1e-300..10.0), &[(0.0, Down)], 0.0);
 }
 
-/// A guard that is zero at the start ends the run at once or is never looked at again; its later crossing fires.
+/// A guard that is zero at the start ends the run at once or is never looked at again; its later
+/// crossing fires.
 #[test]
 fn a_guard_that_is_zero_at_the_start() {
-    // Watched in both directions, the rise from zero is a fall of the guard's negative, which is taken at the start.
+    // Watched in both directions, the rise from zero is a fall of the guard's negative, which is
+    // taken at the start.
     assert_crossings(&of_time(|t| t * (2.0 - t), 0.0..3.0), &[(0.0, Up), (2.0, Down)], 5e-16);
     assert_crossings(&of_time(|t| -t.sin(), 0.0..4.0), &[(0.0, Down), (std::f64::consts::PI, Up)], 1e-15);
     for path in PATHS {
@@ -88,7 +91,8 @@ impl Automaton for Balls {
     }
 }
 
-/// Backwards, guards a hair apart come in the wrong order, and a start exactly on one raises; here 2e-8, then 1e-8, then 0.
+/// Backwards, guards a hair apart come in the wrong order, and a start exactly on one raises; here
+/// 2e-8, then 1e-8, then 0.
 #[test]
 fn backwards_through_three_guards_close_together() {
     let levels = [("a", "b", 0.0), ("b", "c", 1e-8), ("c", "d", 2e-8)];
@@ -122,7 +126,8 @@ fn backwards_through_three_guards_close_together() {
     }
 }
 
-/// Of many crossings at one time some are lost or applied to the wrong group; every ball bounces, once, at the same time.
+/// Of many crossings at one time some are lost or applied to the wrong group; every ball bounces,
+/// once, at the same time.
 #[test]
 fn eight_balls_land_together() {
     let start = std::array::from_fn(|i| if i % 2 == 0 { 1.0 } else { 0.0 });
@@ -162,7 +167,8 @@ fn two_groups_land_in_turn() {
     }
 }
 
-/// A root is reported, not its sides, and the two ends come out swapped; here they are neighbours with the right signs.
+/// A root is reported, not its sides, and the two ends come out swapped; here they are neighbours
+/// with the right signs.
 #[test]
 fn the_bracket_is_two_neighbours() {
     let guards: [fn(f64) -> f64; 5] = [
@@ -180,7 +186,8 @@ fn the_bracket_is_two_neighbours() {
     }
 }
 
-/// A ball in a corner meets both walls at one time; one instant, two jumps, and the same result in either order.
+/// A ball in a corner meets both walls at one time; one instant, two jumps, and the same result in
+/// either order.
 #[test]
 fn both_walls_of_a_corner() {
     let wall = |x_first: bool| {
@@ -215,7 +222,8 @@ fn both_walls_of_a_corner() {
     }
 }
 
-/// Compared at the time of an impact the velocities are those before or after it; h = 45, g = 10: impacts at 3, 9 and 15.
+/// Compared at the time of an impact the velocities are those before or after it; h = 45, g = 10:
+/// impacts at 3, 9 and 15.
 #[test]
 fn both_limits_at_an_impact() {
     for path in PATHS {
@@ -235,7 +243,8 @@ fn both_limits_at_an_impact() {
     }
 }
 
-/// A root between the time asked for and the end of the step inside is lost; it is found in the next run, and in its direction only.
+/// A root between the time asked for and the end of the step inside is lost; it is found in the
+/// next run, and in its direction only.
 #[test]
 fn a_root_after_the_time_asked_for() {
     let automaton = Hybrid::new()
@@ -249,14 +258,16 @@ fn a_root_after_the_time_asked_for() {
     let next = simulation.run("run", early.end.state, 1.0..4.0).unwrap();
     assert!((next.trajectory.jumps()[0].t() - std::f64::consts::FRAC_PI_3).abs() < 1e-8);
     let after = simulation.run("run", next.end.state, next.trajectory.end().seconds()..10.0).unwrap();
-    // A new run begins on the wall, falling: the first fall is the one it starts at, at most; no rise is taken.
+    // A new run begins on the wall, falling: the first fall is the one it starts at, at most; no
+    // rise is taken.
     let times: Vec<f64> = after.trajectory.jumps().iter().map(saltus::Jump::t).collect();
     assert_eq!(times.len(), 1, "{times:?}");
     let rising = simulation.run("run", vector![0.4, 0.9], 0.0..1.0).unwrap();
     assert_eq!(rising.trajectory.jumps().len(), 0, "rises through 0.5 within 0.2 s");
 }
 
-/// A state changed between two runs so that a guard is already negative is passed over; here the model decides, and refuses unless told.
+/// A state changed between two runs so that a guard is already negative is passed over; here the
+/// model decides, and refuses unless told.
 #[test]
 fn a_state_changed_to_violate_a_guard() {
     for (entry, outcome) in [(Entry::Refuse, None), (Entry::Fire, Some(1)), (Entry::Wait, Some(0))] {

@@ -17,7 +17,8 @@ fn largest_gap<M: Stepper>(stepper: M) -> f64 {
     inner.max(gap(&end.at(end.span()), &run.end.state))
 }
 
-/// A dense output that is off near the ends of its steps; here it meets the step's own values to a rounding.
+/// A dense output that is off near the ends of its steps; here it meets the step's own values to a
+/// rounding.
 #[test]
 fn the_dense_output_meets_the_steps() {
     for gap in [largest_gap(Tsit5), largest_gap(Dop853), largest_gap(Rodas5P)] {
@@ -44,10 +45,12 @@ fn runs_side_by_side_are_the_runs_alone() {
     }
 }
 
-/// A method of many steps begins again at order one after each jump; one of a single step has nothing to forget, and keeps the size of its step.
+/// A method of many steps begins again at order one after each jump; one of a single step has
+/// nothing to forget, and keeps the size of its step.
 #[test]
 fn a_stiff_run_restarts_cheaply() {
-    // x' = -10⁴ (x - cos t), with a jump each 0.1 s that changes nothing, and one that kicks x away by 1.
+    // x' = -10⁴ (x - cos t), with a jump each 0.1 s that changes nothing, and one that kicks x away
+    // by 1.
     let run = |kick: Option<f64>| -> Stats {
         let automaton = Hybrid::new().mode("run", |t: f64, x: &f64| -1e4 * (x - t.cos()));
         let automaton = match kick {

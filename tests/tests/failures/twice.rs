@@ -5,7 +5,8 @@ use saltus::{Entry, ErrorKind, Hybrid, Jump, JumpOf, Observer, Simulation, Stop}
 
 use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, crossings, of_time, watched};
 
-/// A guard that is not a number in part of the span makes a search loop for ever; here an error names guard, time and state.
+/// A guard that is not a number in part of the span makes a search loop for ever; here an error
+/// names guard, time and state.
 #[test]
 fn a_guard_that_is_not_a_number() {
     let automaton = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).edge(
@@ -20,7 +21,8 @@ fn a_guard_that_is_not_a_number() {
     assert!((failed.error.t() - 0.3).abs() < 0.1 && (0.3..0.4).contains(&failed.error.state()[0]), "{}", failed.error);
 }
 
-/// A flow that is singular a few spacings of time before the start asks for ever shorter steps; here the run says so.
+/// A flow that is singular a few spacings of time before the start asks for ever shorter steps;
+/// here the run says so.
 #[test]
 fn steps_below_the_spacing_of_time() {
     let automaton = Hybrid::new().mode("run", |t: f64, _y: &f64| 1.0 / (t - 1.0));
@@ -28,7 +30,8 @@ fn steps_below_the_spacing_of_time() {
     assert_eq!(failed.error.kind(), ErrorKind::StepSize, "{}", failed.error);
 }
 
-/// Products of guard values underflow when signs are compared by them; values of 1e-300 cross like any other.
+/// Products of guard values underflow when signs are compared by them; values of 1e-300 cross like
+/// any other.
 #[test]
 fn tiny_guard_values() {
     for scale in [1e-300, 1e-160, 1e300] {
@@ -57,7 +60,8 @@ fn a_sawtooth_with_a_crossing_at_the_output() {
     }
 }
 
-/// Two equal guards each re-arm the other in an endless loop; here both are taken, once each, at one time.
+/// Two equal guards each re-arm the other in an endless loop; here both are taken, once each, at
+/// one time.
 #[test]
 fn two_identical_guards() {
     for path in PATHS {
@@ -75,7 +79,8 @@ fn two_identical_guards() {
     }
 }
 
-/// Two equal guards, the first of which turns the ball round: the second is looked at again and is not taken.
+/// Two equal guards, the first of which turns the ball round: the second is looked at again and is
+/// not taken.
 #[test]
 fn two_identical_guards_of_which_one_bounces() {
     for path in PATHS {
@@ -94,7 +99,8 @@ fn two_identical_guards_of_which_one_bounces() {
     }
 }
 
-/// A reset throws two other guards over at once; they are taken in the order in which they are listed, and the run ends.
+/// A reset throws two other guards over at once; they are taken in the order in which they are
+/// listed, and the run ends.
 #[test]
 fn a_reset_that_trips_two_other_guards() {
     let automaton = Hybrid::new()
@@ -111,7 +117,8 @@ fn a_reset_that_trips_two_other_guards() {
     assert_eq!(run.end.stop, Stop::Time);
 }
 
-/// A reset flips the sign of its own guard while another root lies in the first half of the next search: no bracket breaks.
+/// A reset flips the sign of its own guard while another root lies in the first half of the next
+/// search: no bracket breaks.
 #[test]
 fn a_reset_that_flips_its_own_guard() {
     // The guard is s (0.1 - (x - 1)²), with s turned round by the reset: zeros at 1 -+ sqrt(0.1).
@@ -130,7 +137,8 @@ fn a_reset_that_flips_its_own_guard() {
     }
 }
 
-/// A crossing less than one spacing of time from a step's end, on either side of it, is one crossing.
+/// A crossing less than one spacing of time from a step's end, on either side of it, is one
+/// crossing.
 #[test]
 fn a_crossing_one_spacing_from_a_step_end() {
     for at in [1.0_f64, 0.1, 0.3, 0.7] {
@@ -159,7 +167,8 @@ impl Observer<Hybrid<'static, Flight>> for Count {
     }
 }
 
-/// A driver that reports an event at every step counts too many; here one impact is one jump, however short the steps.
+/// A driver that reports an event at every step counts too many; here one impact is one jump,
+/// however short the steps.
 #[test]
 fn as_many_events_as_impacts() {
     for path in [Path::Affine, Path::General] {
@@ -173,7 +182,8 @@ fn as_many_events_as_impacts() {
     }
 }
 
-/// A reset that leaves the state one unit in the last place above or below the wall makes the guard fire again at once.
+/// A reset that leaves the state one unit in the last place above or below the wall makes the guard
+/// fire again at once.
 #[test]
 fn a_reset_one_unit_off_the_wall() {
     for path in PATHS {
@@ -195,7 +205,8 @@ fn a_reset_one_unit_off_the_wall() {
     }
 }
 
-/// Switching a billion times a second fills memory or never ends; here the run ends with its limit, and says what switched how fast.
+/// Switching a billion times a second fills memory or never ends; here the run ends with its limit,
+/// and says what switched how fast.
 #[test]
 fn a_thermostat_with_a_hair_of_hysteresis() {
     let (low, high) = (20.0, 20.0 + 1e-9);
@@ -208,12 +219,14 @@ fn a_thermostat_with_a_hair_of_hysteresis() {
     assert_eq!(run.end.stop, Stop::Jumps { most: 10_000 });
     let jumps = run.trajectory.jumps();
     assert!(jumps.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].edge() != pair[1].edge()));
-    // Up and down by 1e-9 at 10 degrees a second each; a temperature near 20 is resolved to 3.6e-15.
+    // Up and down by 1e-9 at 10 degrees a second each; a temperature near 20 is resolved to
+    // 3.6e-15.
     let rate = jumps.len() as f64 / run.trajectory.end().seconds();
     assert!((rate / 1e10 - 1.0).abs() < 1e-4, "{rate} switches a second");
 }
 
-/// A guard is left alone after its own crossing until it has risen: it falls once, then rises, then falls again.
+/// A guard is left alone after its own crossing until it has risen: it falls once, then rises, then
+/// falls again.
 #[test]
 fn crossings_in_turn_without_a_pause() {
     let expected = [(0.25, Down), (0.250_000_01, Up), (0.250_000_02, Down)];

@@ -107,7 +107,8 @@ impl Automaton for Bounce {
     }
 }
 
-/// A ball with quadratic drag, its way up and its way down two smooth modes, on a table that may move as A sin(w t).
+/// A ball with quadratic drag, its way up and its way down two smooth modes, on a table that may
+/// move as A sin(w t).
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Dragged {
     pub(crate) g: f64,
@@ -321,7 +322,8 @@ impl Automaton for Tossed {
     }
 }
 
-/// A point that hops on a rigid leg: in flight x, y and their velocities; in stance the foot, the leg's angle and its rate.
+/// A point that hops on a rigid leg: in flight x, y and their velocities; in stance the foot, the
+/// leg's angle and its rate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hopper {
     pub(crate) g: f64,

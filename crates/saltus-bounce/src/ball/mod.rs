@@ -1,4 +1,5 @@
-//! The vertical ball: its flight and its restitution are type parameters, and it costs what they cost.
+//! The vertical ball: its flight and its restitution are type parameters, and it costs what they
+//! cost.
 
 mod parted;
 mod smooth;
@@ -12,13 +13,16 @@ use crate::restitution::{Cor, Restitution};
 pub use parted::{Phase, Turn};
 pub use smooth::{Floor, Mode, SmoothFlight};
 
-/// Gravity on Earth by convention, 9.80665 m/s² (third General Conference on Weights and Measures, 1901).
+/// Gravity on Earth by convention, 9.80665 m/s² (third General Conference on Weights and Measures,
+/// 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// A ball that flies up and down and bounces on a level floor; by default gravity and a constant [`Cor`], nothing else.
+/// A ball that flies up and down and bounces on a level floor; by default gravity and a constant
+/// [`Cor`], nothing else.
 ///
-/// State: height y of the ball's lowest point *above the floor* in m, velocity v upwards in m/s; so the last bounces keep their digits
-/// wherever the floor lies ([`with_floor`](Self::with_floor), [`height`](Self::height)). At the [`Floor`] v⁺ is the restitution law's rebound. The bounces
+/// State: height y of the ball's lowest point *above the floor* in m, velocity v upwards in m/s; so
+/// the last bounces keep their digits wherever the floor lies ([`with_floor`](Self::with_floor),
+/// [`height`](Self::height)). At the [`Floor`] v⁺ is the restitution law's rebound. The bounces
 /// accumulate; beyond their limit, or after an impact without rebound, the ball lies in `Rest`.
 ///
 /// | flight F | modes | solution |
@@ -27,7 +31,8 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 /// | [`LinearDragFlight`](crate::flight::LinearDragFlight) | [`Mode`] | its formula |
 /// | [`QuadraticDragFlight`](crate::flight::QuadraticDragFlight) | [`Phase`]: `Rising`, `Falling`, `Rest` | its formula, smooth in each |
 ///
-/// No step is taken, at any height, speed or restitution. Limits: no motion sideways (see [`Flyer`](crate::Flyer)); contact takes no time.
+/// No step is taken, at any height, speed or restitution. Limits: no motion sideways (see
+/// [`Flyer`](crate::Flyer)); contact takes no time.
 ///
 /// ```
 /// use saltus::{Simulation, Stop};
@@ -78,7 +83,8 @@ impl Ball {
         vector![height, 0.0]
     }
 
-    /// The state of a ball at `height` in m above the floor that moves upwards at `velocity` in m/s.
+    /// The state of a ball at `height` in m above the floor that moves upwards at `velocity` in
+    /// m/s.
     #[must_use]
     pub fn launched_from(height: f64, velocity: f64) -> Vector2<f64> {
         vector![height, velocity]
@@ -86,7 +92,8 @@ impl Ball {
 }
 
 impl<F: VerticalFlight, R: Restitution> Ball<F, R> {
-    /// A ball that flies by the law `flight` and rebounds by the law `restitution`, its floor at height zero.
+    /// A ball that flies by the law `flight` and rebounds by the law `restitution`, its floor at
+    /// height zero.
     #[must_use]
     pub const fn of(flight: F, restitution: R) -> Self {
         Self { flight, restitution, floor: 0.0 }
@@ -113,7 +120,8 @@ impl<F: VerticalFlight, R: Restitution> Ball<F, R> {
         self.floor
     }
 
-    /// The height of the ball's lowest point in the state `x`, in the coordinates in which the floor has its height, in m.
+    /// The height of the ball's lowest point in the state `x`, in the coordinates in which the
+    /// floor has its height, in m.
     #[must_use]
     pub fn height(&self, x: &Vector2<f64>) -> f64 {
         self.floor + x[0]
@@ -134,7 +142,8 @@ impl<F: VerticalFlight, R: Restitution> Ball<F, R> {
     /// The speed after an impact that is met with `velocity` upwards, in m/s.
     #[inline]
     fn rebound(&self, velocity: f64) -> f64 {
-        // Rounding may leave a ball on the floor with a velocity a hair above zero: no law is asked about that.
+        // Rounding may leave a ball on the floor with a velocity a hair above zero: no law is asked
+        // about that.
         self.restitution.rebound((-velocity).max(0.0)).max(0.0)
     }
 }

@@ -1,4 +1,5 @@
-//! Balls under quadratic drag, whose law of flight is smooth on either side of the apex: rising and falling are two modes.
+//! Balls under quadratic drag, whose law of flight is smooth on either side of the apex: rising and
+//! falling are two modes.
 
 use nalgebra::{Vector2, vector};
 use saltus::{About, Automaton, Edges, Entry, Fall, Limit, Refusal, Solution};
@@ -56,7 +57,8 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
     #[inline]
     fn flow(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         match phase {
-            // Each goes on smoothly past the apex, so that a step that ends beyond it is no shorter for that.
+            // Each goes on smoothly past the apex, so that a step that ends beyond it is no shorter
+            // for that.
             Phase::Rising => vector![x[1], self.flight.one_way(x[1], true)],
             Phase::Falling => vector![x[1], self.flight.one_way(x[1], false)],
             Phase::Rest => vector![0.0, 0.0],

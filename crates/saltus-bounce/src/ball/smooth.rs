@@ -20,7 +20,8 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Floor;
 
-/// A law of vertical flight whose acceleration is a smooth function of the velocity, upwards and downwards: no apex needs an edge.
+/// A law of vertical flight whose acceleration is a smooth function of the velocity, upwards and
+/// downwards: no apex needs an edge.
 ///
 /// Quadratic drag, -k v|v|, is none: a ball under it has the modes of [`Phase`](super::Phase).
 pub trait SmoothFlight: VerticalFlight {

@@ -5,11 +5,13 @@ use saltus::{Automaton, Time};
 use super::{Cloud, Swarm, Touch, meet};
 use crate::restitution::Restitution;
 
-/// A cloud in flight: each ball knows its next event, and only those whose next event an impact has changed look again.
+/// A cloud in flight: each ball knows its next event, and only those whose next event an impact has
+/// changed look again.
 ///
-/// The physics is that of the automaton, impact for impact; an event costs some N looks instead of N²/2. Take this to drive many balls
-/// for long, the automaton to have a trajectory, an observer or a limit. Nothing is allocated. Events at one time are taken in the order of [`Touch`]
-/// only if their times are the same number.
+/// The physics is that of the automaton, impact for impact; an event costs some N looks instead of
+/// N²/2. Take this to drive many balls for long, the automaton to have a trajectory, an observer or
+/// a limit. Nothing is allocated. Events at one time are taken in the order of [`Touch`] only if
+/// their times are the same number.
 ///
 /// ```
 /// use saltus_bounce::{Cloud, Cor, cloud::Touch};
@@ -55,7 +57,8 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Flight<'_, D, N, R> 
         &self.state
     }
 
-    /// Advances to just after the next event, and says which; or to `until` in s, if there is none before.
+    /// Advances to just after the next event, and says which; or to `until` in s, if there is none
+    /// before.
     ///
     /// A lossy cloud may have infinitely many events in a finite time: count them.
     pub fn event(&mut self, until: f64) -> Option<Touch> {

@@ -1,9 +1,11 @@
 //! When two balls in flight meet, and when a ball meets a wall.
 
-/// When two balls whose centres are `r` apart and part at the velocity `v` first come as close as `reach`; `None` if they do not, or only graze.
+/// When two balls whose centres are `r` apart and part at the velocity `v` first come as close as
+/// `reach`; `None` if they do not, or only graze.
 ///
 /// |r + v s| = R with b = r·v < 0: s = (|r| - R)(|r| + R)/(-b + √(|v|² (R² - p²))), where p = |r × v|/|v| is how closely the centres pass
-/// each other: neither difference cancels but by the coordinates themselves. Balls that overlap by rounding, and approach, meet at once.
+/// each other: neither difference cancels but by the coordinates themselves. Balls that overlap by
+/// rounding, and approach, meet at once.
 #[inline]
 pub(crate) fn balls<const D: usize>(r: [f64; D], v: [f64; D], reach: f64) -> Option<f64> {
     let b = dot(&r, &v);
@@ -27,7 +29,8 @@ pub(crate) fn balls<const D: usize>(r: [f64; D], v: [f64; D], reach: f64) -> Opt
     (pass < span).then(|| gap * (distance + reach) / (((span - pass) * (span + pass)).sqrt() - b))
 }
 
-/// When a gap `c` to a wall that changes at the rate `v` and bends at `a` (m/s²) first falls through zero.
+/// When a gap `c` to a wall that changes at the rate `v` and bends at `a` (m/s²) first falls
+/// through zero.
 #[inline]
 pub(super) fn wall(c: f64, v: f64, a: f64) -> Option<f64> {
     let c = c.max(0.0);
@@ -54,7 +57,8 @@ pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// ab - cd with one rounding more than none (W. Kahan, *On the cost of floating-point computation without extra-precise arithmetic*, 2004).
+/// ab - cd with one rounding more than none (W. Kahan, *On the cost of floating-point computation
+/// without extra-precise arithmetic*, 2004).
 #[inline]
 fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let product = c * d;
@@ -70,7 +74,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, cases: 2000, max_global_rejects: 20_000, ..ProptestConfig::default() })]
 
-        /// Planted meetings are found: the balls are placed as they touch, and the clock turned back.
+        /// Planted meetings are found: the balls are placed as they touch, and the clock turned
+        /// back.
         #[test]
         fn planted_meetings(angle in 0.0..6.3_f64, turn in -1.5..1.5_f64, reach in 1e-3..1.0_f64, speed in 0.1..10.0_f64, s in 1e-6..10.0_f64) {
             let (n, u) = ([angle.cos(), angle.sin()], angle + std::f64::consts::PI + turn);
@@ -89,7 +94,8 @@ mod tests {
             let (start, c) = (v - a * s, -(v * s - 0.5 * a * s * s));
             prop_assume!(c > 0.0);
             let found = wall(c, start, a);
-            // With a > 0 the fall at s is the only one; with a < 0 too, since the gap starts positive.
+            // With a > 0 the fall at s is the only one; with a < 0 too, since the gap starts
+            // positive.
             let found = found.unwrap();
             prop_assert!((found - s).abs() <= 1e-13 * (1.0 + s) / v.abs() * (1.0 + start.abs()), "{found} {s}");
         }

@@ -16,21 +16,26 @@ pub(crate) use meet::balls as meeting_of_balls;
 use meet::dot;
 pub use swarm::Swarm;
 
-/// N smooth balls in D dimensions that bounce off each other and off the walls of a box, under gravity or without.
+/// N smooth balls in D dimensions that bounce off each other and off the walls of a box, under
+/// gravity or without.
 ///
-/// State [`Swarm`]; one mode, free flight on parabolas; edges [`Touch`]. Of two balls the relative motion is a straight line, since gravity
-/// pulls both alike, and the time of their meeting the root of a quadratic; of a ball and a wall likewise. At an impact the
-/// velocity along the line of centres is turned round by the law of restitution; the one across it stays.
+/// State [`Swarm`]; one mode, free flight on parabolas; edges [`Touch`]. Of two balls the relative
+/// motion is a straight line, since gravity pulls both alike, and the time of their meeting the
+/// root of a quadratic; of a ball and a wall likewise. At an impact the velocity along the line of
+/// centres is turned round by the law of restitution; the one across it stays.
 ///
-/// Impacts at one time are taken in a fixed order: pairs (0, 1), (0, 2), …, (N-2, N-1), then the walls ball by ball; each
-/// again if it must be. Nothing is drawn at random: the same start gives the same run.
+/// Impacts at one time are taken in a fixed order: pairs (0, 1), (0, 2), …, (N-2, N-1), then the
+/// walls ball by ball; each again if it must be. Nothing is drawn at random: the same start gives
+/// the same run.
 ///
-/// As an automaton an event costs a look at all N(N-1)/2 pairs: meant for a handful of balls. For up to some 64 of them, or for long runs, there is
-/// [`Cloud::flight`], which looks only at what an impact has changed.
+/// As an automaton an event costs a look at all N(N-1)/2 pairs: meant for a handful of balls. For
+/// up to some 64 of them, or for long runs, there is [`Cloud::flight`], which looks only at what an
+/// impact has changed.
 ///
-/// Limits: no spin, no friction. A lossy ball that bounces to rest, or lossy balls that collapse, end the run with
-/// [`Stop::Zeno`](saltus::Stop::Zeno): what lies beyond is not modelled; on a line it is, see [`Line`](crate::Line).
-/// Source: B. J. Alder and T. E. Wainwright, J. Chem. Phys. 31, 459 (1959), doi:10.1063/1.1730376.
+/// Limits: no spin, no friction. A lossy ball that bounces to rest, or lossy balls that collapse,
+/// end the run with [`Stop::Zeno`](saltus::Stop::Zeno): what lies beyond is not modelled; on a line
+/// it is, see [`Line`](crate::Line). Source: B. J. Alder and T. E. Wainwright, J. Chem. Phys. 31,
+/// 459 (1959), doi:10.1063/1.1730376.
 ///
 /// ```
 /// use saltus::Simulation;
@@ -83,7 +88,8 @@ pub enum Touch {
 }
 
 impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
-    /// Balls of `masses` in kg and `radii` in m, which meet by the law `restitution`; no walls, no gravity.
+    /// Balls of `masses` in kg and `radii` in m, which meet by the law `restitution`; no walls, no
+    /// gravity.
     ///
     /// # Errors
     /// [`ParameterError`] unless every mass and radius is finite and positive.
@@ -106,7 +112,8 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
         Ok(Self { gravity, ..self })
     }
 
-    /// In a box from the corner `low` to the corner `high`, in m, whose walls are met by the law `restitution`.
+    /// In a box from the corner `low` to the corner `high`, in m, whose walls are met by the law
+    /// `restitution`.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite and the box has an inside.

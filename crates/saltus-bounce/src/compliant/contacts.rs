@@ -27,9 +27,11 @@ pub struct Contact {
 }
 
 impl<L: ContactLaw> Compliant<L> {
-    /// The contacts of a recorded run, in order; the last may be cut off by its end, or last for ever.
+    /// The contacts of a recorded run, in order; the last may be cut off by its end, or last for
+    /// ever.
     ///
-    /// The greatest force is searched for on the recorded pieces: to their twelve digits, or to the tolerance of the steps.
+    /// The greatest force is searched for on the recorded pieces: to their twelve digits, or to the
+    /// tolerance of the steps.
     #[must_use]
     pub fn contacts(&self, run: &TrajectoryOf<Self>) -> Vec<Contact> {
         let mut contacts: Vec<Contact> = Vec::new();
@@ -74,8 +76,8 @@ impl<L: ContactLaw> Compliant<L> {
         contacts
     }
 
-    /// The force over the deformation through one contact of `run`: `count` points [d, F] in m and N for each stage in contact, evenly spaced in time,
-    /// besides those at its ends.
+    /// The force over the deformation through one contact of `run`: `count` points [d, F] in m and
+    /// N for each stage in contact, evenly spaced in time, besides those at its ends.
     ///
     /// The area of the loop, ∮ F dd, is the energy lost.
     #[must_use]

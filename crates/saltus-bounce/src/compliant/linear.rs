@@ -3,7 +3,8 @@
 use crate::contact::{ContactLaw, KelvinVoigt};
 use crate::stable::increasing_root;
 
-/// A linear contact of a mass under a constant load: m d'' + c d' + k (d - d₀) = 0 about the static deformation d₀ = load/k.
+/// A linear contact of a mass under a constant load: m d'' + c d' + k (d - d₀) = 0 about the static
+/// deformation d₀ = load/k.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Linear {
     law: KelvinVoigt,
@@ -25,7 +26,8 @@ impl Linear {
         self.law.after(s, x, self.mass, self.load)
     }
 
-    /// The first s > 0 with tan(ωs)/ω = `opposite`/`adjacent`, for `opposite` ≥ 0 and ω² = ω₀² - β²; tanh beyond critical damping.
+    /// The first s > 0 with tan(ωs)/ω = `opposite`/`adjacent`, for `opposite` ≥ 0 and ω² = ω₀² -
+    /// β²; tanh beyond critical damping.
     fn angle(&self, opposite: f64, adjacent: f64) -> Option<f64> {
         let off = self.square - self.beta * self.beta;
         if off > 0.0 {
@@ -43,7 +45,8 @@ impl Linear {
         }
     }
 
-    /// When the rate of a solution z of the free equation next changes its sign: tan(ωs)/ω = z'/(βz' + ω₀²z).
+    /// When the rate of a solution z of the free equation next changes its sign: tan(ωs)/ω =
+    /// z'/(βz' + ω₀²z).
     fn turn_of(&self, z: f64, rate: f64) -> Option<f64> {
         let upwards = rate > 0.0 || (rate == 0.0 && z < 0.0);
         let adjacent = self.beta * rate + self.square * z;
@@ -60,8 +63,9 @@ impl Linear {
 
     /// When the contact ends, during restitution.
     ///
-    /// Its margin, the force or (with tension) the deformation, is the static one plus a solution z of the free equation. z falls from
-    /// where it is zero to its least value: the margin is zero in between, or never again, since later swings are smaller.
+    /// Its margin, the force or (with tension) the deformation, is the static one plus a solution z
+    /// of the free equation. z falls from where it is zero to its least value: the margin is zero
+    /// in between, or never again, since later swings are smaller.
     pub(super) fn release(&self, x: [f64; 2]) -> Option<f64> {
         let [d, u] = x;
         let (k, c) = (self.law.stiffness(d, u), self.law.damping(d, u));

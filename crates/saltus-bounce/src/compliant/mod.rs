@@ -14,7 +14,8 @@ use linear::Linear;
 
 /// A ball that falls on a floor and is deformed: five stages, and the moments between them.
 ///
-/// State: height y of the undeformed ball's lowest point in m, negative in contact, and velocity v upwards in m/s.
+/// State: height y of the undeformed ball's lowest point in m, negative in contact, and velocity v
+/// upwards in m/s.
 ///
 /// ```text
 /// Fall         y' = v, v' = -g               until y falls through 0                     first contact
@@ -25,15 +26,18 @@ use linear::Linear;
 /// Lying        as in compression             for ever
 /// ```
 ///
-/// Flights are exact parabolas. Contacts are solved by formula where the law is linear ([`KelvinVoigt`](crate::contact::KelvinVoigt)),
-/// else by steps: take [`Dop853`](saltus::Dop853), and an absolute tolerance far below the deformation.
+/// Flights are exact parabolas. Contacts are solved by formula where the law is linear
+/// ([`KelvinVoigt`](crate::contact::KelvinVoigt)), else by steps: take [`Dop853`](saltus::Dop853),
+/// and an absolute tolerance far below the deformation.
 ///
-/// A ball that turns back before lift-off never leaves again: what is left of its energy is below what would bring it to lift-off, and it
-/// does not grow. It is [`Stage::Lying`] from then on, swinging about the static deformation. There is no Zeno limit, and the number of
-/// flights is finite if the law is lossy.
+/// A ball that turns back before lift-off never leaves again: what is left of its energy is below
+/// what would bring it to lift-off, and it does not grow. It is [`Stage::Lying`] from then on,
+/// swinging about the static deformation. There is no Zeno limit, and the number of flights is
+/// finite if the law is lossy.
 ///
-/// A law that releases the ball under pressure (`KelvinVoigt` without tension) lets the rest of the deformation go at once: the next contact is
-/// at y = 0. If the ball does not rise that far, the floor follows, and contact begins anew at the apex.
+/// A law that releases the ball under pressure (`KelvinVoigt` without tension) lets the rest of the
+/// deformation go at once: the next contact is at y = 0. If the ball does not rise that far, the
+/// floor follows, and contact begins anew at the apex.
 ///
 /// Limits: one coordinate, no drag; mass and deformation as in the law's own limits.
 ///
@@ -95,7 +99,8 @@ impl<L: ContactLaw> Compliant<L> {
     /// A ball of `mass` in kg under `gravity` in m/s², on a floor that it meets by `law`.
     ///
     /// # Errors
-    /// [`ParameterError`] unless the mass is finite and positive, the gravity finite and not negative.
+    /// [`ParameterError`] unless the mass is finite and positive, the gravity finite and not
+    /// negative.
     pub fn new(mass: f64, gravity: f64, law: L) -> Result<Self, ParameterError> {
         Ok(Self { mass: positive("a mass in kg", mass)?, gravity: not_negative("a gravity in m/s^2", gravity)?, law })
     }
@@ -105,7 +110,8 @@ impl<L: ContactLaw> Compliant<L> {
         &self.law
     }
 
-    /// The stage and state of a ball let go at `height` in m with `velocity` upwards in m/s; pressed into the floor if the height is negative.
+    /// The stage and state of a ball let go at `height` in m with `velocity` upwards in m/s;
+    /// pressed into the floor if the height is negative.
     #[must_use]
     pub fn released(&self, height: f64, velocity: f64) -> (Stage, Vector2<f64>) {
         let stage = if height < 0.0 {

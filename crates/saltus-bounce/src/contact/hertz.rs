@@ -9,11 +9,12 @@ const DURATION: f64 = 2.943_275_184_324_704_7;
 
 /// Hertz contact: F = k d^(3/2), without loss.
 ///
-/// k in N/m^(3/2); for a sphere of radius R on a plane k = (4/3) E √R, 1/E = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂. A collision deforms by
-/// d = (5 m v²/(4k))^(2/5), lasts 2.9433 d/v, and ends with e = 1.
+/// k in N/m^(3/2); for a sphere of radius R on a plane k = (4/3) E √R, 1/E = (1 - ν₁²)/E₁ + (1 -
+/// ν₂²)/E₂. A collision deforms by d = (5 m v²/(4k))^(2/5), lasts 2.9433 d/v, and ends with e = 1.
 ///
-/// Limits: deformations small against R, slow against the speed of sound, no friction, no plastic flow. The force is only once
-/// differentiable at d = 0. Source: H. Hertz, J. reine angew. Math. 92, 156 (1882), doi:10.1515/crll.1882.92.156.
+/// Limits: deformations small against R, slow against the speed of sound, no friction, no plastic
+/// flow. The force is only once differentiable at d = 0. Source: H. Hertz, J. reine angew. Math.
+/// 92, 156 (1882), doi:10.1515/crll.1882.92.156.
 ///
 /// ```
 /// use saltus_bounce::contact::{ContactLaw, Elastic, Hertz};
@@ -40,7 +41,8 @@ impl Elastic {
     /// Young's modulus in Pa and Poisson's ratio.
     ///
     /// # Errors
-    /// [`ParameterError`] unless the modulus is finite and positive and the ratio between -1 and 1/2.
+    /// [`ParameterError`] unless the modulus is finite and positive and the ratio between -1 and
+    /// 1/2.
     pub fn new(young: f64, poisson: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             young: positive("Young's modulus in Pa", young)?,
@@ -69,8 +71,8 @@ impl Hertz {
     /// Of a ball of `radius` in m on a flat floor.
     ///
     /// # Errors
-    /// [`ParameterError`] unless the radius is finite and positive, and one of the two bodies at least is compressible along the surface
-    /// (Poisson's ratio not -1).
+    /// [`ParameterError`] unless the radius is finite and positive, and one of the two bodies at
+    /// least is compressible along the surface (Poisson's ratio not -1).
     pub fn sphere(radius: f64, ball: Elastic, floor: Elastic) -> Result<Self, ParameterError> {
         let radius = positive("a radius in m", radius)?;
         Self::new(4.0 / 3.0 * radius.sqrt() / (ball.compliance() + floor.compliance()))

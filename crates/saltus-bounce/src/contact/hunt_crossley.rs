@@ -9,13 +9,15 @@ use crate::stable::{increasing_root, log_excess};
 
 /// Hunt and Crossley's contact: F = d^(3/2) (k + χ u).
 ///
-/// k in N/m^(3/2), χ in N s/m^(5/2). A collision at speed v depends on δ = χv/k alone: e from δ(1 + e) = ln((1 + δ)/(1 - δe)), about
-/// 1 - 2δ/3 for weak damping and 1/δ for strong; greatest deformation ((5/2)(m v²/k)(δ - ln(1 + δ))/δ²)^(2/5). The duration has no closed form: it
-/// is a quadrature with its end singularities taken out, to twelve digits for δ up to 40, six at 100.
+/// k in N/m^(3/2), χ in N s/m^(5/2). A collision at speed v depends on δ = χv/k alone: e from δ(1 +
+/// e) = ln((1 + δ)/(1 - δe)), about 1 - 2δ/3 for weak damping and 1/δ for strong; greatest
+/// deformation ((5/2)(m v²/k)(δ - ln(1 + δ))/δ²)^(2/5). The duration has no closed form: it is a
+/// quadrature with its end singularities taken out, to twelve digits for δ up to 40, six at 100.
 ///
-/// The force is continuous at touch and release, and does not pull: within a collision u > -k/χ always. Limits as for [`Hertz`](super::Hertz).
-/// Sources: K. H. Hunt and F. R. E. Crossley, J. Appl. Mech. 42, 440 (1975), doi:10.1115/1.3423596; D. W. Marhefka and D. E. Orin,
-/// IEEE Trans. Syst. Man Cybern. A 29, 566 (1999), doi:10.1109/3468.798060, for the exact relation.
+/// The force is continuous at touch and release, and does not pull: within a collision u > -k/χ
+/// always. Limits as for [`Hertz`](super::Hertz). Sources: K. H. Hunt and F. R. E. Crossley, J.
+/// Appl. Mech. 42, 440 (1975), doi:10.1115/1.3423596; D. W. Marhefka and D. E. Orin, IEEE Trans.
+/// Syst. Man Cybern. A 29, 566 (1999), doi:10.1109/3468.798060, for the exact relation.
 ///
 /// ```
 /// use saltus_bounce::{Cor, contact::{ContactLaw, HuntCrossley}};
@@ -48,7 +50,8 @@ impl HuntCrossley {
     /// With k = `constant` in N/m^(3/2), damped so that the COR is `cor` at `speed` in m/s.
     ///
     /// # Errors
-    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others are finite and positive.
+    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others
+    /// are finite and positive.
     pub fn with_cor(constant: f64, speed: f64, cor: Cor) -> Result<Self, ParameterError> {
         let e = positive("a coefficient of restitution of a damped contact", cor.value())?;
         let v = positive("a speed in m/s", speed)?;
@@ -118,9 +121,11 @@ fn integral(end: f64, f: impl Fn(f64) -> f64) -> f64 {
     })
 }
 
-/// The durations of compression and of restitution, in units of (m v/k) D^(-3/2), D = ((5/2) m v²/k)^(2/5).
+/// The durations of compression and of restitution, in units of (m v/k) D^(-3/2), D = ((5/2) m
+/// v²/k)^(2/5).
 ///
-/// (d/D)^(5/2) = Φ(y) = ∫ y dy/(1 + δy) from y = u/v to 1, written in the distance from either end; dt = -dy Φ^(-3/5)/(1 + δy).
+/// (d/D)^(5/2) = Φ(y) = ∫ y dy/(1 + δy) from y = u/v to 1, written in the distance from either end;
+/// dt = -dy Φ^(-3/5)/(1 + δy).
 fn durations(delta: f64, e: f64, gap: f64) -> (f64, f64) {
     let compression = integral(1.0, |x| {
         let y = x / (1.0 + delta);
@@ -206,7 +211,8 @@ mod tests {
             prop_assert!((hit.cor.value() / e - 1.0).abs() < 1e-14 && (hit.duration / t - 1.0).abs() < 1e-12, "{hit:?}");
         }
 
-        /// The relation between e and δ holds, over the change of formula at δ = 1 and down to no damping at all.
+        /// The relation between e and δ holds, over the change of formula at δ = 1 and down to no
+        /// damping at all.
         #[test]
         fn the_exact_relation(log_delta in -12.0..1.5_f64) {
             let delta = 10.0_f64.powf(log_delta);

@@ -9,13 +9,15 @@ use crate::stable::{increasing_root, phi1, ratio};
 
 /// Kelvin–Voigt contact: F = k d + c u, until F = 0, or with tension until d = 0.
 ///
-/// k in N/m, c in N s/m. With ω = √(k/m), ζ = c/(2mω) and G = arccos ζ/√(1 - ζ²) (arcosh ζ/√(ζ² - 1) beyond critical damping):
-/// greatest deformation (v/ω) e^(-ζG) after G/ω; release after 2G/ω with e = e^(-2ζG), independent of the speed, while the ball is
-/// still pressed in by c e v/k. With tension: release after π/(ω√(1 - ζ²)) with e = exp(-πζ/√(1 - ζ²)), and never for ζ ≥ 1.
-/// Greatest force: mωv exp(-ζ(3 arccos ζ - π)/√(1 - ζ²)) for ζ < 1/2, else c v at first touch.
+/// k in N/m, c in N s/m. With ω = √(k/m), ζ = c/(2mω) and G = arccos ζ/√(1 - ζ²) (arcosh
+/// ζ/√(ζ² - 1) beyond critical damping): greatest deformation (v/ω) e^(-ζG) after G/ω; release
+/// after 2G/ω with e = e^(-2ζG), independent of the speed, while the ball is still pressed in by c
+/// e v/k. With tension: release after π/(ω√(1 - ζ²)) with e = exp(-πζ/√(1 - ζ²)), and never for ζ
+/// ≥ 1. Greatest force: mωv exp(-ζ(3 arccos ζ - π)/√(1 - ζ²)) for ζ < 1/2, else c v at first touch.
 ///
-/// Limits: the force jumps to c v at touch. After a release under pressure the ball is taken to be round again at the next touch.
-/// Source: T. Schwager and T. Pöschel, Granular Matter 9, 465 (2007), arXiv:cond-mat/0701278.
+/// Limits: the force jumps to c v at touch. After a release under pressure the ball is taken to be
+/// round again at the next touch. Source: T. Schwager and T. Pöschel, Granular Matter 9, 465
+/// (2007), arXiv:cond-mat/0701278.
 ///
 /// ```
 /// use saltus_bounce::{Cor, contact::{ContactLaw, KelvinVoigt}};
@@ -50,7 +52,8 @@ impl KelvinVoigt {
     /// The law, without tension, by which `mass` in kg rebounds with `cor` after `duration` in s.
     ///
     /// # Errors
-    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others are finite and positive.
+    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others
+    /// are finite and positive.
     pub fn from_collision(mass: f64, cor: Cor, duration: f64) -> Result<Self, ParameterError> {
         let m = positive("a mass in kg", mass)?;
         let t = positive("a duration in s", duration)?;
@@ -73,18 +76,21 @@ impl KelvinVoigt {
     /// The law with tension by which `mass` in kg rebounds with `cor` after `duration` in s.
     ///
     /// # Errors
-    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others are finite and positive.
+    /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others
+    /// are finite and positive.
     pub fn from_sticky_collision(mass: f64, cor: Cor, duration: f64) -> Result<Self, ParameterError> {
         let m = positive("a mass in kg", mass)?;
         let t = positive("a duration in s", duration)?;
         let lost = -positive("a coefficient of restitution of a damped spring", cor.value())?.ln();
-        // The motion is a damped half wave of frequency π/t, whose speed decays at the rate c/(2m) = lost/t.
+        // The motion is a damped half wave of frequency π/t, whose speed decays at the rate
+        // c/(2m) = lost/t.
         let (frequency, decay) = (PI / t, lost / t);
         let law = Self::new(m * (frequency * frequency + decay * decay), 2.0 * m * decay)?;
         Ok(law.with_tension())
     }
 
-    /// The same spring and damper, sticky: the contact ends only where the deformation does, pulling before.
+    /// The same spring and damper, sticky: the contact ends only where the deformation does,
+    /// pulling before.
     #[must_use]
     pub const fn with_tension(self) -> Self {
         Self { tension: true, ..self }
@@ -102,8 +108,9 @@ impl KelvinVoigt {
         0.5 * self.damper / (self.spring * mass).sqrt()
     }
 
-    /// Deformation and rate after `s` seconds of contact from `[d, u]`, of `mass` in kg under a constant `load` in N (its weight, on a
-    /// level floor): the exact solution, as long as the contact lasts.
+    /// Deformation and rate after `s` seconds of contact from `[d, u]`, of `mass` in kg under a
+    /// constant `load` in N (its weight, on a level floor): the exact solution, as long as the
+    /// contact lasts.
     ///
     /// ```
     /// use saltus_bounce::contact::KelvinVoigt;
@@ -118,7 +125,8 @@ impl KelvinVoigt {
         let beta = 0.5 * self.damper / mass;
         let sink = load / self.spring;
         let off = square - beta * beta;
-        // e^(-βs) cos ωs and e^(-βs) sin(ωs)/ω, or cosh and sinh beyond critical damping, as decaying exponentials.
+        // e^(-βs) cos ωs and e^(-βs) sin(ωs)/ω, or cosh and sinh beyond critical damping, as
+        // decaying exponentials.
         let (cos, sin) = if off >= 0.0 {
             let (omega, decay) = (off.sqrt(), (-beta * s).exp());
             (decay * (omega * s).cos(), decay * s * ratio(f64::sin, omega * s))
@@ -210,7 +218,8 @@ mod tests {
             prop_assert!((hit.cor.value() / e - 1.0).abs() < 1e-12 && (hit.duration / t - 1.0).abs() < 1e-12, "{hit:?}");
         }
 
-        /// The exact solution starts where it should, composes, and ends the collision as announced.
+        /// The exact solution starts where it should, composes, and ends the collision as
+        /// announced.
         #[test]
         fn the_solution(zeta in 0.0..3.0_f64, s in 0.0..0.01_f64, load in 0.0..10.0_f64) {
             let law = KelvinVoigt::new(1e5, zeta * 2.0 * (0.1 * 1e5_f64).sqrt()).unwrap();

@@ -1,9 +1,11 @@
 //! Contact that takes time: the force between ball and floor while the ball is deformed.
 //!
-//! The deformation d in m is positive while the ball is pressed in, its rate u = d' in m/s positive while it is being pressed further: for a
-//! level floor at height zero and a ball's lowest point at y with velocity v, d = -y and u = -v. The force F in N pushes the ball out: m u' = -F (+ m g).
+//! The deformation d in m is positive while the ball is pressed in, its rate u = d' in m/s positive
+//! while it is being pressed further: for a level floor at height zero and a ball's lowest point at
+//! y with velocity v, d = -y and u = -v. The force F in N pushes the ball out: m u' = -F (+ m g).
 //!
-//! A rigid impact with its COR is the limit of infinite stiffness: [`ContactLaw::collision`] says which COR, and how long it really takes.
+//! A rigid impact with its COR is the limit of infinite stiffness: [`ContactLaw::collision`] says
+//! which COR, and how long it really takes.
 
 mod hertz;
 mod hunt_crossley;
@@ -15,7 +17,8 @@ pub use hertz::{Elastic, Hertz};
 pub use hunt_crossley::HuntCrossley;
 pub use kelvin_voigt::KelvinVoigt;
 
-/// What a contact without other forces (gravity, drag) does to a ball that comes in at a given speed.
+/// What a contact without other forces (gravity, drag) does to a ball that comes in at a given
+/// speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
     /// The effective coefficient of restitution: speed at release over speed at touch.
@@ -41,7 +44,8 @@ pub struct Collision {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait ContactLaw {
-    /// The force in N at `deformation` in m, which changes at `rate` in m/s; zero without deformation, except for a damper that is hit at once.
+    /// The force in N at `deformation` in m, which changes at `rate` in m/s; zero without
+    /// deformation, except for a damper that is hit at once.
     fn force(&self, deformation: f64, rate: f64) -> f64;
 
     /// ∂F/∂d in N/m, for stiff steppers.
@@ -55,13 +59,14 @@ pub trait ContactLaw {
         deformation
     }
 
-    /// This law, if it is a linear one: the motion in contact is then known by a formula, and no step is taken.
+    /// This law, if it is a linear one: the motion in contact is then known by a formula, and no
+    /// step is taken.
     fn linear(&self) -> Option<KelvinVoigt> {
         None
     }
 
-    /// The collision of `mass` in kg at `speed` in m/s without other forces; `None` if it never ends, or for a mass or a speed that is
-    /// not above zero.
+    /// The collision of `mass` in kg at `speed` in m/s without other forces; `None` if it never
+    /// ends, or for a mass or a speed that is not above zero.
     fn collision(&self, mass: f64, speed: f64) -> Option<Collision>;
 }
 
@@ -98,7 +103,8 @@ mod tests {
             }
         }
 
-        /// Integrated by Runge and Kutta, the contact ends when, as fast as, and after a deformation as great as announced.
+        /// Integrated by Runge and Kutta, the contact ends when, as fast as, and after a
+        /// deformation as great as announced.
         #[test]
         fn integrated_contacts(damping in 0.0..1.5_f64, log_k in 3.0..12.0_f64, v in 0.01..10.0_f64) {
             let (k, m) = (10.0_f64.powf(log_k), 0.1);
@@ -121,7 +127,8 @@ mod tests {
                 prop_assert!((u + hit.cor.value() * v).abs() < 1e-5 * v, "law {n}: {u} {hit:?}");
                 prop_assert!(law.margin(d, u).abs() < 1e-4 * law.margin(hit.deformation, 0.0), "law {n}: {d} {hit:?}");
                 prop_assert!((deepest / hit.deformation - 1.0).abs() < 1e-5, "law {n}: {deepest} {hit:?}");
-                // Hunt and Crossley's greatest force has no closed form short of a root; it is announced all the same.
+                // Hunt and Crossley's greatest force has no closed form short of a root; it is
+                // announced all the same.
                 prop_assert!((hardest / hit.force - 1.0).abs() < 1e-5, "law {n}: {hardest} {hit:?}");
                 prop_assert!(hit.compression < hit.duration);
             }

@@ -7,10 +7,12 @@ use super::{Effect, Gravity, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative};
 use crate::sphere::Sphere;
 
-/// Buoyancy: a = +g r along the last coordinate, where r is the density of the fluid over that of the ball.
+/// Buoyancy: a = +g r along the last coordinate, where r is the density of the fluid over that of
+/// the ball.
 ///
-/// Beside [`Gravity`] it leaves g (1 - r): negative, upwards, for a ball lighter than its fluid. In air r is 3×10⁻³ for a
-/// tennis ball, 1.5×10⁻² for a table-tennis ball. Source: Archimedes, *On Floating Bodies*, book 1, propositions 5 to 7.
+/// Beside [`Gravity`] it leaves g (1 - r): negative, upwards, for a ball lighter than its fluid. In
+/// air r is 3×10⁻³ for a tennis ball, 1.5×10⁻² for a table-tennis ball. Source: Archimedes, *On
+/// Floating Bodies*, book 1, propositions 5 to 7.
 ///
 /// ```
 /// use saltus_bounce::{Sphere, effects::{AIR_DENSITY, Buoyancy, Gravity}};
@@ -53,10 +55,12 @@ impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
     }
 }
 
-/// Effects on a ball that drags half its own volume of fluid along: every acceleration is divided by 1 + r/2.
+/// Effects on a ball that drags half its own volume of fluid along: every acceleration is divided
+/// by 1 + r/2.
 ///
-/// r: the density of the fluid over that of the ball. Put all effects inside, gravity and buoyancy too. For a sphere far from walls, in
-/// a fluid at rest or in uniform steady motion; the force of the wake's history is left out. Source: H. Lamb, *Hydrodynamics* (1932), section 92.
+/// r: the density of the fluid over that of the ball. Put all effects inside, gravity and buoyancy
+/// too. For a sphere far from walls, in a fluid at rest or in uniform steady motion; the force of
+/// the wake's history is left out. Source: H. Lamb, *Hydrodynamics* (1932), section 92.
 ///
 /// ```
 /// use nalgebra::vector;

@@ -8,8 +8,9 @@ use crate::parameter::{ParameterError, not_negative};
 
 /// Uniform gravity: a = -g along the last coordinate, g in m/s².
 ///
-/// The bodies by name: at the surface on the equator, rotation included; at the 1 bar level for the gas giants. Earth has the conventional
-/// value. Source: D. R. Williams, *Planetary Fact Sheet*, NASA Goddard Space Flight Center, nssdc.gsfc.nasa.gov/planetary/factsheet.
+/// The bodies by name: at the surface on the equator, rotation included; at the 1 bar level for the
+/// gas giants. Earth has the conventional value. Source: D. R. Williams, *Planetary Fact Sheet*,
+/// NASA Goddard Space Flight Center, nssdc.gsfc.nasa.gov/planetary/factsheet.
 ///
 /// ```
 /// use saltus_bounce::effects::Gravity;

@@ -10,8 +10,8 @@ use crate::sphere::Sphere;
 
 /// Linear drag: a = -c v, c in 1/s, v relative to the air.
 ///
-/// For slow, small bodies in a viscous fluid: Reynolds numbers 2Rvρ/μ below 1, where c = 6πμR/m. Balls in air are beyond it.
-/// Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9, 8 (1851).
+/// For slow, small bodies in a viscous fluid: Reynolds numbers 2Rvρ/μ below 1, where c = 6πμR/m.
+/// Balls in air are beyond it. Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9, 8 (1851).
 ///
 /// ```
 /// use saltus_bounce::{Sphere, effects::LinearDrag};

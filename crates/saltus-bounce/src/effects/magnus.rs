@@ -8,12 +8,14 @@ use crate::sphere::Sphere;
 
 /// Magnus lift: a = (ρA/2m) C |v|² along ω×v, with the lift coefficient C = κ S/(1 + σ S).
 ///
-/// S = R |ω×v|/v², the spin parameter: the speed of the surface over that of the ball, spin along the flight not counted. v relative to the air
-/// in m/s, ω in rad/s. With σ = 0 the lift is linear, a = (ρA/2m) κ R ω×v. Backspin lifts, topspin presses down.
+/// S = R |ω×v|/v², the spin parameter: the speed of the surface over that of the ball, spin along
+/// the flight not counted. v relative to the air in m/s, ω in rad/s. With σ = 0 the lift is linear,
+/// a = (ρA/2m) κ R ω×v. Backspin lifts, topspin presses down.
 ///
-/// κ = 1, σ = 0 is a fair account of baseballs for S below 0.3; κ = 1, σ = 2, that is C = 1/(2 + v/(Rω)), of tennis balls.
-/// Smooth balls near the drag crisis have an inverse effect, which this law has not. Sources: A. M. Nathan, Am. J. Phys. 76, 119
-/// (2008), doi:10.1119/1.2805242; A. Štěpánek, Am. J. Phys. 56, 138 (1988), doi:10.1119/1.15692.
+/// κ = 1, σ = 0 is a fair account of baseballs for S below 0.3; κ = 1, σ = 2, that is C = 1/(2 +
+/// v/(Rω)), of tennis balls. Smooth balls near the drag crisis have an inverse effect, which this
+/// law has not. Sources: A. M. Nathan, Am. J. Phys. 76, 119 (2008), doi:10.1119/1.2805242; A.
+/// Štěpánek, Am. J. Phys. 56, 138 (1988), doi:10.1119/1.15692.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -39,7 +41,8 @@ impl Magnus {
     /// On `ball` in air of `density` in kg/m³, with κ = `slope` and σ = `saturation`.
     ///
     /// # Errors
-    /// [`ParameterError`] unless the density is finite and positive, κ and σ finite and not negative.
+    /// [`ParameterError`] unless the density is finite and positive, κ and σ finite and not
+    /// negative.
     pub fn new(ball: &Sphere, density: f64, slope: f64, saturation: f64) -> Result<Self, ParameterError> {
         let density = positive("a density in kg/m^3", density)?;
         let slope = not_negative("a lift coefficient per spin parameter", slope)?;

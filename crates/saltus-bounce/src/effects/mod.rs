@@ -1,7 +1,8 @@
 //! What acts on a ball in flight: accelerations that are added up at compile time.
 //!
-//! A tuple of effects is an effect, `()` is none: `(Gravity, QuadraticDrag)` evaluates these two and nothing else. The number of
-//! coordinates N and the kind of spin S are types: a scene without spin keeps none, and there [`Magnus`] does not compile.
+//! A tuple of effects is an effect, `()` is none: `(Gravity, QuadraticDrag)` evaluates these two
+//! and nothing else. The number of coordinates N and the kind of spin S are types: a scene without
+//! spin keeps none, and there [`Magnus`] does not compile.
 //!
 //! The last coordinate points up, in every dimension: (y), (x, y), (x, y, z).
 
@@ -25,7 +26,8 @@ pub use quadratic_drag::QuadraticDrag;
 pub use spin_decay::SpinDecay;
 pub use wind::Wind;
 
-/// The density of dry air at 15 °C and 101 325 Pa in kg/m³ (ISO 2533:1975, the standard atmosphere at sea level).
+/// The density of dry air at 15 °C and 101 325 Pa in kg/m³ (ISO 2533:1975, the standard atmosphere
+/// at sea level).
 pub const AIR_DENSITY: f64 = 1.225;
 
 /// The viscosity of the same air in Pa s (ISO 2533:1975).
@@ -99,7 +101,8 @@ pub struct Motion<const N: usize, S = ()> {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait Effect<const N: usize, S: Spin = ()> {
-    /// Promises that the acceleration is the same everywhere and always, and that the spin stays: flights are then exact parabolas.
+    /// Promises that the acceleration is the same everywhere and always, and that the spin stays:
+    /// flights are then exact parabolas.
     #[inline]
     fn uniform(&self) -> bool {
         false
@@ -114,7 +117,8 @@ pub trait Effect<const N: usize, S: Spin = ()> {
         S::NONE
     }
 
-    /// Where the acceleration has a kink that flights pass through: the number that falls through zero there. `None` where it is smooth.
+    /// Where the acceleration has a kink that flights pass through: the number that falls through
+    /// zero there. `None` where it is smooth.
     ///
     /// A stepper keeps its order if a step ends at the kink.
     #[inline]
@@ -222,7 +226,8 @@ mod tests {
     }
 
     proptest! {
-        /// Lift does no work, drag always takes energy, and a ball that moves with the wind feels neither.
+        /// Lift does no work, drag always takes energy, and a ball that moves with the wind feels
+        /// neither.
         #[test]
         fn work(v in prop::array::uniform3(-40.0..40.0_f64), w in prop::array::uniform3(-300.0..300.0_f64), sigma in 0.0..3.0_f64) {
             let (v, w) = (Vector3::from(v), Vector3::from(w));
@@ -238,7 +243,8 @@ mod tests {
             prop_assert_eq!(calm.acceleration(&motion), (lift, drag).acceleration(&motion));
         }
 
-        /// The plane is a slice of space: the vertical plane (x, up) with spin about the axis that completes it.
+        /// The plane is a slice of space: the vertical plane (x, up) with spin about the axis that
+        /// completes it.
         #[test]
         fn planar_lift(v in prop::array::uniform2(-40.0..40.0_f64), w in -300.0..300.0_f64, sigma in 0.0..3.0_f64) {
             let lift = Magnus::new(&Sphere::solid(0.02, 0.05).unwrap(), AIR_DENSITY, 1.0, sigma).unwrap();

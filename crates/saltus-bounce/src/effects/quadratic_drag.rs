@@ -8,12 +8,13 @@ use crate::sphere::Sphere;
 
 /// Quadratic drag: a = -k |v| v, k = ρ C A/(2m) in 1/m, v relative to the air.
 ///
-/// ρ: density of the air in kg/m³ ([`AIR_DENSITY`](super::AIR_DENSITY)); C: drag coefficient; A: area of the cross-section in m²; m in
-/// kg. C is nearly constant for Reynolds numbers between some 10³ and the drag crisis (3×10⁵ for a smooth sphere): about 0.47 for a
-/// smooth sphere, 0.507 ± 0.024 for new tennis balls (R. Cross and C. Lindsey, Sports Eng. 17, 89 (2014)).
+/// ρ: density of the air in kg/m³ ([`AIR_DENSITY`](super::AIR_DENSITY)); C: drag coefficient; A:
+/// area of the cross-section in m²; m in kg. C is nearly constant for Reynolds numbers between some
+/// 10³ and the drag crisis (3×10⁵ for a smooth sphere): about 0.47 for a smooth sphere, 0.507 ±
+/// 0.024 for new tennis balls (R. Cross and C. Lindsey, Sports Eng. 17, 89 (2014)).
 ///
-/// In one dimension v|v| has a kink in its second derivative at v = 0: a flight of high order is two arcs, rising and falling.
-/// Source: I. Newton, *Principia* (1687), book 2, section 7.
+/// In one dimension v|v| has a kink in its second derivative at v = 0: a flight of high order is
+/// two arcs, rising and falling. Source: I. Newton, *Principia* (1687), book 2, section 7.
 ///
 /// ```
 /// use saltus_bounce::{Sphere, effects::{AIR_DENSITY, QuadraticDrag}};
@@ -42,12 +43,14 @@ impl QuadraticDrag {
     /// Of a sphere in air of `density` in kg/m³, with the drag `coefficient` C.
     ///
     /// # Errors
-    /// [`ParameterError`] unless both are finite, the density positive, the coefficient not negative.
+    /// [`ParameterError`] unless both are finite, the density positive, the coefficient not
+    /// negative.
     pub fn sphere(ball: &Sphere, density: f64, coefficient: f64) -> Result<Self, ParameterError> {
         Self::body(ball.mass(), ball.cross_section(), density, coefficient)
     }
 
-    /// Of a body of `mass` in kg with a cross-section of `area` in m², in air of `density` in kg/m³, with the drag `coefficient` C.
+    /// Of a body of `mass` in kg with a cross-section of `area` in m², in air of `density` in
+    /// kg/m³, with the drag `coefficient` C.
     ///
     /// # Errors
     /// [`ParameterError`] unless all are finite and positive; the coefficient may be zero.

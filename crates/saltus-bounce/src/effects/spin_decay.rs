@@ -8,9 +8,10 @@ use crate::sphere::Sphere;
 
 /// Decay of spin: ω' = -(1/τ) ω, or ω' = -C (|v|/R) ω. No acceleration.
 ///
-/// τ: a time constant in s, for spin at a nearly constant speed. C: measured 2×10⁻⁵ for golf balls, about 4 % a second at the start of a
-/// drive; v relative to the air in m/s, R in m.
-/// Source: A. J. Smits and D. R. Smith, *A new aerodynamic model of a golf ball in flight*, in Science and Golf II (1994), 340-347.
+/// τ: a time constant in s, for spin at a nearly constant speed. C: measured 2×10⁻⁵ for golf balls,
+/// about 4 % a second at the start of a drive; v relative to the air in m/s, R in m. Source: A. J.
+/// Smits and D. R. Smith, *A new aerodynamic model of a golf ball in flight*, in Science and Golf
+/// II (1994), 340-347.
 ///
 /// ```
 /// use nalgebra::vector;

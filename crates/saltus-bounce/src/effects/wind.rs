@@ -7,8 +7,8 @@ use crate::parameter::{ParameterError, finite};
 
 /// Effects in air that moves with a constant velocity w: they see v - w.
 ///
-/// Put drag and lift inside; gravity may stand inside or outside, it does not look. w in m/s, in the coordinates of the scene; an updraught
-/// is a wind with a last coordinate.
+/// Put drag and lift inside; gravity may stand inside or outside, it does not look. w in m/s, in
+/// the coordinates of the scene; an updraught is a wind with a last coordinate.
 ///
 /// ```
 /// use nalgebra::vector;

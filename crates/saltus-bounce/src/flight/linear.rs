@@ -8,12 +8,12 @@ use crate::stable::{increasing_root, log_excess, log_ratio, phi1, phi2};
 
 /// v' = -g - c v: v = v₀ e^(-cs) - g s φ₁(-cs), y = y₀ + v₀ s φ₁(-cs) - g s² φ₂(-cs).
 ///
-/// g in m/s², c in 1/s; φ₁(z) = (eᶻ - 1)/z, φ₂(z) = (eᶻ - 1 - z)/z². The apex is at s = ln(1 + cv₀/g)/c. The time of a fall is
-/// Newton's root of the height: a Lambert function, whose arguments cancel where drag is weak, while this does not. Terminal
-/// velocity g/c.
+/// g in m/s², c in 1/s; φ₁(z) = (eᶻ - 1)/z, φ₂(z) = (eᶻ - 1 - z)/z². The apex is at s = ln(1 +
+/// cv₀/g)/c. The time of a fall is Newton's root of the height: a Lambert function, whose arguments
+/// cancel where drag is weak, while this does not. Terminal velocity g/c.
 ///
-/// For a sphere of radius R and mass m in a fluid of viscosity μ, c = 6πμR/m, at Reynolds numbers below 1.
-/// Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9, 8 (1851).
+/// For a sphere of radius R and mass m in a fluid of viscosity μ, c = 6πμR/m, at Reynolds numbers
+/// below 1. Source: G. G. Stokes, Trans. Cambridge Phil. Soc. 9, 8 (1851).
 ///
 /// ```
 /// use nalgebra::vector;
@@ -42,7 +42,8 @@ impl LinearDragFlight {
         })
     }
 
-    /// The depth fallen after `s` seconds from `speed` downwards, and the speed then: sums of positive terms.
+    /// The depth fallen after `s` seconds from `speed` downwards, and the speed then: sums of
+    /// positive terms.
     fn fallen(&self, s: f64, speed: f64) -> (f64, f64) {
         let (g, c, z) = (self.gravity, self.drag, -self.drag * s);
         // (1 - e^(-cs))/c and its integral, without dividing by a small c.
@@ -87,8 +88,9 @@ impl VerticalFlight for LinearDragFlight {
                 (left > 0.0).then(|| Impact { time: depth / speed * log_ratio(-c * depth / speed), speed: left })
             };
         }
-        // Drag delays: the fall takes longer than in a vacuum. And depth = (g/c) s - (g/c - speed)(1 - e^(-cs))/c, whose last factor
-        // lies between 0 and 1: the root lies between where it is 0 and where it is 1.
+        // Drag delays: the fall takes longer than in a vacuum. And depth = (g/c) s - (g/c -
+        // speed)(1 - e^(-cs))/c, whose last factor lies between 0 and 1: the root lies between
+        // where it is 0 and where it is 1.
         let early = VacuumFlight::new(g).ok()?.fall(depth, speed)?.time;
         if early == 0.0 || c == 0.0 {
             return Some(Impact { time: early, speed: self.fallen(early, speed).1 });

@@ -1,7 +1,8 @@
 //! Vertical flight in closed form: gravity alone, with linear drag, with quadratic drag.
 //!
-//! The state is the height y of the ball's lowest point above the floor in m and its velocity v upwards in m/s. Every formula is
-//! written so that drag may go to zero, and gravity too, without loss of digits: see [`VerticalFlight`].
+//! The state is the height y of the ball's lowest point above the floor in m and its velocity v
+//! upwards in m/s. Every formula is written so that drag may go to zero, and gravity too, without
+//! loss of digits: see [`VerticalFlight`].
 
 mod linear;
 mod quadratic;
@@ -33,9 +34,10 @@ pub struct Impact {
 
 /// A vertical flight whose solution is known.
 ///
-/// Times and speeds of impact, apexes and depths fallen are sums and products of positive terms: a few roundings off, from no drag at all to
-/// terminal velocities of micrometres per second, whether the start is slower than terminal, faster, or almost at it. Only the height
-/// itself, a difference, loses what every difference loses.
+/// Times and speeds of impact, apexes and depths fallen are sums and products of positive terms: a
+/// few roundings off, from no drag at all to terminal velocities of micrometres per second, whether
+/// the start is slower than terminal, faster, or almost at it. Only the height itself, a
+/// difference, loses what every difference loses.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -49,20 +51,24 @@ pub struct Impact {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait VerticalFlight {
-    /// The acceleration upwards in m/s² at `velocity` upwards in m/s: the law that the other methods solve.
+    /// The acceleration upwards in m/s² at `velocity` upwards in m/s: the law that the other
+    /// methods solve.
     fn acceleration(&self, velocity: f64) -> f64;
 
     /// The state `[y, v]` after `s` seconds, `s` ≥ 0, from the state `x`.
     fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64>;
 
-    /// The apex of a flight that starts upwards at `velocity` in m/s; `None` if it starts level or downwards, or never turns.
+    /// The apex of a flight that starts upwards at `velocity` in m/s; `None` if it starts level or
+    /// downwards, or never turns.
     fn apex(&self, velocity: f64) -> Option<Apex>;
 
-    /// The fall through `depth` ≥ 0 in m from a start downwards at `speed` ≥ 0 in m/s; `None` if it never gets there.
+    /// The fall through `depth` ≥ 0 in m from a start downwards at `speed` ≥ 0 in m/s; `None` if it
+    /// never gets there.
     fn fall(&self, depth: f64, speed: f64) -> Option<Impact>;
 
-    /// The first fall through height zero from the state `x`; `None` if there is none: no gravity, or a start below zero that does
-    /// not rise to it. A start at zero height that moves upwards falls after its apex; one that does not, at once.
+    /// The first fall through height zero from the state `x`; `None` if there is none: no gravity,
+    /// or a start below zero that does not rise to it. A start at zero height that moves upwards
+    /// falls after its apex; one that does not, at once.
     fn impact(&self, x: &Vector2<f64>) -> Option<Impact> {
         let (y, v) = (x[0], x[1]);
         if v > 0.0 {
@@ -101,7 +107,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
-        /// At the time of impact the ball is on the floor, at the speed announced; at the apex it stands, as high as announced.
+        /// At the time of impact the ball is on the floor, at the speed announced; at the apex it
+        /// stands, as high as announced.
         #[test]
         fn the_state_agrees_with_the_impact(
             g in 0.01..30.0_f64, log_drag in -14.0..3.0_f64, y in 0.0..30.0_f64, v in -30.0..30.0_f64,

@@ -10,13 +10,16 @@ use crate::stable::{artanh_ratio, ln_1p, log_ratio, phi1, ratio};
 
 /// v' = -g - k v|v|: rising, v = w tan(atan(v₀/w) - ωs); falling, v = -w tanh(artanh(u₀/w) + ωs).
 ///
-/// g in m/s², k in 1/m; terminal velocity w = √(g/k), rate ω = √(gk). k = ρ C A/(2m) from the density of the air, the drag
-/// coefficient, the area of the cross-section and the mass. The apex is at s = atan(v₀/w)/ω, ln(1 + v₀²/w²)/(2k) above the start; a
-/// fall through h from speed u ends at the speed √(u² e^(-2kh) + w² (1 - e^(-2kh))). Evaluated by addition theorems, not as written:
-/// neither k → 0, nor g → 0, nor a start faster than terminal, nor a fall of 10⁵ times 1/k loses digits.
+/// g in m/s², k in 1/m; terminal velocity w = √(g/k), rate ω = √(gk). k = ρ C A/(2m) from the
+/// density of the air, the drag coefficient, the area of the cross-section and the mass. The apex
+/// is at s = atan(v₀/w)/ω, ln(1 + v₀²/w²)/(2k) above the start; a fall through h from speed u ends
+/// at the speed √(u² e^(-2kh) + w² (1 - e^(-2kh))). Evaluated by addition theorems, not as written:
+/// neither k → 0, nor g → 0, nor a start faster than terminal, nor a fall of 10⁵ times 1/k loses
+/// digits.
 ///
-/// Limits: a constant drag coefficient, that is Reynolds numbers between some 10³ and the drag crisis (3×10⁵ for a smooth sphere).
-/// Source: I. Newton, *Principia* (1687), book 2, propositions 8 and 9.
+/// Limits: a constant drag coefficient, that is Reynolds numbers between some 10³ and the drag
+/// crisis (3×10⁵ for a smooth sphere). Source: I. Newton, *Principia* (1687), book 2, propositions
+/// 8 and 9.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -55,7 +58,8 @@ impl QuadraticDragFlight {
         Ok(Self { gravity, drag, rate: gravity.sqrt() * drag.sqrt(), share, length: 0.5 / drag })
     }
 
-    /// The acceleration with drag downwards, as on the way up, or upwards, as on the way down, whatever the sign of the velocity.
+    /// The acceleration with drag downwards, as on the way up, or upwards, as on the way down,
+    /// whatever the sign of the velocity.
     #[inline]
     pub(crate) fn one_way(&self, velocity: f64, rising: bool) -> f64 {
         let drag = self.drag * velocity * velocity;
@@ -144,7 +148,8 @@ impl VerticalFlight for QuadraticDragFlight {
         if g == 0.0 {
             return (u > 0.0).then(|| Impact { time: depth / u * phi1(k * depth), speed: u * (-k * depth).exp() });
         }
-        // Of tanh ωs = ω (u₁ - u)/(g - k u u₁), with the zeros at u₁ = u and at u = w divided out: positive terms only.
+        // Of tanh ωs = ω (u₁ - u)/(g - k u u₁), with the zeros at u₁ = u and at u = w divided out:
+        // positive terms only.
         let sum = end + u * left;
         let t = 2.0 * reach / sum;
         let tanh = self.rate * t;

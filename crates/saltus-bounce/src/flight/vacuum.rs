@@ -7,8 +7,9 @@ use crate::parameter::{ParameterError, not_negative};
 
 /// v' = -g: v = v₀ - g s, y = y₀ + v₀ s - g s²/2.
 ///
-/// The apex is at s = v₀/g, v₀²/(2g) above the start; a fall through h from speed u downwards takes 2h/(u + w) and ends at the speed
-/// w = √(u² + 2gh). SI units. Source: G. Galilei, *Discorsi* (1638), third day.
+/// The apex is at s = v₀/g, v₀²/(2g) above the start; a fall through h from speed u downwards takes
+/// 2h/(u + w) and ends at the speed w = √(u² + 2gh). SI units. Source: G. Galilei, *Discorsi*
+/// (1638), third day.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -70,7 +71,8 @@ impl VerticalFlight for VacuumFlight {
             return if y >= 0.0 { self.fall(y, -v) } else { None };
         }
         if y == 0.0 {
-            // As a branch: where the processor foresees it, no impact waits for the square root of the one before.
+            // As a branch: where the processor foresees it, no impact waits for the square root of
+            // the one before.
             return (g > 0.0).then(|| Impact { time: 2.0 * v / g, speed: v });
         }
         let square = v * v + 2.0 * g * y;

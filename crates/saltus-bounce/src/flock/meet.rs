@@ -15,8 +15,10 @@ const NEAR: f64 = 1e-7;
 const SLOW: f64 = 3e-5;
 /// How strong a pull, in m/s², is more than rounding and steps leave.
 const PULL: f64 = 1e-9;
-/// How far from each other two things that touch may be for rounding, relative to the scene's size; and how far inside each other what approaches is
-/// put after a jump, so that the next one is due beyond doubt: several edges fall at one time here, and a root that has just been taken counts as spent.
+/// How far from each other two things that touch may be for rounding, relative to the scene's size;
+/// and how far inside each other what approaches is put after a jump, so that the next one is due
+/// beyond doubt: several edges fall at one time here, and a root that has just been taken counts as
+/// spent.
 const TOUCHES: f64 = 32.0 * f64::EPSILON;
 /// How often a place is put right for its rounding.
 const MOST_MOVES: usize = 4;
@@ -56,7 +58,8 @@ where
         x
     }
 
-    /// In flight beside faces that it is on but for rounding: inside those that it approaches, so that it meets them at once, outside others.
+    /// In flight beside faces that it is on but for rounding: inside those that it approaches, so
+    /// that it meets them at once, outside others.
     pub(super) fn sided(&self, cell: usize, t: f64, x: &Ball) -> Ball {
         let mut x = *x;
         for face in (0..self.walls().faces(cell)).map(|index| Face { cell, index }) {
@@ -76,7 +79,8 @@ where
         x
     }
 
-    /// What a ball does whose velocity another has changed: it goes on lying where it neither leaves nor is pressed in.
+    /// What a ball does whose velocity another has changed: it goes on lying where it neither
+    /// leaves nor is pressed in.
     pub(super) fn pushed(&self, stance: Stance<3>, t: f64, x: &Ball) -> (Stance<3>, Ball) {
         let cell = stance.cell();
         let faces = (0..self.walls().faces(cell)).filter(|&index| stance.touches(index));
@@ -172,7 +176,8 @@ where
         self.apart(i, j, x).0.norm() - self.reach(i, j)
     }
 
-    /// One of two balls moved towards or from the other until the gap `is` as wanted, by roundings only. What lies stays where it is, if it can.
+    /// One of two balls moved towards or from the other until the gap `is` as wanted, by roundings
+    /// only. What lies stays where it is, if it can.
     fn moved_until(&self, i: usize, j: usize, mut x: Flying<N>, to: f64, is: impl Fn(f64) -> bool) -> Flying<N> {
         let flies = |ball: usize| matches!(x.stances().of(ball), Stance::Flight { .. });
         let (ball, side) = if flies(j) || !flies(i) { (j, 1.0) } else { (i, -1.0) };
@@ -206,13 +211,15 @@ where
         pull + (change.norm_squared() - rate * rate) / distance
     }
 
-    /// Whether two balls that touch are pressed together, and part so slowly that no number tells how far they get.
+    /// Whether two balls that touch are pressed together, and part so slowly that no number tells
+    /// how far they get.
     fn lies_upon(&self, i: usize, j: usize, t: f64, x: &Flying<N>, rate: f64) -> bool {
         let bend = self.bend(i, j, t, x);
         bend < -PULL && rate * rate <= -2.0 * bend * TOUCHES * (1.0 + x.ball(i).position.norm())
     }
 
-    /// After a jump: what touches but for rounding is put on the side that its velocity tells, so that what approaches meets at once.
+    /// After a jump: what touches but for rounding is put on the side that its velocity tells, so
+    /// that what approaches meets at once.
     pub(super) fn sided(&self, t: f64, mut x: Flying<N>) -> Flying<N> {
         let count = self.balls.len();
         for (ball, (_, flyer)) in self.balls.iter().enumerate() {
@@ -235,7 +242,8 @@ where
         x
     }
 
-    /// What lies beyond infinitely many impacts: what bounced on a wall lies there; two balls that nothing presses together part.
+    /// What lies beyond infinitely many impacts: what bounced on a wall lies there; two balls that
+    /// nothing presses together part.
     pub(super) fn accumulated(&self, t: f64, x: &Flying<N>) -> Option<Flying<N>> {
         let count = self.balls.len();
         let mut after = *x;

@@ -19,19 +19,24 @@ pub use state::{Flying, Stances};
 /// A ball of a flock: as a body, and as it flies.
 pub type Member<E, W, R, G> = (Sphere, Flyer<3, Vector3<f64>, E, W, R, G>);
 
-/// Up to N spheres in space, each a [`Flyer`] with effects, walls, restitution and grip of its own, that bounce off each other.
+/// Up to N spheres in space, each a [`Flyer`] with effects, walls, restitution and grip of its own,
+/// that bounce off each other.
 ///
-/// State [`Flying`]; mode [`Stances`], what each ball is doing; edges [`Meeting`]. Positions are those of the lowest points. At an impact of two
-/// balls the law of `restitution` holds along the line of centres, and [`Friction::collision`] across it. A ball that lies, slides or rolls and is hit goes on from there: pushed into
-/// what it lies on, it strikes that at the same time.
+/// State [`Flying`]; mode [`Stances`], what each ball is doing; edges [`Meeting`]. Positions are
+/// those of the lowest points. At an impact of two balls the law of `restitution` holds along the
+/// line of centres, and [`Friction::collision`] across it. A ball that lies, slides or rolls and is
+/// hit goes on from there: pushed into what it lies on, it strikes that at the same time.
 ///
-/// Where the effects are uniform everything that flies, lies on a plane, or slides there smoothly is on a parabola, no step is taken, and the
-/// meeting of two balls in flight is the root of a quadratic. Else the balls are stepped together.
+/// Where the effects are uniform everything that flies, lies on a plane, or slides there smoothly
+/// is on a parabola, no step is taken, and the meeting of two balls in flight is the root of a
+/// quadratic. Else the balls are stepped together.
 ///
-/// Several balls that touch at one time are taken pair by pair in the order of their numbers, then the walls, each again if it must be.
+/// Several balls that touch at one time are taken pair by pair in the order of their numbers, then
+/// the walls, each again if it must be.
 ///
-/// Limits: a ball does not rest upon another. Where bounces between two balls accumulate and something presses them together, the run ends with
-/// [`Stop::Zeno`](saltus::Stop::Zeno). Where nothing does, they part at no speed.
+/// Limits: a ball does not rest upon another. Where bounces between two balls accumulate and
+/// something presses them together, the run ends with [`Stop::Zeno`](saltus::Stop::Zeno). Where
+/// nothing does, they part at no speed.
 ///
 /// ```
 /// use nalgebra::{Vector3, vector};
@@ -93,7 +98,8 @@ where
     G: Grip<3, Vector3<f64>>,
     C: Restitution,
 {
-    /// Balls with what each flies among and under, which meet each other by `restitution` and `friction`.
+    /// Balls with what each flies among and under, which meet each other by `restitution` and
+    /// `friction`.
     ///
     /// # Errors
     /// [`ParameterError`] if there are more than N.

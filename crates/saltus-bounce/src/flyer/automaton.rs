@@ -49,7 +49,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
     }
 
-    /// What may end a contact by itself, in a fixed order: leaving, the end of a slip, friction that gives way, a slip that finds its direction.
+    /// What may end a contact by itself, in a fixed order: leaving, the end of a slip, friction
+    /// that gives way, a slip that finds its direction.
     pub(crate) fn end(&self, stance: Stance<N>, place: usize) -> Option<Event<N>> {
         let is = |event: &Event<N>| match event {
             Event::Leave(_) => place == 0,

@@ -7,11 +7,14 @@ use crate::effects::Effect;
 use crate::restitution::Restitution;
 use crate::walls::{Face, Walls};
 
-/// A slip this much smaller than it began has ended, but for rounding and the tolerance of steps; in space it turns on the way.
+/// A slip this much smaller than it began has ended, but for rounding and the tolerance of steps;
+/// in space it turns on the way.
 const ENDED: f64 = 1e-6;
-/// A slip that began along the push has a direction of its own from this share of what the push would have made of it.
+/// A slip that began along the push has a direction of its own from this share of what the push
+/// would have made of it.
 pub(super) const VEERS: f64 = 3e-3;
-/// How far from a second wall, relative to the scene's size, a ball may be whose bounces have accumulated at a corner.
+/// How far from a second wall, relative to the scene's size, a ball may be whose bounces have
+/// accumulated at a corner.
 const NEAR: f64 = 1e-9;
 
 /// What acts on a ball in contact.
@@ -165,8 +168,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     /// Friction per mass on a slip that has only begun, in space.
     ///
-    /// Of s' = p - c s/|s| the direction is as stiff as |p|/|s|, and drawn to that of p. It lies behind it by c|s|/|p|² times its turning, to second
-    /// order in s and |p| - c: that is what friction is against here, and |s| is all that is left to find.
+    /// Of s' = p - c s/|s| the direction is as stiff as |p|/|s|, and drawn to that of p. It lies
+    /// behind it by c|s|/|p|² times its turning, to second order in s and |p| - c: that is what
+    /// friction is against here, and |s| is all that is left to find.
     pub(super) fn yielding(
         &self,
         face: Face,
@@ -212,7 +216,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         mu * mu * touch.force * touch.force.abs() - needed
     }
 
-    /// A ball on `face` that does not rebound: in contact, or at once in flight if nothing presses it.
+    /// A ball on `face` that does not rebound: in contact, or at once in flight if nothing presses
+    /// it.
     pub(crate) fn settled(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let x = self.beside(face, t, &x);
         let touch = self.touch(face, t, &x);
@@ -251,7 +256,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         (self.slipping(face, t, &self.touch(face, t, &x)), x)
     }
 
-    /// The slip has no component left along what it was: it goes on another way, or has ended but for rounding, which friction takes.
+    /// The slip has no component left along what it was: it goes on another way, or has ended but
+    /// for rounding, which friction takes.
     pub(super) fn stopped(
         &self,
         face: Face,
@@ -271,7 +277,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     pub(super) fn struck(&self, from: Stance<N>, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let faces = self.walls.faces(face.cell);
         let held = (0..faces).filter(|&index| from.touches(index) && index != face.index);
-        // What it was in contact with, it may leave: from where it is, without the rounding of the way along it.
+        // What it was in contact with, it may leave: from where it is, without the rounding of the
+        // way along it.
         let x = held.clone().fold(*x, |x, index| self.on(Face { index, ..face }, t, &x));
         let mut x = self.on(face, t, &x);
         let (normal, speed) = self.normal(face, t, &x);
@@ -293,7 +300,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         }
     }
 
-    /// The wall that carries the ball has changed its motion: if its velocity jumped, it strikes the ball or leaves it behind.
+    /// The wall that carries the ball has changed its motion: if its velocity jumped, it strikes
+    /// the ball or leaves it behind.
     pub(super) fn changed(&self, from: Stance<N>, face: Face, t: f64, x: &Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let (normal, speed) = self.normal(face, t, x);
         let parting = x.velocity.dot(&normal) - speed;
@@ -322,7 +330,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         self.among(cell, mask, t, *x)
     }
 
-    /// Whether the ball is so near to a face that it does not touch, and so slow there, that its bounces may have accumulated.
+    /// Whether the ball is so near to a face that it does not touch, and so slow there, that its
+    /// bounces may have accumulated.
     pub(crate) fn ends_on_a_face(&self, from: Stance<N>, t: f64, x: &Moving<N, S>) -> bool {
         let cell = from.cell();
         let mut free =

@@ -11,10 +11,12 @@ use crate::walls::Face;
 
 /// The tangential half of a law of impact, and of contact.
 ///
-/// In contact: with μ = [`coefficient`](Self::coefficient) and the normal force λ per mass, friction is at most μλ per mass, against the slip; a
-/// contact without slip holds while that suffices.
+/// In contact: with μ = [`coefficient`](Self::coefficient) and the normal force λ per mass,
+/// friction is at most μλ per mass, against the slip; a contact without slip holds while that
+/// suffices.
 pub trait Grip<const N: usize, S: Turning> {
-    /// Velocity and spin after an impact on the wall with unit `normal`; `velocity` relative to the wall.
+    /// Velocity and spin after an impact on the wall with unit `normal`; `velocity` relative to the
+    /// wall.
     fn impact<R: Restitution>(
         &self,
         restitution: &R,
@@ -38,13 +40,15 @@ pub trait Grip<const N: usize, S: Turning> {
         0.0
     }
 
-    /// The velocity of the point of contact along the wall, linear in velocity and spin; and without a velocity linear in `normal`, of any length.
+    /// The velocity of the point of contact along the wall, linear in velocity and spin; and
+    /// without a velocity linear in `normal`, of any length.
     fn slip(&self, velocity: SVector<f64, N>, spin: S, normal: &SVector<f64, N>) -> SVector<f64, N> {
         let _ = spin;
         velocity - normal * velocity.dot(normal)
     }
 
-    /// The share of a slip's change that friction has to make up for: 1 without spin, α/(1 + α) for a sphere.
+    /// The share of a slip's change that friction has to make up for: 1 without spin, α/(1 + α) for
+    /// a sphere.
     fn share(&self) -> f64 {
         1.0
     }
@@ -85,7 +89,8 @@ impl<const N: usize, S: Turning, G: Grip<N, S>> Grip<N, S> for &G {
     }
 }
 
-/// The normal part of an impact: the gain of velocity along the normal, (1 + e) times the speed of approach.
+/// The normal part of an impact: the gain of velocity along the normal, (1 + e) times the speed of
+/// approach.
 fn gain<const N: usize, R: Restitution>(restitution: &R, velocity: &SVector<f64, N>, normal: &SVector<f64, N>) -> f64 {
     let approach = (-velocity.dot(normal)).max(0.0);
     approach + restitution.rebound(approach)
@@ -140,8 +145,8 @@ impl<const N: usize, S: Turning> Grip<N, S> for Keeps {
     }
 }
 
-/// Coulomb friction on a body that does not turn, a sliding block: at an impact the impulse along the wall is μ times the normal one, at most
-/// what stops the slip.
+/// Coulomb friction on a body that does not turn, a sliding block: at an impact the impulse along
+/// the wall is μ times the normal one, at most what stops the slip.
 ///
 /// ```
 /// use saltus_bounce::Block;
@@ -179,7 +184,8 @@ impl<const N: usize> Grip<N, ()> for Block {
     }
 }
 
-/// Friction on a sphere that spins: [`Friction`]'s law at impacts; sliding with its μ, or rolling, in contact.
+/// Friction on a sphere that spins: [`Friction`]'s law at impacts; sliding with its μ, or rolling,
+/// in contact.
 ///
 /// ```
 /// use saltus_bounce::{Rolls, Sphere, friction::Friction};

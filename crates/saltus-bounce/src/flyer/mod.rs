@@ -1,4 +1,5 @@
-//! A ball in the plane or in space, among walls: effects, walls, restitution and grip are type parameters.
+//! A ball in the plane or in space, among walls: effects, walls, restitution and grip are type
+//! parameters.
 
 mod automaton;
 mod contact;
@@ -22,11 +23,14 @@ pub use grip::{Block, Grip, Keeps, Rolls};
 pub use moving::{Moving, Turning};
 pub use stance::{Event, Stance};
 
-/// A ball that flies under the effects E among the walls W, in N coordinates, the last of which points up.
+/// A ball that flies under the effects E among the walls W, in N coordinates, the last of which
+/// points up.
 ///
-/// It rebounds by the law R across a wall and by the grip G along it, relative to the wall's own motion. State: [`Moving`], position and velocity, and
-/// spin only if S is one. A ball that has come to rest on a wall is in contact with it: it slides, with friction where there is some, or holds on
-/// (it lies still, is carried by a wall that moves, or rolls). With φ the wall's margin and n its unit normal, in contact
+/// It rebounds by the law R across a wall and by the grip G along it, relative to the wall's own
+/// motion. State: [`Moving`], position and velocity, and spin only if S is one. A ball that has
+/// come to rest on a wall is in contact with it: it slides, with friction where there is some, or
+/// holds on (it lies still, is carried by a wall that moves, or rolls). With φ the wall's margin
+/// and n its unit normal, in contact
 ///
 /// ```text
 /// x'' = a + λ n + f,   λ = -(d²φ/dt² by a and the wall alone)/|∂φ/∂p|     the normal force per mass
@@ -34,15 +38,19 @@ pub use stance::{Event, Stance};
 /// holds:    f = -(slip's change by a) α/(1 + α)     until |f| > μ λ and it slides, or λ falls to zero and it leaves
 /// ```
 ///
-/// In space a slip that begins slowly is along the push at first ([`Stance::Yield`]), for its direction would be stiff.
+/// In space a slip that begins slowly is along the push at first ([`Stance::Yield`]), for its
+/// direction would be stiff.
 ///
-/// Every mode is entered and left because of a force; no speed is called slow. Under uniform effects ([`Effect::uniform`]) flights, and contacts with
-/// planes at rest, are exact parabolas, and rides on floors that move are known by formula: no step is taken. Else they are stepped.
+/// Every mode is entered and left because of a force; no speed is called slow. Under uniform
+/// effects ([`Effect::uniform`]) flights, and contacts with planes at rest, are exact parabolas,
+/// and rides on floors that move are known by formula: no step is taken. Else they are stepped.
 ///
-/// Where an effect has a kink that flights pass through ([`Effect::kink`]; quadratic drag, v|v|, has one at v = 0 in a single coordinate), a flight has a
-/// second edge, [`Event::Turn`], so that no step goes across it.
+/// Where an effect has a kink that flights pass through ([`Effect::kink`]; quadratic drag, v|v|,
+/// has one at v = 0 in a single coordinate), a flight has a second edge, [`Event::Turn`], so that
+/// no step goes across it.
 ///
-/// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without friction. No pivoting and no rolling friction.
+/// Limits: contact with several walls at once is a [`Stance::Corner`] of planes at rest, without
+/// friction. No pivoting and no rolling friction.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -80,7 +88,8 @@ impl<const N: usize, E: Effect<N>, W: Walls<N>, R: Restitution> Flyer<N, (), E, 
 }
 
 impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
-    /// A ball that walls hold by `grip`: [`Rolls`] for a ball that spins, [`Block`] for a body that does not, [`Keeps`] for a fixed loss.
+    /// A ball that walls hold by `grip`: [`Rolls`] for a ball that spins, [`Block`] for a body that
+    /// does not, [`Keeps`] for a fixed loss.
     ///
     /// # Errors
     /// [`ParameterError`] if a cell has more than [`MOST_FACES`] faces.
@@ -106,8 +115,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         &self.effects
     }
 
-    /// How a ball starts that lies on `face` at time `t` and is not to bounce: in contact if it is pressed, in flight if not; its position and the velocity
-    /// across the wall are made those of the wall.
+    /// How a ball starts that lies on `face` at time `t` and is not to bounce: in contact if it is
+    /// pressed, in flight if not; its position and the velocity across the wall are made those of
+    /// the wall.
     #[must_use]
     pub fn lying(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         self.settled(face, t, x)

@@ -16,10 +16,12 @@ pub enum Stance<const N: usize> {
     Slide {
         /// The face.
         face: Face,
-        /// The slip when it began, in m/s: in the plane its first entry, along the tangent (n₁, -n₀). Zero where there is no friction.
+        /// The slip when it began, in m/s: in the plane its first entry, along the tangent (n₁,
+        /// -n₀). Zero where there is no friction.
         along: SVector<f64, N>,
     },
-    /// In space, in contact with a face on which friction has just given way: the slip is along the push, for it has no direction of its own yet.
+    /// In space, in contact with a face on which friction has just given way: the slip is along the
+    /// push, for it has no direction of its own yet.
     Yield {
         /// The face.
         face: Face,
@@ -93,6 +95,7 @@ pub enum Event<const N: usize> {
     },
     /// A wall changes its motion, at a time of its schedule.
     Change,
-    /// A flight turns where its acceleration has a kink ([`Effect::kink`](crate::effects::Effect::kink)): nothing jumps, a step ends here.
+    /// A flight turns where its acceleration has a kink
+    /// ([`Effect::kink`](crate::effects::Effect::kink)): nothing jumps, a step ends here.
     Turn,
 }

@@ -7,7 +7,8 @@ use crate::restitution::Restitution;
 const FOLLOWED: usize = 16;
 
 impl<const N: usize, R: Restitution + Copy> Line<N, R> {
-    /// Which contacts go on colliding from `x` on: the next impacts are followed in a time of their own, whose digits do not run out.
+    /// Which contacts go on colliding from `x` on: the next impacts are followed in a time of their
+    /// own, whose digits do not run out.
     pub(super) fn collapsing(&self, lying: Lying, x: &Row<N>) -> [bool; N] {
         let (mut lying, mut x) = (lying, *x);
         let mut closing = [false; N];
@@ -49,7 +50,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         after
     }
 
-    /// The balls on both sides of `closed` contacts move as one; what then stands on the floor lies there.
+    /// The balls on both sides of `closed` contacts move as one; what then stands on the floor lies
+    /// there.
     pub(super) fn merged(&self, lying: Lying, closed: &[bool; N], x: &Row<N>) -> (Lying, Row<N>) {
         let mut after = *x;
         let mut first = 0;
@@ -65,7 +67,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
                 after.velocities[first..end].fill(common);
             }
             for i in first + usize::from(!grounded)..end {
-                // What a closed gap gives up goes to the next one, so that the balls beyond stay where they are.
+                // What a closed gap gives up goes to the next one, so that the balls beyond stay
+                // where they are.
                 let spare = std::mem::replace(&mut after.gaps[i], 0.0);
                 if let Some(gap) = after.gaps.get_mut(i + 1) {
                     *gap += spare;

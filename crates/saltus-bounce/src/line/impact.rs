@@ -1,11 +1,12 @@
 //! The impact of two bodies.
 
-/// The velocities after an impact of `masses` at `velocities` along one axis, the second ahead of the first, that approach at the speed `approach`
-/// and part at the speed `rebound`.
+/// The velocities after an impact of `masses` at `velocities` along one axis, the second ahead of
+/// the first, that approach at the speed `approach` and part at the speed `rebound`.
 ///
-/// With the share μ of the lighter mass in the sum of both, the heavier one changes by μ (u + w), where u = `approach` and w = `rebound`; the
-/// lighter one leaves it at exactly w. So momentum is kept to the rounding of the heavier one's velocity, and the relative speed to its own, at
-/// every mass ratio. Source: I. Newton, *Principia* (1687), scholium to the laws of motion.
+/// With the share μ of the lighter mass in the sum of both, the heavier one changes by μ (u + w),
+/// where u = `approach` and w = `rebound`; the lighter one leaves it at exactly w. So momentum is
+/// kept to the rounding of the heavier one's velocity, and the relative speed to its own, at every
+/// mass ratio. Source: I. Newton, *Principia* (1687), scholium to the laws of motion.
 pub(crate) fn impact(masses: [f64; 2], velocities: [f64; 2], approach: f64, rebound: f64) -> [f64; 2] {
     let ([m, n], [v, w]) = (masses, velocities);
     let change = approach + rebound;

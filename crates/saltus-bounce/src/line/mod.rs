@@ -13,22 +13,30 @@ use crate::restitution::{Cor, Restitution};
 pub(crate) use impact::impact;
 pub use row::Row;
 
-/// N balls on a line, with a floor below the first and a wall beyond the last if wanted, and gravity towards the floor.
+/// N balls on a line, with a floor below the first and a wall beyond the last if wanted, and
+/// gravity towards the floor.
 ///
-/// State [`Row`]; mode [`Lying`], the number of balls that lie still on the floor, stacked; edges [`Contact`]: contact 0 is between floor and first ball,
-/// contact i between the balls i - 1 and i, contact N between last ball and wall. Between contacts every ball flies on its parabola, and
+/// State [`Row`]; mode [`Lying`], the number of balls that lie still on the floor, stacked; edges
+/// [`Contact`]: contact 0 is between floor and first ball, contact i between the balls i - 1 and i,
+/// contact N between last ball and wall. Between contacts every ball flies on its parabola, and
 /// every gap is a polynomial of degree two at most, whose first root has all its digits.
 ///
-/// **Impacts** are of two bodies at a time, each with the restitution of its contact at the speed of approach. Where several contacts close at one time they
-/// are taken in their order from the floor up, until none approaches: a cascade, in which one contact may take part more than once. The outcome
-/// of simultaneous impacts is a matter of the model, not of numerics: this one is that of tiny gaps, closed from the left.
+/// **Impacts** are of two bodies at a time, each with the restitution of its contact at the speed
+/// of approach. Where several contacts close at one time they are taken in their order from the
+/// floor up, until none approaches: a cascade, in which one contact may take part more than once.
+/// The outcome of simultaneous impacts is a matter of the model, not of numerics: this one is that
+/// of tiny gaps, closed from the left.
 ///
-/// **Collapse.** With enough loss infinitely many impacts happen in a finite time. Contacts that go on colliding up to the limit are closed: such balls
-/// have one velocity from then on, that of their centre of mass, or zero if the floor is among them, and the gaps between them stay zero.
-/// The balls that lie on the floor lie until something hits them. Under gravity an impact on balls that stand on the floor in touch is one jump: it is handed
-/// down and up, impact by impact, until none of them approaches, or only at a speed that is rounding (10⁻¹⁴) beside the greatest of a ball that falls; what then has no speed lies.
+/// **Collapse.** With enough loss infinitely many impacts happen in a finite time. Contacts that go
+/// on colliding up to the limit are closed: such balls have one velocity from then on, that of
+/// their centre of mass, or zero if the floor is among them, and the gaps between them stay zero.
+/// The balls that lie on the floor lie until something hits them. Under gravity an impact on balls
+/// that stand on the floor in touch is one jump: it is handed down and up, impact by impact, until
+/// none of them approaches, or only at a speed that is rounding (10⁻¹⁴) beside the greatest of a
+/// ball that falls; what then has no speed lies.
 ///
-/// Limits: no spin, no attraction: touching balls that are pulled apart part. Source for collapse: S. `McNamara` and W. R. Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323.
+/// Limits: no spin, no attraction: touching balls that are pulled apart part. Source for collapse:
+/// S. `McNamara` and W. R. Young, Phys. Fluids A 4, 496 (1992), doi:10.1063/1.858323.
 ///
 /// ```
 /// use saltus::Simulation;
@@ -94,7 +102,8 @@ impl PartialEq for Lying {
 pub struct Contact(pub usize);
 
 impl<const N: usize, R: Restitution + Copy> Line<N, R> {
-    /// Balls of `masses` in kg from left to right, all of which meet by the law `restitution`; no floor, no wall, no gravity.
+    /// Balls of `masses` in kg from left to right, all of which meet by the law `restitution`; no
+    /// floor, no wall, no gravity.
     ///
     /// # Errors
     /// [`ParameterError`] unless every mass is finite and positive.
@@ -119,7 +128,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         Ok(Self { gravity: not_negative("a gravity in m/s^2", gravity)?, ..self })
     }
 
-    /// With a wall beyond the last ball, which meets it by `restitution` where the gaps add up to `length` in m.
+    /// With a wall beyond the last ball, which meets it by `restitution` where the gaps add up to
+    /// `length` in m.
     ///
     /// # Errors
     /// [`ParameterError`] unless the length is finite and positive.
@@ -127,7 +137,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         Ok(Self { wall: Some((positive("a length in m", length)?, restitution)), ..self })
     }
 
-    /// With a law of its own for one contact: 0 is the floor's, i that of the balls i - 1 and i. Other numbers change nothing.
+    /// With a law of its own for one contact: 0 is the floor's, i that of the balls i - 1 and i.
+    /// Other numbers change nothing.
     #[must_use]
     pub fn contact(mut self, contact: usize, restitution: R) -> Self {
         if let Some(law) = self.laws.get_mut(contact) {

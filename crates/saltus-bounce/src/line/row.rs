@@ -4,8 +4,9 @@ use saltus::State;
 
 /// The state of N balls on a line: N gaps in m, N velocities in m/s.
 ///
-/// Gap 0 is the position of the first ball (its distance from the floor, if there is one), gap i the distance between the surfaces of the balls
-/// i - 1 and i. So a gap of 10⁻⁹ m at a height of 1 m has sixteen digits, and radii do not appear.
+/// Gap 0 is the position of the first ball (its distance from the floor, if there is one), gap i
+/// the distance between the surfaces of the balls i - 1 and i. So a gap of 10⁻⁹ m at a height of 1
+/// m has sixteen digits, and radii do not appear.
 ///
 /// ```
 /// use saltus_bounce::line::Row;

@@ -11,8 +11,9 @@ const MOST: usize = 1 << 20;
 impl<const N: usize, R: Restitution + Copy> Line<N, R> {
     /// The jump at `contact` if `lying` balls lie before it.
     ///
-    /// Balls that touch each other from the floor up hand the impact on at the same time, lowest approach first. With enough loss infinitely many
-    /// impacts happen at that time, and their speeds shrink geometrically to nothing: they are followed down to rounding.
+    /// Balls that touch each other from the floor up hand the impact on at the same time, lowest
+    /// approach first. With enough loss infinitely many impacts happen at that time, and their
+    /// speeds shrink geometrically to nothing: they are followed down to rounding.
     pub(super) fn struck(&self, Contact(contact): Contact, lying: Lying, x: &Row<N>) -> (Lying, Row<N>) {
         let mut after = self.closed(contact, x);
         let greatest = self.greatest(x);
@@ -44,14 +45,16 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         self.merged(lying, &std::array::from_fn(|i| i < standing), &after)
     }
 
-    /// Balls that touch, from contact `first` on, and whose relative speed is rounding move as one: left alone they would hand that rounding
-    /// to and fro for ever, before a neighbour's impact is seen.
+    /// Balls that touch, from contact `first` on, and whose relative speed is rounding move as one:
+    /// left alone they would hand that rounding to and fro for ever, before a neighbour's impact is
+    /// seen.
     fn in_touch(&self, lying: Lying, first: usize, rounding: f64, x: Row<N>) -> (Lying, Row<N>) {
         let slow = |i: usize| i >= first && x.gaps[i] == 0.0 && approach(i, &x).abs() <= rounding;
         self.merged(lying, &std::array::from_fn(slow), &x)
     }
 
-    /// How many balls from the floor up would not arrive at it faster than at the `speed` that is rounding, if nothing were in their way.
+    /// How many balls from the floor up would not arrive at it faster than at the `speed` that is
+    /// rounding, if nothing were in their way.
     fn still(&self, speed: f64, x: &Row<N>) -> usize {
         let fast = |(v, y): (f64, f64)| v * v + 2.0 * self.gravity * y > speed * speed;
         x.velocities.into_iter().zip(x.positions()).position(fast).unwrap_or(N)

@@ -1,7 +1,8 @@
-//! What is known of real balls on real floors: coefficients of restitution with their spread, their speeds and their sources.
+//! What is known of real balls on real floors: coefficients of restitution with their spread, their
+//! speeds and their sources.
 //!
-//! A preset is a range, never a single number: a rule of a sport bounds it, a measurement scatters. A pair of which nothing is known is
-//! refused, not guessed.
+//! A preset is a range, never a single number: a rule of a sport bounds it, a measurement scatters.
+//! A pair of which nothing is known is refused, not guessed.
 
 mod table;
 
@@ -54,8 +55,8 @@ impl Preset {
         }
     }
 
-    /// The slowest and the fastest impact in m/s at which this is known; `None` if the source does not say. A rule that gives a height h
-    /// of drop is known at √(2gh), air left out.
+    /// The slowest and the fastest impact in m/s at which this is known; `None` if the source does
+    /// not say. A rule that gives a height h of drop is known at √(2gh), air left out.
     #[must_use]
     pub fn speeds(&self) -> Option<[f64; 2]> {
         match self.evidence {
@@ -76,7 +77,8 @@ impl Preset {
         self.source
     }
 
-    /// The coefficient a fraction `part` of the way from the lowest to the highest, for a scene that has to have one number.
+    /// The coefficient a fraction `part` of the way from the lowest to the highest, for a scene
+    /// that has to have one number.
     ///
     /// # Errors
     /// [`CorError`] unless 0 ≤ `part` ≤ 1.

@@ -5,7 +5,8 @@ use super::Preset;
 /// What a source gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Evidence {
-    /// A height of drop in m and the least and greatest height of the rebound, all of the ball's lowest point: e = √(rebound/drop).
+    /// A height of drop in m and the least and greatest height of the rebound, all of the ball's
+    /// lowest point: e = √(rebound/drop).
     Rebound { drop: f64, rebound: [f64; 2] },
     /// The least and greatest coefficient found, and the speeds in m/s at which.
     Measured { cor: [f64; 2], speeds: Option<[f64; 2]> },

@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::{Cor, Restitution};
 
-/// e(v) by straight lines between up to [`Knots::MOST`] measured points (v, e), constant below the first and above the last.
+/// e(v) by straight lines between up to [`Knots::MOST`] measured points (v, e), constant below the
+/// first and above the last.
 ///
 /// v: speed of impact in m/s. One knot is a constant.
 ///
@@ -29,7 +30,8 @@ impl Knots {
     /// The law through `knots`, each a speed in m/s and the coefficient there, by increasing speed.
     ///
     /// # Errors
-    /// [`KnotsError`] for no knots or too many, a speed that is negative or not finite, or speeds that do not increase.
+    /// [`KnotsError`] for no knots or too many, a speed that is negative or not finite, or speeds
+    /// that do not increase.
     pub fn new(knots: &[(f64, Cor)]) -> Result<Self, KnotsError> {
         if knots.is_empty() || knots.len() > Self::MOST {
             return Err(KnotsError::Count(knots.len()));

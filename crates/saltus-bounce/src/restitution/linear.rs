@@ -5,8 +5,9 @@ use crate::parameter::{ParameterError, finite, not_negative};
 
 /// e(v) = e₀ + b v between two speeds, constant below and above them.
 ///
-/// v: speed of impact in m/s; b in s/m. What a fit of rebounds over a moderate range of heights gives: beyond the range measured the
-/// law does not extrapolate. Source: R. Cross, Am. J. Phys. 67, 222 (1999), doi:10.1119/1.19229, measures such slopes.
+/// v: speed of impact in m/s; b in s/m. What a fit of rebounds over a moderate range of heights
+/// gives: beyond the range measured the law does not extrapolate. Source: R. Cross, Am. J. Phys.
+/// 67, 222 (1999), doi:10.1119/1.19229, measures such slopes.
 ///
 /// ```
 /// use saltus_bounce::restitution::{Cor, Linear, Restitution};
@@ -26,10 +27,12 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The line through `at_rest` at v = 0 with `slope` in s/m, used between the speeds `slowest` and `fastest` in m/s.
+    /// The line through `at_rest` at v = 0 with `slope` in s/m, used between the speeds `slowest`
+    /// and `fastest` in m/s.
     ///
     /// # Errors
-    /// [`ParameterError`] if a number is not finite, the speeds are negative or out of order, or e leaves 0..=1 between them.
+    /// [`ParameterError`] if a number is not finite, the speeds are negative or out of order, or e
+    /// leaves 0..=1 between them.
     pub fn new(at_rest: Cor, slope: f64, slowest: f64, fastest: f64) -> Result<Self, ParameterError> {
         let slope = finite("a slope of e over speed in s/m", slope)?;
         let slowest = not_negative("a speed in m/s", slowest)?;

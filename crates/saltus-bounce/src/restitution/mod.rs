@@ -1,7 +1,8 @@
-//! How much speed an impact leaves: the coefficient of restitution, constant or dependent on the speed of impact.
+//! How much speed an impact leaves: the coefficient of restitution, constant or dependent on the
+//! speed of impact.
 //!
-//! [`Cor`] is one number; [`Linear`], [`Knots`], [`Viscoelastic`] and [`Plastic`] depend on the speed. All are [`Restitution`] laws,
-//! and none ever returns more speed than it was given.
+//! [`Cor`] is one number; [`Linear`], [`Knots`], [`Viscoelastic`] and [`Plastic`] depend on the
+//! speed. All are [`Restitution`] laws, and none ever returns more speed than it was given.
 
 mod knots;
 mod linear;
@@ -19,8 +20,8 @@ pub use viscoelastic::Viscoelastic;
 
 /// A law of normal impact: v⁺ = -e(v⁻) v⁻.
 ///
-/// Guaranteed for every `impact` ≥ 0 and finite: 0 ≤ `rebound(impact)` ≤ `impact`, so that no impact gains energy, and
-/// `rebound(0)` = 0. Speeds in m/s, normal to the wall and relative to it.
+/// Guaranteed for every `impact` ≥ 0 and finite: 0 ≤ `rebound(impact)` ≤ `impact`, so that no
+/// impact gains energy, and `rebound(0)` = 0. Speeds in m/s, normal to the wall and relative to it.
 ///
 /// ```
 /// use saltus_bounce::restitution::{Cor, Linear, Restitution};
@@ -57,10 +58,12 @@ impl<R: Restitution + ?Sized> Restitution for &R {
     }
 }
 
-/// A coefficient of restitution (COR) e: the rebound speed over the impact speed, v⁺ = -e v⁻ normal to the floor.
+/// A coefficient of restitution (COR) e: the rebound speed over the impact speed, v⁺ = -e v⁻ normal
+/// to the floor.
 ///
-/// Dimensionless, 0 ≤ e ≤ 1: at 0 the ball stays where it lands, at 1 it loses nothing. No other value exists, by type.
-/// Source: I. Newton, *Principia* (1687), scholium to the laws of motion, corollary 6.
+/// Dimensionless, 0 ≤ e ≤ 1: at 0 the ball stays where it lands, at 1 it loses nothing. No other
+/// value exists, by type. Source: I. Newton, *Principia* (1687), scholium to the laws of motion,
+/// corollary 6.
 ///
 /// ```
 /// use saltus_bounce::Cor;
@@ -81,10 +84,12 @@ impl Cor {
         if value >= 0.0 && value <= 1.0 { Ok(Self(value)) } else { Err(CorError { value }) }
     }
 
-    /// The COR that a drop from `drop` and a rebound to `rebound` show, e = √(rebound / drop); both heights in one unit, above the floor.
+    /// The COR that a drop from `drop` and a rebound to `rebound` show, e = √(rebound / drop); both
+    /// heights in one unit, above the floor.
     ///
     /// # Errors
-    /// [`CorError`] if that is not between 0 and 1: a rebound above the drop, a negative height, a drop of zero.
+    /// [`CorError`] if that is not between 0 and 1: a rebound above the drop, a negative height, a
+    /// drop of zero.
     ///
     /// ```
     /// use saltus_bounce::Cor;
@@ -95,7 +100,8 @@ impl Cor {
         Self::new((rebound / drop).sqrt())
     }
 
-    /// The coefficient nearest to `value`, which a law has kept within 0..=1 but for rounding; what is not a number gives 0.
+    /// The coefficient nearest to `value`, which a law has kept within 0..=1 but for rounding; what
+    /// is not a number gives 0.
     ///
     /// ```
     /// use saltus_bounce::Cor;

@@ -5,9 +5,9 @@ use crate::parameter::{ParameterError, positive};
 
 /// A plastic impact: e = (v₁/v)^(1/4) above the speed v₁, e = 1 below it.
 ///
-/// Speeds in m/s. The fourth root is the asymptote for a sphere indenting a body with a constant mean contact pressure; v₁ is where
-/// it reaches 1. The speed at which yield first begins is a little lower, and the true curve leaves 1 smoothly there: near v₁ the
-/// law overestimates e.
+/// Speeds in m/s. The fourth root is the asymptote for a sphere indenting a body with a constant
+/// mean contact pressure; v₁ is where it reaches 1. The speed at which yield first begins is a
+/// little lower, and the true curve leaves 1 smoothly there: near v₁ the law overestimates e.
 /// Source: K. L. Johnson, *Contact Mechanics* (1985), section 11.5, doi:10.1017/CBO9781139171731.
 ///
 /// ```
@@ -34,7 +34,8 @@ impl Plastic {
         }
     }
 
-    /// The law that gives `cor` at the speed `impact` in m/s, which is to be above yield: v₁ = e⁴ v.
+    /// The law that gives `cor` at the speed `impact` in m/s, which is to be above yield: v₁ = e⁴
+    /// v.
     ///
     /// # Errors
     /// [`ParameterError`] unless `cor` is above zero and `impact` is finite and positive.

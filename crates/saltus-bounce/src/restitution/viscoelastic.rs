@@ -6,15 +6,17 @@ use crate::stable::increasing_root;
 
 /// A viscoelastic sphere: e = 1 - C₁ x² + C₂ x⁴ ∓ …, x² = β v^(1/5), C₁ = 1.15345, C₂ = (3/5) C₁².
 ///
-/// The contact force is F = k (d^(3/2) + (3/2) A √d d'), never tensile, and β = (3/2) A (k/m)^(2/5), where k is the Hertz stiffness in
-/// N/m^(3/2), A the dissipation time in s, m the effective mass in kg, v the speed of impact in m/s. The series diverges; the law
-/// evaluated is the Padé approximant
-/// e = (1 + 0.501086 x)/(1 + 0.501086 x + 1.15345 x² + 0.577977 x³ + 0.532178 x⁴).
+/// The contact force is F = k (d^(3/2) + (3/2) A √d d'), never tensile, and β = (3/2) A
+/// (k/m)^(2/5), where k is the Hertz stiffness in N/m^(3/2), A the dissipation time in s, m the
+/// effective mass in kg, v the speed of impact in m/s. The series diverges; the law evaluated is
+/// the Padé approximant e = (1 + 0.501086 x)/(1 + 0.501086 x + 1.15345 x² + 0.577977 x³ + 0.532178
+/// x⁴).
 ///
-/// Limits: against direct integration of the force it errs by 5e-5 in e at x² = 0.1 (e = 0.89), 7e-4 at 0.3 (0.72), 5e-3 at
-/// 1 (0.39). No plastic deformation, no adhesion; slow against sound.
-/// Sources: R. Ramírez et al., Phys. Rev. E 60, 4465 (1999), doi:10.1103/PhysRevE.60.4465; T. Schwager and T. Pöschel, Phys. Rev. E 78,
-/// 051304 (2008), doi:10.1103/PhysRevE.78.051304; P. Müller and T. Pöschel, Phys. Rev. E 84, 021302 (2011), doi:10.1103/PhysRevE.84.021302.
+/// Limits: against direct integration of the force it errs by 5e-5 in e at x² = 0.1 (e = 0.89),
+/// 7e-4 at 0.3 (0.72), 5e-3 at 1 (0.39). No plastic deformation, no adhesion; slow against sound.
+/// Sources: R. Ramírez et al., Phys. Rev. E 60, 4465 (1999), doi:10.1103/PhysRevE.60.4465; T.
+/// Schwager and T. Pöschel, Phys. Rev. E 78, 051304 (2008), doi:10.1103/PhysRevE.78.051304; P.
+/// Müller and T. Pöschel, Phys. Rev. E 84, 021302 (2011), doi:10.1103/PhysRevE.84.021302.
 ///
 /// ```
 /// use saltus_bounce::restitution::{Cor, Restitution, Viscoelastic};
@@ -33,7 +35,8 @@ pub struct Viscoelastic {
 const PADE: [f64; 4] = [0.501_086, 1.153_45, 0.577_977, 0.532_178];
 
 impl Viscoelastic {
-    /// From the dissipation time A in s, the Hertz stiffness k in N/m^(3/2) and the effective mass m in kg.
+    /// From the dissipation time A in s, the Hertz stiffness k in N/m^(3/2) and the effective mass
+    /// m in kg.
     ///
     /// # Errors
     /// [`ParameterError`] unless A is finite and not negative, k and m finite and positive.
@@ -47,11 +50,13 @@ impl Viscoelastic {
     /// The law that gives `cor` at the speed `impact` in m/s.
     ///
     /// # Errors
-    /// [`ParameterError`] unless `cor` is above zero (the law never reaches it) and `impact` is finite and positive.
+    /// [`ParameterError`] unless `cor` is above zero (the law never reaches it) and `impact` is
+    /// finite and positive.
     pub fn through(cor: Cor, impact: f64) -> Result<Self, ParameterError> {
         let e = positive("a coefficient of restitution that a viscoelastic sphere can have", cor.value())?;
         let v = positive("a speed of impact in m/s", impact)?;
-        // 1/e - 1 = (…) grows with x; beyond the first step the root lies below the one of the leading term.
+        // 1/e - 1 = (…) grows with x; beyond the first step the root lies below the one of the
+        // leading term.
         let lost = |x: f64| {
             let [a, b, c, d] = PADE;
             let over = x * x * (b + x * (c + x * d));

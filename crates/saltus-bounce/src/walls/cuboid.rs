@@ -5,7 +5,8 @@ use nalgebra::SVector;
 use super::{Face, Walls};
 use crate::parameter::{ParameterError, finite};
 
-/// The inside of a rectangle or cuboid, between two opposite corners: 2N faces, face 2k at the low end of coordinate k, 2k + 1 at the high end.
+/// The inside of a rectangle or cuboid, between two opposite corners: 2N faces, face 2k at the low
+/// end of coordinate k, 2k + 1 at the high end.
 ///
 /// ```
 /// use nalgebra::vector;

@@ -24,7 +24,8 @@ pub struct Ground<F, D, C> {
 }
 
 impl<F: Fn(f64) -> f64, D: Fn(f64) -> f64, C: Fn(f64) -> f64> Ground<F, D, C> {
-    /// From the `height` f(x) in m, its derivative `slope` f', and the second one `curve` f'' in 1/m.
+    /// From the `height` f(x) in m, its derivative `slope` f', and the second one `curve` f'' in
+    /// 1/m.
     #[must_use]
     pub const fn new(height: F, slope: D, curve: C) -> Self {
         Self { height, slope, curve }

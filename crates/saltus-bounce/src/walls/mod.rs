@@ -1,10 +1,13 @@
-//! Floors, walls, boxes, stairs, curved ground, floors that move: surfaces that a ball may not pass.
+//! Floors, walls, boxes, stairs, curved ground, floors that move: surfaces that a ball may not
+//! pass.
 //!
-//! A surface is a **margin** φ(t, p), positive where the ball may be and zero on the surface, with its derivatives. A tuple, an array or a `Vec` of
-//! walls is a wall. Where a surface ends, space is cut into **cells**: in each the margins are smooth, and some of its faces are no walls but
-//! lead into the next cell; so a corner is where two plain faces meet, and no margin has a kink.
+//! A surface is a **margin** φ(t, p), positive where the ball may be and zero on the surface, with
+//! its derivatives. A tuple, an array or a `Vec` of walls is a wall. Where a surface ends, space is
+//! cut into **cells**: in each the margins are smooth, and some of its faces are no walls but lead
+//! into the next cell; so a corner is where two plain faces meet, and no margin has a kink.
 //!
-//! Positions are those of the ball's centre or of its lowest point, as the scene has it: for a ball of radius R move the walls by R.
+//! Positions are those of the ball's centre or of its lowest point, as the scene has it: for a ball
+//! of radius R move the walls by R.
 
 mod cuboid;
 mod curved;
@@ -31,7 +34,8 @@ pub struct Face {
 
 /// Surfaces that bound where a ball may be, in N coordinates, the last of which points up.
 ///
-/// One smooth surface of one cell needs `margin`, `gradient`, and `bend` if it is curved or moves, `rate` if it moves. A face moves along its normal.
+/// One smooth surface of one cell needs `margin`, `gradient`, and `bend` if it is curved or moves,
+/// `rate` if it moves. A face moves along its normal.
 ///
 /// ```
 /// use nalgebra::{Vector2, vector};
@@ -66,7 +70,8 @@ pub trait Walls<const N: usize> {
         0.0
     }
 
-    /// d²φ/dt² of a point that passes p at the constant velocity `v`: vᵀ ∂²φ/∂p² v + 2 v·∂²φ/∂t∂p + ∂²φ/∂t².
+    /// d²φ/dt² of a point that passes p at the constant velocity `v`: vᵀ ∂²φ/∂p² v + 2 v·∂²φ/∂t∂p +
+    /// ∂²φ/∂t².
     fn bend(&self, face: Face, t: f64, p: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
         let _ = (face, t, p, v);
         0.0
@@ -78,7 +83,8 @@ pub trait Walls<const N: usize> {
         false
     }
 
-    /// Whether the face as a whole moves with time only, φ = a·p - h(t): what lies on it is carried along.
+    /// Whether the face as a whole moves with time only, φ = a·p - h(t): what lies on it is carried
+    /// along.
     ///
     /// Answers h(t) - h(`from`), h'(t).
     fn carried(&self, face: Face, from: f64, t: f64) -> Option<(f64, f64)> {

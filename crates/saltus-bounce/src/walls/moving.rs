@@ -1,4 +1,5 @@
-//! Level floors that move up and down: a vibrating table, a lift on a schedule, any motion from its formula.
+//! Level floors that move up and down: a vibrating table, a lift on a schedule, any motion from its
+//! formula.
 
 use std::fmt;
 
@@ -53,9 +54,9 @@ macro_rules! level_floor {
 
 /// A level floor that vibrates: h = m + A sin(ωt + φ).
 ///
-/// What lies on it leaves where h'' < -g, at the phase asin(g/(Aω²)), if Aω² > g.
-/// Source: A. B. Pippard, *The Physics of Vibration* (1978), chapter 9; N. B. Tufillaro et al., *An Experimental Approach to Nonlinear
-/// Dynamics and Chaos* (1992), chapter 1.
+/// What lies on it leaves where h'' < -g, at the phase asin(g/(Aω²)), if Aω² > g. Source: A. B.
+/// Pippard, *The Physics of Vibration* (1978), chapter 9; N. B. Tufillaro et al., *An Experimental
+/// Approach to Nonlinear Dynamics and Chaos* (1992), chapter 1.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -146,7 +147,8 @@ level_floor!(Shaken<H, V, A>, H, V, A);
 
 /// A level floor on a schedule: between given times its acceleration is constant.
 ///
-/// Its height and velocity have no jumps; its acceleration jumps at each time, and a ball that it carries looks again whether it is still carried.
+/// Its height and velocity have no jumps; its acceleration jumps at each time, and a ball that it
+/// carries looks again whether it is still carried.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -164,7 +166,8 @@ pub struct Lift {
 }
 
 impl Lift {
-    /// At `height` in m at the first time, moving at `velocity` in m/s until then; from each time in s on with the acceleration beside it, in m/s².
+    /// At `height` in m at the first time, moving at `velocity` in m/s until then; from each time
+    /// in s on with the acceleration beside it, in m/s².
     ///
     /// # Errors
     /// [`ParameterError`] unless all numbers are finite and the times rise.

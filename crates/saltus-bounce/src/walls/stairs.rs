@@ -5,11 +5,14 @@ use nalgebra::{SVector, Vector2};
 use super::{Face, Walls};
 use crate::parameter::{ParameterError, finite};
 
-/// Level treads of given heights, with risers between them, for every x: cell k is the air over tread k.
+/// Level treads of given heights, with risers between them, for every x: cell k is the air over
+/// tread k.
 ///
-/// A cell's faces: 0 its tread, 1 its left end, 2 its right end. An end is a riser below the neighbour's tread and open above it, where a ball
-/// passes into the neighbour's cell: so an edge of a tread is met by what comes within rounding of it, and nothing passes through it.
-/// A ball that meets the tread and its end at once meets the tread. For points: a ball of radius R needs treads that are not its own width.
+/// A cell's faces: 0 its tread, 1 its left end, 2 its right end. An end is a riser below the
+/// neighbour's tread and open above it, where a ball passes into the neighbour's cell: so an edge
+/// of a tread is met by what comes within rounding of it, and nothing passes through it. A ball
+/// that meets the tread and its end at once meets the tread. For points: a ball of radius R needs
+/// treads that are not its own width.
 ///
 /// ```
 /// use nalgebra::vector;
@@ -29,10 +32,12 @@ pub struct Stairs {
 }
 
 impl Stairs {
-    /// Treads at the heights `treads`, the first from -∞ to the first of `edges`, the last from the last of `edges` to ∞; all in m.
+    /// Treads at the heights `treads`, the first from -∞ to the first of `edges`, the last from the
+    /// last of `edges` to ∞; all in m.
     ///
     /// # Errors
-    /// [`ParameterError`] unless all is finite, the edges rise, and there is one tread more than edges.
+    /// [`ParameterError`] unless all is finite, the edges rise, and there is one tread more than
+    /// edges.
     pub fn new(edges: Vec<f64>, treads: Vec<f64>) -> Result<Self, ParameterError> {
         for &number in edges.iter().chain(&treads) {
             finite("a place of a step in m", number)?;
@@ -47,7 +52,8 @@ impl Stairs {
         Ok(Self { edges, treads })
     }
 
-    /// `count` steps down from height `top`, each `run` long and `rise` high, the first edge at x = `run`.
+    /// `count` steps down from height `top`, each `run` long and `rise` high, the first edge at x =
+    /// `run`.
     ///
     /// # Errors
     /// [`ParameterError`] unless all is finite and `run` positive.

@@ -22,17 +22,20 @@ use crate::scenes::{ending, scene};
 
 /// Show what accuracy costs in a scene.
 ///
-/// Says which setting to take: the cheapest that meets the target, how exact it is, what it costs. To know, it runs the scene by each stepper to ten tolerances, and
-/// frame by frame at 24 to 240 frames per second, and compares every run with a reference: by formulas where they solve the scene, or else a run to a tolerance two
-/// orders tighter, whose own error is estimated.
+/// Says which setting to take: the cheapest that meets the target, how exact it is, what it costs.
+/// To know, it runs the scene by each stepper to ten tolerances, and frame by frame at 24 to 240
+/// frames per second, and compares every run with a reference: by formulas where they solve the
+/// scene, or else a run to a tolerance two orders tighter, whose own error is estimated.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Accuracy {
     /// The scene; `-` for standard input.
     pub(crate) scene: PathBuf,
-    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or both; `1mm,1ms` unless given.
+    /// How exact the run has to be everywhere, such as `1mm`, `0.1ms`, or both; `1mm,1ms` unless
+    /// given.
     #[arg(long, value_name = "LENGTH,TIME", value_parser = target, allow_hyphen_values = true)]
     pub(crate) target: Option<Target>,
-    /// Show every setting that was tried, not only those that cost least for what they give; JSON has them all.
+    /// Show every setting that was tried, not only those that cost least for what they give; JSON
+    /// has them all.
     #[arg(long)]
     pub(crate) all: bool,
     /// Draw time against error as SVG.

@@ -1,4 +1,5 @@
-//! The picture: error across, time up, both by powers of ten; a line for each stepper and one for frames.
+//! The picture: error across, time up, both by powers of ten; a line for each stepper and one for
+//! frames.
 
 use saltus_plot::{Background, Chart, Measure, Stroke};
 use saltus_scene::accuracy::{Accuracy, Difference, Target, Trial, Way};
@@ -56,7 +57,8 @@ pub(super) fn svg(name: &str, accuracy: &Accuracy, target: Target) -> Result<Str
     chart.svg().map_err(Error::new)
 }
 
-/// Whether the picture is of times: if the target names no length, or the setting to take comes nearer to its time.
+/// Whether the picture is of times: if the target names no length, or the setting to take comes
+/// nearer to its time.
 fn of_times(best: Option<&Trial>, target: Target) -> bool {
     match (target.length, target.time, best.map(|best| &best.outcome)) {
         (None, _, _) => true,

@@ -11,7 +11,8 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// The worst impact time; infinite where no impact is where it should be, so that there is no time to compare.
+/// The worst impact time; infinite where no impact is where it should be, so that there is no time
+/// to compare.
 pub(super) fn impacts(off: &Difference) -> f64 {
     if off.impacts == 0.0 && off.missed > 0 { f64::INFINITY } else { off.impacts }
 }

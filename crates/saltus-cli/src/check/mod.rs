@@ -18,8 +18,9 @@ use crate::staging::Staging;
 
 /// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
 ///
-/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG, CSV and JSON. Give the options it was exported with.
-/// Exit status 1 if a height is farther off than the export says, or than --tolerance.
+/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG,
+/// CSV and JSON. Give the options it was exported with. Exit status 1 if a height is farther off
+/// than the export says, or than --tolerance.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Check {
     /// The file.
@@ -28,7 +29,8 @@ pub(crate) struct Check {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     pub(crate) staging: Staging,
-    /// How far heights may be from the motion; without it, what the export promised, and what single precision adds.
+    /// How far heights may be from the motion; without it, what the export promised, and what
+    /// single precision adds.
     #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
     pub(crate) tolerance: Option<f64>,
 }
@@ -39,7 +41,8 @@ const TIMES: u32 = 4000;
 const LOOKED: f64 = 1.01;
 /// What single precision adds to a height, of the size of the picture.
 const SINGLE: f64 = 1e-6;
-/// Keys are this near to a motion in which more than gravity acts, unless an export says otherwise, in m.
+/// Keys are this near to a motion in which more than gravity acts, unless an export says otherwise,
+/// in m.
 const KEYS: f64 = 1e-4;
 
 pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
@@ -111,7 +114,8 @@ fn compared(reading: &Reading, motion: &Motion, frames: Frames) -> Found {
         };
         let end = track.end();
         if frames.on_twos {
-            // Drawings stand: each is looked at while it does, and compared with where the ball was as it was drawn.
+            // Drawings stand: each is looked at while it does, and compared with where the ball was
+            // as it was drawn.
             let drawn = (0_u32..).map(|k| f64::from(k) * frames.step());
             drawn.take_while(|&t| t <= end).for_each(|t| compare(t, t + 0.5 * frames.step(), false));
         } else {

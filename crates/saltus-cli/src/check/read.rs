@@ -18,7 +18,8 @@ pub(super) struct Reading {
 
 /// The height of one ball.
 pub(super) struct Ball {
-    /// At a time in s: in m, or of a picture above the start in units of which `from` says how many radii each is.
+    /// At a time in s: in m, or of a picture above the start in units of which `from` says how many
+    /// radii each is.
     pub(super) height: Box<dyn Fn(f64) -> f64>,
     /// Radii per unit of a picture.
     pub(super) from: Option<f64>,
@@ -263,7 +264,8 @@ fn svg(text: &str) -> Result<Vec<Reading>, Error> {
     Ok(vec![Reading { name: "SVG".to_owned(), sampled, balls }])
 }
 
-/// Keys with velocities on both sides; from frame to frame they are the slopes of the motion, not of lines.
+/// Keys with velocities on both sides; from frame to frame they are the slopes of the motion, not
+/// of lines.
 fn csv(text: &str) -> Result<Vec<Reading>, Error> {
     let mut table = ::csv::Reader::from_reader(text.as_bytes());
     let header = table.headers().map_err(Error::new)?.clone();
@@ -318,13 +320,15 @@ fn json(text: &str) -> Result<Vec<Reading>, Error> {
     Ok(vec![Reading { name: "JSON".to_owned(), sampled, balls }])
 }
 
-/// The first layer that moves up and down below one that moves sideways; the ball's size is the scale.
+/// The first layer that moves up and down below one that moves sideways; the ball's size is the
+/// scale.
 fn lottie(document: &Value) -> Result<Vec<Reading>, Error> {
     let layers = document["layers"].as_array().ok_or_else(|| lacks("`layers`"))?;
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let (fps, first) = (number(&document["fr"]), number(&document["ip"]));
     let (mut balls, mut sampled) = (Vec::new(), false);
-    // A chain of layers begins with one without a parent, which moves sideways; the next moves up and down; the last has the shape.
+    // A chain of layers begins with one without a parent, which moves sideways; the next moves up
+    // and down; the last has the shape.
     let chains = layers.iter().filter(|layer| layer["parent"].is_null() && layer["ty"] == 3);
     for start in chains {
         let child = |of: &Value| layers.iter().find(|layer| layer["parent"] == of["ind"]);

@@ -24,25 +24,29 @@ Reading errors come from --sigma-height and --sigma-time, from lines such as '# 
 
 /// Estimate the coefficient of restitution (COR) from a table of bounces.
 ///
-/// A table holds rebound heights, contact times, both, or a series of heights in time: as CSV with a header, a workbook, or what a
-/// tracking program or a telephone writes. Units stand in the header.
+/// A table holds rebound heights, contact times, both, or a series of heights in time: as CSV with
+/// a header, a workbook, or what a tracking program or a telephone writes. Units stand in the
+/// header.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
     /// The tables, whose trials are fitted together; `-` for standard input.
     #[arg(required_unless_present_any = ["values", "want"], value_name = "FILE")]
     pub(crate) tables: Vec<PathBuf>,
-    /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from the release on, or times of contacts.
+    /// Readings instead of a table, in order and with their unit: `"100 64 41 26 cm"`, heights from
+    /// the release on, or times of contacts.
     #[arg(long, value_name = "NUMBERS UNIT", conflicts_with = "tables", allow_hyphen_values = true)]
     pub(crate) values: Option<String>,
-    /// Plan the measurement that gives the COR to within this, 95 %, such as `0.005`: how many drops and bounces by ruler, film or sound; with a table
-    /// for the ball of that table, without one before the first drop.
+    /// Plan the measurement that gives the COR to within this, 95 %, such as `0.005`: how many
+    /// drops and bounces by ruler, film or sound; with a table for the ball of that table, without
+    /// one before the first drop.
     #[arg(long, value_name = "NUMBER", value_parser = want)]
     pub(crate) want: Option<f64>,
     /// The COR to plan for where no table tells it.
     #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75")]
     pub(crate) expect: f64,
-    /// The height of the drops where no table tells it, such as `1m`; that to plan for is 1 m unless it is stated.
+    /// The height of the drops where no table tells it, such as `1m`; that to plan for is 1 m
+    /// unless it is stated.
     #[arg(long, value_name = "LENGTH", conflicts_with = "values", value_parser = small(Quantity::Length, "m"))]
     pub(crate) drop: Option<f64>,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
@@ -51,13 +55,15 @@ pub(crate) struct Fit {
     /// Draw the COR against the speed of impact, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_cor: Option<PathBuf>,
-    /// Draw the heights of apexes, bounce by bounce, as SVG: with one COR they are on a straight line.
+    /// Draw the heights of apexes, bounce by bounce, as SVG: with one COR they are on a straight
+    /// line.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_ladder: Option<PathBuf>,
     /// Draw how much worse the readings are explained by other CORs, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot_profile: Option<PathBuf>,
-    /// Write the fitted motion as a scene, to simulate, to change and to export; a scene that exists is kept, unless --force is given.
+    /// Write the fitted motion as a scene, to simulate, to change and to export; a scene that
+    /// exists is kept, unless --force is given.
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) scene: Option<PathBuf>,
     /// Write the scene anew where it exists.
@@ -75,34 +81,40 @@ pub(crate) struct Fit {
     /// The standard error of a time reading, such as `10ms`.
     #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
     pub(crate) sigma_time: Option<f64>,
-    /// Gravity, such as `9.81m/s^2`, m/s² where no unit is given; used only where heights meet times.
+    /// Gravity, such as `9.81m/s^2`, m/s² where no unit is given; used only where heights meet
+    /// times.
     #[arg(long, value_name = "ACCELERATION", value_parser = gravity)]
     pub(crate) gravity: Option<f64>,
-    /// The drag coefficient k of v' = -g -+ k v² in 1/m: 0 for none, 0.016 of a squash ball, 0.13 of a table-tennis ball; without it, the interval
-    /// allows for that of ordinary balls.
+    /// The drag coefficient k of v' = -g -+ k v² in 1/m: 0 for none, 0.016 of a squash ball, 0.13
+    /// of a table-tennis ball; without it, the interval allows for that of ordinary balls.
     #[arg(long, value_name = "NUMBER", value_parser = drag)]
     pub(crate) drag: Option<f64>,
-    /// By how far the zero of the heights may be off, such as `2mm` (a standard error), or 0 where the ball at rest on the floor reads 0; without it,
-    /// the interval allows for a ball that was read anywhere on it.
+    /// By how far the zero of the heights may be off, such as `2mm` (a standard error), or 0 where
+    /// the ball at rest on the floor reads 0; without it, the interval allows for a ball that was
+    /// read anywhere on it.
     #[arg(long, value_name = "LENGTH", value_parser = at_least_zero(Quantity::Length, "mm"))]
     pub(crate) sigma_zero: Option<f64>,
-    /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where every column names another, this one holds, with a
-    /// warning.
+    /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where
+    /// every column names another, this one holds, with a warning.
     #[arg(long, value_name = "UNIT", value_parser = height_unit)]
     pub(crate) height_unit: Option<String>,
-    /// The unit of times where the header names none, such as `ms`; where every column names another, this one holds, with a warning.
+    /// The unit of times where the header names none, such as `ms`; where every column names
+    /// another, this one holds, with a warning.
     #[arg(long, value_name = "UNIT", value_parser = unit(Quantity::Time))]
     pub(crate) time_unit: Option<String>,
     /// The column or the track to fit, where several hold readings of the same thing.
     #[arg(long, value_name = "NAME")]
     pub(crate) column: Option<String>,
-    /// The columns that tell balls or surfaces apart, or hold the readings of one each: each then has a COR of its own; `-` for none.
+    /// The columns that tell balls or surfaces apart, or hold the readings of one each: each then
+    /// has a COR of its own; `-` for none.
     #[arg(long = "group", value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) groups: Vec<String>,
-    /// The sheet of a workbook, or the file of a zip archive, to read; without it, every one that holds a table.
+    /// The sheet of a workbook, or the file of a zip archive, to read; without it, every one that
+    /// holds a table.
     #[arg(long, value_name = "NAME")]
     pub(crate) sheet: Option<String>,
-    /// Names for the columns, in place of those in the file, such as `bounce,height_cm`; `-` leaves a column aside.
+    /// Names for the columns, in place of those in the file, such as `bounce,height_cm`; `-` leaves
+    /// a column aside.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) header: Option<Vec<String>>,
     /// How many frames were filmed in a second, where the table counts frames.
@@ -114,7 +126,8 @@ pub(crate) struct Fit {
     /// What the height scale reads at the floor, in its own unit.
     #[arg(long, value_name = "NUMBER", value_parser = finite, allow_hyphen_values = true)]
     pub(crate) zero: Option<f64>,
-    /// The height scale counts downwards, as in pictures; without it, a series tells by the way it falls.
+    /// The height scale counts downwards, as in pictures; without it, a series tells by the way it
+    /// falls.
     #[arg(long)]
     pub(crate) y_down: bool,
     /// The height scale counts upwards, whichever way a series falls.
@@ -123,18 +136,21 @@ pub(crate) struct Fit {
     /// Keep only the rows in which this column has this value; may be repeated.
     #[arg(long = "filter", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filters: Vec<(String, String)>,
-    /// Use every reading as it stands: look neither for missed, doubled and misread contacts nor for outliers.
+    /// Use every reading as it stands: look neither for missed, doubled and misread contacts nor
+    /// for outliers.
     #[arg(long)]
     pub(crate) no_repair: bool,
-    /// Let the COR be that of this model, if the readings can tell of it: `linear`, `viscoelastic`, `plastic`, `power` and `knots` depend on
-    /// the speed of impact.
+    /// Let the COR be that of this model, if the readings can tell of it: `linear`, `viscoelastic`,
+    /// `plastic`, `power` and `knots` depend on the speed of impact.
     #[arg(long, value_name = "MODEL", value_parser = clap::builder::PossibleValuesParser::new(CorModel::ALL.map(CorModel::name)))]
     pub(crate) model: Option<String>,
-    /// The ball: its name, which tells its size and its drag, or its diameter, such as `4cm`. Without it the interval allows for a zero of the heights
-    /// anywhere on a tennis ball, and for the drag of a table-tennis ball.
+    /// The ball: its name, which tells its size and its drag, or its diameter, such as `4cm`.
+    /// Without it the interval allows for a zero of the heights anywhere on a tennis ball, and for
+    /// the drag of a table-tennis ball.
     #[arg(long, value_name = "NAME|LENGTH", value_parser = ball)]
     pub(crate) ball: Option<Ball>,
-    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual, or by some of them, with '=': `--losses=huber`.
+    /// Also give the COR by Huber's loss, the sum of absolute residuals and the largest residual,
+    /// or by some of them, with '=': `--losses=huber`.
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
     /// Trust every height to within this, such as `5mm`, and say which CORs that allows.
@@ -154,7 +170,8 @@ pub(crate) struct Fit {
     pub(crate) strict: bool,
 }
 
-/// What is above zero and small: a bare number that is not is hardly in the SI unit, and the unit that it may be in is offered.
+/// What is above zero and small: a bare number that is not is hardly in the SI unit, and the unit
+/// that it may be in is offered.
 fn small(
     quantity: Quantity,
     usual: &'static str,
@@ -234,7 +251,8 @@ fn height_unit(text: &str) -> Result<String, String> {
     if text == "px" { Ok(text.to_owned()) } else { unit(Quantity::Length)(text) }
 }
 
-/// A length per pixel: `1.5mm`, or a length and the pixels it spans, `1.371m/911` or `1.371 m = 911 px`.
+/// A length per pixel: `1.5mm`, or a length and the pixels it spans, `1.371m/911` or
+/// `1.371 m = 911 px`.
 fn scale(text: &str) -> Result<f64, String> {
     let (length, pixels) = text.split_once(['/', '=']).unwrap_or((text, "1"));
     let pixels = pixels.trim().trim_end_matches("px").trim_end();

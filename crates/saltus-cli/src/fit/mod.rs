@@ -126,7 +126,8 @@ pub(crate) fn tables(paths: &[PathBuf], options: &ReadOptions) -> Result<Table, 
     Table::read_all(paths, options).map_err(Error::data)
 }
 
-/// The reader of old workbooks may panic over a damaged file, which becomes an error; its own message would only confuse.
+/// The reader of old workbooks may panic over a damaged file, which becomes an error; its own
+/// message would only confuse.
 fn silence_workbooks() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

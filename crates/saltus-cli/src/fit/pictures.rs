@@ -1,4 +1,5 @@
-//! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the profile of the cost.
+//! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the
+//! profile of the cost.
 
 use saltus_fit::{Measure, Method, Motion, Report, Verdict};
 use saltus_plot::{
@@ -46,7 +47,8 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     Some(picture.svg())
 }
 
-/// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed with its 95 % band.
+/// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed
+/// with its 95 % band.
 pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
     if !report.series().is_empty() {
         return impacts(report);
@@ -140,7 +142,8 @@ fn compared(report: &Report) -> Option<Result<String, PlotError>> {
     Some(chart.svg())
 }
 
-/// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every trial, and of the fitted motion.
+/// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every
+/// trial, and of the fitted motion.
 pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     let motion = report.motion()?;
     let apexes = [saltus_fit::Mark::Release, saltus_fit::Mark::Apex];
@@ -183,7 +186,8 @@ fn count(number: usize) -> f64 {
     number as f64
 }
 
-/// The number of each flight between two contacts that were read, and the height that its duration means without air.
+/// The number of each flight between two contacts that were read, and the height that its duration
+/// means without air.
 fn intervals(report: &Report) -> Vec<[f64; 2]> {
     let contact = |point: &saltus_fit::Point| (point.mark == saltus_fit::Mark::Contact).then(|| count(point.number));
     let pairs = report.points().windows(2).filter(|w| w[0].trial == w[1].trial);
@@ -194,7 +198,8 @@ fn intervals(report: &Report) -> Vec<[f64; 2]> {
     next.collect()
 }
 
-/// A cost above its least by this is outside the 95 % interval: the chi-square distribution of one degree of freedom.
+/// A cost above its least by this is outside the 95 % interval: the chi-square distribution of one
+/// degree of freedom.
 const LIMIT: f64 = 3.84;
 /// Costs are drawn up to this above the least.
 const DRAWN: f64 = 30.0;
@@ -225,7 +230,8 @@ pub(super) fn profile(report: &Report) -> Option<Result<String, PlotError>> {
     Some(chart.svg())
 }
 
-/// The speed at a contact as it was read: from the height before it, else from the flight before it, the mean over trials.
+/// The speed at a contact as it was read: from the height before it, else from the flight before
+/// it, the mean over trials.
 fn speed(report: &Report, bounce: usize) -> Option<f64> {
     let g = report.gravity().value;
     let apex = (if bounce == 1 { saltus_fit::Mark::Release } else { saltus_fit::Mark::Apex }, bounce - 1);

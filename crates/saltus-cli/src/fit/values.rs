@@ -2,7 +2,8 @@
 
 use saltus_bounce::units::Quantity;
 
-/// The line as a table: heights from the release on, contact times where they ascend, times between contacts where they do not.
+/// The line as a table: heights from the release on, contact times where they ascend, times between
+/// contacts where they do not.
 pub(super) fn table(line: &str) -> Result<String, String> {
     let line = line.trim();
     let end = line.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(0, |last| last + 1);
@@ -23,7 +24,8 @@ pub(super) fn table(line: &str) -> Result<String, String> {
     Ok(format!("{name}_{unit}\n{rows}"))
 }
 
-/// Numbers between spaces, semicolons or commas; beside spaces a comma within a number is its decimal point.
+/// Numbers between spaces, semicolons or commas; beside spaces a comma within a number is its
+/// decimal point.
 fn numbers_of(text: &str) -> Result<Vec<f64>, String> {
     let spaced: Vec<&str> =
         text.split([' ', '\t', ';']).map(|part| part.trim_matches(',')).filter(|p| !p.is_empty()).collect();

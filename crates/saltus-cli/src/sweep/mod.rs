@@ -23,7 +23,8 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let (name, toml) = read(&args.scene)?;
     let vary = args.vary.vary();
     let end = ending(args.until, args.most_jumps);
-    // What is wrong with the first run is wrong with the sweep, and is said before anything is written.
+    // What is wrong with the first run is wrong with the sweep, and is said before anything is
+    // written.
     let sweep = Sweep::new(&name, &toml, &vary, end, format, args.columns.as_deref()).map_err(Error::new)?;
     if let Some(note) = note(sweep.first()) {
         say(quiet, &note);

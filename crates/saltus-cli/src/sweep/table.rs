@@ -1,4 +1,5 @@
-//! The file of a sweep: whole rows are appended to it, and a sweep that was broken off goes on behind the last.
+//! The file of a sweep: whole rows are appended to it, and a sweep that was broken off goes on
+//! behind the last.
 //!
 //! Beside `FILE` stands `FILE.sweep`, which says whose rows they are.
 
@@ -66,7 +67,8 @@ impl Table {
             }
             Some(_) => {
                 lock(&OpenOptions::new().write(true).open(path).map_err(fail)?, path)?;
-                // Before its description changes, so that rows of another sweep never stand under this one's.
+                // Before its description changes, so that rows of another sweep never stand under
+                // this one's.
                 fs::remove_file(path).map_err(fail)?;
             }
             None => {}
@@ -147,7 +149,8 @@ fn same(path: &Path, beside: &Path, whose: &Value) -> Result<(), Error> {
     Err(Error::new(format!("'{path}' belongs to another sweep: {how}; name another file, or start anew by --force")))
 }
 
-/// How many whole rows there are, a torn line behind them cut off; `None` if not even the header is whole.
+/// How many whole rows there are, a torn line behind them cut off; `None` if not even the header is
+/// whole.
 fn gone_on(file: &mut File, path: &Path, sweep: &Sweep<'_>) -> Result<Option<u64>, Error> {
     let fail = |error| Error::writing(path, &error);
     let header = sweep.header();

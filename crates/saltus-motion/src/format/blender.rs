@@ -1,4 +1,5 @@
-//! A Python script for Blender: the ball, the floor, and curves whose handles make every flight an exact parabola.
+//! A Python script for Blender: the ball, the floor, and curves whose handles make every flight an
+//! exact parabola.
 
 use serde_json::{Value, json};
 

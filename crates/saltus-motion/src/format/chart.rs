@@ -1,7 +1,7 @@
 //! The animator's timing chart: where the ball is in every frame, as a picture that stands still.
 //!
-//! A ball that travels is shown on its path, to scale. One that only goes up and down would draw over itself, so each way up and each way down is a line of its
-//! own, from left to right.
+//! A ball that travels is shown on its path, to scale. One that only goes up and down would draw
+//! over itself, so each way up and each way down is a line of its own, from left to right.
 
 use std::fmt::Write;
 
@@ -147,7 +147,8 @@ fn ways(track: &Track) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Frames, contacts and tops from when to when; an instant that is one of the latter on a frame is no frame besides.
+/// Frames, contacts and tops from when to when; an instant that is one of the latter on a frame is
+/// no frame besides.
 fn events(export: &Export<'_>, track: &Track, [from, to]: [f64; 2]) -> Vec<(f64, Event)> {
     let (step, grace) = (export.frames.step(), 1e-6 * export.frames.step());
     let inside = |t: f64| t >= from - grace && t <= to + grace;
@@ -171,7 +172,8 @@ fn events(export: &Export<'_>, track: &Track, [from, to]: [f64; 2]) -> Vec<(f64,
     events
 }
 
-/// Marks with as many of their numbers as there is room for, contacts and tops first; and how many are without.
+/// Marks with as many of their numbers as there is room for, contacts and tops first; and how many
+/// are without.
 fn numbered(export: &Export<'_>, mut marks: Vec<Mark>, columns: bool) -> (String, usize) {
     marks.sort_by(|a, b| a.event.cmp(&b.event).then(a.t.total_cmp(&b.t)));
     let mut taken: Vec<[f64; 4]> = Vec::new();
@@ -195,7 +197,8 @@ fn numbered(export: &Export<'_>, mut marks: Vec<Mark>, columns: bool) -> (String
         let text = format!("{number:.1}");
         let text = text.trim_end_matches(".0");
         let wide = 0.58 * SIZE * text.len() as f64;
-        // To the right of the tick, or where the line itself goes that way, centred below it; on a path tops are named above it and contacts below.
+        // To the right of the tick, or where the line itself goes that way, centred below it; on a
+        // path tops are named above it and contacts below.
         let (left, top) = match event {
             Event::Contact if !columns => (x - 0.5 * wide, y + 9.0),
             Event::Top if !columns => (x - 0.5 * wide, y - 9.0 - SIZE),

@@ -27,7 +27,8 @@ pub(super) struct Channel {
     pub(super) eases: Vec<Ease>,
 }
 
-/// From the outermost inwards: along the path, from there to the centre, squash, spin. The innermost holds a disc about its origin.
+/// From the outermost inwards: along the path, from there to the centre, squash, spin. The
+/// innermost holds a disc about its origin.
 pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
     let shaped = ball.dress.as_ref().filter(|dress| dress.shaped());
     let of = |name, moves, curve: &Curve, axis, to: &dyn Fn(f64) -> f64| {
@@ -69,8 +70,9 @@ const SEEN: u32 = 4;
 
 /// What the plane shows of a ball whose axis leaves it: turn, length across and length along.
 ///
-/// A ball that is longer by c along the unit axis a and by b across it is seen as an ellipse, whose matrix is b² + (c² - b²) p pᵀ with p what the
-/// plane sees of a: as long as √(b² + (c² - b²) p²) along p, and b across it.
+/// A ball that is longer by c along the unit axis a and by b across it is seen as an ellipse, whose
+/// matrix is b² + (c² - b²) p pᵀ with p what the plane sees of a: as long as √(b² + (c² - b²) p²)
+/// along p, and b across it.
 fn seen(dress: &Dress, held: bool) -> [Channel; 3] {
     let mut keys: Vec<f64> =
         dress.aim.iter().map(|turn| turn.t).chain(dress.scale.keys.iter().map(|key| key.t)).collect();

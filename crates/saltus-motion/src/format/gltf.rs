@@ -127,7 +127,8 @@ fn sphere(radius: f64) -> Shape {
     shape
 }
 
-/// A strip below a line of the ground; `None` for one without length, or with more corners than indices reach.
+/// A strip below a line of the ground; `None` for one without length, or with more corners than
+/// indices reach.
 fn strip(line: &[[f64; 2]], depth: f64) -> Option<Shape> {
     let mut shape = Shape::default();
     let mut indices = Vec::new();
@@ -156,7 +157,8 @@ struct Channels<'a> {
     channels: Vec<Value>,
 }
 
-/// Times have to rise in single precision too: of two that do not, the place and the way in of the earlier, the way out of the later.
+/// Times have to rise in single precision too: of two that do not, the place and the way in of the
+/// earlier, the way out of the later.
 #[allow(clippy::cast_possible_truncation)] // single precision is what the format holds
 fn rising<K: Copy>(keys: &[K], t: impl Fn(&K) -> f64, join: impl Fn(&mut K, &K)) -> (Vec<K>, Vec<[f32; 1]>) {
     let mut keys = keys.to_vec();

@@ -1,4 +1,5 @@
-//! Lottie: x on a layer without a shape, heights on the ball that follows it, so that each has eases of its own; squash and spin likewise.
+//! Lottie: x on a layer without a shape, heights on the ball that follows it, so that each has
+//! eases of its own; squash and spin likewise.
 
 use serde_json::{Value, json};
 
@@ -94,7 +95,8 @@ const fn whole(side: f64) -> u32 {
     side as u32
 }
 
-/// JSON in which the type of an object stands before what it is of: rlottie reads a shape as it comes, and passes over one whose type it does not know yet.
+/// JSON in which the type of an object stands before what it is of: rlottie reads a shape as it
+/// comes, and passes over one whose type it does not know yet.
 fn written(value: &Value) -> String {
     let list = |parts: Vec<String>, [open, close]: [char; 2]| format!("{open}{}{close}", parts.join(","));
     match value {

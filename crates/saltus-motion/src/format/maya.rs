@@ -6,7 +6,8 @@ use super::{Ball, Export, ExportError, Node};
 use crate::curve::{APART, Between, Curve, Key};
 use crate::turn::Turn;
 
-/// What is not sure is in which unit Maya counts the slope of a tangent: the script tries, reads the curve back, and bakes frames if neither fits.
+/// What is not sure is in which unit Maya counts the slope of a tangent: the script tries, reads
+/// the curve back, and bakes frames if neither fits.
 const SCRIPT: &str = r#"
 import json
 import math
@@ -142,7 +143,8 @@ fn turned([x, y, up]: [f64; 3]) -> [f64; 3] {
 fn chained(export: &Export<'_>, node: &Node<'_>, ball: &Ball<'_>) -> Value {
     let frames = export.frames;
     let baked = ball.track.samples(frames, true);
-    // A frame on which a contact is, but for a share that programs take for the frame, shows the contact.
+    // A frame on which a contact is, but for a share that programs take for the frame, shows the
+    // contact.
     let near = |t: f64| ball.track.contacts().find(|contact| (contact - t).abs() < APART * frames.rate.frame());
     let own = |t: f64| near(t).unwrap_or(t);
     let moves = |curve: &Curve, row: fn([f64; 3]) -> [f64; 3]| {
@@ -196,7 +198,8 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, 
         let mut nodes: Vec<Value> = ball.nodes().iter().map(|node| chained(export, node, ball)).collect();
         let mut lift = 0.0;
         if ball.dress.is_none() {
-            // A ball that stays round and does not turn is one object that stands on its origin, so that height 0 is touch.
+            // A ball that stays round and does not turn is one object that stands on its origin, so
+            // that height 0 is touch.
             nodes.truncate(1);
             lift = ball.track.radius;
         }

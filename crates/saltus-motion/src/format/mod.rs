@@ -51,7 +51,8 @@ pub enum Format {
     Svg,
     /// SVG that stands still: a tick for every frame, contacts and tops marked.
     Chart,
-    /// A page that plays the motion, frame by frame too, with its keys and contacts; it needs no network.
+    /// A page that plays the motion, frame by frame too, with its keys and contacts; it needs no
+    /// network.
     Html,
     /// glTF 2.0 as text, with its buffer in it; otherwise as [`Format::Glb`].
     Gltf,
@@ -165,7 +166,8 @@ pub struct File {
     pub keys: usize,
     /// How far it is from the motion: from frame to frame too.
     pub miss: Miss,
-    /// How the ball's form departs from a round one, and how many keys its turning needs; `None` for a round ball that does not turn.
+    /// How the ball's form departs from a round one, and how many keys its turning needs; `None`
+    /// for a round ball that does not turn.
     pub shown: Option<Shown>,
 }
 
@@ -176,11 +178,13 @@ pub struct Export<'a> {
     pub motion: &'a Motion,
     /// How frames are counted.
     pub frames: Frames,
-    /// How far keys may be from a flight in which more than gravity acts, in m; other flights are exact.
+    /// How far keys may be from a flight in which more than gravity acts, in m; other flights are
+    /// exact.
     pub tolerance: f64,
     /// Squash and stretch; [`Shape::default`] is a ball that stays round.
     pub shape: Shape,
-    /// Whether there is a key at the top of every flight, for those who change the motion by hand; the motion is the same.
+    /// Whether there is a key at the top of every flight, for those who change the motion by hand;
+    /// the motion is the same.
     pub apexes: bool,
 }
 
@@ -191,7 +195,8 @@ struct Ball<'a> {
     dress: Option<Dress>,
 }
 
-/// One of the nested nodes that a ball is in programs that know three dimensions: moved last, turned before, made longer first.
+/// One of the nested nodes that a ball is in programs that know three dimensions: moved last,
+/// turned before, made longer first.
 struct Node<'a> {
     name: String,
     /// Where it is within the node around it, if it stays there.
@@ -202,7 +207,8 @@ struct Node<'a> {
 }
 
 impl Ball<'_> {
-    /// From the outermost to that of the ball itself, whose middle is its origin: the path, squash and stretch if there is any, spin.
+    /// From the outermost to that of the ball itself, whose middle is its origin: the path, squash
+    /// and stretch if there is any, spin.
     fn nodes(&self) -> Vec<Node<'_>> {
         let name = &self.track.name;
         let node = |name: String| Node { name, still: [0.0; 3], place: None, turns: &[], scale: None };
@@ -231,7 +237,8 @@ impl Export<'_> {
     /// The motion as a file.
     ///
     /// # Errors
-    /// [`ExportError`] if the motion has more than a million frames, or the format cannot hold its frame rate.
+    /// [`ExportError`] if the motion has more than a million frames, or the format cannot hold its
+    /// frame rate.
     pub fn file(&self, format: Format) -> Result<File, ExportError> {
         let (end, frame) = (self.motion.end(), self.frames.rate.frame());
         if end / frame > MOST_FRAMES {

@@ -10,7 +10,8 @@ use super::view::View;
 use super::{Ball, Export, ExportError};
 use crate::curve::Between;
 
-/// The page around the picture: `@TITLE@`, `@PICTURE@` and `@DATA@` are put in. Scripts and styles stand in it, and the page may load nothing.
+/// The page around the picture: `@TITLE@`, `@PICTURE@` and `@DATA@` are put in. Scripts and styles
+/// stand in it, and the page may load nothing.
 const PAGE: &str = include_str!("player.html");
 
 pub(super) fn page(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, ExportError> {
@@ -28,7 +29,8 @@ pub(super) fn page(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
         }
         let channels = channels(ball, &view);
         let r = view.radius(ball.track.radius);
-        // Each number moves a group of its own, from the outermost inwards, as the script finds them.
+        // Each number moves a group of its own, from the outermost inwards, as the script finds
+        // them.
         let _ = write!(body, "{}<circle class=\"ball\" r=\"{r}\"/>", "<g class=\"moves\">".repeat(channels.len()));
         if ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()) {
             let _ = write!(body, "<path class=\"mark\" stroke-width=\"{}\" d=\"M0 0V{}\"/>", 0.3 * r, -0.8 * r);

@@ -5,7 +5,8 @@ use std::fmt::Write;
 
 use super::{Export, ExportError};
 
-/// One row for each contact: ball, frame, time, place, the normal of what is touched, and the speed of approach along it.
+/// One row for each contact: ball, frame, time, place, the normal of what is touched, and the speed
+/// of approach along it.
 pub(super) fn contacts(export: &Export<'_>) -> String {
     let mut csv = String::from("ball,frame,time_s,x_m,y_m,height_m,normal_x,normal_y,normal_up,speed_m_per_s\n");
     for hit in hits(export) {
@@ -48,7 +49,8 @@ const RATE: u32 = 48_000;
 /// A tick dies out by this time constant in s, and is over after so many of them.
 const DIES: f64 = 0.004;
 const OVER: f64 = 10.0;
-/// The pitch of the first ball in Hz; each further ball is a fourth (4/3) higher, five of them at most.
+/// The pitch of the first ball in Hz; each further ball is a fourth (4/3) higher, five of them at
+/// most.
 const PITCH: f64 = 1500.0;
 const FOURTH: f64 = 4.0 / 3.0;
 /// The loudest tick, of full scale.
@@ -56,7 +58,8 @@ const LOUDEST: f64 = 0.8;
 /// The longest sound in s; a file of it has 350 MB.
 const LONGEST: f64 = 3600.0;
 
-/// A tick at the first sample not before each contact, as loud as the contact is fast: mono, 16 bits, 48 kHz. Sample 0 is the first frame.
+/// A tick at the first sample not before each contact, as loud as the contact is fast: mono, 16
+/// bits, 48 kHz. Sample 0 is the first frame.
 pub(super) fn wav(export: &Export<'_>) -> Result<Vec<u8>, ExportError> {
     let end = export.motion.end() + DIES * OVER;
     if end > LONGEST {
@@ -73,7 +76,8 @@ pub(super) fn wav(export: &Export<'_>) -> Result<Vec<u8>, ExportError> {
         for (n, out) in sound[sample(hit.t)..].iter_mut().take(sample(DIES * OVER)).enumerate() {
             #[allow(clippy::cast_precision_loss)] // some thousands
             let s = n as f64 / f64::from(RATE);
-            // A cosine: the first sample is the loudest, so that the start of a tick is where it is.
+            // A cosine: the first sample is the loudest, so that the start of a tick is where it
+            // is.
             *out += loud * (-s / DIES).exp() * (TAU * pitch * s).cos();
         }
     }
@@ -85,7 +89,8 @@ pub(super) fn wav(export: &Export<'_>) -> Result<Vec<u8>, ExportError> {
     file.extend(b"RIFF");
     file.extend((36 + size).to_le_bytes());
     file.extend(b"WAVEfmt ");
-    // 16 bytes follow: plain samples, one channel, the rate, bytes a second, bytes and bits a sample.
+    // 16 bytes follow: plain samples, one channel, the rate, bytes a second, bytes and bits a
+    // sample.
     file.extend(16_u32.to_le_bytes());
     file.extend([1_u16, 1].map(u16::to_le_bytes).concat());
     file.extend([RATE, 2 * RATE].map(u32::to_le_bytes).concat());

@@ -10,10 +10,12 @@ use crate::curve::Between;
 /// For how long the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
 
-/// Stands for what tells pictures in one page apart until it is known; no text that is shown has a control character.
+/// Stands for what tells pictures in one page apart until it is known; no text that is shown has a
+/// control character.
 const MARK: &str = "\u{1}";
 
-/// The picture, all of whose names begin with a number made of its content: several may stand in one page, and none moves another.
+/// The picture, all of whose names begin with a number made of its content: several may stand in
+/// one page, and none moves another.
 pub(super) fn animated(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let picture = marked(export, balls);
     // Fowler, Noll and Vo's hash, 1a.

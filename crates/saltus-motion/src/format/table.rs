@@ -17,7 +17,8 @@ pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
-/// One row for each key. Where the form or the orientation has keys between those of the path, the path has rows there too; it is the same path.
+/// One row for each key. Where the form or the orientation has keys between those of the path, the
+/// path has rows there too; it is the same path.
 pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let mut csv = String::from(
         "ball,frame,time_s,x_m,y_m,height_m,in_x_m_per_s,in_y_m_per_s,in_up_m_per_s,out_x_m_per_s,out_y_m_per_s,out_up_m_per_s,contact",

@@ -16,7 +16,8 @@ pub(super) fn samples(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     })
 }
 
-/// Rows of time samples. They are joined by lines: a drawing that stands has one at both of its frames.
+/// Rows of time samples. They are joined by lines: a drawing that stands has one at both of its
+/// frames.
 fn timed<const N: usize>(
     usd: &mut String,
     export: &Export<'_>,
@@ -77,7 +78,8 @@ fn turned([x, y, up]: Point) -> Point {
     [x, up, 0.0 - y]
 }
 
-/// One operation that moves: written to the text under its name, the names of the attributes returned.
+/// One operation that moves: written to the text under its name, the names of the attributes
+/// returned.
 type Move<'a> = &'a dyn Fn(&mut String, &str, &Curve, fn(Point) -> Point) -> Vec<String>;
 
 /// The operations of a node.

@@ -31,7 +31,8 @@ pub(super) fn few(traced: &Traced) -> bool {
     times.len() <= MOST_UPRIGHT
 }
 
-/// The upright lines of jumps, none if there are too many of them, and those of limits at which jumps accumulate.
+/// The upright lines of jumps, none if there are too many of them, and those of limits at which
+/// jumps accumulate.
 pub(super) fn upright(traced: &Traced, x: Affine, (top, bottom): (f64, f64)) -> (String, String) {
     let line = |px: f64| format!("M{} {}V{}", number(px, 2), number(top, 2), number(bottom, 2));
     let lines = |limit: bool| -> String {

@@ -20,13 +20,14 @@ const MOST_PANELS: usize = 12;
 
 /// A picture of a run: its coordinates against time, in panels that share the axis of time.
 ///
-/// Each coordinate has a panel; those of one list or vector (`arm[0]`, `arm[1]`, …) share one. Curves are the run's own
-/// polynomials, within a third of a px of it, however short a peak is. At a jump a curve breaks: a ring is the limit
-/// before, a dot the one after, where there is room for them. An upright line marks each jump, a dashed one a limit at which
-/// jumps accumulate. Of a run with several modes a lane at the foot shows which is when.
+/// Each coordinate has a panel; those of one list or vector (`arm[0]`, `arm[1]`, …) share one.
+/// Curves are the run's own polynomials, within a third of a px of it, however short a peak is. At
+/// a jump a curve breaks: a ring is the limit before, a dot the one after, where there is room for
+/// them. An upright line marks each jump, a dashed one a limit at which jumps accumulate. Of a run
+/// with several modes a lane at the foot shows which is when.
 ///
-/// Names and units are those of the state ([`State::name`], [`State::unit`]); units of the SI get prefixes where numbers
-/// would be long. The same input gives the same bytes.
+/// Names and units are those of the state ([`State::name`], [`State::unit`]); units of the SI get
+/// prefixes where numbers would be long. The same input gives the same bytes.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation, State};
@@ -51,8 +52,9 @@ const MOST_PANELS: usize = 12;
 /// ```
 ///
 /// # Limits
-/// A run that never ends is drawn until a little after its last jump. Modes that carry numbers are one mode; of more than
-/// twelve modes the lane is left out. Of more than eight coordinates in one panel none has a name of its own.
+/// A run that never ends is drawn until a little after its last jump. Modes that carry numbers are
+/// one mode; of more than twelve modes the lane is left out. Of more than eight coordinates in one
+/// panel none has a name of its own.
 pub struct Panels<'a, M, E, S> {
     trajectory: &'a Trajectory<M, E, S>,
     title: String,
@@ -105,7 +107,8 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
         self
     }
 
-    /// Names the coordinates in order, units in brackets at the end, as tables do; those left over keep the names of the state.
+    /// Names the coordinates in order, units in brackets at the end, as tables do; those left over
+    /// keep the names of the state.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -121,7 +124,8 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
         self
     }
 
-    /// Adds a panel with these coordinates, by name or place; what is in no panel is then not drawn.
+    /// Adds a panel with these coordinates, by name or place; what is in no panel is then not
+    /// drawn.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -161,8 +165,8 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
     /// The picture as an SVG document.
     ///
     /// # Errors
-    /// [`PlotError::Coordinate`] for one that there is not, [`PlotError::Missing`] where there is no time to draw,
-    /// [`PlotError::NotFinite`] naming the number at fault.
+    /// [`PlotError::Coordinate`] for one that there is not, [`PlotError::Missing`] where there is
+    /// no time to draw, [`PlotError::NotFinite`] naming the number at fault.
     pub fn svg(&self) -> Result<String, PlotError> {
         let labels = labels(self.trajectory, &self.named);
         let groups = if self.groups.is_empty() {

@@ -28,7 +28,8 @@ pub(super) fn picture(record: &Record) -> HeightTime {
     picture.contacts(contacts).background(Background::Adaptive)
 }
 
-/// How a floor that moves goes, in pieces of an eighth of its period or from point to point of its schedule.
+/// How a floor that moves goes, in pieces of an eighth of its period or from point to point of its
+/// schedule.
 fn moving(floor: &Floor, until: f64) -> Option<Vec<Arc>> {
     /// More pieces than can be told apart.
     const MOST: f64 = 4000.0;

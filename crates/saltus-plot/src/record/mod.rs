@@ -21,7 +21,8 @@ use saltus_scene::{Kind, Scene};
 /// The picture of a run as SVG.
 ///
 /// # Errors
-/// [`PlotError::Missing`] where the run has nothing that the kind shows, or another where it cannot be drawn.
+/// [`PlotError::Missing`] where the run has nothing that the kind shows, or another where it cannot
+/// be drawn.
 pub fn svg(record: &Record, kind: Kind) -> Result<String, PlotError> {
     let chart = match kind {
         Kind::Height => return height::picture(record).svg(),

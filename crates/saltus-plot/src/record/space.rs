@@ -64,7 +64,8 @@ fn arc(segment: &Segment, across: Vec<f64>, radius: f64) -> Stroke {
     Stroke::new(segment.span, across, up)
 }
 
-/// The balls at equal times and the arcs of their centres, to scale: the first and the last full, those between pale. One that only moves up and down is drawn frame beside frame.
+/// The balls at equal times and the arcs of their centres, to scale: the first and the last full,
+/// those between pale. One that only moves up and down is drawn frame beside frame.
 pub(super) fn ghost(record: &Record) -> Chart {
     let scene = record.scene();
     let reach = reach(record, &[0]);

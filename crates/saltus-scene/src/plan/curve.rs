@@ -1,4 +1,5 @@
-//! Curved ground as a ball of some radius meets it: the curve that its centre follows is parallel to the ground.
+//! Curved ground as a ball of some radius meets it: the curve that its centre follows is parallel
+//! to the ground.
 
 use nalgebra::{SVector, Vector2};
 
@@ -8,8 +9,9 @@ use saltus_bounce::walls::{Face, Walls};
 
 /// Ground y = f(x) and the radius of the ball on it.
 ///
-/// The centre over the foot u of its perpendicular is at x = u - R f'(u)/w, y = f(u) + R/w with w = √(1 + f'²): parallel curves share their
-/// tangents, so dy/dx = f'(u) and d²y/dx² = f''(u)/(1 - R f''/w³). In a hollow narrower than the ball there is no such curve, and it is refused.
+/// The centre over the foot u of its perpendicular is at x = u - R f'(u)/w, y = f(u) + R/w with w =
+/// √(1 + f'²): parallel curves share their tangents, so dy/dx = f'(u) and d²y/dx² = f''(u)/(1 - R
+/// f''/w³). In a hollow narrower than the ball there is no such curve, and it is refused.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     shape: Shape,
@@ -33,7 +35,8 @@ impl Curve {
         self.shape.curve(x).unwrap_or_default()
     }
 
-    /// The foot of the perpendicular from a centre over x: the root of a rising function, by Newton within a bracket.
+    /// The foot of the perpendicular from a centre over x: the root of a rising function, by Newton
+    /// within a bracket.
     fn foot(&self, x: f64) -> f64 {
         let r = self.radius;
         if r == 0.0 {

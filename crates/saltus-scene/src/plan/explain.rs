@@ -1,4 +1,5 @@
-//! What a plan says of itself: effects in and out, coordinates, how each mode is advanced and why, edges.
+//! What a plan says of itself: effects in and out, coordinates, how each mode is advanced and why,
+//! edges.
 
 use std::fmt;
 
@@ -97,10 +98,12 @@ impl Scene {
         }
     }
 
-    /// The scene with `effect` left out if it is in, or in with the numbers of a textbook if it is out.
+    /// The scene with `effect` left out if it is in, or in with the numbers of a textbook if it is
+    /// out.
     ///
     /// # Errors
-    /// Why that makes no scene: without gravity nothing comes down, a point without mass has no drag, and restitution does not come of nothing.
+    /// Why that makes no scene: without gravity nothing comes down, a point without mass has no
+    /// drag, and restitution does not come of nothing.
     pub fn toggled(&self, effect: Effect) -> Result<Self, &'static str> {
         let named = self.names(effect);
         if let Some(why) = self.untoggled(effect, named) {

@@ -17,7 +17,8 @@ use saltus_bounce::restitution::Restitution;
 use saltus_bounce::walls::{Face, Walls};
 use saltus_bounce::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
 
-/// How deep in a wall a ball may start for the rounding of its place, for each metre from the origin.
+/// How deep in a wall a ball may start for the rounding of its place, for each metre from the
+/// origin.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether the scene's ball needs a spin.
@@ -35,7 +36,8 @@ pub(super) fn uniform(scene: &Scene) -> bool {
 pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let ball = &scene.balls[0];
     let spin = ball.spin.unwrap_or_default();
-    // One model for each kind of state: which of the effects are named is asked as it runs, and where none is but gravity, flights are exact.
+    // One model for each kind of state: which of the effects are named is asked as it runs, and
+    // where none is but gravity, flights are exact.
     match (scene.dimensions, spins(scene)) {
         (1, _) => smooth::<1, _>(scene, rigid(scene, ball, air(scene)?)?),
         (2, false) => smooth::<2, _>(scene, rigid(scene, ball, air(scene)?)?),
@@ -123,7 +125,8 @@ where
     Ok(BoundModel::boxed(flyer, view, stance, start))
 }
 
-/// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and radius, whatever its mass.
+/// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and
+/// radius, whatever its mass.
 pub(super) fn gripped<const N: usize>(scene: &Scene, ball: usize) -> Result<(Surroundings<N>, Laws, Grips), PlanError> {
     let (walls, laws, frictions) = faces::<N>(scene, ball)?;
     let ball = &scene.balls[ball];
@@ -154,7 +157,8 @@ fn faces<const N: usize>(scene: &Scene, ball: usize) -> Result<(Surroundings<N>,
     Ok((walls, Laws { each }, frictions))
 }
 
-/// The cell in which a ball starts at `p`, if it is clear of all walls: a curve may be met by the side of a ball whose lowest point is above it.
+/// The cell in which a ball starts at `p`, if it is clear of all walls: a curve may be met by the
+/// side of a ball whose lowest point is above it.
 pub(super) fn clear<const N: usize>(walls: &Surroundings<N>, p: &SVector<f64, N>) -> Result<usize, PlanError> {
     let cell = walls.cell(p);
     for face in walls.all(cell) {

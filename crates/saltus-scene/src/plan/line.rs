@@ -14,7 +14,8 @@ use saltus_bounce::line::{Contact, Lying, Row};
 /// How far rounding may leave touching balls apart, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
 
-/// The line that all balls stay on, if they do: upwards in a vertical scene; any other only without weight and without anything to hit.
+/// The line that all balls stay on, if they do: upwards in a vertical scene; any other only without
+/// weight and without anything to hit.
 pub(super) fn direction(scene: &Scene) -> Option<Vector3<f64>> {
     if scene.dimensions == 1 {
         return Some(Vector3::z());

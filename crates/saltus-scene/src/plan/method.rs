@@ -1,4 +1,5 @@
-//! The steppers of the engine as one, chosen as a plan is made: so that each model is compiled once.
+//! The steppers of the engine as one, chosen as a plan is made: so that each model is compiled
+//! once.
 
 use saltus::step::{Either, Stepper as Step, Trial};
 use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
@@ -37,7 +38,8 @@ impl From<Method> for Chosen {
     }
 }
 
-/// For models that a formula solves in every mode: it is never asked for a step, and would have none.
+/// For models that a formula solves in every mode: it is never asked for a step, and would have
+/// none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoStepper;
 

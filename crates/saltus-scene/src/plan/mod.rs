@@ -1,7 +1,7 @@
 //! From a scene to something that runs: the cheapest model that leaves nothing of the scene out.
 //!
-//! [`Scene::plan`] chooses it, [`Plan::explain`] says what was chosen and why, [`Plan::run`] runs it, and whatever the model, a [`Record`] answers for
-//! the run.
+//! [`Scene::plan`] chooses it, [`Plan::explain`] says what was chosen and why, [`Plan::run`] runs
+//! it, and whatever the model, a [`Record`] answers for the run.
 
 mod ball;
 mod cloud;
@@ -54,7 +54,8 @@ pub enum Model {
     Compliant,
     /// [`Line`](saltus_bounce::Line): several balls on a line.
     Line,
-    /// [`Cloud`](saltus_bounce::Cloud): several smooth balls in the plane or in space, of which none comes to rest.
+    /// [`Cloud`](saltus_bounce::Cloud): several smooth balls in the plane or in space, of which
+    /// none comes to rest.
     Cloud,
     /// [`Flock`](saltus_bounce::Flock): several balls among floors and walls.
     Flock,
@@ -178,7 +179,8 @@ impl Plan {
         Ok(Record { run, scene: Arc::clone(&self.scene), model: self.explanation.model, until, end, rest })
     }
 
-    /// Runs from the scene's start, and keeps what came of it only: many times faster than [`run`](Self::run) where a formula solves the motion.
+    /// Runs from the scene's start, and keeps what came of it only: many times faster than
+    /// [`run`](Self::run) where a formula solves the motion.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -192,16 +194,18 @@ impl Plan {
 }
 
 impl Scene {
-    /// The cheapest faithful way to run the scene: an exact arc, else a closed form, else an explicit stepper, else a stiff one.
+    /// The cheapest faithful way to run the scene: an exact arc, else a closed form, else an
+    /// explicit stepper, else a stiff one.
     ///
     /// # Errors
-    /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do instead; of a scene that was read, with line
-    /// and column.
+    /// [`PlanError`] where the scene asks for what no model here has, with its place and what to do
+    /// instead; of a scene that was read, with line and column.
     pub fn plan(&self) -> Result<Plan, PlanError> {
         choose(self).map(|chosen| self.planned(chosen)).map_err(|error| error.found(&self.source))
     }
 
-    /// The same scene by a model that steppers can step through, also where the planned one is solved by formulas; `None` if there is none.
+    /// The same scene by a model that steppers can step through, also where the planned one is
+    /// solved by formulas; `None` if there is none.
     pub(super) fn steppable(&self) -> Option<Plan> {
         let plan = self.plan().ok()?;
         match plan.explanation.model {
@@ -250,7 +254,8 @@ fn choose(scene: &Scene) -> Result<Chosen, PlanError> {
     Ok((Model::Flyer, flyer::runner(scene)?, None))
 }
 
-/// The level floor under the balls of a vertical scene: which, and how high; `None` if there is none or it moves.
+/// The level floor under the balls of a vertical scene: which, and how high; `None` if there is
+/// none or it moves.
 fn ground(scene: &Scene) -> Option<(usize, f64)> {
     let level = |(owner, floor): (usize, &Floor)| match floor.shape {
         Shape::Level { height } if floor.motion.is_none() => Some((owner, height)),
@@ -425,7 +430,8 @@ impl PlanError {
         self
     }
 
-    /// What is wrong, with line and column, where the scene was read from a text that names the place.
+    /// What is wrong, with line and column, where the scene was read from a text that names the
+    /// place.
     #[must_use]
     pub fn in_text(&self) -> Option<&SceneError> {
         self.found.as_deref()

@@ -60,7 +60,8 @@ impl Outcome {
     }
 }
 
-/// Counts impacts as they come, and looks at the motion only from the first one to the apex after it.
+/// Counts impacts as they come, and looks at the motion only from the first one to the apex after
+/// it.
 pub(super) struct OutcomeObserver<'a, A: Automaton, R> {
     automaton: &'a A,
     view: &'a R,

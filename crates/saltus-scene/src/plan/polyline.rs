@@ -1,4 +1,5 @@
-//! Ground that goes straight from point to point, as the lowest point of a ball of some radius meets it.
+//! Ground that goes straight from point to point, as the lowest point of a ball of some radius
+//! meets it.
 
 use nalgebra::{SVector, Vector2};
 use saltus_bounce::walls::{Face, Plane, Round, Walls};
@@ -8,7 +9,8 @@ use crate::error::short;
 /// What the lowest point of the ball meets over one stretch of x.
 #[derive(Clone, Debug)]
 enum Piece {
-    /// Straight sides with inward corners between them, each a radius away from the centre: what is above all of them is above the ground.
+    /// Straight sides with inward corners between them, each a radius away from the centre: what is
+    /// above all of them is above the ground.
     Sides(Vec<Plane<2>>),
     /// An outward corner, which the ball rolls around.
     Corner(Round<2>),
@@ -16,10 +18,12 @@ enum Piece {
 
 /// A polyline, and the radius of the ball on it.
 ///
-/// The centre keeps a radius R away from the ground: over a side with the unit normal n it is on the side moved by R n, over an outward corner on
-/// a circle about it, from R n of one side to R n' of the next; what the lowest point meets is a radius below. Outward corners cut space along x
-/// into cells, between which everything passes. Within a cell the ground is hollow, and its sides are walls that all hold: a ball that slides into
-/// an inward corner meets the next side there, and may come to rest between two.
+/// The centre keeps a radius R away from the ground: over a side with the unit normal n it is on
+/// the side moved by R n, over an outward corner on a circle about it, from R n of one side to R n'
+/// of the next; what the lowest point meets is a radius below. Outward corners cut space along x
+/// into cells, between which everything passes. Within a cell the ground is hollow, and its sides
+/// are walls that all hold: a ball that slides into an inward corner meets the next side there, and
+/// may come to rest between two.
 #[derive(Clone, Debug)]
 pub(super) struct Polyline {
     /// Where a cell ends and the next begins, rising.
@@ -42,7 +46,8 @@ impl Polyline {
             Plane::through(points[k] + normals[k] * radius - up, normals[k]).map_err(|error| error.to_string())
         };
         let (mut edges, mut pieces, mut sides) = (Vec::new(), Vec::new(), vec![side(0)?]);
-        // Where the last corner is met, which has to be before the next: else the ball is too large for what lies between.
+        // Where the last corner is met, which has to be before the next: else the ball is too large
+        // for what lies between.
         let mut last = f64::NEG_INFINITY;
         for k in 1..normals.len() {
             let (corner, n, next) = (points[k], normals[k - 1], normals[k]);
@@ -89,7 +94,8 @@ impl Polyline {
         }
     }
 
-    /// The end of a cell that a face is: the left one is behind the ground, and the right one behind that.
+    /// The end of a cell that a face is: the left one is behind the ground, and the right one
+    /// behind that.
     fn end(&self, Face { cell, index }: Face) -> Option<bool> {
         index.checked_sub(self.grounds(cell)).map(|end| end > 0)
     }

@@ -1,4 +1,5 @@
-//! What a run of any scene leaves behind, in one form: where each ball is at any time, what happened, how it ended.
+//! What a run of any scene leaves behind, in one form: where each ball is at any time, what
+//! happened, how it ended.
 
 use std::fmt;
 use std::ops::{Add, Mul};
@@ -54,7 +55,8 @@ impl Mul<f64> for Moment {
     }
 }
 
-/// A stretch of time in which the motion of a ball is one polynomial: a flight that is solved exactly, or a step.
+/// A stretch of time in which the motion of a ball is one polynomial: a flight that is solved
+/// exactly, or a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     /// When it starts, in s.
@@ -112,7 +114,8 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// The effective coefficient of restitution: speed after over speed before; `None` where either is not known.
+    /// The effective coefficient of restitution: speed after over speed before; `None` where either
+    /// is not known.
     #[must_use]
     pub fn cor(&self) -> Option<f64> {
         self.rebound.filter(|_| self.approach > 0.0).map(|rebound| rebound / self.approach)
@@ -286,7 +289,8 @@ pub(super) trait RecordedRun: Send + Sync {
     fn doubts(&self) -> Vec<String>;
 }
 
-/// A recorded run of a scene. It may be sent between threads and shared; serialised it is the JSON of docs/simulating.md.
+/// A recorded run of a scene. It may be sent between threads and shared; serialised it is the JSON
+/// of docs/simulating.md.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -405,8 +409,8 @@ impl Record {
         self.segments(ball).iter().filter_map(|segment| tops.next(segment)).collect()
     }
 
-    /// The force in N over the deformation in m through one contact that takes time, counted from 0, `count` points for each of its stages; empty
-    /// where there is none.
+    /// The force in N over the deformation in m through one contact that takes time, counted from
+    /// 0, `count` points for each of its stages; empty where there is none.
     #[must_use]
     pub fn hysteresis(&self, contact: usize, count: usize) -> Vec<[f64; 2]> {
         self.run.hysteresis(contact, count)

@@ -46,7 +46,8 @@ fn shown(last: f64) -> f64 {
 }
 
 impl RunOptions {
-    /// Until when a run that reached `until` is shown: what lies still or rolls on beyond the `last` jump needs no end, and a little of it is shown.
+    /// Until when a run that reached `until` is shown: what lies still or rolls on beyond the
+    /// `last` jump needs no end, and a little of it is shown.
     fn shown(&self, end: End, until: f64, last: f64, rest: Option<f64>) -> Result<f64, RunError> {
         if self.until.is_some() {
             Ok(until)
@@ -86,7 +87,8 @@ pub(super) struct Collision {
 
 /// How the states, modes and jumps of a model are seen in the scene.
 pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
-    /// The stepper to compile the model for: the whole choice, or, where a formula solves every mode, one that is never asked.
+    /// The stepper to compile the model for: the whole choice, or, where a formula solves every
+    /// mode, one that is never asked.
     type Stepper: Stepper + From<Method>;
     fn balls(&self) -> usize {
         1
@@ -184,7 +186,8 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
         if options.stepped { simulation.stepped() } else { simulation }
     }
 
-    /// Runs from the start until `until`. Whoever observes, the engine is compiled once for a model.
+    /// Runs from the start until `until`. Whoever observes, the engine is compiled once for a
+    /// model.
     fn drive(
         &self,
         simulation: &Simulation<'_, A, R::Stepper>,

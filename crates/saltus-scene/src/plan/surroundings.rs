@@ -1,4 +1,5 @@
-//! The floors, walls and boxes of a scene as the walls of one ball, whose position is that of its lowest point.
+//! The floors, walls and boxes of a scene as the walls of one ball, whose position is that of its
+//! lowest point.
 
 use nalgebra::{SVector, Vector2};
 
@@ -72,7 +73,8 @@ impl Walls<2> for Cells {
     }
 }
 
-/// All that bounds where a ball is: walls of one face each, and at most one ground that cuts space into cells.
+/// All that bounds where a ball is: walls of one face each, and at most one ground that cuts space
+/// into cells.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings<const N: usize> {
     walls: Vec<Wall<N>>,
@@ -318,7 +320,8 @@ impl<const N: usize> Walls<N> for Surroundings<N> {
     }
 }
 
-/// A level floor that moves at a constant velocity from each point of a schedule to the next, and stands before and after them.
+/// A level floor that moves at a constant velocity from each point of a schedule to the next, and
+/// stands before and after them.
 #[derive(Clone, Debug)]
 struct Schedule {
     /// One stretch of constant velocity each.

@@ -129,8 +129,8 @@ impl Serialize for Record {
 }
 
 impl Record {
-    /// The jumps, the impacts and, if asked for, samples as JSON; the contract is written down in docs/simulating.md. Without samples it is what
-    /// serialising the record gives.
+    /// The jumps, the impacts and, if asked for, samples as JSON; the contract is written down in
+    /// docs/simulating.md. Without samples it is what serialising the record gives.
     ///
     /// # Errors
     /// [`Error`] for more than ten million samples.

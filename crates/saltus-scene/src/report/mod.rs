@@ -39,7 +39,8 @@ impl Sampling {
     }
 }
 
-/// A ball at a moment. What a scene has no coordinates for is left out; vectors are [x, up] or [x, y, up].
+/// A ball at a moment. What a scene has no coordinates for is left out; vectors are [x, up] or [x,
+/// y, up].
 #[derive(Serialize)]
 struct Side {
     #[serde(skip_serializing_if = "Option::is_none")]

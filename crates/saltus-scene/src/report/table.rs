@@ -11,7 +11,8 @@ use crate::plan::{Moment, Record};
 /// [`Record::table`] makes it; [`Table::csv`] writes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The names, with units: `time_s`, `jumps`, `ball` where there are several, `mode`, places, velocities and spins.
+    /// The names, with units: `time_s`, `jumps`, `ball` where there are several, `mode`, places,
+    /// velocities and spins.
     pub headers: Vec<&'static str>,
     /// One for each name, all of one length.
     pub columns: Vec<Values>,
@@ -40,7 +41,8 @@ impl Table {
         }
     }
 
-    /// With commas between, the names first. Numbers are written so that they read back as the same numbers.
+    /// With commas between, the names first. Numbers are written so that they read back as the same
+    /// numbers.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut csv = self.headers.join(",") + "\n";
@@ -60,7 +62,8 @@ impl Table {
 }
 
 impl Record {
-    /// The start, both sides of every jump, the samples if asked for and the end, in order of (t, j).
+    /// The start, both sides of every jump, the samples if asked for and the end, in order of (t,
+    /// j).
     ///
     /// # Errors
     /// [`Error`] for more than ten million samples.

@@ -1,4 +1,5 @@
-//! The scene that does what is wished for: numbers of a scene file are found with which wishes come true.
+//! The scene that does what is wished for: numbers of a scene file are found with which wishes come
+//! true.
 
 mod freedom;
 mod search;
@@ -35,8 +36,9 @@ pub struct Solved {
 
 /// Finds the numbers of a scene with which `wishes` come true.
 ///
-/// `begin` is the name and the text of the scene to begin with: without one the ball falls from 1 m by the Earth's gravity and keeps 0.7 of its
-/// speed at each contact. `free` are the numbers that may change: `height`, `throw`, `forward`, `gravity`, `cor`, or a key of the scene such as
+/// `begin` is the name and the text of the scene to begin with: without one the ball falls from 1 m
+/// by the Earth's gravity and keeps 0.7 of its speed at each contact. `free` are the numbers that
+/// may change: `height`, `throw`, `forward`, `gravity`, `cor`, or a key of the scene such as
 /// `drag.per_length`.
 ///
 /// # Errors
@@ -92,7 +94,8 @@ impl Solved {
         &self.begun
     }
 
-    /// The scene file with the numbers that were found, and with an end where the motion has none of its own.
+    /// The scene file with the numbers that were found, and with an end where the motion has none
+    /// of its own.
     ///
     /// # Errors
     /// [`Error`] where a number cannot be written into the file.

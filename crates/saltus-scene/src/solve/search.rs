@@ -30,7 +30,8 @@ impl Found {
     }
 }
 
-/// What counts as met, in units of what a wish allows: a hundred-millionth of a centimetre or of half a frame.
+/// What counts as met, in units of what a wish allows: a hundred-millionth of a centimetre or of
+/// half a frame.
 const MET: f64 = 1e-8;
 const MOST_STEPS: usize = 60;
 
@@ -55,7 +56,8 @@ impl Problem<'_> {
         off.iter().all(|off| off.is_finite()).then_some(Found { numbers, off })
     }
 
-    /// The least squares near a start, by steps of Levenberg and Marquardt that stay between the limits.
+    /// The least squares near a start, by steps of Levenberg and Marquardt that stay between the
+    /// limits.
     fn near(&self, start: &[f64]) -> Option<Found> {
         let mut now = self.at(start.to_vec())?;
         let mut damping = 1e-3;
@@ -139,7 +141,8 @@ impl Problem<'_> {
     }
 }
 
-/// Starts around the numbers themselves: each with fractions and multiples of each number, the numbers themselves first.
+/// Starts around the numbers themselves: each with fractions and multiples of each number, the
+/// numbers themselves first.
 pub(super) fn starts(numbers: &[f64], limits: &[[f64; 2]], sizes: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
     for k in 0..numbers.len() {

@@ -58,7 +58,8 @@ pub struct Wish {
 const MOST: usize = 1000;
 
 impl Wish {
-    /// Reads a wish such as `touch 1 at frame 24`, `apex 2 at 60cm within 1cm`, `hop 1 for 12 frames` or `rest at 3s`.
+    /// Reads a wish such as `touch 1 at frame 24`, `apex 2 at 60cm within 1cm`,
+    /// `hop 1 for 12 frames` or `rest at 3s`.
     ///
     /// # Errors
     /// [`Error`] that says what a wish looks like.

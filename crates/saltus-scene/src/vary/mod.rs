@@ -10,7 +10,8 @@ use crate::{Error, SceneError};
 /// More runs than anyone waits for.
 const MOST_RUNS: u64 = 1_000_000_000_000;
 
-/// What varies, and how: every value with every other, the last variation fastest, or values drawn at random.
+/// What varies, and how: every value with every other, the last variation fastest, or values drawn
+/// at random.
 ///
 /// ```
 /// use saltus_scene::vary::Vary;
@@ -22,7 +23,8 @@ const MOST_RUNS: u64 = 1_000_000_000_000;
 pub struct Vary {
     /// A key and its values each.
     pub variations: Vec<Variation>,
-    /// So many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`, instead of all.
+    /// So many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`,
+    /// instead of all.
     pub random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
     pub seed: u64,
@@ -32,7 +34,8 @@ impl Vary {
     /// Every value with every other.
     ///
     /// # Errors
-    /// [`Error`] if a text is not of the form `KEY=FROM:TO:COUNT`, `KEY=FROM:TO:COUNT:log` or `KEY=A,B,C`.
+    /// [`Error`] if a text is not of the form `KEY=FROM:TO:COUNT`, `KEY=FROM:TO:COUNT:log` or
+    /// `KEY=A,B,C`.
     pub fn new(texts: &[&str]) -> Result<Self, Error> {
         let variations = texts.iter().map(|text| text.parse().map_err(Error::new)).collect::<Result<_, _>>()?;
         Ok(Self { variations, random: None, seed: 1 })

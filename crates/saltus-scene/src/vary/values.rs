@@ -46,7 +46,8 @@ impl Value {
         Self { toml, cell: number(value), word: false }
     }
 
-    /// Four digits and the unit, `1.5m` or `30mps`, or the word: short enough for the name of a file.
+    /// Four digits and the unit, `1.5m` or `30mps`, or the word: short enough for the name of a
+    /// file.
     #[must_use]
     pub fn short(&self) -> String {
         match number::split(self.bare()) {

@@ -17,7 +17,8 @@ use super::crossing::Close;
 use super::exact::natural;
 use super::{Advance, ArcEnd};
 
-/// How far a piece may be from the solution, relative to the largest coefficient of each coordinate.
+/// How far a piece may be from the solution, relative to the largest coefficient of each
+/// coordinate.
 const AS_GOOD_AS_EXACT: f64 = 1e-12;
 /// The longest first piece of an arc, in times in which its solution changes by its own size.
 const FIRST: f64 = 16.0;
@@ -72,8 +73,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(ArcEnd::after(first.map(|first| first.edge), told, close.time, close.state))
     }
 
-    /// Tells `observer`, if it wants to know, of the solution `at` from `x` in pieces of degree eight, as long as they are
-    /// as good as exact; and how far: no further than the run's limits allow, nor than the end of numbers.
+    /// Tells `observer`, if it wants to know, of the solution `at` from `x` in pieces of degree
+    /// eight, as long as they are as good as exact; and how far: no further than the run's limits
+    /// allow, nor than the end of numbers.
     fn interpolated(
         &mut self,
         mode: A::Mode,
@@ -115,13 +117,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
-/// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as the exact state `at` it.
+/// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as
+/// the exact state `at` it.
 fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
     [0.221_324_6, 0.635_914_1, 0.97].iter().all(|&u| {
         let (exact, fit) = (at(u), horner(c, u));
         (0..exact.len()).all(|i| {
             let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
-            // No nearer than the rounding of time allows, late in an arc that swings or in a run, nor than the smallest numbers can say.
+            // No nearer than the rounding of time allows, late in an arc that swings or in a run,
+            // nor than the smallest numbers can say.
             let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
             let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * late / h;
             (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden

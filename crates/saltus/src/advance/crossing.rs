@@ -19,7 +19,8 @@ use super::Advance;
 const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards were searched.
+    /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
+    /// were searched.
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,
@@ -93,7 +94,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if bend.is_finite() { bend } else { 0.0 }
     }
 
-    /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
+    /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ
+    /// cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
     #[inline]
     fn along<'p>(
         &mut self,
@@ -121,8 +123,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Some(Along { powers, start: g, constant })
     }
 
-    /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is `at(s)`; notes how far from zero rounding may leave
-    /// the guard there. The time of a crossing `by_formula` from a spent root is not spoilt by where rounding has left the guard before.
+    /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is
+    /// `at(s)`; notes how far from zero rounding may leave the guard there. The time of a crossing
+    /// `by_formula` from a spent root is not spoilt by where rounding has left the guard before.
     #[inline(always)] // an exact solution has the scale 1, by which nothing need then be divided
     pub(super) fn close(
         &mut self,
@@ -134,7 +137,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Close<A::State> {
         let Crossing { inside, outside, root, rest } = crossing;
         let span = inside.min(remaining);
-        // The time of the jump, at which the next arc begins: what the guard is then is what it is here.
+        // The time of the jump, at which the next arc begins: what the guard is then is what it is
+        // here.
         let time = if root < remaining { now.after(root).after(rest) } else { now.after(remaining) };
         let t = time.seconds();
         self.memory.stats.guards += 1;
@@ -158,8 +162,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Close { span, time, state }
     }
 
-    /// Whether on a short arc from `now` to its `end` after `duration` the guard rises so little that its rounding at the end shows: what the state's
-    /// coordinates are rounded by, or what time is, where the guard moves with it.
+    /// Whether on a short arc from `now` to its `end` after `duration` the guard rises so little
+    /// that its rounding at the end shows: what the state's coordinates are rounded by, or what
+    /// time is, where the guard moves with it.
     #[cold]
     fn hides(&mut self, edge: A::Edge, now: Time, duration: f64, middle: &A::State, end: &A::State) -> bool {
         self.memory.stats.guards += 3;
@@ -171,8 +176,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         rise < 65536.0 * self.guard_rounding(edge, t, end, g, end) + 64.0 * by_time
     }
 
-    /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that rounding does not matter: such a fall, on an arc so short
-    /// that rounding shows, is the rounding's, while the state is on its way up.
+    /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that
+    /// rounding does not matter: such a fall, on an arc so short that rounding shows, is the
+    /// rounding's, while the state is on its way up.
     #[cold]
     fn rises(&mut self, edge: A::Edge, now: Time, root: f64, at: impl Fn(f64) -> A::State) -> bool {
         self.memory.stats.guards += 2;
@@ -189,15 +195,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
-/// Whether a guard that is `start` where it is known stays above zero when it changes by `most`, with room for the digits that its `constant` costs.
+/// Whether a guard that is `start` where it is known stays above zero when it changes by `most`,
+/// with room for the digits that its `constant` costs.
 #[inline]
 pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
     let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
     start > most + rounding && rounding < f64::INFINITY
 }
 
-/// What an affine guard of this `constant` adds to it for the state `x`: taken of a state a power of two larger, so that the constant does not
-/// cost it digits.
+/// What an affine guard of this `constant` adds to it for the state `x`: taken of a state a power
+/// of two larger, so that the constant does not cost it digits.
 #[inline]
 pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
     if constant == 0.0 {
@@ -207,8 +214,8 @@ pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, 
     if far.is_finite() { far / LARGER } else { guard(x) - constant }
 }
 
-/// Whether an affine guard of these `powers` that seems to fall from its root only touched zero there: it bends down, and its slope, that of the state `x`, is no
-/// more than rounding.
+/// Whether an affine guard of these `powers` that seems to fall from its root only touched zero
+/// there: it bends down, and its slope, that of the state `x`, is no more than rounding.
 #[inline]
 pub(super) fn only_touched<S: State>(
     powers: &[f64],
@@ -220,7 +227,8 @@ pub(super) fn only_touched<S: State>(
     matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, x, count)
 }
 
-/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the rounding of what each coordinate adds.
+/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the
+/// rounding of what each coordinate adds.
 #[cold]
 pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S, count: &mut u64) -> bool {
     *count += x.len() as u64 + 1;
@@ -295,7 +303,8 @@ fn at<S: State>(near: &Option<Near<S>>, c: &[S], scale: f64, s: f64) -> S {
     }
 }
 
-/// A state on a dense output after a time, and its slope there: all that counts within rounding of it.
+/// A state on a dense output after a time, and its slope there: all that counts within rounding of
+/// it.
 #[derive(Clone, Copy)]
 pub(super) struct Near<S> {
     pub(super) s: f64,
@@ -349,10 +358,12 @@ pub(super) struct Close<S> {
     pub(super) state: S,
 }
 
-/// Of the states within rounding of a crossing, the one nearest to the root whose guard is not negative.
+/// Of the states within rounding of a crossing, the one nearest to the root whose guard is not
+/// negative.
 ///
-/// Always keeping the inner end would make every crossing early by half a rounding, and an elastic ball lose energy at each impact.
-/// So coordinates are taken from the inner end only as far as it takes to stay inside: a ball's height, not its speed.
+/// Always keeping the inner end would make every crossing early by half a rounding, and an elastic
+/// ball lose energy at each impact. So coordinates are taken from the inner end only as far as it
+/// takes to stay inside: a ball's height, not its speed.
 ///
 /// Returns the state and its guard, for a nearest one that is outside.
 #[inline]
@@ -384,7 +395,8 @@ impl Along<'_> {
     /// Where it first falls, as far as its powers show it at once.
     fn first_fall(&self, start: Start) -> FirstFall {
         let powers = self.powers;
-        // What rounding has left of the guard at a wall is above zero all the same if nothing moves by as much.
+        // What rounding has left of the guard at a wall is above zero all the same if nothing moves
+        // by as much.
         if start != Start::Spent && exceeds(self.start, powers.change(), self.constant) {
             return FirstFall::Nowhere;
         }
@@ -411,8 +423,8 @@ fn earlier<A: Automaton>(first: Option<OnStep<A>>, second: OnStep<A>) -> Option<
     both.or(Some(second))
 }
 
-/// Of two crossings that time cannot tell apart the first, with the inner end of both, so that neither guard is past zero there; nothing if the second is
-/// earlier.
+/// Of two crossings that time cannot tell apart the first, with the inner end of both, so that
+/// neither guard is past zero there; nothing if the second is earlier.
 #[inline]
 pub(super) fn together(first: &Crossing, second: &Crossing) -> Option<Crossing> {
     let same = second.outside >= first.inside;

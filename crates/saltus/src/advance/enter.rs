@@ -62,7 +62,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g.is_nan() {
             return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
         }
-        // Within its slack a spent root is here only where it was driven on, and is then no longer spent.
+        // Within its slack a spent root is here only where it was driven on, and is then no longer
+        // spent.
         let spent = self.memory.spent_as(edge).is_some_and(|spent| g.abs() > spent.slack);
         if !spent || g >= 0.0 {
             self.memory.unspend(edge); // the reset led away from the wall
@@ -99,8 +100,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Whether a guard that went on falling from its spent root, by no more than the rounding of what it falls by now, was driven on by a jump since: a ball that is
-    /// squeezed between others and the floor until its rebounds are rounding, and struck again.
+    /// Whether a guard that went on falling from its spent root, by no more than the rounding of
+    /// what it falls by now, was driven on by a jump since: a ball that is squeezed between others
+    /// and the floor until its rebounds are rounding, and struck again.
     #[cold]
     fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
         let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
@@ -108,7 +110,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) < DRIVEN * then)
     }
 
-    /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if its guard falls.
+    /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if
+    /// its guard falls.
     fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
         zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0, 0.0) < 0.0).unwrap_or(edge)
     }
@@ -118,10 +121,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 }
     }
 
-    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is zero, its sign is that of d²g/dt².
+    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is
+    /// zero, its sign is that of d²g/dt².
     ///
-    /// The shortest time is taken over which the change of the guard doubles (or, where it never does, quadruples) with time twice in a row: longer than
-    /// rounding, shorter than the way to the guard's next root. A change by no more than `rounding` tells nothing.
+    /// The shortest time is taken over which the change of the guard doubles (or, where it never
+    /// does, quadruples) with time twice in a row: longer than rounding, shorter than the way to
+    /// the guard's next root. A change by no more than `rounding` tells nothing.
     pub(super) fn guard_slope(
         &mut self,
         mode: A::Mode,

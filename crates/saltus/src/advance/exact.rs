@@ -95,8 +95,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ))
     }
 
-    /// Searches ever longer windows of a solution `at`, the first of a length that is natural to it; no
-    /// further than the run's limits allow, which is then noted.
+    /// Searches ever longer windows of a solution `at`, the first of a length that is natural to
+    /// it; no further than the run's limits allow, which is then noted.
     pub(super) fn fall_in_windows(
         &mut self,
         edge: A::Edge,
@@ -143,7 +143,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// How far the search of an exact arc went, where a limit of the run cut it before any crossing.
+    /// How far the search of an exact arc went, where a limit of the run cut it before any
+    /// crossing.
     #[inline]
     pub(super) fn cut_before(&mut self, first: Option<&First<A>>) -> Option<(f64, Stop<A::Edge>)> {
         let cut = self.memory.cut_at.take().filter(|&cut| first.is_none_or(|first| cut < first.time()))?;
@@ -162,7 +163,8 @@ fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> 
     }
 }
 
-/// The time in which the fastest coordinate of a polynomial changes by its own size, but no thousandth of that of the slowest one.
+/// The time in which the fastest coordinate of a polynomial changes by its own size, but no
+/// thousandth of that of the slowest one.
 pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     let of = |i: usize| {
         (1..c.len())

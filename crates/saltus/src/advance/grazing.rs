@@ -9,12 +9,12 @@ use super::Advance;
 use super::crossing::Step;
 use super::noise::{PROBE, STEP_ERROR};
 
-/// A guard that turns farther from zero than this part of the way by which it moves on the step is no
-/// grazing one, at any tolerance that a step can be taken with.
+/// A guard that turns farther from zero than this part of the way by which it moves on the step is
+/// no grazing one, at any tolerance that a step can be taken with.
 const CLOSE: f64 = 0.1;
 
-/// The size of a guard beside what the absolute tolerance leaves open of it, from which a run has two
-/// digits of it.
+/// The size of a guard beside what the absolute tolerance leaves open of it, from which a run has
+/// two digits of it.
 const RESOLVED: f64 = 100.0;
 
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
@@ -22,8 +22,8 @@ const RESOLVED: f64 = 100.0;
 const SECTIONS: usize = 40;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// Of a guard that does not fall on a step, and turns between two times: whether its least value is
-    /// within the error of the step, and when.
+    /// Of a guard that does not fall on a step, and turns between two times: whether its least
+    /// value is within the error of the step, and when.
     #[cold]
     pub(super) fn missed(&mut self, edge: A::Edge, step: Step<'_, A::State>, turn: [f64; 2]) -> Option<Evidence> {
         let ends = turn.map(|s| self.on(edge, step, s));
@@ -38,8 +38,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (room >= 0.0).then(|| Evidence::doubtful(Doubt::Grazing, s - half(0), s + half(1)))
     }
 
-    /// Of a guard that falls at `root`: whether it rises again from within the error of the step, and
-    /// when.
+    /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
+    /// and when.
     #[inline]
     pub(super) fn dips(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         let by = PROBE * step.scale;
@@ -67,8 +67,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// Whether a guard that falls at `root` has been no farther from zero on the step than what the
-    /// absolute tolerance leaves open, nor any other on a step of this run before: all that moves is of a
-    /// size that this tolerance does not resolve.
+    /// absolute tolerance leaves open, nor any other on a step of this run before: all that moves
+    /// is of a size that this tolerance does not resolve.
     #[inline]
     pub(super) fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         if self.memory.resolved {
@@ -88,7 +88,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.guard(edge, step.time(s), &step.at(s))
     }
 
-    /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its start.
+    /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its
+    /// start.
     fn error_of(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64, g: f64) -> f64 {
         self.step_error(edge, step.time(s), &step.at(s), g)
     }

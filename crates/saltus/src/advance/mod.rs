@@ -1,4 +1,5 @@
-//! One arc: from the state just after a jump to the first crossing, by the exact solution or by steps.
+//! One arc: from the state just after a jump to the first crossing, by the exact solution or by
+//! steps.
 
 mod closed;
 mod crossing;
@@ -62,7 +63,8 @@ struct Spent<E> {
     slack: f64,
 }
 
-/// An edge at whose wall the state is: its guard is zero, but for rounding or the drift of the steps.
+/// An edge at whose wall the state is: its guard is zero, but for rounding or the drift of the
+/// steps.
 #[derive(Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Wall<E> {
@@ -88,8 +90,9 @@ const SHORT: f64 = 1e-4;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory<E, S> {
     pub(crate) stats: Stats,
-    /// What each coordinate was summed up from, over the arcs so far that took time, since it was last exactly zero: the
-    /// largest of |xᵢ| at the start of an arc and of |xᵢ'| times its duration.
+    /// What each coordinate was summed up from, over the arcs so far that took time, since it was
+    /// last exactly zero: the largest of |xᵢ| at the start of an arc and of |xᵢ'| times its
+    /// duration.
     largest: Option<S>,
     /// x' on the last piece of an arc that ends at a crossing.
     slope: Option<S>,
@@ -99,10 +102,12 @@ pub(crate) struct Memory<E, S> {
     spent: Option<Spent<E>>,
     /// The edge of the last jump.
     last: Option<E>,
-    /// Edges taken earlier whose guards went on falling, and how fast: not taken again before they have risen, or are driven on.
+    /// Edges taken earlier whose guards went on falling, and how fast: not taken again before they
+    /// have risen, or are driven on.
     idle: [Option<(Spent<E>, f64)>; MOST_IDLE],
     idle_count: usize,
-    /// Edges whose guards are zero, but for rounding, as the mode is entered, and were not just taken.
+    /// Edges whose guards are zero, but for rounding, as the mode is entered, and were not just
+    /// taken.
     walls: [Option<Wall<E>>; MOST_IDLE],
     wall_count: usize,
     /// How far the search of this exact arc went before a limit of the run cut it.
@@ -110,13 +115,16 @@ pub(crate) struct Memory<E, S> {
     slack: f64,
     last_duration: f64,
     longest_duration: f64,
-    /// How many arcs in a row, up to the last one, were so short that the rounding of a guard spoils their duration.
+    /// How many arcs in a row, up to the last one, were so short that the rounding of a guard
+    /// spoils their duration.
     hidden: u32,
-    /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the step.
+    /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
+    /// step.
     resolved: bool,
     /// Edges that were taken in the last stop because their guards switch there.
     pub(super) switched: Switched<E>,
-    /// Whether the last crossing was the rounding of its guard, on an arc that leads away from zero: jumps have accumulated as far as can be told.
+    /// Whether the last crossing was the rounding of its guard, on an arc that leads away from
+    /// zero: jumps have accumulated as far as can be told.
     pub(crate) spurious: bool,
 }
 
@@ -161,7 +169,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         }
     }
 
-    /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of it.
+    /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of
+    /// it.
     fn at_wall(&mut self, edge: E, g: f64) {
         if self.wall_count < MOST_IDLE {
             self.walls[self.wall_count] = Some(Wall { edge, level: g, stays: false });
@@ -180,8 +189,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     }
 
     /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
-    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen it
-    /// at every arc, until its crossings were lost at its start.
+    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen
+    /// it at every arc, until its crossings were lost at its start.
     #[inline]
     fn cut(&mut self, size: f64) {
         self.step = self.step.map(|step| step.min(size));
@@ -200,7 +209,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         }));
     }
 
-    /// Whether an arc is so short beside the longest one that rounding may show in what guards do on it.
+    /// Whether an arc is so short beside the longest one that rounding may show in what guards do
+    /// on it.
     #[inline]
     fn is_short(&self, duration: f64) -> bool {
         duration < SHORT * self.longest_duration
@@ -212,7 +222,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         since <= 4.0 * f64::EPSILON * self.last_duration
     }
 
-    /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row, for one may be short by chance.
+    /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row,
+    /// for one may be short by chance.
     pub(crate) fn hides_durations(&self) -> bool {
         self.hidden >= 3
     }
@@ -241,10 +252,11 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// After a jump by `edge` at the end of the arc that began at `x` in `mode` and came to `before`: its root is spent. Without a duration, it was at once
-    /// after another.
+    /// After a jump by `edge` at the end of the arc that began at `x` in `mode` and came to
+    /// `before`: its root is spent. Without a duration, it was at once after another.
     ///
-    /// An edge taken before whose guard has fallen on since, beyond a root that is spent, has not come to be taken again.
+    /// An edge taken before whose guard has fallen on since, beyond a root that is spent, has not
+    /// come to be taken again.
     #[inline]
     pub(crate) fn jumped(
         &mut self,
@@ -281,7 +293,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.last = Some(edge);
     }
 
-    /// Whether the guard of an edge that this mode has, and another mode may not, is below zero at `x`.
+    /// Whether the guard of an edge that this mode has, and another mode may not, is below zero at
+    /// `x`.
     fn is_below(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> bool {
         if !self.has(mode, edge) {
             return false;
@@ -295,7 +308,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.automaton.edges(mode).iter().any(|other| other == edge)
     }
 
-    /// Forgets the edges that the mode does not have, and those whose guards have risen since they were taken.
+    /// Forgets the edges that the mode does not have, and those whose guards have risen since they
+    /// were taken.
     #[cold]
     fn forget_risen(&mut self, mode: A::Mode, t: f64, x: &A::State) {
         let count = self.memory.idle_count;
@@ -376,9 +390,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(())
     }
 
-    /// The guard of `edge` is below zero at the end of an arc that it did not end. Beyond what rounding and the tolerance
-    /// leave open it was crossed on the way, which the search missed, or fell on from its spent root, which is a
-    /// negative guard at entry: a doubt, or an error. An edge that waits may have been outside from the start.
+    /// The guard of `edge` is below zero at the end of an arc that it did not end. Beyond what
+    /// rounding and the tolerance leave open it was crossed on the way, which the search missed, or
+    /// fell on from its spent root, which is a negative guard at entry: a doubt, or an error. An
+    /// edge that waits may have been outside from the start.
     #[cold]
     #[inline(never)]
     fn outside(
@@ -411,7 +426,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.automaton.guard(edge, self.smooth.within(t), x)
     }
 
-    /// The guard of `edge` at `x`, or zero where rounding and the tolerance leave open which side it is on.
+    /// The guard of `edge` at `x`, or zero where rounding and the tolerance leave open which side
+    /// it is on.
     fn clear_of_zero(&mut self, edge: A::Edge, time: Time, x: &A::State) -> f64 {
         let t = time.seconds();
         let g = self.guard(edge, t, x);
@@ -424,8 +440,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if first && self.memory.spent_as(edge).is_some() { Start::Spent } else { Start::Open }
     }
 
-    /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero but for that at its start: it is to be seen without, so
-    /// that the rise or fall from there decides, and not the rounding.
+    /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero
+    /// but for that at its start: it is to be seen without, so that the rise or fall from there
+    /// decides, and not the rounding.
     #[inline]
     fn level(&self, edge: A::Edge) -> f64 {
         if self.memory.wall_count > 0 { self.memory.level(edge) } else { 0.0 }

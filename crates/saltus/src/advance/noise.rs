@@ -1,5 +1,5 @@
-//! How far a guard's value may be off: by the rounding of the state and of time, and by the error of
-//! the steps.
+//! How far a guard's value may be off: by the rounding of the state and of time, and by the error
+//! of the steps.
 
 use crate::automaton::Automaton;
 use crate::cross::{AT_START, Crossing};
@@ -21,17 +21,18 @@ pub(super) const STEP_ERROR: f64 = 16.0;
 pub(super) const PROBE: f64 = 1e-3;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place, with the size sᵢ that the coordinate was summed up from.
+    /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place,
+    /// with the size sᵢ that the coordinate was summed up from.
     pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
         const NUDGE: f64 = 1.0 / (1 << 20) as f64;
         self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
     }
 
-    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc, |xᵢ'| times its duration), over the
-    /// arcs since it was last exactly zero.
+    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc,
+    /// |xᵢ'| times its duration), over the arcs since it was last exactly zero.
     ///
-    /// A coordinate that is a rounding of what it was has the rounding of what it was, until a reset gives it anew. At the
-    /// start of a run nothing was summed up: |xᵢ|.
+    /// A coordinate that is a rounding of what it was has the rounding of what it was, until a
+    /// reset gives it anew. At the start of a run nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&self, x: &A::State) -> A::State {
         let largest = self.memory.largest.filter(|largest| largest.len() == x.len());
@@ -47,15 +48,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes)
     }
 
-    /// How far a guard below zero may be off: by rounding, and at the start of a run, which is stated to
-    /// within the absolute tolerance, by that.
+    /// How far a guard below zero may be off: by rounding, and at the start of a run, which is
+    /// stated to within the absolute tolerance, by that.
     pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let absolute = self.options.tolerance.absolute;
         let stated = if self.memory.largest.is_none() { self.moved(edge, t, x, g, |_| absolute) } else { 0.0 };
         self.still(edge, t, x, g) + stated
     }
 
-    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ |∂g/∂xᵢ| so many times that.
+    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ
+    /// |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const STEPS: f64 = 1024.0;
         let rounding = self.still(edge, t, x, g);
@@ -63,13 +65,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         STEPS * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
     }
 
-    /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
+    /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance
+    /// allows.
     pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let tolerance = self.options.tolerance;
         STEP_ERROR * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
-    /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all together.
+    /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all
+    /// together.
     pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(usize) -> f64) -> f64 {
         let mut sum = 0.0;
         for k in 0..x.len() {
@@ -81,7 +85,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         sum
     }
 
-    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last place of t, seen over some of them.
+    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last
+    /// place of t, seen over some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         const SOME: f64 = 1024.0;
         self.memory.stats.guards += 1;
@@ -90,8 +95,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if change.is_finite() { change } else { 0.0 }
     }
 
-    /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their walls,
-    /// g = 0 and n·f + ∂g/∂t = 0 to rounding.
+    /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their
+    /// walls, g = 0 and n·f + ∂g/∂t = 0 to rounding.
     #[inline]
     pub(super) fn find_staying(&mut self, mode: A::Mode, step: Step<'_, A::State>, slope: &A::State) {
         if let Some(Spent { edge, slack }) = self.memory.spent
@@ -121,7 +126,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let s = part * scale;
                 self.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
             };
-            // A guard that falls or rises as a power of time does so within a small part of the step.
+            // A guard that falls or rises as a power of time does so within a small part of the
+            // step.
             let along = along(1.0) || along(EARLY);
             let stays = along && rate.abs() <= self.rate_rounding(edge, t, x, PROBE * scale);
             let taken = self.memory.spent_as(edge).is_some();
@@ -136,8 +142,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ROUNDINGS * (self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)) / by
     }
 
-    /// Where the flow carries the guard of `edge` at `x`: the sign of n·f + ∂g/∂t, beyond what rounding
-    /// and the error of a step of size `h` leave open.
+    /// Where the flow carries the guard of `edge` at `x`: the sign of n·f + ∂g/∂t, beyond what
+    /// rounding and the error of a step of size `h` leave open.
     ///
     /// What the dense output does is not asked: along a surface that the flow keeps, it drifts.
     fn carried(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> Carried {
@@ -159,8 +165,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// dg/dt along the flow at `x`, by differences over `by` and half of it to both sides, from which
-    /// the square of the distance is taken out (L. F. Richardson, Phil. Trans. A 210 (1911) 307).
+    /// dg/dt along the flow at `x`, by differences over `by` and half of it to both sides, from
+    /// which the square of the distance is taken out (L. F. Richardson, Phil. Trans. A 210 (1911)
+    /// 307).
     fn guard_rate(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
         let slope = self.flow(mode, t, x);
         self.memory.stats.guards += 4;
@@ -169,8 +176,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (4.0 * near - far) / 3.0
     }
 
-    /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins to
-    /// carry its guard down, if it does so at the end of the search, after `limit`.
+    /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins
+    /// to carry its guard down, if it does so at the end of the search, after `limit`.
     #[cold]
     pub(super) fn leaves(
         &mut self,
@@ -194,8 +201,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Some(Crossing::after(on))
     }
 
-    /// After a step without a crossing to `x`: which edges stay, whose guards the flow carries neither
-    /// up nor down.
+    /// After a step without a crossing to `x`: which edges stay, whose guards the flow carries
+    /// neither up nor down.
     #[cold]
     pub(super) fn keep_staying(&mut self, mode: A::Mode, now: Time, x: &A::State, h: f64) {
         let t = now.seconds();
@@ -227,6 +234,7 @@ enum Carried {
 /// A guard that moves by so many times what rounding leaves of it leaves its wall.
 const LEAVES: f64 = (1_u64 << 20) as f64;
 
-/// How many times what rounding its coordinates and the time may move a guard by, its value may be off: its own arithmetic
-/// rounds as well, a dozen times or so, and so did that of the jumps before at the same time.
+/// How many times what rounding its coordinates and the time may move a guard by, its value may be
+/// off: its own arithmetic rounds as well, a dozen times or so, and so did that of the jumps before
+/// at the same time.
 pub(super) const ROUNDINGS: f64 = 16.0;

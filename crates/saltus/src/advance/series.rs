@@ -1,4 +1,5 @@
-//! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and exact to the tolerance all along.
+//! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and
+//! exact to the tolerance all along.
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Flow;
@@ -33,7 +34,8 @@ const SAFETY: f64 = 0.85;
 const SHORTER: f64 = 0.5;
 /// How often a step is shortened for a kink that may be on it.
 const MOST_HALVINGS: usize = 4;
-/// How much of a slope may be missing at the start of a series before it is taken for that of another flow.
+/// How much of a slope may be missing at the start of a series before it is taken for that of
+/// another flow.
 const OTHER: f64 = 1e-6;
 /// How many of its natural times a step takes whose series ends.
 const LONGEST: f64 = 16.0;
@@ -107,7 +109,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// How far a step may go by what is known of its series: no further than its last coefficients allow, nor beyond a kink.
+    /// How far a step may go by what is known of its series: no further than its last coefficients
+    /// allow, nor beyond a kink.
     #[inline]
     fn ahead(&self, expansion: &Expansion, c: &[A::State; MOST_COEFFICIENTS], longest: f64) -> Ahead {
         let &Expansion { unit, order, reach } = expansion;
@@ -128,8 +131,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ahead { step, kink: None }
     }
 
-    /// Works out the Taylor coefficients `c` of the solution from `x`, in units of a second, unless they are out of the range of numbers then. Nothing where there
-    /// is no series.
+    /// Works out the Taylor coefficients `c` of the solution from `x`, in units of a second, unless
+    /// they are out of the range of numbers then. Nothing where there is no series.
     #[inline]
     fn expanded(
         &mut self,
@@ -162,7 +165,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Goes on to a higher order, with which the step may be long enough: one that is shorter costs as much again, and its search too.
+    /// Goes on to a higher order, with which the step may be long enough: one that is shorter costs
+    /// as much again, and its search too.
     fn expand_further(
         &mut self,
         mode: A::Mode,
@@ -186,8 +190,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// A step of `h` or less over which the series is believed, and what ends it: no longer than the flow at its end agrees, which it does not beyond a switch.
-    /// Nothing if there is no such step.
+    /// A step of `h` or less over which the series is believed, and what ends it: no longer than
+    /// the flow at its end agrees, which it does not beyond a switch. Nothing if there is no such
+    /// step.
     fn believed(&mut self, way: &Way<A>, c: &[A::State], unit: f64, mut h: f64) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
@@ -211,7 +216,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
-    /// Whether the flow at the end of a step from `x` is the slope of the series there, as far as so many coefficients have it within the tolerance.
+    /// Whether the flow at the end of a step from `x` is the slope of the series there, as far as
+    /// so many coefficients have it within the tolerance.
     #[inline]
     fn agrees(
         &mut self,
@@ -273,7 +279,8 @@ impl<A: Automaton> Observer<A> for Held<A> {
     }
 }
 
-/// How far a step may go, and the place on the tape of the number that has its kink there, if one has.
+/// How far a step may go, and the place on the tape of the number that has its kink there, if one
+/// has.
 struct Ahead {
     step: f64,
     kink: Option<usize>,
@@ -294,8 +301,8 @@ fn order(relative: f64) -> usize {
     ((3.0 - 0.6 * relative.ln()) as usize).clamp(LOWEST, HIGHEST)
 }
 
-/// Over how many units of time the last two coefficients are within the tolerance (À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, 3.2.1): without end if
-/// they are zero, or no numbers.
+/// Over how many units of time the last two coefficients are within the tolerance (À. Jorba, M.
+/// Zou, Experimental Mathematics 14 (2005) 99, 3.2.1): without end if they are zero, or no numbers.
 #[inline]
 fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     let p = c.len() - 1;
@@ -313,8 +320,8 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     SAFETY * power_of_two(-last.max(before))
 }
 
-/// log₂ x to within 0.09, read off the number's exponent and mantissa (N. Schraudolph, Neural Computation 11 (1999) 853): all that a step's size needs, at a tenth of
-/// the time.
+/// log₂ x to within 0.09, read off the number's exponent and mantissa (N. Schraudolph, Neural
+/// Computation 11 (1999) 853): all that a step's size needs, at a tenth of the time.
 fn binary_logarithm(x: f64) -> f64 {
     x.to_bits().cast_signed() as f64 / MANTISSA - EXPONENT
 }
@@ -328,7 +335,8 @@ fn power_of_two(x: f64) -> f64 {
 const MANTISSA: f64 = (1_u64 << 52) as f64;
 const EXPONENT: f64 = 1023.0;
 
-/// Another unit of time than a second, a power of two of it, in which a state changes by about its size, if it has one.
+/// Another unit of time than a second, a power of two of it, in which a state changes by about its
+/// size, if it has one.
 #[cold]
 fn own_unit<S: State>(tolerance: &Tolerance, x: &S, slope: &S) -> f64 {
     let (size, speed) = (tolerance.norm(x, x, x), tolerance.norm(slope, x, x));

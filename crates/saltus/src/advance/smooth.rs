@@ -9,8 +9,8 @@ use crate::time::{Span, Time, grace};
 
 use super::{Advance, ArcEnd};
 
-/// The times strictly between two stops, at which a step asks for the flow: at a stop itself the flow may have the value of
-/// either side.
+/// The times strictly between two stops, at which a step asks for the flow: at a stop itself the
+/// flow may have the value of either side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Smooth {
     from: f64,
@@ -122,8 +122,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(fallen)
     }
 
-    /// Whether the guard of `edge` switches from inside to outside in the stop behind which the state is: smooth in
-    /// time on both sides of it, as the flow is, it falls there all the same.
+    /// Whether the guard of `edge` switches from inside to outside in the stop behind which the
+    /// state is: smooth in time on both sides of it, as the flow is, it falls there all the same.
     pub(super) fn fell_at_stop(&mut self, edge: A::Edge, x: &A::State) -> bool {
         let Some(stop) = self.smooth.start().filter(|&stop| !self.memory.switched.has(stop, edge)) else {
             return false;
@@ -139,7 +139,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         fell
     }
 
-    /// The end of an arc for which no further step is taken; at a stop in its end a guard may yet fall.
+    /// The end of an arc for which no further step is taken; at a stop in its end a guard may yet
+    /// fall.
     pub(super) fn ended(
         &mut self,
         mode: A::Mode,
@@ -164,7 +165,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         })
     }
 
-    /// Where a step of `h` from the present time ends: at the end of the span, at a stop, or before both.
+    /// Where a step of `h` from the present time ends: at the end of the span, at a stop, or before
+    /// both.
     #[inline]
     pub(super) fn arrival(&self, clock: &Span, h: f64, remaining: f64) -> Arrival {
         if h >= remaining {

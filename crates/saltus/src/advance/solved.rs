@@ -29,14 +29,16 @@ impl<A: Automaton> First<A> {
         self.crossing.inside
     }
 
-    /// Whether a formula told where it is, so that nobody has looked at the guard on the solution there.
+    /// Whether a formula told where it is, so that nobody has looked at the guard on the solution
+    /// there.
     pub(super) fn is_told(&self) -> bool {
         self.state.is_some()
     }
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// The first crossing on a solution `at` from `x`: by the model's formula where it has one, by `search` elsewhere, which tells whether it is one too.
+    /// The first crossing on a solution `at` from `x`: by the model's formula where it has one, by
+    /// `search` elsewhere, which tells whether it is one too.
     #[allow(clippy::too_many_arguments)]
     #[inline(always)] // one call each for the two kinds of solutions
     pub(super) fn first_on_solution(
@@ -76,8 +78,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(found)
     }
 
-    /// How an arc of a mode with one edge ends, where a formula tells the time of its fall and the state there: nothing is then searched, nor even the
-    /// solution asked for, if no observer wants its pieces.
+    /// How an arc of a mode with one edge ends, where a formula tells the time of its fall and the
+    /// state there: nothing is then searched, nor even the solution asked for, if no observer wants
+    /// its pieces.
     #[inline]
     pub(super) fn told(
         &mut self,
@@ -127,8 +130,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// How much of `span` a recorded piece may take, for the guard not to be negative at its end: a formula's time may be a rounding late. No part of the search,
-    /// and so not counted.
+    /// How much of `span` a recorded piece may take, for the guard not to be negative at its end: a
+    /// formula's time may be a rounding late. No part of the search, and so not counted.
     pub(super) fn span_inside(&self, edge: A::Edge, now: Time, at: impl Fn(f64) -> A::State, span: f64) -> f64 {
         let guard = |s: f64| self.automaton.guard(edge, now.after(s).seconds(), &at(s));
         if guard(span) >= 0.0 { span } else { settle(guard, span).map_or(span, |crossing| crossing.inside) }
@@ -169,7 +172,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
-/// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken at it.
+/// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken
+/// at it.
 #[inline]
 fn past(now: Time, remaining: f64) -> f64 {
     remaining + grace(now.after(remaining).seconds())

@@ -23,7 +23,8 @@ use super::{Advance, ArcEnd};
 /// The shortest step, in spacings of time.
 const SHORTEST: f64 = 2.0;
 
-/// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond rounding.
+/// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond
+/// rounding.
 const INSIDE: f64 = 0.875;
 
 /// With no more coordinates than these a guard is probed in each of them.
@@ -105,7 +106,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// The end of the arc at a crossing that the dense output of a `step` shows only roughly: looked for again on a real step to it.
+    /// The end of the arc at a crossing that the dense output of a `step` shows only roughly:
+    /// looked for again on a real step to it.
     fn closed_in<O: Observer<A>>(
         &mut self,
         mode: A::Mode,
@@ -229,8 +231,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.stepper.dense(&mut flow, t, x, h, trial.as_ref())
     }
 
-    /// The crossing within rounding of a state `x` beyond which the flow is no number: of a contact that ends
-    /// where its force does, as d^1.5.
+    /// The crossing within rounding of a state `x` beyond which the flow is no number: of a contact
+    /// that ends where its force does, as d^1.5.
     #[cold]
     fn edge_of_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, slope: &A::State) -> Option<ArcEnd<A>> {
         // A step is tried until it is shorter than the spacing of time; the one before failed too.
@@ -263,8 +265,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.automaton.flow(mode, self.smooth.within(t), x)
     }
 
-    /// Whether an arc that leaves a wall by the flow, or stands on it, falls from it at once by a dense output whose slope at its start is not the flow's: the
-    /// step is too long for a motion this slow, and would lose the state behind the wall.
+    /// Whether an arc that leaves a wall by the flow, or stands on it, falls from it at once by a
+    /// dense output whose slope at its start is not the flow's: the step is too long for a motion
+    /// this slow, and would lose the state behind the wall.
     fn contradicted(
         &mut self,
         mode: A::Mode,
@@ -281,7 +284,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if self.memory.spent_as(edge).is_none() {
                 continue;
             }
-            // What the guard rises by on the way of the flow and on that of the dense output; and whether a fall on the latter is beyond rounding.
+            // What the guard rises by on the way of the flow and on that of the dense output; and
+            // whether a fall on the latter is beyond rounding.
             let (rate, told, falls) = if self.automaton.about(edge).affine {
                 self.memory.stats.guards += 3;
                 let guard = |x: &A::State| self.automaton.guard(edge, t, x);
@@ -307,9 +311,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         false
     }
 
-    /// Whether no guard can come to zero over a step, for how far the dense output reaches from its start at most: then it need not be known.
+    /// Whether no guard can come to zero over a step, for how far the dense output reaches from its
+    /// start at most: then it need not be known.
     ///
-    /// Only affine guards say how far they follow the state. The answer is the same whoever observes.
+    /// Only affine guards say how far they follow the state. The answer is the same whoever
+    /// observes.
     #[inline]
     fn clear(
         &mut self,
@@ -347,8 +353,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         true
     }
 
-    /// A real step to the crossing found on a dense output gives it the stepper's own order: the dense output of that step,
-    /// to be looked at close to its end, where it errs by the square of the correction only.
+    /// A real step to the crossing found on a dense output gives it the stepper's own order: the
+    /// dense output of that step, to be looked at close to its end, where it errs by the square of
+    /// the correction only.
     fn closer(
         &mut self,
         mode: A::Mode,
@@ -405,7 +412,8 @@ pub(super) fn remaining(span: &Span) -> f64 {
     span.end.since(span.now).min(LAST - span.now.seconds())
 }
 
-/// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather than followed by a tiny one.
+/// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather
+/// than followed by a tiny one.
 #[inline]
 pub(super) fn evened(h: f64, longest: f64) -> f64 {
     if h * 1.01 >= longest {
@@ -417,7 +425,8 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
     }
 }
 
-/// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc began: the last one a few roundings past its end.
+/// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc
+/// began: the last one a few roundings past its end.
 #[inline]
 pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
     if h >= remaining { h + (8.0 * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }

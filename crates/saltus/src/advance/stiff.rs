@@ -9,27 +9,28 @@ use super::Advance;
 
 /// A step is looked at after this many, as long as nothing speaks for a change.
 ///
-/// A look costs three evaluations of the flow: with one in 32 steps a flow that is not stiff loses less
-/// than two percent (tests/stiffness.rs, `what_is_not_stiff_loses_little`).
+/// A look costs three evaluations of the flow: with one in 32 steps a flow that is not stiff loses
+/// less than two percent (tests/stiffness.rs, `what_is_not_stiff_loses_little`).
 const SELDOM: u64 = 32;
 
 /// As so many steps counts one that is rejected.
 const REJECTED: u64 = 8;
 
-/// So many looks in a row must speak for a change of method, the first time, for it to be made: one long
-/// step may be so by chance (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, IV.2).
+/// So many looks in a row must speak for a change of method, the first time, for it to be made: one
+/// long step may be so by chance (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
+/// II*, IV.2).
 const SIGNS: u32 = 5;
 
-/// After each change twice as many, up to this many: a flow that is stiff now and then does not change its
-/// method all the time.
+/// After each change twice as many, up to this many: a flow that is stiff now and then does not
+/// change its method all the time.
 const MOST_SIGNS: u32 = 128;
 
-/// The part of the stable length that a step limited by stability has at least: around that length steps grow and are rejected
-/// in turn.
+/// The part of the stable length that a step limited by stability has at least: around that length
+/// steps grow and are rejected in turn.
 const NEAR: f64 = 0.7;
 
-/// How far a coordinate is moved to see how the flow changes, relative to its size: the square root of the
-/// rounding of a double.
+/// How far a coordinate is moved to see how the flow changes, relative to its size: the square root
+/// of the rounding of a double.
 const NUDGE: f64 = 1.5e-8;
 
 /// Products with the Jacobian after which the largest eigenvalue is good to a few parts in ten.
@@ -58,7 +59,8 @@ impl Gait {
 }
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// After an accepted step: changes the method of a stepper that has two, where the flow has become stiff or is so no more.
+    /// After an accepted step: changes the method of a stepper that has two, where the flow has
+    /// become stiff or is so no more.
     #[inline]
     pub(super) fn notice_stiffness(
         &mut self,
@@ -89,7 +91,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         part: f64,
     ) {
         self.memory.gait.steps = 0;
-        // Of a state that the tolerance does not resolve nothing tells what its guards want of a method.
+        // Of a state that the tolerance does not resolve nothing tells what its guards want of a
+        // method.
         if self.options.tolerance.norm(end, end, end) < 1.0 && !self.automaton.edges(mode).is_empty() {
             return;
         }
@@ -102,7 +105,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Before a step: the method that was chosen after the last one, whose dense output was still to be made by its own.
+    /// Before a step: the method that was chosen after the last one, whose dense output was still
+    /// to be made by its own.
     #[inline]
     pub(super) fn change_method(&mut self) {
         if self.memory.gait.changes {
@@ -112,9 +116,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// How fast the flow at `x` forces nearby solutions together, in 1/s: the size of the largest eigenvalue of its Jacobian, by
-    /// powers of it from `v` on (B. Sommeijer, L. Shampine, J. Verwer, J. Comput. Appl. Math. 88 (1998) 315); nothing where
-    /// that turns them round or drives them apart.
+    /// How fast the flow at `x` forces nearby solutions together, in 1/s: the size of the largest
+    /// eigenvalue of its Jacobian, by powers of it from `v` on (B. Sommeijer, L. Shampine, J.
+    /// Verwer, J. Comput. Appl. Math. 88 (1998) 315); nothing where that turns them round or drives
+    /// them apart.
     fn damping(&mut self, mode: A::Mode, t: f64, (x, slope): (&A::State, &A::State), v: A::State) -> f64 {
         let tolerance = self.options.tolerance;
         let size = |v: &A::State| tolerance.norm(v, x, x);

@@ -1,4 +1,5 @@
-//! How far apart two runs are, as curves in hybrid time, where the difference at one time means nothing.
+//! How far apart two runs are, as curves in hybrid time, where the difference at one time means
+//! nothing.
 
 use crate::piece::Piece;
 use crate::state::State;
@@ -7,24 +8,30 @@ use crate::trajectory::{Arc, Trajectory};
 
 /// How closeness of two hybrid arcs is measured: the scales of time and state, and up to when.
 ///
-/// Two bouncing balls whose impacts differ by a hair differ by twice their speed between the one impact and the other, however small the hair.
-/// As curves they are a hair apart. The **distance** is the smallest ε such that for each (t, j) of one arc, up to the horizon, there is an (s, j) of
+/// Two bouncing balls whose impacts differ by a hair differ by twice their speed between the one
+/// impact and the other, however small the hair. As curves they are a hair apart. The **distance**
+/// is the smallest ε such that for each (t, j) of one arc, up to the horizon, there is an (s, j) of
 /// the other with
 ///
 /// |t - s| ≤ ε · time scale and |xᵢ(t, j) - yᵢ(s, j)| ≤ ε · state scaleᵢ for each coordinate i,
 ///
-/// and the other way round: graphical closeness in the sense of R. Goebel, R. Sanfelice, A. Teel, *Hybrid Dynamical Systems* (Princeton, 2012), def. 5.23,
-/// in units. The number ε has none: 1e-3 with scales of 1 s and 1 m is a millisecond or a millimetre, whichever is needed.
+/// and the other way round: graphical closeness in the sense of R. Goebel, R. Sanfelice, A. Teel,
+/// *Hybrid Dynamical Systems* (Princeton, 2012), def. 5.23, in units. The number ε has none: 1e-3
+/// with scales of 1 s and 1 m is a millisecond or a millimetre, whichever is needed.
 ///
 /// - Equal arcs have the distance 0, and it is symmetric.
-/// - The j must match: if one arc has made a jump by the horizon that the other never makes, or if the dimensions of the state differ at some j, the distance
-///   is infinite. To compare up to t where an impact is near, run both beyond t and give t as the horizon: the counterpart of a
+/// - The j must match: if one arc has made a jump by the horizon that the other never makes, or if
+///   the dimensions of the state differ at some j, the distance is infinite. To compare up to t
+///   where an impact is near, run both beyond t and give t as the horizon: the counterpart of a
 ///   point may lie beyond it.
-/// - States are compared, not the names of modes, so that runs of two descriptions of one system can be compared.
+/// - States are compared, not the names of modes, so that runs of two descriptions of one system
+///   can be compared.
 ///
-/// **Accuracy.** The nearest (s, j) is found to one part in 10⁶ of its distance, but for the rounding of the states. The farthest (t, j) is looked for
-/// at 17 points of every piece of the trajectory and then between the points next to the farthest; so the result is never too large by
-/// more than that part in 10⁶, and too small only if the distance has a peak narrower than a sixteenth of a step elsewhere.
+/// **Accuracy.** The nearest (s, j) is found to one part in 10⁶ of its distance, but for the
+/// rounding of the states. The farthest (t, j) is looked for at 17 points of every piece of the
+/// trajectory and then between the points next to the farthest; so the result is never too large by
+/// more than that part in 10⁶, and too small only if the distance has a peak narrower than a
+/// sixteenth of a step elsewhere.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -60,7 +67,8 @@ const INTERVALS: u32 = 16;
 const MOST_CELLS: usize = 20_000;
 
 impl Closeness {
-    /// With these scales of time, in seconds, and of each coordinate, in its unit; the last one serves for any further coordinates.
+    /// With these scales of time, in seconds, and of each coordinate, in its unit; the last one
+    /// serves for any further coordinates.
     ///
     /// A scale that is not above zero makes any difference in what it measures infinite.
     #[must_use]
@@ -75,7 +83,8 @@ impl Closeness {
         self
     }
 
-    /// The distance of two trajectories: the smallest ε for which they are ε-close; infinite where their jumps do not match.
+    /// The distance of two trajectories: the smallest ε for which they are ε-close; infinite where
+    /// their jumps do not match.
     #[must_use]
     pub fn distance<M, E, N, F, S>(&self, one: &Trajectory<M, E, S>, other: &Trajectory<N, F, S>) -> f64
     where
@@ -88,7 +97,8 @@ impl Closeness {
         self.from(&other, &one, there)
     }
 
-    /// How far the farthest state of `one` is from the curves of `other`, or `least` if that is more.
+    /// How far the farthest state of `one` is from the curves of `other`, or `least` if that is
+    /// more.
     fn from<S: State>(&self, one: &[Curve<'_, S>], other: &[Curve<'_, S>], least: f64) -> f64 {
         let mut farthest = least;
         let mut peaks = Vec::new();
@@ -144,10 +154,12 @@ impl Closeness {
         most
     }
 
-    /// How far a state `x` at `u` is from the nearest one of a curve; `u` counts from the start of that curve.
+    /// How far a state `x` at `u` is from the nearest one of a curve; `u` counts from the start of
+    /// that curve.
     ///
-    /// Cells of the curve are halved and those that cannot hold anything nearer are left out. Once it is no farther than `enough`, nearer need not be
-    /// looked for (A. A. Taha, A. Hanbury, IEEE TPAMI 37 (2015) 2153, doi:10.1109/TPAMI.2015.2408351).
+    /// Cells of the curve are halved and those that cannot hold anything nearer are left out. Once
+    /// it is no farther than `enough`, nearer need not be looked for (A. A. Taha, A. Hanbury, IEEE
+    /// TPAMI 37 (2015) 2153, doi:10.1109/TPAMI.2015.2408351).
     fn nearest<S: State>(&self, u: f64, x: &S, curve: &Curve<'_, S>, enough: f64) -> f64 {
         let start = u.clamp(0.0, curve.duration);
         let mut best = self.apart(u - start, x, &curve.at(start));
@@ -188,7 +200,8 @@ impl Closeness {
         best
     }
 
-    /// The cell with a lower bound of the distance of its states, unless that excludes it; its middle is looked at.
+    /// The cell with a lower bound of the distance of its states, unless that excludes it; its
+    /// middle is looked at.
     fn bounded<S: State>(&self, mut cell: Cell, u: f64, x: &S, curve: &Curve<'_, S>, best: &mut f64) -> Option<Cell> {
         let in_time = ((cell.from - u).max(u - cell.to).max(0.0)) / self.time;
         if in_time >= *best {
@@ -273,7 +286,8 @@ impl<S: State> Placed<'_, S> {
         self.piece.at((u - self.from).clamp(0.0, self.piece.span()))
     }
 
-    /// A bound of the speed of coordinate `i` from `from` to `to`: that in the middle, and how much the higher derivatives change it.
+    /// A bound of the speed of coordinate `i` from `from` to `to`: that in the middle, and how much
+    /// the higher derivatives change it.
     fn speed(&self, i: usize, from: f64, to: f64) -> f64 {
         let scale = self.piece.scale();
         let c = self.piece.coefficients();

@@ -1,4 +1,5 @@
-//! Frame by frame, as game loops and animators' scripts run: what event location is measured against.
+//! Frame by frame, as game loops and animators' scripts run: what event location is measured
+//! against.
 
 use std::ops::Range;
 
@@ -16,12 +17,16 @@ use crate::trajectory::Trajectory;
 /// How many edges are taken at the end of one frame.
 const MOST_AT_ONCE: usize = 16;
 
-/// Runs at a fixed rate, as a game loop does: a foil, to be compared with [`Simulation`](crate::Simulation).
+/// Runs at a fixed rate, as a game loop does: a foil, to be compared with
+/// [`Simulation`](crate::Simulation).
 ///
-/// A frame is one step of the classical Runge–Kutta method of order 4 (W. Kutta, Z. Math. Phys. 46, 435 (1901)), so what is off is not the flow.
-/// Guards are looked at where frames end, and nowhere else: an edge whose guard has turned negative is taken then, at a state that is already outside the
-/// mode's domain. No crossing is located, one that comes and goes within a frame is not seen, accumulating jumps are not recognised, and the error falls
-/// with the first power of the time of a frame, not with the fourth. `rate` in frames per second; the last frame is cut at the end of the span.
+/// A frame is one step of the classical Runge–Kutta method of order 4 (W. Kutta, Z. Math. Phys. 46,
+/// 435 (1901)), so what is off is not the flow. Guards are looked at where frames end, and nowhere
+/// else: an edge whose guard has turned negative is taken then, at a state that is already outside
+/// the mode's domain. No crossing is located, one that comes and goes within a frame is not seen,
+/// accumulating jumps are not recognised, and the error falls with the first power of the time of a
+/// frame, not with the fourth. `rate` in frames per second; the last frame is cut at the end of the
+/// span.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -36,7 +41,8 @@ const MOST_AT_ONCE: usize = 16;
 /// ```
 ///
 /// # Errors
-/// [`Error`] if the span, the rate, the flow, a guard or a reset is not a number, with time, mode, edge and state.
+/// [`Error`] if the span, the rate, the flow, a guard or a reset is not a number, with time, mode,
+/// edge and state.
 pub fn frame_by_frame<A: Automaton>(
     automaton: &A,
     mode: A::Mode,
@@ -107,7 +113,8 @@ fn begun<A: Automaton>(mode: A::Mode, state: A::State, time: Time) -> RunOf<A> {
     Run { trajectory, end: Ending { stop, stats, time, jumps: 0, mode, state, limits } }
 }
 
-/// Which edges of a mode, by their places, may be taken once their guards are negative: those whose guards are not so yet, and those with such an `entry`.
+/// Which edges of a mode, by their places, may be taken once their guards are negative: those whose
+/// guards are not so yet, and those with such an `entry`.
 fn held<A: Automaton>(
     automaton: &A,
     mode: A::Mode,
@@ -124,7 +131,8 @@ fn held<A: Automaton>(
     }
 }
 
-/// Takes the edges that a frame has crossed, one after the other, in the order in which the mode lists them.
+/// Takes the edges that a frame has crossed, one after the other, in the order in which the mode
+/// lists them.
 fn jumps<A: Automaton>(
     automaton: &A,
     may: &mut Vec<bool>,
@@ -183,7 +191,8 @@ fn kutta<A: Automaton>(automaton: &A, mode: A::Mode, t: f64, x: &A::State, h: f6
     (a, x.with(|i| x.get(i) + h * mean(i)))
 }
 
-/// The parabola through both ends of a frame with the slope at its first: nobody sees what lies between frames.
+/// The parabola through both ends of a frame with the slope at its first: nobody sees what lies
+/// between frames.
 fn between<S: State>(x: &S, slope: &S, end: &S, h: f64) -> [S; 3] {
     [*x, x.with(|i| h * slope.get(i)), x.with(|i| end.get(i) - x.get(i) - h * slope.get(i))]
 }

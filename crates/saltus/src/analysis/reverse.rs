@@ -17,15 +17,18 @@ use crate::trajectory::{Arc, Trajectory, TrajectoryOf};
 
 /// An automaton whose jumps can be undone.
 ///
-/// Forwards, an edge is taken where its guard falls to zero and its reset maps x⁻ to x⁺. Backwards, the same edge is *undone* in the mode it
-/// leads to, where the state meets the image of the reset: the states x⁺ that the reset can give. The model says
+/// Forwards, an edge is taken where its guard falls to zero and its reset maps x⁻ to x⁺. Backwards,
+/// the same edge is *undone* in the mode it leads to, where the state meets the image of the reset:
+/// the states x⁺ that the reset can give. The model says
 ///
 /// - which edges lead [into](Self::edges_into) a mode,
-/// - the [`image`](Self::image) margin of such an edge, positive within the mode's domain and zero on the image of its reset,
+/// - the [`image`](Self::image) margin of such an edge, positive within the mode's domain and zero
+///   on the image of its reset,
 /// - the inverse of the reset, [`undo`](Self::undo): x⁻ from x⁺.
 ///
-/// Where two jumps lead to the same state the past is not unique; the image margins are then to tell them apart, or the first edge listed is
-/// undone. A reset that forgets (a ball that lands and stays, a speed set to zero) has no inverse, and no past to be found.
+/// Where two jumps lead to the same state the past is not unique; the image margins are then to
+/// tell them apart, or the first edge listed is undone. A reset that forgets (a ball that lands and
+/// stays, a speed set to zero) has no inverse, and no past to be found.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -72,17 +75,20 @@ use crate::trajectory::{Arc, Trajectory, TrajectoryOf};
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub trait Invertible: Automaton {
-    /// The edges that lead into `mode`, in the order in which they are undone where time cannot tell them apart.
+    /// The edges that lead into `mode`, in the order in which they are undone where time cannot
+    /// tell them apart.
     fn edges_into(&self, mode: Self::Mode) -> Edges<'_, Self::Edge>;
 
-    /// The margin towards the image of the reset of `edge`: positive where the mode it leads to can have been for a while, zero where the jump
-    /// must just have happened. Backwards in time, the jump is undone where it falls through zero.
+    /// The margin towards the image of the reset of `edge`: positive where the mode it leads to can
+    /// have been for a while, zero where the jump must just have happened. Backwards in time, the
+    /// jump is undone where it falls through zero.
     fn image(&self, edge: Self::Edge, t: f64, x: &Self::State) -> f64;
 
     /// The mode and state just before `edge` was taken, from the state `x` just after.
     fn undo(&self, edge: Self::Edge, t: f64, x: &Self::State) -> (Self::Mode, Self::State);
 
-    /// What to do when the image margin of `edge` is already negative as its mode is entered backwards. The default refuses, with an error.
+    /// What to do when the image margin of `edge` is already negative as its mode is entered
+    /// backwards. The default refuses, with an error.
     fn undo_entry(&self, edge: Self::Edge) -> Entry {
         let _ = edge;
         Entry::Refuse
@@ -98,14 +104,16 @@ pub trait Invertible: Automaton {
         Ok(())
     }
 
-    /// Promises that the image margin of `edge` is a·x + b with constants a and b; see [`About::affine`].
+    /// Promises that the image margin of `edge` is a·x + b with constants a and b; see
+    /// [`About::affine`].
     fn image_affine(&self, edge: Self::Edge) -> bool {
         let _ = edge;
         false
     }
 }
 
-/// An [`Invertible`] automaton with time running backwards: itself an [`Automaton`], in the time s = -t.
+/// An [`Invertible`] automaton with time running backwards: itself an [`Automaton`], in the time
+/// s = -t.
 ///
 /// | forwards | reversed |
 /// |---|---|
@@ -117,8 +125,9 @@ pub trait Invertible: Automaton {
 /// | [stops](Automaton::stops) at t | stops at s = -t; of a clock by a function they are an error |
 /// | clocks ([`Automaton::clocks`]) | none, unless [`edges_into`](Invertible::edges_into) lists them with a margin in time |
 ///
-/// Run it as it is, over [`Reversed::span`]; [`forwards`](Self::forwards) turns the trajectory round again.
-/// Errors that the flow forwards damps grow backwards at the same rate: a ball of COR e multiplies them by 1/e per bounce.
+/// Run it as it is, over [`Reversed::span`]; [`forwards`](Self::forwards) turns the trajectory
+/// round again. Errors that the flow forwards damps grow backwards at the same rate: a ball of COR
+/// e multiplies them by 1/e per bounce.
 #[derive(Debug)]
 pub struct Reversed<'a, A> {
     automaton: &'a A,
@@ -152,7 +161,8 @@ impl<'a, A: Invertible> Reversed<'a, A> {
         Self { automaton }
     }
 
-    /// A trajectory of the reversed automaton as one of the automaton itself: in t, from past to future, each jump with its limits in that order.
+    /// A trajectory of the reversed automaton as one of the automaton itself: in t, from past to
+    /// future, each jump with its limits in that order.
     ///
     /// The same arcs to rounding: pieces are expanded about their other end.
     #[must_use]
@@ -189,7 +199,8 @@ fn negative(t: Time) -> Time {
     Time::new(-hi).after(-t.since(Time::new(hi)))
 }
 
-/// The coefficients about the end of a piece in time that runs back from there: of q(u) = p(span/scale - u).
+/// The coefficients about the end of a piece in time that runs back from there: of q(u) =
+/// p(span/scale - u).
 fn turned<S: State>(piece: &Piece<'_, S>) -> Vec<S> {
     let mut c = piece.coefficients().to_vec();
     let shift = piece.span() / piece.scale();

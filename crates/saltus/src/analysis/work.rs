@@ -16,7 +16,8 @@ const PATIENCE: f64 = 0.05;
 /// How much looser the run is by which the error of a reference is estimated.
 const LOOSER: f64 = 100.0;
 
-/// How long something takes on this machine, in seconds: the median of repeated runs, the least and the greatest.
+/// How long something takes on this machine, in seconds: the median of repeated runs, the least and
+/// the greatest.
 ///
 /// ```
 /// let timing = saltus::Timing::of(|| std::hint::black_box((0..1000).sum::<u32>()));
@@ -65,7 +66,8 @@ pub struct WorkPoint {
     pub method: String,
     /// The relative tolerance asked for.
     pub tolerance: f64,
-    /// How far the farthest of its answers is from the reference; infinite if there are more or fewer of them.
+    /// How far the farthest of its answers is from the reference; infinite if there are more or
+    /// fewer of them.
     pub error: f64,
     /// What it cost, in counts: the same on every machine.
     pub stats: Stats,
@@ -73,10 +75,12 @@ pub struct WorkPoint {
     pub timing: Timing,
 }
 
-/// Work against precision, for any automaton: how far off a run is at each tolerance, and what that costs.
+/// Work against precision, for any automaton: how far off a run is at each tolerance, and what that
+/// costs.
 ///
-/// A question turns a run into numbers (times of jumps, the final state); the error is the largest difference from the reference's numbers. The reference is
-/// known, or it is a run to a tighter tolerance whose own error is estimated.
+/// A question turns a run into numbers (times of jumps, the final state); the error is the largest
+/// difference from the reference's numbers. The reference is known, or it is a run to a tighter
+/// tolerance whose own error is estimated.
 ///
 /// ```
 /// use saltus::{Hybrid, Run, Simulation, Tsit5, WorkPrecision};
@@ -106,7 +110,8 @@ impl<A: Automaton, Q: Fn(&RunOf<A>) -> Vec<f64>> WorkPrecision<A, Q> {
         Self { start, question, reference, doubt: 0.0, points: Vec::new() }
     }
 
-    /// Against a run of `simulation`; its error is taken for the difference between it and a run to a hundred times its tolerance, which is larger.
+    /// Against a run of `simulation`; its error is taken for the difference between it and a run to
+    /// a hundred times its tolerance, which is larger.
     ///
     /// # Errors
     /// Those of [`Simulation::run`].
@@ -150,7 +155,8 @@ impl<A: Automaton, Q: Fn(&RunOf<A>) -> Vec<f64>> WorkPrecision<A, Q> {
         &self.points
     }
 
-    /// The point of the fewest evaluations whose error, together with the reference's, is at most `error`.
+    /// The point of the fewest evaluations whose error, together with the reference's, is at most
+    /// `error`.
     pub fn cheapest(&self, error: f64) -> Option<&WorkPoint> {
         let good = self.points.iter().filter(|point| point.error + self.doubt <= error);
         good.min_by_key(|point| point.stats.evaluations())

@@ -99,9 +99,9 @@ impl Clock {
 
     /// As `next` says: its first tick strictly after a time, in seconds; nothing if there is none.
     ///
-    /// It is asked once for each tick, with the time of the tick before. An answer that is not after
-    /// that time is an error, which names both: work ticks out from an integer that counts them, not
-    /// from the time.
+    /// It is asked once for each tick, with the time of the tick before. An answer that is not
+    /// after that time is an error, which names both: work ticks out from an integer that counts
+    /// them, not from the time.
     ///
     /// ```
     /// use saltus::{Clock, ErrorKind, Hybrid, Simulation};
@@ -118,8 +118,8 @@ impl Clock {
         Self::of(Times::Function(Arc::new(next)), None)
     }
 
-    /// The same over and over, before its first tick as well: at t + k·`period`, in seconds, for each
-    /// tick t and each integer k.
+    /// The same over and over, before its first tick as well: at t + k·`period`, in seconds, for
+    /// each tick t and each integer k.
     ///
     /// It is for [`at`](Self::at), whose times are to lie within one period; of what repeats by
     /// itself, and of a function, it is an error.
@@ -295,10 +295,10 @@ pub trait Ticking {
 
 /// The clocks of a mode, in order of priority, each with the edge that it takes.
 ///
-/// All clocks that are due at one instant are taken, each once, in the order in which the mode lists
-/// them, after the crossings at that instant: also where one of them leads to another mode, which
-/// lists an equal clock. Ticks that differ by no more than the rounding of k·T are at one instant.
-/// A tick at the very end of the span is taken, one at the very start is not
+/// All clocks that are due at one instant are taken, each once, in the order in which the mode
+/// lists them, after the crossings at that instant: also where one of them leads to another mode,
+/// which lists an equal clock. Ticks that differ by no more than the rounding of k·T are at one
+/// instant. A tick at the very end of the span is taken, one at the very start is not
 /// ([`Clock::from_start`]).
 ///
 /// A model that keeps its clocks lends them, which takes no allocation:

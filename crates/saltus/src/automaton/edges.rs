@@ -3,8 +3,8 @@
 /// The edges out of a mode, in order of priority: any number of them, without allocation.
 ///
 /// A few are given as an array or collected; many are a list that the model keeps, or follow from
-/// their index. None is ever left out: an array of more than [`Edges::INLINE`] does not compile, and
-/// a run fails in a mode that collects more.
+/// their index. None is ever left out: an array of more than [`Edges::INLINE`] does not compile,
+/// and a run fails in a mode that collects more.
 ///
 /// ```
 /// use saltus::Edges;

@@ -13,11 +13,13 @@ use self::solution::{Fall, Solution};
 use crate::error::Refusal;
 use crate::state::State;
 
-/// A hybrid automaton: in each mode a flow x' = f(t, x); out of each mode edges, each with a guard and a reset.
+/// A hybrid automaton: in each mode a flow x' = f(t, x); out of each mode edges, each with a guard
+/// and a reset.
 ///
-/// A **guard** is a margin: positive inside the mode's domain. Its edge is taken where the guard *falls* through zero.
-/// A **reset** is pure physics: it maps the state x⁻ just before the jump to the state x⁺ just after it and
-/// never adds an epsilon to keep the edge from being taken twice; the engine knows which edge it took and treats that root as spent.
+/// A **guard** is a margin: positive inside the mode's domain. Its edge is taken where the guard
+/// *falls* through zero. A **reset** is pure physics: it maps the state x⁻ just before the jump to
+/// the state x⁺ just after it and never adds an epsilon to keep the edge from being taken twice;
+/// the engine knows which edge it took and treats that root as spent.
 ///
 /// Four methods are the model: [`flow`](Self::flow), [`edges`](Self::edges), [`guard`](Self::guard)
 /// and [`reset`](Self::reset). The others have defaults that say nothing.
@@ -64,17 +66,19 @@ pub trait Automaton {
     /// The flow f of x' = f(t, x) in `mode`, in units of the state per second.
     fn flow(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Self::State;
 
-    /// The edges out of `mode`, in the order in which crossings that time cannot tell apart are taken.
+    /// The edges out of `mode`, in the order in which crossings that time cannot tell apart are
+    /// taken.
     fn edges(&self, mode: Self::Mode) -> Edges<'_, Self::Edge>;
 
-    /// The guard of `edge`: positive inside the domain; the edge is taken where it falls through zero.
+    /// The guard of `edge`: positive inside the domain; the edge is taken where it falls through
+    /// zero.
     fn guard(&self, edge: Self::Edge, t: f64, x: &Self::State) -> f64;
 
     /// The mode and state just after `edge` is taken out of `mode` from the state `x` just before.
     ///
     /// # Errors
-    /// A [`Refusal`] where there is no state after: the run fails with it, with time, mode, edge and
-    /// state.
+    /// A [`Refusal`] where there is no state after: the run fails with it, with time, mode, edge
+    /// and state.
     fn reset(
         &self,
         mode: Self::Mode,
@@ -101,8 +105,9 @@ pub trait Automaton {
     /// When the guard of `edge` first falls through zero on the exact solution from `x` at `t` (see
     /// [`Solution::is_exact`]), where a formula says so. By default it is searched for.
     ///
-    /// A wrong answer is believed: it breaks the guarantee that no crossing is missed. Where the guard is
-    /// below zero when the arc ends, that is a [`Doubt::Missed`](crate::cross::Doubt::Missed).
+    /// A wrong answer is believed: it breaks the guarantee that no crossing is missed. Where the
+    /// guard is below zero when the arc ends, that is a
+    /// [`Doubt::Missed`](crate::cross::Doubt::Missed).
     #[inline]
     fn falls(&self, mode: Self::Mode, edge: Self::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {
         let _ = (mode, edge, t, x);
@@ -117,21 +122,22 @@ pub trait Automaton {
         None
     }
 
-    /// The clocks that run in `mode`, each with the edge that it takes: see [`Clocks`]. Such an edge
-    /// needs no guard and is not listed in [`edges`](Self::edges). By default there are none.
+    /// The clocks that run in `mode`, each with the edge that it takes: see [`Clocks`]. Such an
+    /// edge needs no guard and is not listed in [`edges`](Self::edges). By default there are none.
     #[inline]
     fn clocks(&self, mode: Self::Mode) -> Clocks<'_, Self::Edge> {
         let _ = mode;
         Clocks::none()
     }
 
-    /// The times at which the flow of `mode` is not smooth: a step ends there, and nothing else happens.
+    /// The times at which the flow of `mode` is not smooth: a step ends there, and nothing else
+    /// happens.
     ///
-    /// A switch, a pulse or a kink of an input in time is then met exactly and never stepped over. Flow
-    /// and guards are asked for strictly between two stops: whether they have their values of before or
-    /// after a stop at the stop itself does not matter. A guard that is inside just before a stop and
-    /// outside just after it has fallen there: its edge is taken, at the time of the stop. An exact
-    /// solution has no steps, and so no stops. By default there are none.
+    /// A switch, a pulse or a kink of an input in time is then met exactly and never stepped over.
+    /// Flow and guards are asked for strictly between two stops: whether they have their values of
+    /// before or after a stop at the stop itself does not matter. A guard that is inside just
+    /// before a stop and outside just after it has fallen there: its edge is taken, at the time of
+    /// the stop. An exact solution has no steps, and so no stops. By default there are none.
     #[inline]
     fn stops(&self, mode: Self::Mode) -> Cow<'_, [Clock]> {
         let _ = mode;

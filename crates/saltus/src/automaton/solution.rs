@@ -13,7 +13,8 @@ pub(crate) type Flow<A> = fn(&A, Mode<A>, &mut Series<'_, State<A>>);
 type Mode<A> = <A as Automaton>::Mode;
 type State<A> = <A as Automaton>::State;
 
-/// How the state of a mode goes on from where it is: what a model knows of its own flow. A mode answers with the same kind wherever it is entered.
+/// How the state of a mode goes on from where it is: what a model knows of its own flow. A mode
+/// answers with the same kind wherever it is entered.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -62,15 +63,18 @@ pub enum Solution<A: Automaton + ?Sized> {
     Steps,
     /// The exact solution is this polynomial in time: no step is taken.
     Polynomial(Polynomial<A::State>),
-    /// A formula gives the exact solution: the state at `t + s`, for s ≥ 0, if it is `x` at `t`. No step is taken; the trajectory's pieces interpolate it to
-    /// twelve digits.
+    /// A formula gives the exact solution: the state at `t + s`, for s ≥ 0, if it is `x` at `t`. No
+    /// step is taken; the trajectory's pieces interpolate it to twelve digits.
     Formula(Formula<A>),
-    /// The flow, written once more over [`Jet`](crate::Jet)s and given to [`Series::flow`]: steps are Taylor series, of an order that the tolerance asks for. A
-    /// whole arc is often one or two of them, and a further digit costs little.
+    /// The flow, written once more over [`Jet`](crate::Jet)s and given to [`Series::flow`]: steps
+    /// are Taylor series, of an order that the tolerance asks for. A whole arc is often one or two
+    /// of them, and a further digit costs little.
     ///
-    /// Worth it where crossings are many or errors are to be small, and the flow is smooth and not stiff. It must be the same flow as
-    /// [`Automaton::flow`], with which it is compared where each step ends: beyond a switch the two differ, and the step is shortened. At the kinks of
-    /// [`Jet::abs`](crate::Jet::abs) it ends of itself. Where there is no series (√x at x = 0), the stepper goes on.
+    /// Worth it where crossings are many or errors are to be small, and the flow is smooth and not
+    /// stiff. It must be the same flow as [`Automaton::flow`], with which it is compared where each
+    /// step ends: beyond a switch the two differ, and the step is shortened. At the kinks of
+    /// [`Jet::abs`](crate::Jet::abs) it ends of itself. Where there is no series (√x at x = 0), the
+    /// stepper goes on.
     ///
     /// ```
     /// use saltus::nalgebra::{self, Vector2, vector};
@@ -126,7 +130,8 @@ pub enum Solution<A: Automaton + ?Sized> {
 }
 
 impl<A: Automaton + ?Sized> Solution<A> {
-    /// The state at `t + s` on the solution of `automaton` from `x` at `t` in `mode`, for s ≥ 0, where a polynomial or a formula gives it.
+    /// The state at `t + s` on the solution of `automaton` from `x` at `t` in `mode`, for s ≥ 0,
+    /// where a polynomial or a formula gives it.
     #[inline]
     pub fn at(&self, automaton: &A, mode: A::Mode, t: f64, x: &A::State, s: f64) -> Option<A::State> {
         match self {
@@ -165,12 +170,13 @@ pub enum Fall<S> {
     Never,
     /// After this time, in seconds.
     After(f64),
-    /// After this time, in seconds, in this state, at which the guard must not be negative: the cheapest answer, for the solution need then not be evaluated
-    /// there.
+    /// After this time, in seconds, in this state, at which the guard must not be negative: the
+    /// cheapest answer, for the solution need then not be evaluated there.
     In(f64, S),
 }
 
-/// A solution that is a polynomial in time, x(t + s) = c₀ + c₁ s + c₂ s² + c₃ s³, of degree at most three.
+/// A solution that is a polynomial in time, x(t + s) = c₀ + c₁ s + c₂ s² + c₃ s³, of degree at most
+/// three.
 ///
 /// ```
 /// use saltus::Polynomial;

@@ -1,4 +1,5 @@
-//! Interpolation at the nine Chebyshev points of the second kind (L. N. Trefethen, *Approximation Theory and Approximation Practice*, 2013, ch. 3).
+//! Interpolation at the nine Chebyshev points of the second kind (L. N. Trefethen, *Approximation
+//! Theory and Approximation Practice*, 2013, ch. 3).
 
 /// cos(j pi / 8), from -1 up to 1.
 pub(crate) const NODES: [f64; 9] = [
@@ -22,7 +23,8 @@ const fn weights() -> [[f64; 9]; 9] {
     while k < 9 {
         let mut j = 0;
         while j < 9 {
-            // T_k at node j, whose angle is (8 - j) π / 8, is cos(k (8 - j) π / 8): a node itself, once its angle is folded back into 0..=π.
+            // T_k at node j, whose angle is (8 - j) π / 8, is cos(k (8 - j) π / 8): a node itself,
+            // once its angle is folded back into 0..=π.
             let turn = (k * (8 - j)) % 16;
             let fold = if turn > 8 { 16 - turn } else { turn };
             let whole = if k == 0 || k == 8 { 8.0 } else { 4.0 };

@@ -1,4 +1,5 @@
-//! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a long stretch shows to more digits than a short one.
+//! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a
+//! long stretch shows to more digits than a short one.
 
 use crate::poly::Bernstein;
 
@@ -9,36 +10,46 @@ use super::search::{Part, Search, Side};
 
 /// What the stretches that begin at a spent root have shown of the guard there.
 ///
-/// On a long stretch the interpolant errs by what it leaves out, on a short one by the guard's rounding over its length. The slope is known best on one
-/// between them, which is remembered: so a rebound of 10⁻¹⁰ m/s is told though it rises by 10⁻²¹ m, a thousandth of what the guard is rounded by.
+/// On a long stretch the interpolant errs by what it leaves out, on a short one by the guard's
+/// rounding over its length. The slope is known best on one between them, which is remembered: so a
+/// rebound of 10⁻¹⁰ m/s is told though it rises by 10⁻²¹ m, a thousandth of what the guard is
+/// rounded by.
 #[derive(Clone, Copy)]
 pub(super) struct Departure {
     /// The slope at the root, and by how much it may be off.
     slope: f64,
     doubt: f64,
-    /// The guard with that root divided out, on the stretch that shows the slope best, and its length.
+    /// The guard with that root divided out, on the stretch that shows the slope best, and its
+    /// length.
     rest: Bernstein,
     length: f64,
-    /// The m of the power tᵐ as which the guard falls from the root, on the shortest stretch on which it is seen to.
+    /// The m of the power tᵐ as which the guard falls from the root, on the shortest stretch on
+    /// which it is seen to.
     order: Option<f64>,
 }
 
 /// So much longer a stretch tells the slope better than the steps of rounding on a shorter one.
 const FAR: f64 = 1024.0;
-/// A guard is seen where it is by this larger than its rounding, which a few samples may show too small.
+/// A guard is seen where it is by this larger than its rounding, which a few samples may show too
+/// small.
 const SEEN: f64 = 64.0;
-/// A guard that is zero at the start is seen to rise from there where it is by this larger than it may be off.
+/// A guard that is zero at the start is seen to rise from there where it is by this larger than it
+/// may be off.
 const RISEN: f64 = 4.0;
-/// A guard no larger than this many times its rounding may be hidden by it, where it was seen to rise on a longer stretch.
+/// A guard no larger than this many times its rounding may be hidden by it, where it was seen to
+/// rise on a longer stretch.
 const HIDDEN: f64 = 64.0 * RISEN;
-/// A slope up counts from this part of what it may be off by, which is taken with room: of ten million guards with clustered roots, two that fall at once seem to
-/// rise with 0.27 and 0.30 of it, by chance.
+/// A slope up counts from this part of what it may be off by, which is taken with room: of ten
+/// million guards with clustered roots, two that fall at once seem to rise with 0.27 and 0.30 of
+/// it, by chance.
 const SURE: f64 = 0.4;
-/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may change its sign, and it is not to be lost then.
+/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may
+/// change its sign, and it is not to be lost then.
 const NONE: f64 = 64.0;
 
 impl Departure {
-    /// The guard with its root at the start of `0..=length` divided out, whose values are known to within `margin`, and away from the start to `roughness` more.
+    /// The guard with its root at the start of `0..=length` divided out, whose values are known to
+    /// within `margin`, and away from the start to `roughness` more.
     pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
         let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
         let mut best = match last {
@@ -67,7 +78,8 @@ impl Departure {
         self.slope.abs() + self.doubt
     }
 
-    /// Whether it was told by a stretch so long that it knows better than steps of rounding within `0..=b`.
+    /// Whether it was told by a stretch so long that it knows better than steps of rounding within
+    /// `0..=b`.
     pub(super) fn is_far(&self, b: f64) -> bool {
         self.length > FAR * b
     }
@@ -78,8 +90,9 @@ fn is_even(order: f64) -> bool {
 }
 
 impl Search<'_> {
-    /// Whether the guard on `0..=b` is nothing but rounding, and was seen to rise on a longer stretch: so a floor lets go of
-    /// a ball, which rises as the cube of time, for long not by a step of rounding.
+    /// Whether the guard on `0..=b` is nothing but rounding, and was seen to rise on a longer
+    /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a
+    /// step of rounding.
     pub(super) fn is_under_a_rise(
         &mut self,
         &Proxy { ref p, margin, least, .. }: &Proxy,
@@ -90,7 +103,8 @@ impl Search<'_> {
             self.rise = Some(margin);
             return Ok(false);
         }
-        // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen number by number its steps have an order.
+        // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
+        // number by number its steps have an order.
         let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
@@ -98,10 +112,13 @@ impl Search<'_> {
             && self.is_rough(0.0, 0.25 * b)?)
     }
 
-    /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m = `order` where that was seen.
+    /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =
+    /// `order` where that was seen.
     ///
-    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only touched zero there, and falls again. Where rounding hides
-    /// which it was, what longer stretches have shown decides; and if they show that the guard rises first, it falls where their polynomial does.
+    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only
+    /// touched zero there, and falls again. Where rounding hides which it was, what longer
+    /// stretches have shown decides; and if they show that the guard rises first, it falls where
+    /// their polynomial does.
     pub(super) fn left(&self, order: Option<f64>, b: f64) -> Part {
         if !self.spent {
             return Part::AtStart;
@@ -117,7 +134,8 @@ impl Search<'_> {
         if touched { Part::AtStart } else { Part::None(Side::Outside) }
     }
 
-    /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the guard inside; or the fall, if there is none.
+    /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the
+    /// guard inside; or the fall, if there is none.
     pub(super) fn inside_near(&mut self, fall: f64) -> Result<f64, Undefined> {
         for k in 0..=16 {
             for s in [fall * (1.0 + f64::from(k) / 64.0), fall * (1.0 - f64::from(k) / 64.0)] {

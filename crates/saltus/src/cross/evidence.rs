@@ -6,7 +6,8 @@
 pub enum Evidence {
     /// Bounds on the guard over the whole interval leave no room for a fall.
     Excluded,
-    /// The interval was halved until bounds left no room for a fall in any part, or a single fall in the first part that has one.
+    /// The interval was halved until bounds left no room for a fall in any part, or a single fall
+    /// in the first part that has one.
     Isolated,
     /// Between two times a crossing may have been missed, or one may be none.
     Doubtful {
@@ -24,17 +25,21 @@ pub enum Evidence {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Doubt {
-    /// The guard comes so close to zero, and turns, that the error of the step decides whether it falls: it did not, or it fell and
-    /// would have risen again.
+    /// The guard comes so close to zero, and turns, that the error of the step decides whether it
+    /// falls: it did not, or it fell and would have risen again.
     Grazing,
-    /// The guard is nothing but rounding: a touch, or two crossings so close that its values do not show them. It was taken for zero.
+    /// The guard is nothing but rounding: a touch, or two crossings so close that its values do not
+    /// show them. It was taken for zero.
     Rounding,
-    /// The guard varies too fast to be resolved within the limit on evaluations: only the signs at both ends were used.
+    /// The guard varies too fast to be resolved within the limit on evaluations: only the signs at
+    /// both ends were used.
     Unresolved,
-    /// The guard changes its sign without coming near zero, the times being some thousand roundings apart. At a pole, where it is
-    /// larger the nearer it is looked at, that is no crossing; a leap is taken for one.
+    /// The guard changes its sign without coming near zero, the times being some thousand roundings
+    /// apart. At a pole, where it is larger the nearer it is looked at, that is no crossing; a leap
+    /// is taken for one.
     Discontinuous,
-    /// The guard is below zero at the end of the arc by more than its noise, and no crossing of it was found on the arc.
+    /// The guard is below zero at the end of the arc by more than its noise, and no crossing of it
+    /// was found on the arc.
     Missed,
 }
 

@@ -1,11 +1,13 @@
-//! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own spacing, or down in its rounding.
+//! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own
+//! spacing, or down in its rounding.
 
 use super::search::{Part, Search, Side};
 use super::{Doubt, Evidence, Undefined};
 
 /// How many samples are taken of a guard that seems to be nothing but rounding.
 const LOOKS: usize = 128;
-/// So many samples are taken of each step at least: with fewer, halves that are rounded to even could hide every other one.
+/// So many samples are taken of each step at least: with fewer, halves that are rounded to even
+/// could hide every other one.
 const PER_STEP: usize = 4;
 /// If they change direction no more often than this, they are not rounding and their signs count.
 const MOST_TURNS: usize = 8;
@@ -26,7 +28,8 @@ impl Search<'_> {
         Ok(self.passed(side, walk.side, b))
     }
 
-    /// A walk from one side to another, on which no fall but one from the start was seen; the signs of its steps count.
+    /// A walk from one side to another, on which no fall but one from the start was seen; the signs
+    /// of its steps count.
     fn passed(&self, from: Side, to: Side, b: f64) -> Part {
         if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
     }
@@ -86,17 +89,19 @@ impl Search<'_> {
             }
         }
         if side == Side::Wall && walk.side == Side::Outside {
-            // Steps of rounding are of one length where the guard falls with speed; without speed it stands longest on the first.
+            // Steps of rounding are of one length where the guard falls with speed; without speed
+            // it stands longest on the first.
             let lengths = || samples.chunk_by(|x, y| x.1 == y.1).map(<[_]>::len);
             let (first, second) = (lengths().next().unwrap_or(0), lengths().nth(1).unwrap_or(0));
             let (half, at_half) = samples[LOOKS / 2];
             let slow = samples[0].1 == self.base && first > second;
-            // Among ups and downs that is not seen, nor where values are rounded this way and that (of time, the steps are of one length always); but a longer
-            // stretch may know.
+            // Among ups and downs that is not seen, nor where values are rounded this way and that
+            // (of time, the steps are of one length always); but a longer stretch may know.
             let whole = || lengths().take(steps - 1);
             let of_value = whole().max() > whole().min().map(|least| 3 * least);
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));
-            // The slope that it allows is too small for this fall: two steps, one twice as far as the other, are not its sign.
+            // The slope that it allows is too small for this fall: two steps, one twice as far as
+            // the other, are not its sign.
             let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
             let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
             let order = if slow && without_speed {
@@ -130,7 +135,8 @@ impl Search<'_> {
             }
             (side, seen) = (next, true);
         }
-        // A guard that leaves the wall slowly is nothing but rounding of its values at first, which hides nothing.
+        // A guard that leaves the wall slowly is nothing but rounding of its values at first, which
+        // hides nothing.
         let leaves = came_from == Side::Wall && !self.is_rougher_than_rounding(rounding);
         if let Some((from, to)) = hidden.filter(|_| !leaves) {
             self.weaken(Evidence::doubtful(Doubt::Rounding, from, to));

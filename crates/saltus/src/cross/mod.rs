@@ -1,4 +1,5 @@
-//! Where a guard first falls through zero: excluded by bounds, isolated by halving, refined to neighbouring times.
+//! Where a guard first falls through zero: excluded by bounds, isolated by halving, refined to
+//! neighbouring times.
 
 pub(crate) mod chebyshev;
 mod departure;
@@ -17,7 +18,8 @@ pub(crate) use refine::{narrowed, settle};
 use search::Search;
 pub(crate) use search::{AT_START, ROUGH};
 
-/// A fall through zero between two neighbouring times: the guard is not negative at `inside` and negative at `outside`.
+/// A fall through zero between two neighbouring times: the guard is not negative at `inside` and
+/// negative at `outside`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Crossing {
@@ -25,9 +27,11 @@ pub struct Crossing {
     pub inside: f64,
     /// The first time outside.
     pub outside: f64,
-    /// The best estimate of the root, within rounding of both: where `inside` lies early by up to a rounding, this has no bias.
+    /// The best estimate of the root, within rounding of both: where `inside` lies early by up to a
+    /// rounding, this has no bias.
     pub root: f64,
-    /// What rounding takes from the root: it lies at `root + rest`, by the guard's values on both sides.
+    /// What rounding takes from the root: it lies at `root + rest`, by the guard's values on both
+    /// sides.
     pub rest: f64,
 }
 
@@ -48,9 +52,11 @@ impl Crossing {
 pub enum Start {
     /// Nothing special: a fall that begins with a zero at the start counts.
     Open,
-    /// The guard is zero at the start but for rounding because its edge was just taken: that root is divided out.
+    /// The guard is zero at the start but for rounding because its edge was just taken: that root
+    /// is divided out.
     Spent,
-    /// The search goes on where an earlier one ended: a guard that is zero here is on the side it came from.
+    /// The search goes on where an earlier one ended: a guard that is zero here is on the side it
+    /// came from.
     Resumed,
 }
 
@@ -73,19 +79,23 @@ impl Searched {
     }
 }
 
-/// The outcome of a search that could not finish: the guard is not a number at this time, before any fall.
+/// The outcome of a search that could not finish: the guard is not a number at this time, before
+/// any fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undefined(pub f64);
 
 /// The first time in `0..=span` at which `guard` falls from positive or zero to negative.
 ///
-/// On an interval the guard is replaced by its interpolant at nine Chebyshev points, whose tail and two checks away from the nodes bound how far off it is.
-/// The interval is halved until the interpolant's Bernstein coefficients, taken with that margin, exclude a fall or show the guard to fall strictly;
-/// where the interpolant is too flat for that, down to neighbouring numbers. A root at the start that is spent is divided out, so that it cannot hide the next one.
-/// A touch without a change of sign is no fall; a zero on a whole interval falls once, where it ends.
+/// On an interval the guard is replaced by its interpolant at nine Chebyshev points, whose tail and
+/// two checks away from the nodes bound how far off it is. The interval is halved until the
+/// interpolant's Bernstein coefficients, taken with that margin, exclude a fall or show the guard
+/// to fall strictly; where the interpolant is too flat for that, down to neighbouring numbers. A
+/// root at the start that is spent is divided out, so that it cannot hide the next one. A touch
+/// without a change of sign is no fall; a zero on a whole interval falls once, where it ends.
 ///
-/// Guaranteed for guards that are smooth at the scale of the sampling (a feature narrower than about a ninth of `span`, and alone, can be missed);
-/// where that could not be established, the [`Evidence`] says so.
+/// Guaranteed for guards that are smooth at the scale of the sampling (a feature narrower than
+/// about a ninth of `span`, and alone, can be missed); where that could not be established, the
+/// [`Evidence`] says so.
 ///
 /// ```
 /// use saltus::cross::{Evidence, Start, first_fall};
@@ -105,7 +115,8 @@ pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) ->
     Search::new(&mut guard, span, 0.0, 0.0).first_fall(start, None)
 }
 
-/// The same for a guard along an arc, where times are `tick` apart; on the dense output of a step it bends by `bend`.
+/// The same for a guard along an arc, where times are `tick` apart; on the dense output of a step
+/// it bends by `bend`.
 pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
     span: f64,
@@ -116,7 +127,8 @@ pub(crate) fn first_fall_on_arc(
     Search::new(guard, span, bend, tick).first_fall(start, None)
 }
 
-/// The same for a guard on a step that is known to be the polynomial `p(s / span)` to within `margin`; where that decides, `guard` is not asked.
+/// The same for a guard on a step that is known to be the polynomial `p(s / span)` to within
+/// `margin`; where that decides, `guard` is not asked.
 pub(crate) fn first_fall_of_polynomial(
     p: &Bernstein,
     margin: f64,
@@ -126,7 +138,8 @@ pub(crate) fn first_fall_of_polynomial(
     start: Start,
 ) -> Result<Searched, Undefined> {
     if start == Start::Spent {
-        // Away from the wall only the change counts, and it carries no rounding of the value at the wall.
+        // Away from the wall only the change counts, and it carries no rounding of the value at the
+        // wall.
         let change = p.less_start();
         let margin = 8.0 * f64::EPSILON * change.scale();
         Search::new(guard, span, bend, 0.0).first_fall(start, Some((change, margin)))
@@ -191,8 +204,9 @@ mod tests {
     }
 
     proptest! {
-        /// A floor h = A sin ωt lets go of a ball where h'' = -g: the gap grows as the cube of time, and is no step of rounding for long. It is no fall that
-        /// rounding makes one, however late the clock and near the floor.
+        /// A floor h = A sin ωt lets go of a ball where h'' = -g: the gap grows as the cube of
+        /// time, and is no step of rounding for long. It is no fall that rounding makes one,
+        /// however late the clock and near the floor.
         #[test]
         fn a_floor_that_lets_go(omega in 5.0..300.0_f64, strength in 1.001..3.0_f64, turns in 0.0..5000.0_f64, window in 0.03..1.0_f64) {
             let g = 9.81;
@@ -205,7 +219,8 @@ mod tests {
             prop_assert!(found.is_none_or(|s| omega * s > 0.02), "{found:?}");
         }
 
-        /// Plant falls and rises in turn, clustered, dyadic or at an end; the first fall is found, as a polynomial and as a function.
+        /// Plant falls and rises in turn, clustered, dyadic or at an end; the first fall is found,
+        /// as a polynomial and as a function.
         #[test]
         fn planted_roots(mut roots in prop::collection::vec((0_u32..=64, -3_i32..=3), 1..=6)) {
             roots.sort_unstable();

@@ -4,14 +4,16 @@ use crate::poly::MAX_DEGREE;
 
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
 const DEEPEST: u32 = 4;
-/// Where the last correction is this part of the root, and the bend's part of the correction as small, what is left is rounding: their squares' product.
+/// Where the last correction is this part of the root, and the bend's part of the correction as
+/// small, what is left is rounding: their squares' product.
 const CLOSE: f64 = 1e-6;
 /// Closer than this a root is not known if it may be two.
 const CLOSEST: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
 
-/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no rounding.
+/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no
+/// rounding.
 const SURELY: f64 = 64.0 * f64::EPSILON;
 
 /// Where a polynomial on `0..=1` first falls through zero.
@@ -71,7 +73,8 @@ impl Powers {
         Self { a: [0.0; MAX_DEGREE + 1], len: 0, rest: Sums::ZERO }
     }
 
-    /// Becomes `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of a `stretch`, the first of them that of one.
+    /// Becomes `start` and the coefficients `of` at most [`MAX_DEGREE`] others times the powers of
+    /// a `stretch`, the first of them that of one.
     #[inline]
     pub(crate) fn fill<T>(&mut self, start: f64, rest: &[T], mut of: impl FnMut(&T) -> f64, stretch: f64) {
         self.a[0] = start;
@@ -136,12 +139,15 @@ impl Powers {
         self.rest = Sums::of(&self.a[2..self.len]);
     }
 
-    /// Where what is left from the power `k` on, of which the first is divided out, first falls through zero: it may be off by `margin`, and is positive
-    /// at its start.
+    /// Where what is left from the power `k` on, of which the first is divided out, first falls
+    /// through zero: it may be off by `margin`, and is positive at its start.
     ///
-    /// A root r is found by Chebyshev's method (J. Traub, *Iterative Methods for the Solution of Equations*, 1964, chapter 5): Newton's with a term for the bend, of
-    /// order three, for little more than the wait for the value itself. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 - v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is
-    /// positive on `0..=1`, no root is earlier and the polynomial falls at this one. It is bounded from below on ever shorter stretches.
+    /// A root r is found by Chebyshev's method (J. Traub, *Iterative Methods for the Solution of
+    /// Equations*, 1964, chapter 5): Newton's with a term for the bend, of order three, for little
+    /// more than the wait for the value itself. With Aₖ = aₖ rᵏ and v = u/r the polynomial is (1 -
+    /// v) Σ Wₖ vᵏ, where Wₖ = A₀ + … + Aₖ: if the second factor is positive on `0..=1`, no root is
+    /// earlier and the polynomial falls at this one. It is bounded from below on ever shorter
+    /// stretches.
     pub(crate) fn first_fall(&self, k: usize, margin: f64) -> FirstFall {
         let a = &self.coefficients()[k.min(self.len)..];
         let sums = match k {
@@ -182,7 +188,8 @@ fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
     even.plus(odd)
 }
 
-/// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1, where it is `end`.
+/// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1, where
+/// it is `end`.
 fn root(a: &[f64], end: f64) -> Option<f64> {
     let &[start, slope, ..] = a else { return None };
     // Where the parabola with this start, slope and end falls.
@@ -268,7 +275,8 @@ impl Terms {
     }
 }
 
-/// Whether the tangent of the rising terms is above the chord of the falling ones, from one place to another or on both of its halves.
+/// Whether the tangent of the rising terms is above the chord of the falling ones, from one place
+/// to another or on both of its halves.
 fn exceeds(a: &[f64], margin: f64, from: &Terms, to: &Terms, depth: u32) -> bool {
     let above = from.rising - from.falling > margin && to.rising - to.falling > margin;
     let tangent = from.rising + from.slope * (to.u - from.u);

@@ -1,4 +1,5 @@
-//! A polynomial in place of a guard: its interpolant at nine Chebyshev points, and how far off that may be.
+//! A polynomial in place of a guard: its interpolant at nine Chebyshev points, and how far off that
+//! may be.
 
 use crate::poly::Bernstein;
 
@@ -50,8 +51,8 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is at an end or clear of zero: above a half of what the
-    /// interpolant varies by.
+    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is
+    /// at an end or clear of zero: above a half of what the interpolant varies by.
     pub(super) fn turn(&self) -> Option<[f64; 2]> {
         let varies: f64 = self.series[1..].iter().map(|c| c.abs()).sum();
         if self.series[0] > 2.0 * varies {
@@ -71,7 +72,8 @@ impl Samples {
         turns.then(|| [chebyshev::NODES[lowest.max(1) - 1], chebyshev::NODES[(lowest + 1).min(8)]])
     }
 
-    /// Whether the guard is positive on the whole interval for the size of the series alone (|`T_k`| ≤ 1, and its slope ≤ k²).
+    /// Whether the guard is positive on the whole interval for the size of the series alone
+    /// (|`T_k`| ≤ 1, and its slope ≤ k²).
     pub(super) fn stay_above(&self) -> bool {
         let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);
         for (k, c) in self.series.iter().enumerate().skip(1) {

@@ -5,7 +5,8 @@ use super::{Crossing, Doubt, Evidence, Undefined};
 
 /// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
-    // Where rounding hides the guard's sign all around, the root that is known decides: a ball does not fall through a floor at height one.
+    // Where rounding hides the guard's sign all around, the root that is known decides: a ball does
+    // not fall through a floor at height one.
     let known = Crossing::after(near);
     let mut step = near.next_up() - near;
     let (mut a, mut b) = (near, near);
@@ -38,7 +39,8 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
     Some(Crossing { inside: a, outside: b, root: near, rest: 0.0 })
 }
 
-/// Neighbouring numbers within `a..b` between which the guard falls, not negative at `a` and negative at `b`.
+/// Neighbouring numbers within `a..b` between which the guard falls, not negative at `a` and
+/// negative at `b`.
 pub(crate) fn narrowed(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> (f64, f64) {
     while a.next_up() < b {
         let middle = 0.5 * (a + b);
@@ -58,8 +60,9 @@ pub(super) enum Passage {
     Leap,
 }
 
-/// A guard is looked at so many times farther from its change of sign than where that is seen: a root of up to the fourth order has grown at least fourfold
-/// there, and so has shrunk what comes from a pole of the order 1/5 and higher.
+/// A guard is looked at so many times farther from its change of sign than where that is seen: a
+/// root of up to the fourth order has grown at least fourfold there, and so has shrunk what comes
+/// from a pole of the order 1/5 and higher.
 const FARTHER: f64 = 1024.0;
 /// What a guard grows or shrinks by, by then.
 const CLEARLY: f64 = 4.0;
@@ -68,7 +71,8 @@ const CLEARLY: f64 = 4.0;
 const TRIES: usize = 4;
 
 impl Search<'_> {
-    /// How the guard changes its sign at a crossing between neighbouring times; what is no root is noted.
+    /// How the guard changes its sign at a crossing between neighbouring times; what is no root is
+    /// noted.
     pub(super) fn passage(&mut self, &Crossing { inside, outside, .. }: &Crossing) -> Result<Passage, Undefined> {
         let near = self.value(inside)?.abs() + self.value(outside)?.abs();
         if near.is_finite() && near <= ROUNDING * self.largest {
@@ -91,7 +95,8 @@ impl Search<'_> {
         Ok(passage)
     }
 
-    /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, and close to a `guess` if there is one.
+    /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, and close to a
+    /// `guess` if there is one.
     pub(super) fn refined(&mut self, a: f64, b: f64, guess: Option<f64>) -> Result<Crossing, Undefined> {
         if let Some(guess) = guess
             && let Some([inside, outside]) = self.around(guess, a, b)?
@@ -107,7 +112,8 @@ impl Search<'_> {
             }
         }
         if a == 0.0 && self.spent {
-            // Rounding may leave the guard negative at the spent root and after it: begin where it is seen to have risen.
+            // Rounding may leave the guard negative at the spent root and after it: begin where it
+            // is seen to have risen.
             let mut middle = 0.5 * b;
             while self.value(middle)? <= 0.0 {
                 if middle <= b * AT_START {
@@ -127,7 +133,8 @@ impl Search<'_> {
         self.narrowed((a, above), (b, below))
     }
 
-    /// Two times close to a `guess` of the only fall in `[a, b]` between which the guard falls, and its values there; nothing if these are not found at once.
+    /// Two times close to a `guess` of the only fall in `[a, b]` between which the guard falls, and
+    /// its values there; nothing if these are not found at once.
     fn around(&mut self, guess: f64, a: f64, b: f64) -> Result<Option<[(f64, f64); 2]>, Undefined> {
         let mut near = (guess, self.value(guess)?);
         let end = self.value(b)?;
@@ -148,8 +155,9 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// The fall between an inner and an outer time at which the guard has these values, by ITP, which is never slower than bisection by more than one step
-    /// (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
+    /// The fall between an inner and an outer time at which the guard has these values, by ITP,
+    /// which is never slower than bisection by more than one step (I. Oliveira, R. Takahashi, ACM
+    /// TOMS 47 (2021) 5, doi:10.1145/3423597).
     fn narrowed(
         &mut self,
         (mut a, mut above): (f64, f64),

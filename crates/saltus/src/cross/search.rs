@@ -16,22 +16,27 @@ pub(crate) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
 const FEW: f64 = 64.0;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
 pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
-/// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts with the exact slope, but its
-/// higher powers carry the error of the step and the rounding of its stages.
+/// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts
+/// with the exact slope, but its higher powers carry the error of the step and the rounding of its
+/// stages.
 pub(crate) const ROUGH: f64 = 1e-6;
-/// Roundings of a guard's largest value that its values near zero may be off by, where it cancels: what is rougher is no rounding.
+/// Roundings of a guard's largest value that its values near zero may be off by, where it cancels:
+/// what is rougher is no rounding.
 const CANCELLED: f64 = 1024.0;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
-/// A guard that falls from a spent root by this more than its samples leave open does so: that is the fall that was spent.
+/// A guard that falls from a spent root by this more than its samples leave open does so: that is
+/// the fall that was spent.
 const SURELY: f64 = 1024.0;
 
-/// Compiled once for every guard: it is much code, and a call through a table costs little beside a guard on a dense output.
+/// Compiled once for every guard: it is much code, and a call through a table costs little beside a
+/// guard on a dense output.
 pub(super) struct Search<'a> {
     pub(super) guard: &'a mut dyn FnMut(f64) -> f64,
     pub(super) span: f64,
-    /// The spacing of the guard's own time, which may be coarser than that of numbers within the interval.
+    /// The spacing of the guard's own time, which may be coarser than that of numbers within the
+    /// interval.
     pub(super) tick: f64,
     /// Whether the root at the start is spent.
     pub(super) spent: bool,
@@ -39,17 +44,20 @@ pub(super) struct Search<'a> {
     pub(super) base: f64,
     /// How the guard leaves a spent root at the start, as far as its samples have shown.
     pub(super) departure: Option<Departure>,
-    /// What a guard on a step is rough by: close to its start, where the solution is zero but for rounding, it is known no better than
-    /// to this times the square of the part of the step.
+    /// What a guard on a step is rough by: close to its start, where the solution is zero but for
+    /// rounding, it is known no better than to this times the square of the part of the step.
     rough: f64,
-    /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros after it are rounding and no plateau.
+    /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros
+    /// after it are rounding and no plateau.
     falls_smoothly: bool,
-    /// How far a guard that is zero at an open start may have been off on the shortest stretch on which it was seen to rise from there.
+    /// How far a guard that is zero at an open start may have been off on the shortest stretch on
+    /// which it was seen to rise from there.
     pub(super) rise: Option<f64>,
     evaluations: u32,
     /// The largest magnitude of the guard met so far.
     pub(super) largest: f64,
-    /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on one.
+    /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on
+    /// one.
     pub(super) flat: Option<f64>,
     evidence: Evidence,
     /// Between which times the samples of the whole interval turn up from their least.
@@ -83,7 +91,8 @@ pub(super) struct Stretch {
     a: f64,
     b: f64,
     depth: u32,
-    /// How far the guard may be from its polynomial: from the one that is known, or from the interpolant on the interval of which this is a half.
+    /// How far the guard may be from its polynomial: from the one that is known, or from the
+    /// interpolant on the interval of which this is a half.
     margin: f64,
     known: Option<Bernstein>,
 }
@@ -124,7 +133,8 @@ pub(super) enum Part {
 }
 
 impl<'a> Search<'a> {
-    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding spoils it, and sees times that are `tick` apart.
+    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding
+    /// spoils it, and sees times that are `tick` apart.
     pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64, tick: f64) -> Self {
         Self {
             guard,
@@ -193,7 +203,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// On which side the guard was shortly before it became zero at the start: at the last time that differs from it.
+    /// On which side the guard was shortly before it became zero at the start: at the last time
+    /// that differs from it.
     fn side_before(&mut self) -> Side {
         let mut back = self.span * ROUNDING;
         while back < self.span {
@@ -257,7 +268,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The polynomial in place of the guard on a stretch: the one that is known, or its interpolant.
+    /// The polynomial in place of the guard on a stretch: the one that is known, or its
+    /// interpolant.
     fn seen(&mut self, stretch: &Stretch, side: Side) -> Seen {
         let &Stretch { a, b, depth, margin, known } = stretch;
         if let Some(p) = known {
@@ -283,7 +295,8 @@ impl<'a> Search<'a> {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
             self.doubt_noise(&q, b, sampled)?;
         }
-        // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the guard's own rounding.
+        // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the
+        // guard's own rounding.
         let resolved = known.is_some() || margin <= 1e-4 * scale || margin >= 0.1 * whole;
         let from = self.flat.unwrap_or(a);
         if leaving
@@ -341,7 +354,8 @@ impl<'a> Search<'a> {
         }))
     }
 
-    /// What samples say of a guard of this `scale` that is near zero by no more than a few margins, or goes in steps.
+    /// What samples say of a guard of this `scale` that is near zero by no more than a few margins,
+    /// or goes in steps.
     fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
         let &Stretch { a, b, ref known, .. } = stretch;
         let rounding = scale <= 8.0 * margin && (known.is_some() || margin <= ROUNDING * self.largest);
@@ -349,7 +363,8 @@ impl<'a> Search<'a> {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
-                // Too close to zero for the polynomial that is known, whose margin is that of the whole step: its own values tell more.
+                // Too close to zero for the polynomial that is known, whose margin is that of the
+                // whole step: its own values tell more.
                 Look::Smooth if known.is_some() => {
                     return self.part(&Stretch { margin: f64::INFINITY, known: None, ..*stretch }, side);
                 }
@@ -359,8 +374,9 @@ impl<'a> Search<'a> {
         self.halved(stretch, margin, side)
     }
 
-    /// A guard that comes up from its spent root as the square of time, the curve `q` with that root divided out, and is rough until then by more than
-    /// rounding, its `margin`: two more crossings may hide there.
+    /// A guard that comes up from its spent root as the square of time, the curve `q` with that
+    /// root divided out, and is rough until then by more than rounding, its `margin`: two more
+    /// crossings may hide there.
     fn doubt_noise(&mut self, q: &Bernstein, b: f64, margin: f64) -> Result<(), Undefined> {
         let (slope, bend) = (q.start().abs(), q.end());
         // A parabola through the root is nowhere before that farther from it than slope² / 4 bend.
@@ -384,7 +400,8 @@ impl<'a> Search<'a> {
         self.rough * (s / self.span).powi(2)
     }
 
-    /// Whether the guard is above its spent start anywhere in a row of times that shrink towards it.
+    /// Whether the guard is above its spent start anywhere in a row of times that shrink towards
+    /// it.
     fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
         let mut s = b;
         for _ in 0..8 {
@@ -396,7 +413,8 @@ impl<'a> Search<'a> {
         Ok(false)
     }
 
-    /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter times, and so not rounding.
+    /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter
+    /// times, and so not rounding.
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {
             let shorter = self.sampled(0.0, part * b)?.proxy().p.without_root_at_start().start();

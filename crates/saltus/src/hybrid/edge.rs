@@ -42,8 +42,8 @@ impl<'a, S: State> Edge<'a, S> {
         Self::of(Some(Box::new(guard)), Box::new(move |t, x| Ok(reset(t, x))))
     }
 
-    /// With a reset that may fail: the run then fails with its [`Refusal`], with time, mode, edge and
-    /// state.
+    /// With a reset that may fail: the run then fails with its [`Refusal`], with time, mode, edge
+    /// and state.
     ///
     /// ```
     /// use saltus::{Edge, ErrorKind, Hybrid, Refusal, Simulation};
@@ -92,11 +92,12 @@ impl<'a, S: State> Edge<'a, S> {
         self
     }
 
-    /// With its inverse, so that a run can go [backwards](crate::Reversed) through it: the `image` margin, positive in the mode it leads to and zero just
-    /// after the jump, and x⁻ from x⁺. See [`Invertible`](crate::Invertible).
+    /// With its inverse, so that a run can go [backwards](crate::Reversed) through it: the `image`
+    /// margin, positive in the mode it leads to and zero just after the jump, and x⁻ from x⁺. See
+    /// [`Invertible`](crate::Invertible).
     ///
-    /// A run backwards is refused where it could meet an edge without an inverse. An edge that is never met backwards may be given
-    /// the margin 1.
+    /// A run backwards is refused where it could meet an edge without an inverse. An edge that is
+    /// never met backwards may be given the margin 1.
     ///
     /// ```
     /// use saltus::nalgebra::{self, Vector2, vector};

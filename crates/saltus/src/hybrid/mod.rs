@@ -41,13 +41,15 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// # Ok::<(), saltus::Error>(())
 /// ```
 ///
-/// Where speed matters, implement [`Automaton`](crate::Automaton) instead: the closures are called through pointers.
+/// Where speed matters, implement [`Automaton`](crate::Automaton) instead: the closures are called
+/// through pointers.
 ///
-/// A name may be made as a program runs: an owned one is kept until the program ends, once however often it is given.
-/// [`name`](Self::name) finds it again.
+/// A name may be made as a program runs: an owned one is kept until the program ends, once however
+/// often it is given. [`name`](Self::name) finds it again.
 ///
-/// A name that is misspelt (a mode that an edge leads to or from, an edge that [`entry`](Self::entry) or [`affine`](Self::affine) is about)
-/// is found when a run starts, which then fails with an error that names it and suggests the nearest.
+/// A name that is misspelt (a mode that an edge leads to or from, an edge that
+/// [`entry`](Self::entry) or [`affine`](Self::affine) is about) is found when a run starts, which
+/// then fails with an error that names it and suggests the nearest.
 ///
 /// ```
 /// use saltus::{ErrorKind, Hybrid, Simulation};
@@ -83,7 +85,8 @@ struct Mode<'a, S> {
     stops: Vec<Clock>,
 }
 
-/// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it is.
+/// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it
+/// is.
 ///
 /// ```
 /// use saltus::Link;
@@ -91,7 +94,8 @@ struct Mode<'a, S> {
 /// assert_eq!(format!("{link:?}"), "flight -> rest (edge 1)");
 /// ```
 ///
-/// With the feature `serde` it is read from text that lasts as long as the program: see [`Checkpoint`](crate::Checkpoint).
+/// With the feature `serde` it is read from text that lasts as long as the program: see
+/// [`Checkpoint`](crate::Checkpoint).
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Link {
@@ -129,7 +133,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         Self::default()
     }
 
-    /// Declares a mode and its flow f of x' = f(t, x). From an automaton that declares one twice no run starts.
+    /// Declares a mode and its flow f of x' = f(t, x). From an automaton that declares one twice no
+    /// run starts.
     #[must_use]
     pub fn mode(mut self, name: impl Into<Cow<'static, str>>, flow: impl Fn(f64, &S) -> S + Send + Sync + 'a) -> Self {
         let name = kept(name);
@@ -138,7 +143,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see [`Solution::Series`](crate::Solution::Series).
+    /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see
+    /// [`Solution::Series`](crate::Solution::Series).
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -168,7 +174,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Gives the mode's exact solution from (t, x), where it is a polynomial in time; no step is then taken in it, and it needs no flow.
+    /// Gives the mode's exact solution from (t, x), where it is a polynomial in time; no step is
+    /// then taken in it, and it needs no flow.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
@@ -192,9 +199,11 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t, x⁻) into `to`.
+    /// Declares an edge: its guard, positive inside the domain of `from`, and its reset x⁺ = r(t,
+    /// x⁻) into `to`.
     ///
-    /// Edges that cross at one time are taken in the order in which they are declared. A reset that may fail: [`Edge::fallible`].
+    /// Edges that cross at one time are taken in the order in which they are declared. A reset that
+    /// may fail: [`Edge::fallible`].
     #[must_use]
     pub fn edge(
         self,
@@ -248,8 +257,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// Says when the flow of a mode is not smooth in time: a step ends at each of these times, and nothing else happens. See
-    /// [`Automaton::stops`](crate::Automaton::stops).
+    /// Says when the flow of a mode is not smooth in time: a step ends at each of these times, and
+    /// nothing else happens. See [`Automaton::stops`](crate::Automaton::stops).
     ///
     /// ```
     /// use saltus::{Clock, Hybrid, Simulation};
@@ -287,7 +296,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.edge_with(from, from, Edge::new(guard, |_t, x: &S| *x).terminal())
     }
 
-    /// [`Edge::entry`] of every edge with a guard declared so far from `from` to `to`. A [`terminal`](Self::terminal) edge leads from its mode to itself.
+    /// [`Edge::entry`] of every edge with a guard declared so far from `from` to `to`. A
+    /// [`terminal`](Self::terminal) edge leads from its mode to itself.
     #[must_use]
     pub fn entry(mut self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>, entry: Entry) -> Self {
         self.between("entry", kept(from), kept(to), |edge| edge.about.entry = entry);
@@ -318,9 +328,11 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// What lies beyond a Zeno limit reached in `from`: the mode `to`, with the state given by `reset` from the state at the limit.
+    /// What lies beyond a Zeno limit reached in `from`: the mode `to`, with the state given by
+    /// `reset` from the state at the limit.
     ///
-    /// Where jumps accumulate that go from mode to mode, the limit may be reached in any of them: say it for each.
+    /// Where jumps accumulate that go from mode to mode, the limit may be reached in any of them:
+    /// say it for each.
     #[must_use]
     pub fn beyond(
         mut self,

@@ -1,4 +1,5 @@
-//! Whether the names of an automaton of closures are those of its modes and edges, and which was meant.
+//! Whether the names of an automaton of closures are those of its modes and edges, and which was
+//! meant.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -23,8 +24,8 @@ impl<S: State> Hybrid<'_, S> {
         }
     }
 
-    /// Looks for the very name first, which is what a run mostly has: to compare letters takes longer than many a guard.
-    /// What keeps every run from starting.
+    /// Looks for the very name first, which is what a run mostly has: to compare letters takes
+    /// longer than many a guard. What keeps every run from starting.
     pub(super) fn find_flaw(&self) -> Option<String> {
         if let Some((method, name)) = self.twice {
             return Some(format!(
@@ -61,8 +62,8 @@ impl<S: State> Hybrid<'_, S> {
     }
 }
 
-/// How many characters must be changed, added, left out or exchanged with their neighbour to make one name of another
-/// (optimal string alignment).
+/// How many characters must be changed, added, left out or exchanged with their neighbour to make
+/// one name of another (optimal string alignment).
 fn distance(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut rows = [Vec::new(), (0..=other.len()).collect::<Vec<_>>()];

@@ -2,7 +2,8 @@
 
 use super::jet::{Jet, convolved, product, squared, weighted};
 
-/// Each with the recurrence that it comes from; where a function has no series (√a at a = 0), neither has the solution, and steps are taken there.
+/// Each with the recurrence that it comes from; where a function has no series (√a at a = 0),
+/// neither has the solution, and steps are taken there.
 impl Jet<'_> {
     /// 1/a.
     #[inline]
@@ -81,7 +82,8 @@ impl Jet<'_> {
     #[inline]
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
-        // Each needs the other's lower coefficients only; at its turn the cosine's row, the next one, holds those of the passes before.
+        // Each needs the other's lower coefficients only; at its turn the cosine's row, the next
+        // one, holds those of the passes before.
         let sine = self.function(f64::sin, |_, _, _| 0.0);
         let cosine = self.function(f64::cos, |_, _, _| 0.0);
         sine.together(cosine, self, |k, a, s, c| {

@@ -7,9 +7,10 @@ use super::{MOST_COEFFICIENTS, Pass, Row};
 
 /// A number that carries the Taylor series of a function of time, a₀ + a₁ s + a₂ s² + …
 ///
-/// Has the arithmetic of `f64`, with `f64` on either side of an operator, and the functions that have a recurrence for their series (R. Moore, *Interval
-/// Analysis*, 1966, chapter 11; À. Jorba, M. Zou, Experimental Mathematics 14 (2005) 99, doi:10.1080/10586458.2005.10128904). Only a
-/// flow that is given to [`Series::flow`](super::Series::flow) meets one.
+/// Has the arithmetic of `f64`, with `f64` on either side of an operator, and the functions that
+/// have a recurrence for their series (R. Moore, *Interval Analysis*, 1966, chapter 11; À. Jorba,
+/// M. Zou, Experimental Mathematics 14 (2005) 99, doi:10.1080/10586458.2005.10128904). Only a flow
+/// that is given to [`Series::flow`](super::Series::flow) meets one.
 ///
 /// ```
 /// use saltus::{Hybrid, Jet, Simulation};
@@ -59,8 +60,9 @@ impl<'a> Jet<'a> {
         }
     }
 
-    /// `of` the value of a constant; for another number the next place on the tape, whose coefficient k is `next(k, a, c)`, where a are its
-    /// coefficients and c those known so far of the result.
+    /// `of` the value of a constant; for another number the next place on the tape, whose
+    /// coefficient k is `next(k, a, c)`, where a are its coefficients and c those known so far of
+    /// the result.
     #[inline(always)]
     pub(super) fn function(self, of: impl FnOnce(f64) -> f64, next: impl FnOnce(usize, &Row, &Row) -> f64) -> Self {
         match self.0 {
@@ -114,8 +116,9 @@ impl<'a> Jet<'a> {
         })
     }
 
-    /// Gives `self` and `other`, which only hold places as yet, their next coefficients `next(k, a, c, d)`, where a are those of the number `of` which they are
-    /// functions, c and d theirs known so far.
+    /// Gives `self` and `other`, which only hold places as yet, their next coefficients
+    /// `next(k, a, c, d)`, where a are those of the number `of` which they are functions, c and d
+    /// theirs known so far.
     #[inline]
     pub(super) fn together(self, other: Self, of: Self, next: impl FnOnce(usize, &Row, &Row, &Row) -> (f64, f64)) {
         if let (Placed(pass, c), Placed(_, d), Placed(_, a)) = (self.0, other.0, of.0) {
@@ -176,7 +179,8 @@ pub(super) fn weighted(a: &Row, b: &Row, last: usize, k: usize) -> f64 {
     sum
 }
 
-/// Σ aⱼ b₋ⱼ, the second list taken from its end. The outermost numbers are the latest: they come last, so that nothing else waits for them.
+/// Σ aⱼ b₋ⱼ, the second list taken from its end. The outermost numbers are the latest: they come
+/// last, so that nothing else waits for them.
 #[inline]
 pub(super) fn convolved(a: &[Cell<f64>], b: &[Cell<f64>]) -> f64 {
     let ([first, inner @ .., last], [start, within @ .., end]) = (a, b) else { return dot(a, b) };

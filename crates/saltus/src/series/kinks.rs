@@ -1,4 +1,5 @@
-//! Where a flow has kinks along a series: where a number comes to zero of which it takes the absolute value.
+//! Where a flow has kinks along a series: where a number comes to zero of which it takes the
+//! absolute value.
 
 use std::cell::RefCell;
 
@@ -22,7 +23,8 @@ pub(crate) struct Kinks(RefCell<Vec<Kink>>);
 pub(crate) enum NextKink {
     /// None as far as was asked.
     Nowhere,
-    /// After so many units of time the number at this `place` changes its sign; after none, it is about to.
+    /// After so many units of time the number at this `place` changes its sign; after none, it is
+    /// about to.
     At { units: f64, place: usize },
     /// The coefficients do not show whether there is one up to there.
     Unclear { units: f64 },
@@ -38,7 +40,8 @@ impl Kinks {
         self.0.get_mut().retain(|kink| Some(kink.place) == kept);
     }
 
-    /// The sign of the number at a place whose first coefficient that is not zero, as far as is known, is this: that of it, unless the number has turned.
+    /// The sign of the number at a place whose first coefficient that is not zero, as far as is
+    /// known, is this: that of it, unless the number has turned.
     pub(super) fn sign(&self, place: usize, leading: f64) -> f64 {
         let sign = if leading == 0.0 { 0.0 } else { leading.signum() };
         let mut kinks = self.0.borrow_mut();
@@ -84,7 +87,8 @@ impl Kinks {
 }
 
 impl Kink {
-    /// Where on the way to `span` the number falls through zero from the side on which it starts: at once, if it starts at zero and is about to.
+    /// Where on the way to `span` the number falls through zero from the side on which it starts:
+    /// at once, if it starts at zero and is about to.
     fn fall(&self, row: &Row, order: usize, span: f64) -> FirstFall {
         let sign = self.sign;
         if sign == 0.0 {

@@ -19,8 +19,8 @@ pub(crate) const MOST_COEFFICIENTS: usize = 32;
 /// The coefficients of one number.
 type Row = [Cell<f64>; MOST_COEFFICIENTS];
 
-/// The Taylor series of a solution around the present state, which a model brings about by writing its flow over [`Jet`]s: see
-/// [`Solution::Series`](crate::Solution::Series).
+/// The Taylor series of a solution around the present state, which a model brings about by writing
+/// its flow over [`Jet`]s: see [`Solution::Series`](crate::Solution::Series).
 pub struct Series<'a, S> {
     tape: &'a mut Tape,
     t: f64,
@@ -35,15 +35,16 @@ pub struct Series<'a, S> {
 }
 
 impl<'a, S: State> Series<'a, S> {
-    /// A series around the state `x` at time `t`, its coefficients those of time in `unit`s: on from the order `known` to another.
+    /// A series around the state `x` at time `t`, its coefficients those of time in `unit`s: on
+    /// from the order `known` to another.
     pub(crate) fn around(tape: &'a mut Tape, t: f64, x: &'a S, known: usize, order: usize, unit: f64) -> Self {
         Self { tape, t, x, known, order: order.min(MOST_COEFFICIENTS - 1), unit, mismatch: Some(0) }
     }
 
     /// Works out the series of x' = `flow`(t, x), N coordinates.
     ///
-    /// The flow is gone through once for each order of the series. It must take the same way each time, which it does as long as it decides by
-    /// [`Jet::value`] or by numbers of the model.
+    /// The flow is gone through once for each order of the series. It must take the same way each
+    /// time, which it does as long as it decides by [`Jet::value`] or by numbers of the model.
     #[inline]
     pub fn flow<const N: usize>(&mut self, flow: impl for<'j> Fn(Jet<'j>, [Jet<'j>; N]) -> [Jet<'j>; N]) {
         if N != self.x.len() {
@@ -64,7 +65,8 @@ impl<'a, S: State> Series<'a, S> {
                     }
                     k += 1;
                 }
-                // The first pass shows how many numbers there are on the way; if a later one does, the flow went another way.
+                // The first pass shows how many numbers there are on the way; if a later one does,
+                // the flow went another way.
                 Err(needed) if k == 0 && !seen => {
                     self.tape.reserve(needed);
                     seen = true;
@@ -108,8 +110,9 @@ pub(crate) const RECIPROCALS: [f64; MOST_COEFFICIENTS] = {
     list
 };
 
-/// The numbers that an evaluation of a flow comes by, in the order in which it does, each with its coefficients as far as they are known: time, the coordinates, and
-/// what the flow computes of them.
+/// The numbers that an evaluation of a flow comes by, in the order in which it does, each with its
+/// coefficients as far as they are known: time, the coordinates, and what the flow computes of
+/// them.
 pub(crate) struct Tape {
     rows: Vec<Row>,
     /// In place of rows that there are too few of.
@@ -117,7 +120,8 @@ pub(crate) struct Tape {
     kinks: Kinks,
 }
 
-/// One way through a flow: each number is found at its place on the tape, and gets its coefficient `k`.
+/// One way through a flow: each number is found at its place on the tape, and gets its coefficient
+/// `k`.
 struct Pass<'a> {
     rows: &'a [Row],
     spare: &'a Row,
@@ -158,7 +162,8 @@ impl Tape {
         }
     }
 
-    /// Before a series from another state: one at which the number at the place of a `kink` changes its sign, if it does.
+    /// Before a series from another state: one at which the number at the place of a `kink` changes
+    /// its sign, if it does.
     pub(crate) fn anew(&mut self, kink: Option<usize>) {
         self.kinks.clear_but(kink);
         if let Some(place) = kink {
@@ -176,7 +181,8 @@ impl Tape {
         self.kinks.turn(place);
     }
 
-    /// Coefficient `k` of the flow, given those of the state up to the same; or how many rows that takes, if there are fewer.
+    /// Coefficient `k` of the flow, given those of the state up to the same; or how many rows that
+    /// takes, if there are fewer.
     #[inline]
     fn pass<const N: usize>(
         &self,

@@ -3,15 +3,19 @@
 use super::{Dop853, Either, Rodas5P, Stepper, Trial, Tsit5};
 use crate::state::State;
 
-/// The default: [`Tsit5`] down to a relative tolerance of 1e-7, [`Dop853`] below, and [`Rodas5P`] where the flow is stiff.
+/// The default: [`Tsit5`] down to a relative tolerance of 1e-7, [`Dop853`] below, and [`Rodas5P`]
+/// where the flow is stiff.
 ///
-/// Between the first two it is chosen once, at the start of a run; a step pays a branch and some copies for it. Where the two cost the same for the same
-/// error was measured: at a tolerance of 1e-5 to 1e-6 on the Arenstorf orbit, where steps are many, and of 1e-7 to 1e-8 for a ball in air, whose arcs end after a
-/// step or two. A flow with a kink inside an arc keeps [`Tsit5`] ahead down to 1e-9.
+/// Between the first two it is chosen once, at the start of a run; a step pays a branch and some
+/// copies for it. Where the two cost the same for the same error was measured: at a tolerance of
+/// 1e-5 to 1e-6 on the Arenstorf orbit, where steps are many, and of 1e-7 to 1e-8 for a ball in
+/// air, whose arcs end after a step or two. A flow with a kink inside an arc keeps [`Tsit5`] ahead
+/// down to 1e-9.
 ///
-/// Every 32 steps the largest eigenvalue λ of the flow's Jacobian is estimated, for three evaluations. If steps h are so long time and again that h |λ| is
-/// as large as the explicit method is stable to, stability limits them, the flow is stiff, and [`Rodas5P`] goes on; and the other way round.
-/// [`Stats::stiff`](crate::Stats::stiff) tells its steps.
+/// Every 32 steps the largest eigenvalue λ of the flow's Jacobian is estimated, for three
+/// evaluations. If steps h are so long time and again that h |λ| is as large as the explicit method
+/// is stable to, stability limits them, the flow is stiff, and [`Rodas5P`] goes on; and the other
+/// way round. [`Stats::stiff`](crate::Stats::stiff) tells its steps.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
@@ -45,8 +49,8 @@ impl Auto {
     }
 }
 
-/// How far along the negative real axis the methods are stable (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
-/// II*, IV.2, for the second).
+/// How far along the negative real axis the methods are stable (E. Hairer, G. Wanner, *Solving
+/// Ordinary Differential Equations II*, IV.2, for the second).
 const TSIT5: f64 = 3.5;
 const DOP853: f64 = 6.1;
 

@@ -3,19 +3,24 @@
 use super::{Differences, Stepper, Trial, closing, difference, weighted};
 use crate::state::State;
 
-/// The explicit Runge–Kutta method of order 8 by Dormand and Prince with the error estimate and the dense output of Hairer and Wanner.
+/// The explicit Runge–Kutta method of order 8 by Dormand and Prince with the error estimate and the
+/// dense output of Hairer and Wanner.
 ///
-/// Twelve flow evaluations a step (the thirteenth is the first of the next step) and three more for the dense output of an accepted one,
-/// which has order 7 and is continuous with its first derivative. The error estimate joins those of embedded solutions of order 5 and 3,
-/// e = e₅² / √(e₅² + e₃² / 100), and shrinks as h⁸.
+/// Twelve flow evaluations a step (the thirteenth is the first of the next step) and three more for
+/// the dense output of an accepted one, which has order 7 and is continuous with its first
+/// derivative. The error estimate joins those of embedded solutions of order 5 and 3, e = e₅² /
+/// √(e₅² + e₃² / 100), and shrinks as h⁸.
 ///
-/// Use it for smooth flows that are not stiff wherever accuracy is worth having, from a relative tolerance of about 1e-7 down: on the
-/// Arenstorf orbit it needs half the evaluations of [`Tsit5`](super::Tsit5) for an error of 1e-6 and a quarter of them for 1e-9.
-/// Its steps are long, so arcs that end by a jump after a step or two gain less. A flow with a kink inside an arc takes its order away.
+/// Use it for smooth flows that are not stiff wherever accuracy is worth having, from a relative
+/// tolerance of about 1e-7 down: on the Arenstorf orbit it needs half the evaluations of
+/// [`Tsit5`](super::Tsit5) for an error of 1e-6 and a quarter of them for 1e-9. Its steps are long,
+/// so arcs that end by a jump after a step or two gain less. A flow with a kink inside an arc takes
+/// its order away.
 ///
-/// Source: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd edition, Springer 1993,
-/// II.5 (the method, p. 181), II.6 (the dense output, p. 191) and the appendix (the program DOP853), doi:10.1007/978-3-540-78862-1;
-/// P. J. Prince, J. R. Dormand, *High order embedded Runge–Kutta formulae*, J. Comput. Appl. Math. 7 (1981) 67–75,
+/// Source: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd
+/// edition, Springer 1993, II.5 (the method, p. 181), II.6 (the dense output, p. 191) and the
+/// appendix (the program DOP853), doi:10.1007/978-3-540-78862-1; P. J. Prince, J. R. Dormand, *High
+/// order embedded Runge–Kutta formulae*, J. Comput. Appl. Math. 7 (1981) 67–75,
 /// doi:10.1016/0771-050X(81)90010-3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dop853;
@@ -84,7 +89,8 @@ const B: [f64; 7] = [
     0.201_365_400_804_030_34,
     0.044_710_615_727_772_59,
 ];
-/// Weights of the solution less those of the embedded one of order 5, and less those of the one of order 3.
+/// Weights of the solution less those of the embedded one of order 5, and less those of the one of
+/// order 3.
 const E5: [f64; 7] = [
     -1.225_156_446_376_204_4,
     -0.495_758_949_657_250_2,
@@ -132,7 +138,8 @@ const A16: [f64; 7] = [
     2.947_514_789_152_772_4,
     -9.150_958_472_179_87,
 ];
-/// The weights, in the last four terms of the dense output, of the stages kept, the slope at the end and the three stages above.
+/// The weights, in the last four terms of the dense output, of the stages kept, the slope at the
+/// end and the three stages above.
 const D: [[f64; 11]; 4] = [
     [
         0.566_714_953_519_377_7,
@@ -336,9 +343,10 @@ mod tests {
         }
     }
 
-    /// The driver `dr_dop853.f` that comes with the program: Van der Pol's equation with ε = 1e-3 over `0..=2`, tolerances 1e-9.
-    /// It reports 1348 steps accepted, 121 rejected and 21553 evaluations. Two of them serve its start, where one is needed,
-    /// and it spares the slope at the end of a rejected step.
+    /// The driver `dr_dop853.f` that comes with the program: Van der Pol's equation with ε = 1e-3
+    /// over `0..=2`, tolerances 1e-9. It reports 1348 steps accepted, 121 rejected and 21553
+    /// evaluations. Two of them serve its start, where one is needed, and it spares the slope at
+    /// the end of a rejected step.
     #[test]
     fn the_steps_are_those_of_the_reference_program() {
         let mut count = 0;

@@ -3,7 +3,8 @@
 use super::{Stepper, Trial};
 use crate::state::State;
 
-/// One of two methods, or what one of them keeps: a choice that is made at run time, where a model is to be compiled once.
+/// One of two methods, or what one of them keeps: a choice that is made at run time, where a model
+/// is to be compiled once.
 ///
 /// A step pays a branch and some copies for it. Of methods that count Jacobians, none are counted.
 ///

@@ -1,4 +1,5 @@
-//! Steppers: each advances a smooth flow by one trial step and offers a polynomial in between. They know nothing of guards.
+//! Steppers: each advances a smooth flow by one trial step and offers a polynomial in between. They
+//! know nothing of guards.
 //!
 //! | stepper | order | dense output | flows per step | made for |
 //! |---|---|---|---|---|
@@ -25,8 +26,9 @@ use crate::state::State;
 
 /// A one-step method with an error estimate and dense output.
 ///
-/// A stepper is asked for a [`trial`](Stepper::trial) and then for the size of its [`error`](Stepper::error);
-/// only if the trial is accepted is its [`dense`](Stepper::dense) output asked for. It remembers nothing from one step to the next.
+/// A stepper is asked for a [`trial`](Stepper::trial) and then for the size of its
+/// [`error`](Stepper::error); only if the trial is accepted is its [`dense`](Stepper::dense) output
+/// asked for. It remembers nothing from one step to the next.
 pub trait Stepper: Copy {
     /// What a trial hands on to its error estimate and its dense output.
     type Stages<S: State>: Copy;
@@ -39,10 +41,12 @@ pub trait Stepper: Copy {
         0
     }
 
-    /// Whether the next step is predicted from how error and step changed together over the last two.
+    /// Whether the next step is predicted from how error and step changed together over the last
+    /// two.
     ///
-    /// That saves evaluations where accuracy alone limits the step, as it does for a stiff stepper or a tight tolerance. Where stability limits
-    /// it, as it may an explicit stepper's, the proportional-integral control that is used otherwise rejects fewer steps.
+    /// That saves evaluations where accuracy alone limits the step, as it does for a stiff stepper
+    /// or a tight tolerance. Where stability limits it, as it may an explicit stepper's, the
+    /// proportional-integral control that is used otherwise rejects fewer steps.
     fn predictive(&self) -> bool {
         false
     }
@@ -50,17 +54,19 @@ pub trait Stepper: Copy {
     /// The power of h with which the error estimate shrinks.
     fn error_order(&self) -> f64;
 
-    /// The method to use at this relative tolerance; asked for once, as a run starts. Most methods are one for all.
+    /// The method to use at this relative tolerance; asked for once, as a run starts. Most methods
+    /// are one for all.
     #[must_use]
     fn for_tolerance(self, relative: f64) -> Self {
         let _ = relative;
         self
     }
 
-    /// The h·|λ| up to which the explicit method is stable, of a stepper that has another for stiff flows; none of one that has not.
+    /// The h·|λ| up to which the explicit method is stable, of a stepper that has another for stiff
+    /// flows; none of one that has not.
     ///
-    /// Where steps are as long as that for a flow whose Jacobian has the eigenvalue λ, stability limits them, and
-    /// [`adapted`](Self::adapted) is asked for the other method.
+    /// Where steps are as long as that for a flow whose Jacobian has the eigenvalue λ, stability
+    /// limits them, and [`adapted`](Self::adapted) is asked for the other method.
     #[inline]
     fn stable_to(&self) -> Option<f64> {
         None
@@ -84,13 +90,15 @@ pub trait Stepper: Copy {
         h: f64,
     ) -> Trial<S, Self::Stages<S>>;
 
-    /// The square of how large the estimated local error of a trial is, as `square` measures the error of a state.
+    /// The square of how large the estimated local error of a trial is, as `square` measures the
+    /// error of a state.
     ///
-    /// A method with one estimate returns `square` of it; one with several combines their squares. At most 1 is accepted. The next step waits
-    /// for the answer: no root is taken.
+    /// A method with one estimate returns `square` of it; one with several combines their squares.
+    /// At most 1 is accepted. The next step waits for the answer: no root is taken.
     fn error<S: State>(&self, h: f64, trial: Trial<&S, &Self::Stages<S>>, square: impl Fn(&S) -> f64) -> f64;
 
-    /// How far each coordinate of the dense output is from the start of the step at most; `None` where only the dense output itself can tell.
+    /// How far each coordinate of the dense output is from the start of the step at most; `None`
+    /// where only the dense output itself can tell.
     ///
     /// Where that shows that no guard comes near zero, the dense output is not asked for.
     #[inline]
@@ -99,7 +107,8 @@ pub trait Stepper: Copy {
         None
     }
 
-    /// The polynomial between the two ends of an accepted trial; summed from the highest power down at θ = 1, it is the end to rounding.
+    /// The polynomial between the two ends of an accepted trial; summed from the highest power down
+    /// at θ = 1, it is the end to rounding.
     fn dense<S: State>(
         &self,
         flow: &mut impl FnMut(f64, &S) -> S,
@@ -153,15 +162,18 @@ fn difference<S: State>(y: &S, x: &S) -> S {
     x.with(|i| y.get(i) - x.get(i))
 }
 
-/// The differences of so many coordinates are all in registers. There the optimiser packs them as it finds them, such that those that are ready wait for those that
-/// are not: places, known from the speeds of an earlier stage, for speeds. To look at each by itself, whether it is finite, keeps them apart, and costs less than that
-/// wait: on the Arenstorf orbit a fifth of the run. One or two are best packed, and more are in memory.
+/// The differences of so many coordinates are all in registers. There the optimiser packs them as
+/// it finds them, such that those that are ready wait for those that are not: places, known from
+/// the speeds of an earlier stage, for speeds. To look at each by itself, whether it is finite,
+/// keeps them apart, and costs less than that wait: on the Arenstorf orbit a fifth of the run. One
+/// or two are best packed, and more are in memory.
 const APART: RangeInclusive<usize> = 3..=6;
 
 /// The stages of an explicit step, kept as differences dₖ from the slope at its start.
 ///
-/// With x + h (c f + Σ wₖ dₖ) in place of x + h Σ wₖ kₖ the large weights of opposite signs that methods have act on differences only:
-/// where the slope hardly changes they add no rounding, and a constant slope is integrated to the last digit.
+/// With x + h (c f + Σ wₖ dₖ) in place of x + h Σ wₖ kₖ the large weights of opposite signs that
+/// methods have act on differences only: where the slope hardly changes they add no rounding, and a
+/// constant slope is integrated to the last digit.
 struct Differences<'a, F, S> {
     flow: &'a mut F,
     t: f64,
@@ -171,7 +183,8 @@ struct Differences<'a, F, S> {
 }
 
 impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
-    /// The state that is `c` of the step ahead by these weights. The last difference, for which the others have waited, enters last.
+    /// The state that is `c` of the step ahead by these weights. The last difference, for which the
+    /// others have waited, enters last.
     #[inline]
     fn state<const N: usize>(&self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
         let Self { x, slope, h, .. } = self;
@@ -197,7 +210,8 @@ impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
     }
 }
 
-/// The value, which is not packed with others: the optimiser leaves apart what a call may come between. What this one notes is of no use.
+/// The value, which is not packed with others: the optimiser leaves apart what a call may come
+/// between. What this one notes is of no use.
 #[inline]
 fn apart(value: f64) -> f64 {
     #[cold]
@@ -212,11 +226,11 @@ fn apart(value: f64) -> f64 {
     value
 }
 
-/// The coefficient of θ² with which the polynomial that starts at `x` and has these `first` (of θ) and `higher` (of θ³, θ⁴, …)
-/// coefficients ends at `end`, whatever their rounding.
+/// The coefficient of θ² with which the polynomial that starts at `x` and has these `first` (of θ)
+/// and `higher` (of θ³, θ⁴, …) coefficients ends at `end`, whatever their rounding.
 ///
-/// The coefficient of θ must not serve for this: an arc that ends in a small part of a step sees nothing else, and the rounding of the
-/// others may exceed it.
+/// The coefficient of θ must not serve for this: an arc that ends in a small part of a step sees
+/// nothing else, and the rounding of the others may exceed it.
 #[inline]
 fn closing<S: State>(x: &S, end: &S, first: &S, higher: &[S]) -> S {
     x.with(|i| {
@@ -231,7 +245,8 @@ mod testing {
     use super::Stepper;
     use crate::piece::horner;
 
-    /// x' = x cos t, x(0) = 1, so x = exp(sin t): the largest errors over `0..=1` with steps of `h`, at their ends and inside them.
+    /// x' = x cos t, x(0) = 1, so x = exp(sin t): the largest errors over `0..=1` with steps of
+    /// `h`, at their ends and inside them.
     pub(super) fn errors_with(stepper: impl Stepper, h: f64) -> (f64, f64) {
         let mut flow = |t: f64, x: &f64| x * t.cos();
         let (mut t, mut x) = (0.0, 1.0_f64);

@@ -1,4 +1,5 @@
-//! `Rodas5P`: L-stable, order 5(4), one Jacobian and eight linear solves a step, dense output of order 4.
+//! `Rodas5P`: L-stable, order 5(4), one Jacobian and eight linear solves a step, dense output of
+//! order 4.
 
 use super::{Stepper, Trial, closing, moved, weighted};
 use crate::state::State;
@@ -6,30 +7,38 @@ use crate::time::resolution;
 
 /// The Rosenbrock–Wanner method of order 5(4) by Steinebach: the stepper for stiff flows.
 ///
-/// Eight stages, each a linear system with the matrix 1 - h γ J and γ = 0.2119; no iteration, so nothing that can fail to converge.
-/// Stiffly accurate, with the stability function R(z) = P(z)/(1 - γ z)⁸ of a polynomial P of degree at most 7:
+/// Eight stages, each a linear system with the matrix 1 - h γ J and γ = 0.2119; no iteration, so
+/// nothing that can fail to converge. Stiffly accurate, with the stability function R(z) =
+/// P(z)/(1 - γ z)⁸ of a polynomial P of degree at most 7:
 /// |R(z)| ≤ 1 for Re z ≤ 0 and R(∞) = 0 (L-stable). On the problem of Prothero and Robinson its error is O(h⁴) however stiff that is.
-/// The error estimate has order 4; so has the dense output, which is continuous, with its first derivative where the flow is not stiff.
+/// The error estimate has order 4; so has the dense output, which is continuous, with its first
+/// derivative where the flow is not stiff.
 ///
-/// Use it where a flow is *stiff*: where it forces nearby solutions together on a time scale far below that of the solution itself
-/// (a hard contact, a fast reaction, a relaxation oscillator), so that an explicit stepper takes many short steps however loose the
-/// tolerance. Where nothing is stiff, [`Tsit5`](super::Tsit5) costs less.
+/// Use it where a flow is *stiff*: where it forces nearby solutions together on a time scale far
+/// below that of the solution itself (a hard contact, a fast reaction, a relaxation oscillator), so
+/// that an explicit stepper takes many short steps however loose the tolerance. Where nothing is
+/// stiff, [`Tsit5`](super::Tsit5) costs less.
 ///
-/// The Jacobian J = ∂f/∂x comes from central differences of the flow, 2 n evaluations for n coordinates, and ∂f/∂t from one evaluation
-/// if it is zero and from two otherwise. They probe the flow within 1e-5 of the scale of each coordinate, |x|, |h f| or a millionth
-/// of the largest of either; where it is undefined on one side, the other side serves. Their rounding shows in the work, not in the
-/// result: below a relative tolerance of about 1e-10 the steps shrink faster than the order would have it.
+/// The Jacobian J = ∂f/∂x comes from central differences of the flow, 2 n evaluations for n
+/// coordinates, and ∂f/∂t from one evaluation if it is zero and from two otherwise. They probe the
+/// flow within 1e-5 of the scale of each coordinate, |x|, |h f| or a millionth of the largest of
+/// either; where it is undefined on one side, the other side serves. Their rounding shows in the
+/// work, not in the result: below a relative tolerance of about 1e-10 the steps shrink faster than
+/// the order would have it.
 ///
-/// Up to 16 coordinates nothing is allocated; more cost three allocations per trial, which is little beside their n³.
+/// Up to 16 coordinates nothing is allocated; more cost three allocations per trial, which is
+/// little beside their n³.
 ///
-/// Source: G. Steinebach, *Construction of Rosenbrock–Wanner method `Rodas5P` and numerical benchmarks within the Julia Differential
-/// Equations package*, BIT Numerical Mathematics 63 (2023) 27, doi:10.1007/s10543-023-00967-x. In the form without
-/// matrix-vector products of E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer 1996, IV.7.
+/// Source: G. Steinebach, *Construction of Rosenbrock–Wanner method `Rodas5P` and numerical
+/// benchmarks within the Julia Differential Equations package*, BIT Numerical Mathematics 63 (2023)
+/// 27, doi:10.1007/s10543-023-00967-x. In the form without matrix-vector products of E. Hairer, G.
+/// Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer 1996, IV.7.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rodas5P;
 
 const GAMMA: f64 = 0.211_937_563_194_290_14;
-/// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube root of the rounding of a double.
+/// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube
+/// root of the rounding of a double.
 const REACH: f64 = 6.06e-6;
 /// The times of stages 2 to 5; those of 6 to 8 are at the end.
 const C: [f64; 4] =
@@ -167,7 +176,8 @@ impl Stepper for Rodas5P {
         let u4 = system.solve(&moved(&forced(f, D[3]), GAMMA, &G4, [&u1, &u2, &u3]));
         let f = flow(t + C[3] * h, &moved(x, 1.0, &A5, [&u1, &u2, &u3, &u4]));
         let u5 = system.solve(&moved(&forced(f, D[4]), GAMMA, &G5, [&u1, &u2, &u3, &u4]));
-        // From here on each stage is a solution at the end of the step, and the next one its correction.
+        // From here on each stage is a solution at the end of the step, and the next one its
+        // correction.
         let x6 = moved(x, 1.0, &A6, [&u1, &u2, &u3, &u4, &u5]);
         let f = flow(t + h, &x6);
         let u6 = system.solve(&moved(&forced(f, 0.0), GAMMA, &G6, [&u1, &u2, &u3, &u4, &u5]));
@@ -199,9 +209,10 @@ impl Stepper for Rodas5P {
         let (u, slope) = (trial.stages.0.each_ref(), &trial.stages.1);
         let b = |h: &[f64; 8]| x.with(|i| weighted(h, u, i));
         let (b0, b1, b2) = (b(&H[0]), b(&H[1]), b(&H[2]));
-        // Where the slope at the start agrees with that of the flow to within the error estimate or rounding, it becomes the flow's, by
-        // a multiple of θ (1-θ)³: an arc that ends in a small part of the step sees nothing else. Where the flow is stiff the two do
-        // not agree, and must not.
+        // Where the slope at the start agrees with that of the flow to within the error estimate or
+        // rounding, it becomes the flow's, by a multiple of θ (1-θ)³: an arc that ends in a small
+        // part of the step sees nothing else. Where the flow is stiff the two do not agree, and
+        // must not.
         let bend = x.with(|i| {
             let own = (trial.end.get(i) - x.get(i)) + b0.get(i);
             let rounding: f64 = H[0].iter().zip(u).map(|(b, u)| (b * u.get(i)).abs()).sum::<f64>() * 1e-14;
@@ -255,7 +266,8 @@ impl<const N: usize> Room<N> {
 
 /// Linear systems that share the matrix 1 - h γ J.
 struct System<'a> {
-    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal of U on it.
+    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal
+    /// of U on it.
     matrix: &'a mut [f64],
     work: &'a mut [f64],
     /// Which row was taken first, second, …
@@ -287,7 +299,8 @@ impl System<'_> {
         }
     }
 
-    /// Factors the matrix by Gaussian elimination with row interchanges. A singular one makes every solution infinite or NaN.
+    /// Factors the matrix by Gaussian elimination with row interchanges. A singular one makes every
+    /// solution infinite or NaN.
     #[inline(always)] // with a dimension known at compile time the loops vanish
     fn factor(&mut self) {
         let n = self.order.len();
@@ -372,7 +385,8 @@ mod tests {
         assert!(end.abs() < 1e-7, "R(-1e9) = {end}");
     }
 
-    /// A. Prothero, A. Robinson, Math. Comp. 28 (1974) 145: x' = λ (x - sin t) + cos t, however large -λ is.
+    /// A. Prothero, A. Robinson, Math. Comp. 28 (1974) 145: x' = λ (x - sin t) + cos t, however
+    /// large -λ is.
     #[test]
     fn stiffness_does_not_take_the_order_away() {
         for lambda in [-1e2, -1e4, -1e6] {
@@ -436,7 +450,8 @@ mod tests {
 
     #[test]
     fn a_flow_may_be_undefined_on_one_side() {
-        // A tank that fills another, while a third has run dry: below, its square root is not defined.
+        // A tank that fills another, while a third has run dry: below, its square root is not
+        // defined.
         let (end, _) = step(|_, x: &[f64; 3]| [-x[0].sqrt(), x[0].sqrt(), -x[2].sqrt()], 0.0, [1.0, 0.5, 0.0], 0.1);
         assert!((end[0] - 0.95_f64.powi(2)).abs() < 1e-7, "{end:?}");
         assert!((end[0] + end[1] - 1.5).abs() < 1e-12 && end[2] == 0.0, "{end:?}");

@@ -5,14 +5,16 @@ use crate::state::State;
 
 /// The explicit Runge–Kutta pair of order 5(4) by Tsitouras: the everyday stepper.
 ///
-/// Six flow evaluations a step (the seventh is the first of the next step), an error estimate of order 4 and a dense output of order 4
-/// that is continuous with its first derivative.
+/// Six flow evaluations a step (the seventh is the first of the next step), an error estimate of
+/// order 4 and a dense output of order 4 that is continuous with its first derivative.
 ///
-/// Use it for smooth flows that are not stiff, at relative tolerances of about 1e-3 to 1e-7, and where jumps come so often that a step
-/// seldom gets far. Below that [`Dop853`](super::Dop853) needs far fewer evaluations; a stiff flow wants [`Rodas5P`](super::Rodas5P).
+/// Use it for smooth flows that are not stiff, at relative tolerances of about 1e-3 to 1e-7, and
+/// where jumps come so often that a step seldom gets far. Below that [`Dop853`](super::Dop853)
+/// needs far fewer evaluations; a stiff flow wants [`Rodas5P`](super::Rodas5P).
 ///
-/// Source: Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying assumption*,
-/// Computers & Mathematics with Applications 62 (2011) 770–775, doi:10.1016/j.camwa.2011.06.002.
+/// Source: Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column
+/// simplifying assumption*, Computers & Mathematics with Applications 62 (2011) 770–775,
+/// doi:10.1016/j.camwa.2011.06.002.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tsit5;
 
@@ -35,8 +37,8 @@ const E: [f64; 6] = [
     -0.458_082_105_929_186_97,
     1.0 / 66.0,
 ];
-/// The weights of the stages and of the slope at the end in θ³ and θ⁴ of the dense output. In θ the first stage stands alone,
-/// and what is left of the step belongs to θ².
+/// The weights of the stages and of the slope at the end in θ³ and θ⁴ of the dense output. In θ the
+/// first stage stands alone, and what is left of the step belongs to θ².
 const D: [[f64; 6]; 2] = [
     [-0.223_4, -5.941_033_872_131_505, 30.338_188_630_282_32, -88.178_904_894_766_4, 65.091_894_674_793_66, -4.0],
     [0.101_7, 2.490_627_285_651_253, -16.548_102_889_244_902, 47.379_521_962_819_28, -34.870_657_861_496_61, 2.5],

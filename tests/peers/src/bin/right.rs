@@ -1,6 +1,7 @@
 //! Right or wrong: the second table of `docs/comparison.md`.
 //!
-//! Each case runs for each solver in a process of its own, which is ended after a while: some never come back.
+//! Each case runs for each solver in a process of its own, which is ended after a while: some never
+//! come back.
 
 use std::io::Read;
 use std::process::{Command, Stdio};

@@ -198,7 +198,8 @@ fn between_steps(options: &Options, output: &mut Vec<Value>) {
         let start = cpu_time::ThreadTime::now();
         let times = watch(Box::new(|t| (20.0 * t * t).sin()));
         let seconds = start.elapsed().as_secs_f64();
-        // A crossing counts if one was reported within a microsecond; the root at the start is nobody's.
+        // A crossing counts if one was reported within a microsecond; the root at the start is
+        // nobody's.
         let hits = chirp.iter().filter(|&&t| times.iter().any(|s| (s - t).abs() < 1e-6)).count();
         let worst = pairs.iter().copied().fold(0.0, f64::max);
         let chirped = found(&times, &chirp);

@@ -1,4 +1,5 @@
-//! differential-equations: one event watched after the other, each ending the run, which is then begun again after the reset.
+//! differential-equations: one event watched after the other, each ending the run, which is then
+//! begun again after the reset.
 
 use differential_equations::ode::ODE;
 use differential_equations::prelude::{

@@ -97,7 +97,8 @@ pub fn run(system: &System) -> Answer {
     answer
 }
 
-/// One coordinate grows and is cut in two at x = 2: the number of coordinates at the end, and their sum.
+/// One coordinate grows and is cut in two at x = 2: the number of coordinates at the end, and their
+/// sum.
 pub fn split_in_two() -> Result<(usize, f64), String> {
     struct Cell;
     impl Automaton for Cell {

@@ -20,7 +20,8 @@ pub struct Case {
     pub refusal: bool,
 }
 
-/// A ball that keeps the part `e` of its speed, and what else is watched; `y` and `v` are the first two coordinates.
+/// A ball that keeps the part `e` of its speed, and what else is watched; `y` and `v` are the first
+/// two coordinates.
 fn ball(start: [f64; 2], span: [f64; 2], e: f64) -> System {
     System {
         start: [start[0], start[1], 0.0, 0.0],

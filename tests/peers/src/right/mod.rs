@@ -1,4 +1,5 @@
-//! Right or wrong: the same hybrid system for each solver that finds events itself, and what each makes of it.
+//! Right or wrong: the same hybrid system for each solver that finds events itself, and what each
+//! makes of it.
 
 mod by_differential_equations;
 mod by_diffsol;
@@ -26,10 +27,12 @@ pub struct System {
 
 /// What happens at an event.
 pub enum Jumps {
-    /// It is written down, whether its guard falls or rises. True if the guard is to be taken for positive at the start.
+    /// It is written down, whether its guard falls or rises. True if the guard is to be taken for
+    /// positive at the start.
     None(bool),
-    /// Where guard `i` falls the state becomes reset(i, state, lift). The lift is for solvers that need a hair's distance from the guard just met:
-    /// 1e-12 for the others, 0 for saltus. `rest` is what lies beyond infinitely many jumps, for solvers that can be told.
+    /// Where guard `i` falls the state becomes reset(i, state, lift). The lift is for solvers that
+    /// need a hair's distance from the guard just met: 1e-12 for the others, 0 for saltus. `rest`
+    /// is what lies beyond infinitely many jumps, for solvers that can be told.
     Reset { reset: Reset, rest: Option<State> },
 }
 

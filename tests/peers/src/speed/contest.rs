@@ -1,10 +1,12 @@
-//! A contest: each solver at its fastest setting whose measured error is below a bound, all timed in turn.
+//! A contest: each solver at its fastest setting whose measured error is below a bound, all timed
+//! in turn.
 
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
 
-/// What a solve leaves: its answer, to be compared with the exact one, and how often it evaluated the flow.
+/// What a solve leaves: its answer, to be compared with the exact one, and how often it evaluated
+/// the flow.
 #[derive(Debug, Default)]
 pub struct Log {
     pub marks: Vec<f64>,
@@ -14,7 +16,8 @@ pub struct Log {
 /// One solve of the whole problem.
 pub type Solve = Box<dyn FnMut(&mut Log)>;
 
-/// A way to solve a problem: a solver, its method, who finds the events, and how to make it ready for a tolerance.
+/// A way to solve a problem: a solver, its method, who finds the events, and how to make it ready
+/// for a tolerance.
 pub struct Entry {
     pub solver: &'static str,
     pub method: &'static str,
@@ -113,7 +116,8 @@ fn batch(once: f64, seconds: f64) -> u32 {
     (seconds / once.max(1e-9)).ceil().clamp(1.0, 1e6) as u32
 }
 
-/// A solve that takes longer than this, in seconds, is out of the running, and so are all at tighter tolerances.
+/// A solve that takes longer than this, in seconds, is out of the running, and so are all at
+/// tighter tolerances.
 const PATIENCE: f64 = 0.1;
 
 /// Runs an entry at every tolerance: error, and a rough time.

@@ -41,7 +41,8 @@ impl ODE<f64, [f64; 2]> for Flying {
     }
 }
 
-/// Tells `impact` of the time and speed before each impact, until it says stop. The step size survives a restart.
+/// Tells `impact` of the time and speed before each impact, until it says stop. The step size
+/// survives a restart.
 pub fn bounce(
     ball: Ball,
     split: bool,
@@ -152,7 +153,8 @@ pub fn drag() -> Vec<Entry> {
     ]
 }
 
-/// Tells `impact` of the impacts of a ball by dopri5 with its apex split, the best of this crate on that problem.
+/// Tells `impact` of the impacts of a ball by dopri5 with its apex split, the best of this crate on
+/// that problem.
 pub fn bounce_dopri5(ball: Ball, tolerance: f64, impact: impl FnMut(f64, f64) -> bool) {
     bounce(ball, true, method!(ExplicitRungeKutta::dopri5)(tolerance), impact);
 }
@@ -298,7 +300,8 @@ impl<G: Fn(f64) -> f64> Event<f64, [f64; 2]> for Watch<G> {
     }
 }
 
-/// The crossings of zero of `g` along an oscillator's ten seconds: those points of the solution that are no ends of steps.
+/// The crossings of zero of `g` along an oscillator's ten seconds: those points of the solution
+/// that are no ends of steps.
 pub fn watched(g: impl Fn(f64) -> f64, tolerance: f64) -> Vec<f64> {
     let watch = Watch(g);
     let run = IVP::ode(&Oscillator, 0.0, 10.0, [1.0, 0.0])

@@ -26,8 +26,8 @@ macro_rules! solving {
     }};
 }
 
-/// A ball by tsit45: falling and rising are two modes if `split`, and then its resets are exact; if not, a bounce starts 1e-14 m above the floor,
-/// or the next arc would begin with a root.
+/// A ball by tsit45: falling and rising are two modes if `split`, and then its resets are exact; if
+/// not, a bounce starts 1e-14 m above the floor, or the next arc would begin with a root.
 macro_rules! ball_problem {
     ($ball:expr, $split:expr, $rising:expr, $tolerance:expr) => {{
         let (ball, split): (Ball, bool) = ($ball, $split);
@@ -54,7 +54,8 @@ macro_rules! ball_problem {
     }};
 }
 
-/// Steps from root to root, resetting at each; tells `impact` of the time and speed before each impact, until it says stop.
+/// Steps from root to root, resetting at each; tells `impact` of the time and speed before each
+/// impact, until it says stop.
 fn bouncing<'a, E: OdeEquations<T = f64, V = Vect> + 'a>(
     mut solver: impl OdeSolverMethod<'a, E>,
     rising: &Cell<bool>,
@@ -149,7 +150,8 @@ pub fn stiff() -> Vec<Entry> {
     vec![stiff!("BDF", bdf), stiff!("ESDIRK34", esdirk34), stiff!("TR-BDF2", tr_bdf2)]
 }
 
-/// An oscillator watched by a guard, without resets; tells `crossing` of the crossings until it says stop, or the end.
+/// An oscillator watched by a guard, without resets; tells `crossing` of the crossings until it
+/// says stop, or the end.
 macro_rules! watching {
     ($guard:expr, $tolerance:expr) => {
         OdeBuilder::<Mat>::new()

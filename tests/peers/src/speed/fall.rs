@@ -1,6 +1,8 @@
-//! What a user writes by hand for a solver without events of its own: the fall of a guard within a step.
+//! What a user writes by hand for a solver without events of its own: the fall of a guard within a
+//! step.
 
-/// Where `g` falls through zero in (a, b], if g(b) < 0. A zero at `a` is taken for the crossing that has just been made.
+/// Where `g` falls through zero in (a, b], if g(b) < 0. A zero at `a` is taken for the crossing
+/// that has just been made.
 ///
 /// Halving until the left end is positive, then regula falsi in its Illinois form.
 pub fn fall(mut g: impl FnMut(f64) -> f64, a: f64, b: f64, end: f64) -> f64 {

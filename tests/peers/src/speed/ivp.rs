@@ -1,4 +1,5 @@
-//! ivp: its low-level solvers with a callback after each step ("hand"), and its events with a restart at each ("own").
+//! ivp: its low-level solvers with a callback after each step ("hand"), and its events with a
+//! restart at each ("own").
 
 use std::cell::Cell;
 
@@ -84,7 +85,8 @@ impl FirstOrderSystem for Flying {
     }
 }
 
-/// Looks for the floor, and for the apex if the ball's modes are split, after each step; puts the ball there and goes on.
+/// Looks for the floor, and for the apex if the ball's modes are split, after each step; puts the
+/// ball there and goes on.
 struct Bouncing<'a, F> {
     system: &'a Flying,
     impact: F,

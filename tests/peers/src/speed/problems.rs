@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-/// A ball under gravity and quadratic drag, a = -g - k |v| v, dropped from `height` in m, that keeps the part `cor` of its speed.
+/// A ball under gravity and quadratic drag, a = -g - k |v| v, dropped from `height` in m, that
+/// keeps the part `cor` of its speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
     pub gravity: f64,
@@ -33,7 +34,8 @@ pub mod arenstorf {
     }
 }
 
-/// P4: Van der Pol's oscillator in the scaling of the IVP test set (F. Mazzia, C. Magherini, release 2.4), problem VDPOLM.
+/// P4: Van der Pol's oscillator in the scaling of the IVP test set (F. Mazzia, C. Magherini,
+/// release 2.4), problem VDPOLM.
 pub mod van_der_pol {
     pub const MU: f64 = 1000.0;
     pub const END: f64 = 2000.0;
@@ -67,7 +69,8 @@ impl Ball {
         if rising { -self.gravity - self.drag * v * v } else { -self.gravity + self.drag * v * v }
     }
 
-    /// Tells `impact` of the time and the speed before each impact, until it says stop. By the closed formulas, in compensated sums.
+    /// Tells `impact` of the time and the speed before each impact, until it says stop. By the
+    /// closed formulas, in compensated sums.
     pub fn closed(&self, mut impact: impl FnMut(f64, f64) -> bool) {
         let Self { gravity: g, drag: k, height, cor, .. } = *self;
         let (rate, limit) = ((g * k).sqrt(), (g / k).sqrt());
@@ -75,7 +78,8 @@ impl Ball {
         let mut rise = 0.0;
         loop {
             let (fall, speed) = if k > 0.0 {
-                // t = acosh(exp(kh))/ω and v² = w² (1 - exp(-2kh)), without the cancellation in 1 - exp
+                // t = acosh(exp(kh))/ω and v² = w² (1 - exp(-2kh)), without the cancellation in 1 -
+                // exp
                 let lost = -(-2.0 * k * h).exp_m1();
                 let v = lost.sqrt();
                 (v.atanh() / rate, limit * v)

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::contest::{Entry, Events, Problem, Result};
 use super::saltus::SERIES;
 
-/// Of each solver and each way to find events, the fastest method; of saltus, which wants the flow over jets for them, Taylor series beside it.
+/// Of each solver and each way to find events, the fastest method; of saltus, which wants the flow
+/// over jets for them, Taylor series beside it.
 fn best<'a>(entries: &'a [Entry], results: &'a [Option<Result>]) -> Vec<(&'a Entry, Option<&'a Result>)> {
     let mut best: Vec<(&Entry, Option<&Result>)> = Vec::new();
     for (entry, result) in entries.iter().zip(results) {

@@ -1,4 +1,5 @@
-//! P8: many balls with quadratic drag, ten seconds each, on all cores. What counts first is how many impacts each ball makes.
+//! P8: many balls with quadratic drag, ten seconds each, on all cores. What counts first is how
+//! many impacts each ball makes.
 
 use std::ops::ControlFlow;
 use std::time::Instant;

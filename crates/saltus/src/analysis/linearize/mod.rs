@@ -1,4 +1,5 @@
-//! Derivatives of runs: a model written once over numbers that carry a derivative, and what jumps do to derivatives.
+//! Derivatives of runs: a model written once over numbers that carry a derivative, and what jumps
+//! do to derivatives.
 
 mod passage;
 mod sensitive;
@@ -13,10 +14,11 @@ use crate::automaton::Automaton;
 use crate::automaton::solution::{Polynomial, Solution};
 use crate::state::{Coords, State};
 
-/// A number that a model may be written over: `f64`, or a dual number that carries derivatives along.
+/// A number that a model may be written over: `f64`, or a dual number that carries derivatives
+/// along.
 ///
-/// Has the arithmetic of `f64`, with `f64` on the right side of an operator, and its functions (`sin`, `sqrt`, `powi`, `abs`, …) by the same
-/// names. Comparisons look at the value alone.
+/// Has the arithmetic of `f64`, with `f64` on the right side of an operator, and its functions
+/// (`sin`, `sqrt`, `powi`, `abs`, …) by the same names. Comparisons look at the value alone.
 ///
 /// ```
 /// use saltus::Number;
@@ -35,15 +37,18 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 
 /// A state whose coordinates can be made dual numbers.
 ///
-/// Over a number D, `f64` becomes `D`, and `[f64; N]`, [`SVector<f64, N>`] and [`Coords<N>`](Coords) become `[D; N]`; where a state has
-/// fewer than N coordinates the rest are zeros, and ignored where they come back.
+/// Over a number D, `f64` becomes `D`, and `[f64; N]`, [`SVector<f64, N>`] and
+/// [`Coords<N>`](Coords) become `[D; N]`; where a state has fewer than N coordinates the rest are
+/// zeros, and ignored where they come back.
 ///
-/// A struct is given the type of its numbers as a parameter, and `#[derive(Lift)]` (feature `derive`): over D, `Ball<f64>` becomes
-/// `Ball<D>`, and its fields keep their names. So do parameters.
+/// A struct is given the type of its numbers as a parameter, and `#[derive(Lift)]` (feature
+/// `derive`): over D, `Ball<f64>` becomes `Ball<D>`, and its fields keep their names. So do
+/// parameters.
 ///
 #[cfg_attr(feature = "derive", doc = "```")]
 #[cfg_attr(not(feature = "derive"), doc = "```ignore")]
-/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Refusal, Sensitive, Simulation, State, Wrt};
+/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Refusal, Sensitive, Simulation, State,
+/// Wrt};
 ///
 /// #[derive(Clone, Copy, Debug, State, Lift)]
 /// struct Swing<D = f64> {
@@ -87,15 +92,11 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 /// #     }
 /// # }
 ///
-/// let clapper = Clapper(Given { damping: 0.1 });
-/// let by_damping = Sensitive::of(&clapper, [Wrt::Parameter(0)]);
-/// let start = by_damping.start(0.0, Swing { angle: 0.5, rate: 0.0 });
-/// let run = Simulation::of(&by_damping).run((), start, 0.0..10.0)?;
-/// let at = |damping| {
-///     let clapper = Clapper(Given { damping });
-///     Ok::<_, saltus::Error>(Simulation::of(&clapper).run((), start.x, 0.0..10.0)?.end.state.angle)
-/// };
-/// let difference = (at(0.1001)? - at(0.0999)?) / 0.0002;
+/// let clapper = Clapper(Given { damping: 0.1 }); let by_damping = Sensitive::of(&clapper,
+/// [Wrt::Parameter(0)]); let start = by_damping.start(0.0, Swing { angle: 0.5, rate: 0.0 }); let
+/// run = Simulation::of(&by_damping).run((), start, 0.0..10.0)?; let at = |damping| { let clapper =
+/// Clapper(Given { damping }); Ok::<_, saltus::Error>(Simulation::of(&clapper).run((), start.x,
+/// 0.0..10.0)?.end.state.angle) }; let difference = (at(0.1001)? - at(0.0999)?) / 0.0002;
 /// assert!((run.end.state.columns[0].angle - difference).abs() < 1e-6);
 /// # Ok::<(), saltus::Error>(())
 /// ```
@@ -166,10 +167,11 @@ impl<const CAP: usize> Lift for Coords<CAP> {
     }
 }
 
-/// An automaton whose flow, guards and resets can be differentiated: each is written once, over any [`Number`].
+/// An automaton whose flow, guards and resets can be differentiated: each is written once, over any
+/// [`Number`].
 ///
-/// The methods of [`Automaton`] are then one line each. The **parameters** p are the numbers in the model with respect to which
-/// derivatives may be wanted; they have the same units in every mode.
+/// The methods of [`Automaton`] are then one line each. The **parameters** p are the numbers in the
+/// model with respect to which derivatives may be wanted; they have the same units in every mode.
 ///
 /// A ball with gravity and coefficient of restitution as parameters:
 ///
@@ -227,9 +229,10 @@ impl<const CAP: usize> Lift for Coords<CAP> {
 /// # Ok::<(), saltus::Error>(())
 /// ```
 ///
-/// The numbers that decide events are those of [`Automaton`]; of the methods here the derivatives count. The two must describe the same
-/// model. What a mode or edge carries frozen (`Stance { foot }`) counts as constant: if it depends on the state, make it a coordinate
-/// that stands still.
+/// The numbers that decide events are those of [`Automaton`]; of the methods here the derivatives
+/// count. The two must describe the same model. What a mode or edge carries frozen
+/// (`Stance { foot }`) counts as constant: if it depends on the state, make it a coordinate that
+/// stands still.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be differentiated",
     note = "write the model as a type that implements `Automaton` and `Linearize`: the closures of a `Hybrid` carry no derivatives"
@@ -263,7 +266,8 @@ pub trait Linearize: Automaton<State: Lift> {
         p: Over<Self::Parameters, D>,
     ) -> Over<Self::State, D>;
 
-    /// The state beyond a Zeno limit, as [`Automaton::beyond`]. Without it, a run with derivatives ends at the limit.
+    /// The state beyond a Zeno limit, as [`Automaton::beyond`]. Without it, a run with derivatives
+    /// ends at the limit.
     fn beyond_over<D: Number>(
         &self,
         mode: Self::Mode,
@@ -275,9 +279,9 @@ pub trait Linearize: Automaton<State: Lift> {
         None
     }
 
-    /// The time of the tick at `t` by which a clock takes `edge` out of `mode`, as the parameters move
-    /// it: τ(p) with τ = t where they are what they are. Only its derivative counts. The time itself,
-    /// `D::from(t)`, says that they do not move it.
+    /// The time of the tick at `t` by which a clock takes `edge` out of `mode`, as the parameters
+    /// move it: τ(p) with τ = t where they are what they are. Only its derivative counts. The time
+    /// itself, `D::from(t)`, says that they do not move it.
     ///
     /// Without it a derivative by a parameter cannot be carried across the tick: the run fails with
     /// [`ErrorKind::ClockDerivative`](crate::ErrorKind::ClockDerivative).
@@ -294,16 +298,17 @@ pub trait Linearize: Automaton<State: Lift> {
 
     /// Promises that no parameter moves the [stops](Automaton::stops) of `mode`.
     ///
-    /// The state does not jump at a stop, and so its derivative by a parameter that moves the stop is
-    /// not carried across it. Without the promise a run with derivatives by parameters does not enter
-    /// a mode that has stops. Of a stop that a parameter moves make a clock, whose edge leaves the
-    /// state as it is and whose time is given by [`tick_over`](Self::tick_over).
+    /// The state does not jump at a stop, and so its derivative by a parameter that moves the stop
+    /// is not carried across it. Without the promise a run with derivatives by parameters does not
+    /// enter a mode that has stops. Of a stop that a parameter moves make a clock, whose edge
+    /// leaves the state as it is and whose time is given by [`tick_over`](Self::tick_over).
     fn stops_stand(&self, mode: Self::Mode) -> bool {
         let _ = mode;
         false
     }
 
-    /// The exact solution, as [`Automaton::solution`]. Without it, a run with derivatives takes steps.
+    /// The exact solution, as [`Automaton::solution`]. Without it, a run with derivatives takes
+    /// steps.
     fn exact_over<D: Number>(
         &self,
         mode: Self::Mode,
@@ -328,7 +333,8 @@ pub trait Linearize: Automaton<State: Lift> {
         self.guard_over(edge, t, x.over(), self.parameters().over())
     }
 
-    /// The state that [`Automaton::reset`] may answer, where the jump leaves the number of coordinates as it is.
+    /// The state that [`Automaton::reset`] may answer, where the jump leaves the number of
+    /// coordinates as it is.
     #[inline]
     fn reset_at(&self, edge: Self::Edge, t: f64, x: &Self::State) -> Self::State {
         let after = self.reset_over(edge, t, x.over(), self.parameters().over());

@@ -1,4 +1,5 @@
-//! What a jump does to neighbouring runs: they cross a little earlier or later, at another place, and land elsewhere.
+//! What a jump does to neighbouring runs: they cross a little earlier or later, at another place,
+//! and land elsewhere.
 
 use nalgebra::{DMatrix, RowDVector};
 use num_dual::{Dual2_64, Dual64};
@@ -8,7 +9,8 @@ use crate::error::{Error, ErrorKind, Place, Refusal};
 use crate::state::State;
 use crate::time::resolution;
 
-/// A jump to first order: what becomes of a small change of the state x⁻ before it and of the parameters.
+/// A jump to first order: what becomes of a small change of the state x⁻ before it and of the
+/// parameters.
 ///
 /// With n⁻ coordinates before the jump, n⁺ after it and P parameters:
 ///
@@ -19,10 +21,11 @@ use crate::time::resolution;
 /// | `time_by_state` | 1 × n⁻ | `-g_x / ġ` |
 /// | `time_by_parameters` | 1 × P | `-g_p / ġ` |
 ///
-/// where g is the guard, R the reset, f⁻ and f⁺ the flows at both sides, and `ġ = g_t + g_x f⁻ < 0` the rate at which the guard falls.
-/// An edge that a clock takes has no guard, and a time τ(p) that the state does not move: `Ξ = R_x`,
-/// `R_p - (f⁺ - R_x f⁻ - R_t) τ_p`, and the times 0 and `τ_p` ([`Linearize::tick_over`]).
-/// Units are those of the quotients: a coordinate after by a coordinate before, seconds by a coordinate, and so on.
+/// where g is the guard, R the reset, f⁻ and f⁺ the flows at both sides, and `ġ = g_t + g_x f⁻ < 0`
+/// the rate at which the guard falls. An edge that a clock takes has no guard, and a time τ(p) that
+/// the state does not move: `Ξ = R_x`, `R_p - (f⁺ - R_x f⁻ - R_t) τ_p`, and the times 0 and `τ_p`
+/// ([`Linearize::tick_over`]). Units are those of the quotients: a coordinate after by a coordinate
+/// before, seconds by a coordinate, and so on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saltation {
     /// The saltation matrix Ξ: δx⁺ = Ξ δx⁻ at one and the same time.
@@ -35,20 +38,24 @@ pub struct Saltation {
     pub time_by_parameters: RowDVector<f64>,
 }
 
-/// The saltation matrix of `edge`, taken out of `mode` at time `t` from the state `x` just before; rectangular where the dimension changes.
+/// The saltation matrix of `edge`, taken out of `mode` at time `t` from the state `x` just before;
+/// rectangular where the dimension changes.
 ///
-/// `Ξ = R_x + (f⁺ - R_x f⁻ - R_t) g_x / (g_t + g_x f⁻)`; see [`Saltation`] for the rest. The derivatives are exact to rounding (dual numbers).
+/// `Ξ = R_x + (f⁺ - R_x f⁻ - R_t) g_x / (g_t + g_x f⁻)`; see [`Saltation`] for the rest. The
+/// derivatives are exact to rounding (dual numbers).
 ///
-/// Sources: M. A. Aizerman, F. R. Gantmacher, *On the stability of periodic motions*, J. Appl. Math. Mech. 22 (1958) 1065; R. I. Leine,
-/// H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 7; N. J. Kong, J. J. Payne, J. Zhu,
-/// A. M. Johnson, *Saltation matrices: the essential tool for linearizing hybrid dynamical systems*, Proc. IEEE 112 (2024) 585.
+/// Sources: M. A. Aizerman, F. R. Gantmacher, *On the stability of periodic motions*, J. Appl.
+/// Math. Mech. 22 (1958) 1065; R. I. Leine, H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth
+/// Mechanical Systems*, Springer 2004, chapter 7; N. J. Kong, J. J. Payne, J. Zhu, A. M. Johnson,
+/// *Saltation matrices: the essential tool for linearizing hybrid dynamical systems*, Proc. IEEE
+/// 112 (2024) 585.
 ///
 /// An example is at [`Linearize`].
 ///
 /// # Errors
-/// [`ErrorKind::Grazing`] if the guard does not fall at `x` with a rate that exceeds rounding: the jump has no derivative there.
-/// [`ErrorKind::ClockDerivative`] if a clock takes the edge, there are parameters, and
-/// [`Linearize::tick_over`] does not say how they move its time.
+/// [`ErrorKind::Grazing`] if the guard does not fall at `x` with a rate that exceeds rounding: the
+/// jump has no derivative there. [`ErrorKind::ClockDerivative`] if a clock takes the edge, there
+/// are parameters, and [`Linearize::tick_over`] does not say how they move its time.
 pub fn saltation<A: Linearize>(
     automaton: &A,
     mode: A::Mode,
@@ -87,9 +94,11 @@ pub fn saltation<A: Linearize>(
 
 /// A jump and what it takes to follow a neighbouring run through it.
 ///
-/// A neighbour, off by δx at the time of the jump, crosses the guard later by the **delay** `τ = -(g_x δx + g_p δp)/ġ`, where it has been carried
-/// to x + δx + f⁻ τ. There it is reset. Carried back to the time of the jump by the flow after it, it is off by
-/// `δx⁺ = R_x (δx + f⁻ τ) + R_t τ + R_p δp - f⁺ τ`: the saltation matrix times δx, without the matrix.
+/// A neighbour, off by δx at the time of the jump, crosses the guard later by the **delay**
+/// `τ = -(g_x δx + g_p δp)/ġ`, where it has been carried to x + δx + f⁻ τ. There it is reset.
+/// Carried back to the time of the jump by the flow after it, it is off by
+/// `δx⁺ = R_x (δx + f⁻ τ) + R_t τ + R_p δp - f⁺ τ`: the saltation matrix times δx, without the
+/// matrix.
 pub(super) struct Passage<'a, A: Linearize> {
     automaton: &'a A,
     mode: A::Mode,
@@ -102,7 +111,8 @@ pub(super) struct Passage<'a, A: Linearize> {
     pub(super) after: A::State,
     /// The flows f⁻ and f⁺.
     flows: (A::State, A::State),
-    /// The guard's value, its gradient `g_x`, and its first and second derivative by time along the flow before.
+    /// The guard's value, its gradient `g_x`, and its first and second derivative by time along the
+    /// flow before.
     guard: f64,
     gradient: A::State,
     rate: f64,
@@ -148,9 +158,10 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether the crossing has no speed, but for rounding, at the end of an arc of `duration`.
     ///
-    /// The rate ġ must be negative and exceed its own rounding; it must not be what g̈ makes of it within the rounding of time; and
-    /// unless g̈ has had just the arc to build it up (as in the last of a ball's bounces, however low), the guard must have fallen from further
-    /// away than its rounding, ġ²/2g̈.
+    /// The rate ġ must be negative and exceed its own rounding; it must not be what g̈ makes of it
+    /// within the rounding of time; and unless g̈ has had just the arc to build it up (as in the
+    /// last of a ball's bounces, however low), the guard must have fallen from further away than
+    /// its rounding, ġ²/2g̈.
     pub(super) fn grazes(&self, duration: f64) -> bool {
         if self.by_clock {
             return false;
@@ -163,13 +174,15 @@ impl<'a, A: Linearize> Passage<'a, A> {
             || low && rate * 64.0 <= bend * duration
     }
 
-    /// Whether the state before is outside the guard by more than rounding, as only an edge that fires on entry allows.
+    /// Whether the state before is outside the guard by more than rounding, as only an edge that
+    /// fires on entry allows.
     pub(super) fn is_outside(&self) -> bool {
         !self.by_clock
             && self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
     }
 
-    /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any, moving.
+    /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any,
+    /// moving.
     pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> Result<f64, Refusal> {
         if !self.by_clock {
             return Ok(-(self.along(dx) + self.by_parameter(p)) / self.rate);
@@ -182,7 +195,8 @@ impl<'a, A: Linearize> Passage<'a, A> {
         tick.map(|tick: Dual64| tick.eps).ok_or_else(|| Refusal::of(ErrorKind::ClockDerivative))
     }
 
-    /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the rounding of the guard's terms can tell.
+    /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the
+    /// rounding of the guard's terms can tell.
     pub(super) fn keeps(&self, last: f64, dx: &A::State, p: Option<usize>) -> bool {
         if self.by_clock {
             return false;
@@ -193,7 +207,8 @@ impl<'a, A: Linearize> Passage<'a, A> {
         off.abs() <= 64.0 * f64::EPSILON * terms
     }
 
-    /// Whether an arc of `duration` was too short for time to tell its ends apart, but for rounding.
+    /// Whether an arc of `duration` was too short for time to tell its ends apart, but for
+    /// rounding.
     pub(super) fn is_at_once(&self, duration: f64) -> bool {
         duration <= 64.0 * resolution(self.t)
     }

@@ -32,7 +32,8 @@ pub struct Tangent<S, const K: usize> {
     pub x: S,
     /// Column k is `∂x/∂q_k` at fixed time, in the unit of the state by that of `q_k`.
     pub columns: [S; K],
-    /// How the time of the last jump depends on `q_k`, `dt*/dq_k`, in seconds by the unit of `q_k`; zero before the first.
+    /// How the time of the last jump depends on `q_k`, `dt*/dq_k`, in seconds by the unit of `q_k`;
+    /// zero before the first.
     pub dt: [f64; K],
     /// When that was, or when the run started.
     jumped: f64,
@@ -67,18 +68,23 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
     }
 }
 
-/// An automaton and the derivatives of its runs with respect to initial values and parameters, as one automaton.
+/// An automaton and the derivatives of its runs with respect to initial values and parameters, as
+/// one automaton.
 ///
-/// Modes, edges, guards and the state `x` are those of `A`; beside `x` stand K columns S = ∂x/∂q ([`Tangent`]):
+/// Modes, edges, guards and the state `x` are those of `A`; beside `x` stand K columns S = ∂x/∂q
+/// ([`Tangent`]):
 ///
 /// - along an arc `S' = f_x S + f_q`, the variational equation, each column by one dual number;
-/// - at a jump S⁺ = Ξ S⁻ + …, the [`saltation`](super::saltation), and the derivative of the jump's time
-///   `dt*/dq = -(g_x S⁻ + g_q)/(g_t + g_x f⁻)`, which [`Tangent::dt`] keeps until the next jump;
-/// - at a Zeno limit dt∞/dq = lim dt*ₙ/dq, which the contraction of the durations brings to rounding together with the limit itself.
+/// - at a jump S⁺ = Ξ S⁻ + …, the [`saltation`](super::saltation), and the derivative of the jump's
+///   time `dt*/dq = -(g_x S⁻ + g_q)/(g_t + g_x f⁻)`, which [`Tangent::dt`] keeps until the next
+///   jump;
+/// - at a Zeno limit dt∞/dq = lim dt*ₙ/dq, which the contraction of the durations brings to
+///   rounding together with the limit itself.
 ///
-/// Stepping, crossings, hybrid time and Zeno limits are the engine's, as for any automaton. Where `A` has exact arcs and
-/// [`Linearize::exact_over`], no step is taken and the events are those of a run without derivatives to the bit. Elsewhere the columns
-/// take part in the control of the step size: the tolerance holds for them too, and steps may differ from those of a run without them.
+/// Stepping, crossings, hybrid time and Zeno limits are the engine's, as for any automaton. Where
+/// `A` has exact arcs and [`Linearize::exact_over`], no step is taken and the events are those of a
+/// run without derivatives to the bit. Elsewhere the columns take part in the control of the step
+/// size: the tolerance holds for them too, and steps may differ from those of a run without them.
 ///
 /// ```
 /// # use saltus::nalgebra::{self, Vector2, vector};
@@ -121,7 +127,8 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
 /// # Ok::<(), saltus::Error>(())
 /// ```
 ///
-/// A jump that the guard reaches without speed has no derivative: the run fails there with [`ErrorKind::Grazing`].
+/// A jump that the guard reaches without speed has no derivative: the run fails there with
+/// [`ErrorKind::Grazing`].
 #[derive(Debug)]
 pub struct Sensitive<'a, A, const K: usize> {
     automaton: &'a A,
@@ -143,10 +150,11 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
         Self { automaton, wrt }
     }
 
-    /// The start of a run from `x` at time `t`: unit columns for initial values, zeros for parameters.
+    /// The start of a run from `x` at time `t`: unit columns for initial values, zeros for
+    /// parameters.
     ///
-    /// Where the initial state depends on a parameter, add that to the column. From a coordinate or parameter that there
-    /// is not, whose column is NaN, a run refuses to start.
+    /// Where the initial state depends on a parameter, add that to the column. From a coordinate or
+    /// parameter that there is not, whose column is NaN, a run refuses to start.
     pub fn start(&self, t: f64, x: A::State) -> Tangent<A::State, K> {
         let parameters = self.automaton.parameters().len();
         let columns = self.wrt.map(|wrt| match wrt {
@@ -157,8 +165,9 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
         Tangent { x, columns, dt: [0.0; K], jumped: t }
     }
 
-    /// How the state x⁻ just before the jump depends on each q as the jump moves in time, dx⁻/dq = S⁻ + f⁻ dt*/dq:
-    /// the derivative of "the speed at the third impact", where the columns are that of the state at a fixed time.
+    /// How the state x⁻ just before the jump depends on each q as the jump moves in time, dx⁻/dq =
+    /// S⁻ + f⁻ dt*/dq: the derivative of "the speed at the third impact", where the columns are
+    /// that of the state at a fixed time.
     pub fn before(&self, jump: &JumpOf<Self>) -> [A::State; K] {
         self.riding(jump.from, jump.t(), &jump.before, &jump.after.dt)
     }
@@ -182,7 +191,8 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
         }
     }
 
-    /// The derivatives of a polynomial's coefficients at fixed t are the coefficients of the columns.
+    /// The derivatives of a polynomial's coefficients at fixed t are the coefficients of the
+    /// columns.
     fn polynomial(&self, mode: A::Mode, t: f64, x: &Tangent<A::State, K>) -> Option<Polynomial<Tangent<A::State, K>>> {
         let Solution::Polynomial(solution) = self.automaton.solution(mode, t, &x.x) else { return None };
         let p = self.automaton.parameters();
@@ -239,8 +249,9 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         let mut after = Tangent { x: passage.after, columns: [passage.after; K], dt: x.dt, jumped: t };
         for (k, column) in x.columns.iter().enumerate() {
             let p = self.parameter(k);
-            // So does one that neighbouring runs, too, take at once after the last: a ball that lies lands again, at the
-            // end of a Zeno sequence every jump is within rounding of the next.
+            // So does one that neighbouring runs, too, take at once after the last: a ball that
+            // lies lands again, at the end of a Zeno sequence every jump is within rounding of the
+            // next.
             let keeps = follows || passage.keeps(x.dt[k], column, p);
             if grazes && !(follows || keeps && at_once) {
                 return Err(Refusal::of(ErrorKind::Grazing));

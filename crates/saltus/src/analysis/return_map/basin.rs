@@ -25,9 +25,11 @@ pub enum Fate {
 }
 
 impl<A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'_, A, X, K, M> {
-    /// What becomes of `q` within `most` returns: it is attracted once every coordinate is within `reach` of that of an attractor.
+    /// What becomes of `q` within `most` returns: it is attracted once every coordinate is within
+    /// `reach` of that of an attractor.
     ///
-    /// `reach` is absolute, one for each coordinate, in its unit; it is the caller's to choose it inside the neighbourhood that the attractor surely attracts.
+    /// `reach` is absolute, one for each coordinate, in its unit; it is the caller's to choose it
+    /// inside the neighbourhood that the attractor surely attracts.
     ///
     /// # Errors
     /// Failures of runs, [`MapError::Run`]; a run that does not return is no failure.
@@ -55,7 +57,8 @@ impl<A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'_, A
         Ok(Fate::Undecided)
     }
 
-    /// The [`fate`](Self::fate) of each of `starts`, in their order. With the cargo feature `rayon` on all cores; the result is the same to the bit.
+    /// The [`fate`](Self::fate) of each of `starts`, in their order. With the cargo feature `rayon`
+    /// on all cores; the result is the same to the bit.
     ///
     /// # Errors
     /// None for the whole: each start has its own.

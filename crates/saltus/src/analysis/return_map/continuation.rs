@@ -1,4 +1,5 @@
-//! A branch of fixed points as a parameter changes, by pseudo-arclength, and what happens to them on the way.
+//! A branch of fixed points as a parameter changes, by pseudo-arclength, and what happens to them
+//! on the way.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -71,9 +72,11 @@ pub struct Branch<E, const K: usize> {
 
 /// Follows a fixed point as one parameter of the automaton changes.
 ///
-/// Unknown are the coordinates q and the parameter lambda together, `P(q; lambda) = q`. From a point a step of length h is made along the branch's tangent, and
-/// from there Newton's method goes back to the branch at a right angle (pseudo-arclength), so that folds are passed. h is chosen from the number of Newton
-/// steps. lambda is measured in units of its range, each coordinate in units of its value at the start.
+/// Unknown are the coordinates q and the parameter lambda together, `P(q; lambda) = q`. From a
+/// point a step of length h is made along the branch's tangent, and from there Newton's method goes
+/// back to the branch at a right angle (pseudo-arclength), so that folds are passed. h is chosen
+/// from the number of Newton steps. lambda is measured in units of its range, each coordinate in
+/// units of its value at the start.
 ///
 /// Between two points, where a test function changes its sign, it is brought to zero:
 ///
@@ -84,7 +87,8 @@ pub struct Branch<E, const K: usize> {
 /// | Neimark–Sacker | Π (μᵢ μⱼ - 1) over pairs i < j, where the pair is complex |
 /// | grazing | the branch ends: no run with the same sequence of edges is found, and a guard that is not crossed is touched, or one is crossed without speed |
 ///
-/// Sources: Kuznetsov, *Elements of Applied Bifurcation Theory*, 10.2 and 10.3; E. L. Allgower, K. Georg, *Numerical Continuation Methods*, Springer 1990.
+/// Sources: Kuznetsov, *Elements of Applied Bifurcation Theory*, 10.2 and 10.3; E. L. Allgower, K.
+/// Georg, *Numerical Continuation Methods*, Springer 1990.
 #[derive(Debug)]
 pub struct Continuation<'a, 'm, A, X, F, const K: usize, M> {
     pub(super) map: &'m ReturnMap<'a, A, X, K, M>,
@@ -110,7 +114,8 @@ where
     F: Fn(f64) -> A,
     M: Stepper,
 {
-    /// Follows the fixed points of `map` through the automata `family(lambda)`, lambda their parameter at this place of [`Linearize::parameters`].
+    /// Follows the fixed points of `map` through the automata `family(lambda)`, lambda their
+    /// parameter at this place of [`Linearize::parameters`].
     ///
     /// Of `map` the section and the simulation's options count.
     #[must_use]
@@ -132,17 +137,20 @@ where
         self
     }
 
-    /// The branch from the fixed point near `guess` at the parameter `from`, first towards `to`, until the parameter leaves the range between them.
+    /// The branch from the fixed point near `guess` at the parameter `from`, first towards `to`,
+    /// until the parameter leaves the range between them.
     ///
     /// # Errors
-    /// Those of [`ReturnMap::fixed_point`] at the start, and [`MapError::Question`] if the range is empty, or the parameter of `family(from)` is not `from`.
-    /// Later failures end the branch ([`End`]).
+    /// Those of [`ReturnMap::fixed_point`] at the start, and [`MapError::Question`] if the range is
+    /// empty, or the parameter of `family(from)` is not `from`. Later failures end the branch
+    /// ([`End`]).
     pub fn follow(&self, guess: [f64; K], from: f64, to: f64) -> Result<Branch<A::Edge, K>, MapError> {
         let scale = self.scale(guess, from, to)?;
         let toward = DVector::from_fn(K + 1, |i, _| if i == K { (to - from).signum() } else { 0.0 });
         let start = DVector::from_fn(K + 1, |i, _| if i == K { from } else { guess[i] }).component_div(&scale);
         let mut here = self.correct(&start, &toward, &scale)?;
-        // The tangent that the first corrector used was a guess: lambda stood still there, as it should.
+        // The tangent that the first corrector used was a guess: lambda stood still there, as it
+        // should.
         let mut branch = Branch { points: vec![here.point.clone()], bifurcations: Vec::new(), end: End::Points };
         let mut h = self.longest_step * 0.2;
         while branch.points.len() < self.most_points {
@@ -235,7 +243,8 @@ where
         Ok(Here { at: root.at, tangent, point, edges, newton_steps: root.steps })
     }
 
-    /// The point at a step of at most `h` from `here` where a test function changes its sign, by bisection and regula falsi in turn.
+    /// The point at a step of at most `h` from `here` where a test function changes its sign, by
+    /// bisection and regula falsi in turn.
     fn bisect(
         &self,
         here: &Here<A::Edge, K>,
@@ -282,7 +291,8 @@ where
                 continue;
             }
             let Some(at) = self.bisect(here, h, scale, test) else { continue };
-            // A product of real multipliers may be one, too; that is a neutral saddle and no bifurcation.
+            // A product of real multipliers may be one, too; that is a neutral saddle and no
+            // bifurcation.
             let real = at.point.orbit.multipliers.iter().all(|multiplier| multiplier.im == 0.0);
             if kind != Kind::NeimarkSacker || !real {
                 found.push(Bifurcation { kind, point: at.point });

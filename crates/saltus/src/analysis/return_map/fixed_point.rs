@@ -46,13 +46,15 @@ pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
 impl<A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'_, A, X, K, M> {
     /// The fixed point that Newton's method, with exact derivatives, finds from `guess`.
     ///
-    /// Steps that lead away, or to where no run returns, are halved. It ends when rounding stops it: P(q) - q is then within a thousand times of the tolerance of the
-    /// simulation, usually a few times.
+    /// Steps that lead away, or to where no run returns, are halved. It ends when rounding stops
+    /// it: P(q) - q is then within a thousand times of the tolerance of the simulation, usually a
+    /// few times.
     ///
     /// An example is at [`Section`].
     ///
     /// # Errors
-    /// Those of [`jacobian`](Self::jacobian) at the guess; [`MapError::Singular`] where a multiplier is one; [`MapError::NoConvergence`].
+    /// Those of [`jacobian`](Self::jacobian) at the guess; [`MapError::Singular`] where a
+    /// multiplier is one; [`MapError::NoConvergence`].
     pub fn fixed_point(&self, guess: [f64; K]) -> Result<FixedPoint<K>, MapError> {
         let root = newton(DVector::from_column_slice(&guess), |at| {
             let q = std::array::from_fn(|i| at[i]);

@@ -10,7 +10,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::trajectory::TrajectoryOf;
 
-/// A guard is touched where it comes as near to zero, in units of its largest value on the arc, or is crossed as slowly.
+/// A guard is touched where it comes as near to zero, in units of its largest value on the arc, or
+/// is crossed as slowly.
 const TOUCH: f64 = 1e-3;
 
 impl<A, X, F, const K: usize, M> Continuation<'_, '_, A, X, F, K, M>

@@ -1,8 +1,10 @@
-//! Return maps: where a run next meets a Poincaré section, its fixed points, their Floquet multipliers, branches and basins.
+//! Return maps: where a run next meets a Poincaré section, its fixed points, their Floquet
+//! multipliers, branches and basins.
 //!
-//! A [`Section`] is an edge of the automaton together with K coordinates q of the states just after it. The [`ReturnMap`] takes q to the
-//! coordinates P(q) at the next time that the edge is taken. A periodic run is a fixed point P(q) = q; its Floquet multipliers, the
-//! eigenvalues of ∂P/∂q, say whether neighbouring runs come closer (all inside the unit circle) or go away.
+//! A [`Section`] is an edge of the automaton together with K coordinates q of the states just after
+//! it. The [`ReturnMap`] takes q to the coordinates P(q) at the next time that the edge is taken. A
+//! periodic run is a fixed point P(q) = q; its Floquet multipliers, the eigenvalues of ∂P/∂q, say
+//! whether neighbouring runs come closer (all inside the unit circle) or go away.
 //!
 //! | | |
 //! |---|---|
@@ -12,8 +14,9 @@
 //! | [`Continuation`] | a branch of periodic runs as a parameter changes: folds, period doublings, grazing |
 //! | [`ReturnMap::fates`] | basins of attraction by sampling |
 //!
-//! Source: Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapters 1, 4 and 10; for jumps: M. di Bernardo, C. J. Budd, A. R.
-//! Champneys, P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter 2.
+//! Source: Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapters 1, 4
+//! and 10; for jumps: M. di Bernardo, C. J. Budd, A. R. Champneys, P. Kowalczyk, *Piecewise-smooth
+//! Dynamical Systems*, Springer 2008, chapter 2.
 
 mod basin;
 mod continuation;
@@ -44,11 +47,14 @@ use crate::step::{Auto, Stepper};
 
 /// A Poincaré section of `A`: an edge, and K coordinates q for the states just after it.
 ///
-/// Coordinates leave out what a return need not repeat or cannot change: a position along the road, an energy that is kept, a velocity that is zero at an
-/// apex. [`place`](Self::place) gives the state that belongs to q, [`read`](Self::read) the q of a state; `read(place(q)) = q`. Both are
-/// written once over numbers that carry derivatives, like the model itself ([`Linearize`]). Where some coordinates of the state are q, [`Selection`] does it.
+/// Coordinates leave out what a return need not repeat or cannot change: a position along the road,
+/// an energy that is kept, a velocity that is zero at an apex. [`place`](Self::place) gives the
+/// state that belongs to q, [`read`](Self::read) the q of a state; `read(place(q)) = q`. Both are
+/// written once over numbers that carry derivatives, like the model itself ([`Linearize`]). Where
+/// some coordinates of the state are q, [`Selection`] does it.
 ///
-/// A ball on a table that moves as A sin(ω t), just after it was hit: the table's phase and the ball's velocity.
+/// A ball on a table that moves as A sin(ω t), just after it was hit: the table's phase and the
+/// ball's velocity.
 ///
 /// ```
 /// use std::f64::consts::{PI, TAU};
@@ -119,10 +125,12 @@ pub trait Section<A: Linearize, const K: usize> {
     /// The edge that is the section.
     fn edge(&self) -> A::Edge;
 
-    /// The mode that the edge leads into, and any state of it: of the state only the number of coordinates counts.
+    /// The mode that the edge leads into, and any state of it: of the state only the number of
+    /// coordinates counts.
     fn start(&self) -> (A::Mode, A::State);
 
-    /// When a run starts from `q`, in seconds: of interest where the flow, a guard or a reset depends on time. The default is zero.
+    /// When a run starts from `q`, in seconds: of interest where the flow, a guard or a reset
+    /// depends on time. The default is zero.
     fn time<D: Number>(&self, q: [D; K], p: Over<A::Parameters, D>) -> D {
         let _ = (q, p);
         D::zero()
@@ -133,21 +141,24 @@ pub trait Section<A: Linearize, const K: usize> {
     /// It enters its mode like the start of any run: no guard may fall from zero there.
     fn place<D: Number>(&self, q: [D; K], p: Over<A::Parameters, D>) -> Over<A::State, D>;
 
-    /// Why the state `x` just after the edge, from which `q` was read, is none that [`place`](Self::place) gives: then there is no return map, and it says
-    /// what to do. The default finds nothing.
+    /// Why the state `x` just after the edge, from which `q` was read, is none that
+    /// [`place`](Self::place) gives: then there is no return map, and it says what to do. The
+    /// default finds nothing.
     fn flaw(&self, x: &A::State) -> Option<String> {
         let _ = x;
         None
     }
 
-    /// The coordinates of the state `x` just after the edge, taken at `t`. Where a system is periodic in time, take the periods off.
+    /// The coordinates of the state `x` just after the edge, taken at `t`. Where a system is
+    /// periodic in time, take the periods off.
     fn read<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> [D; K];
 }
 
-/// The return map P of a [`Section`]: from the coordinates just after the edge to those just after it is taken the next time.
+/// The return map P of a [`Section`]: from the coordinates just after the edge to those just after
+/// it is taken the next time.
 ///
-/// What a run may cost, its tolerance and its stepper are those of the [`Simulation`]; besides, a return may take at most 10⁵ steps and 10⁴ jumps.
-/// An example is at [`Section`].
+/// What a run may cost, its tolerance and its stepper are those of the [`Simulation`]; besides, a
+/// return may take at most 10⁵ steps and 10⁴ jumps. An example is at [`Section`].
 pub struct ReturnMap<'a, A, X, const K: usize, M = Auto> {
     simulation: Simulation<'a, A, M>,
     section: X,
@@ -188,7 +199,8 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         Self { simulation: simulation.most_steps(steps).most_jumps(jumps), section, returns: 1 }
     }
 
-    /// The map of `returns` returns at once, Pⁿ: its fixed points are the orbits of period n. At least one.
+    /// The map of `returns` returns at once, Pⁿ: its fixed points are the orbits of period n. At
+    /// least one.
     #[must_use]
     pub fn every(mut self, returns: usize) -> Self {
         self.returns = returns.max(1);
@@ -198,8 +210,9 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
     /// P(q): runs from `q` until the section's edge is taken.
     ///
     /// # Errors
-    /// [`MapError::Run`] if the run fails, [`MapError::NoReturn`] if it ends before it is back, [`MapError::Question`] if the edge leads to another mode than
-    /// the section's, or its [`Section::flaw`] finds one.
+    /// [`MapError::Run`] if the run fails, [`MapError::NoReturn`] if it ends before it is back,
+    /// [`MapError::Question`] if the edge leads to another mode than the section's, or its
+    /// [`Section::flaw`] finds one.
     pub fn apply(&self, q: [f64; K]) -> Result<Return<K>, MapError> {
         let (mode, t, x) = self.place(&q);
         let jump = self.jump(&self.simulation, mode, x, t, &mut Vec::new()).map_err(|error| error.starting(&q))?;
@@ -210,10 +223,12 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
 
     /// P(q) and the matrix ∂P/∂q, K × K, coordinates of the return by coordinates of the start.
     ///
-    /// Its derivatives are those of the run itself, carried through each jump by its saltation matrix ([`Sensitive`]): no differences are taken.
+    /// Its derivatives are those of the run itself, carried through each jump by its saltation
+    /// matrix ([`Sensitive`]): no differences are taken.
     ///
     /// # Errors
-    /// As [`apply`](Self::apply); also where a jump on the way grazes, [`ErrorKind::Grazing`](crate::ErrorKind::Grazing).
+    /// As [`apply`](Self::apply); also where a jump on the way grazes,
+    /// [`ErrorKind::Grazing`](crate::ErrorKind::Grazing).
     pub fn jacobian(&self, q: [f64; K]) -> Result<(Return<K>, SMatrix<f64, K, K>), MapError> {
         let linear = self.linear(&q, std::array::from_fn::<_, K, _>(Wrt::Initial))?;
         Ok((linear.image, SMatrix::from_fn(|i, k| linear.columns[k][i])))
@@ -232,7 +247,8 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         ReturnMap { simulation: self.simulation.over(automaton), section: &self.section, returns: self.returns }
     }
 
-    /// P to first order along each of `by`: coordinates of the section ([`Wrt::Initial`]) or parameters.
+    /// P to first order along each of `by`: coordinates of the section ([`Wrt::Initial`]) or
+    /// parameters.
     fn linear<const C: usize>(&self, q: &[f64; K], by: [Wrt; C]) -> Result<Linear<A::Edge, K, C>, MapError> {
         let automaton = self.simulation.automaton();
         let (mode, t, x) = self.place(q);
@@ -274,7 +290,8 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         flaw.map_or(Ok(()), |flaw| Err(MapError::Question(flaw)))
     }
 
-    /// Runs from `x` until the edge has been taken as often as asked for, noting the edges on the way.
+    /// Runs from `x` until the edge has been taken as often as asked for, noting the edges on the
+    /// way.
     fn jump<B: Automaton<Mode = A::Mode, Edge = A::Edge>>(
         &self,
         simulation: &Simulation<'_, B, M>,

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 
-/// Why a return map could not be evaluated, or a fixed point not be found. Written with `{}` or `{:?}`, it is a sentence that says what to do.
+/// Why a return map could not be evaluated, or a fixed point not be found. Written with `{}` or
+/// `{:?}`, it is a sentence that says what to do.
 ///
 /// ```
 /// use saltus::return_map::MapError;
@@ -96,7 +97,8 @@ impl std::error::Error for MapError {
     }
 }
 
-/// An equation at a place: what should be zero, by how much it may be off, its derivative, and what else was found there.
+/// An equation at a place: what should be zero, by how much it may be off, its derivative, and what
+/// else was found there.
 pub(super) struct Equation<T> {
     pub(super) residual: DVector<f64>,
     pub(super) allowed: DVector<f64>,
@@ -119,10 +121,12 @@ pub(super) struct Root<T> {
     pub(super) steps: u32,
 }
 
-/// Solves an equation from `at` by Newton's method, damped where a full step does not help, until rounding stops it.
+/// Solves an equation from `at` by Newton's method, damped where a full step does not help, until
+/// rounding stops it.
 ///
-/// It has converged if the residual is then within a thousand times of what one run may err. Source: P. Deuflhard, *Newton Methods for
-/// Nonlinear Problems*, Springer 2004, section 3.2 (the damping is by halving).
+/// It has converged if the residual is then within a thousand times of what one run may err.
+/// Source: P. Deuflhard, *Newton Methods for Nonlinear Problems*, Springer 2004, section 3.2 (the
+/// damping is by halving).
 pub(super) fn newton<T>(
     at: DVector<f64>,
     mut equation: impl FnMut(&DVector<f64>) -> Result<Equation<T>, MapError>,

@@ -9,8 +9,9 @@ use crate::state::State;
 /// How far a coordinate may be off that the section holds, relative to the largest.
 const HELD: f64 = 1e-6;
 
-/// A [`Section`] whose coordinates q are K of the state's own; the others are always those of one given state just after the edge, and a return on which
-/// they are not, but for rounding (10⁻⁶ of the largest coordinate), is an error.
+/// A [`Section`] whose coordinates q are K of the state's own; the others are always those of one
+/// given state just after the edge, and a return on which they are not, but for rounding (10⁻⁶ of
+/// the largest coordinate), is an error.
 ///
 /// Of a ball that rises from the floor only the velocity is left:
 ///
@@ -54,7 +55,8 @@ pub struct Selection<M, S, E, const K: usize> {
 }
 
 impl<M: Debug, S: State, E, const K: usize> Selection<M, S, E, K> {
-    /// The section by `edge` into this mode, with the coordinates `which` of this state just after it, counted from 0.
+    /// The section by `edge` into this mode, with the coordinates `which` of this state just after
+    /// it, counted from 0.
     ///
     /// # Errors
     /// [`MapError::Question`] if the state has no such coordinate, or one is named twice.

@@ -1,7 +1,11 @@
-//! Filippov sliding: two smooth flows and a surface between them become an automaton with a third mode on the surface.
+//! Filippov sliding: two smooth flows and a surface between them become an automaton with a third
+//! mode on the surface.
+
+mod sides;
+
+pub use sides::Sides;
 
 use std::borrow::Cow;
-use std::marker::PhantomData;
 
 use crate::automaton::clocks::Clock;
 use crate::automaton::edges::Edges;
@@ -17,9 +21,10 @@ use crate::state::State;
 /// | below, h < 0 | x' = f₋(t, x) |
 /// | speed away from the surface, upwards | L± = n · f± + ∂h/∂t, with n = ∂h/∂x |
 ///
-/// Each flow and the surface must be smooth on both sides of it, at least within one step of the stepper: a step may look past the surface
-/// before the crossing is found. The gradient must not vanish on the surface. [`Filippov`] makes an [`Automaton`] of it;
-/// [`Sides`] makes it of closures.
+/// Each flow and the surface must be smooth on both sides of it, at least within one step of the
+/// stepper: a step may look past the surface before the crossing is found. The gradient must not
+/// vanish on the surface. [`Filippov`] makes an [`Automaton`] of it; [`Sides`] makes it of
+/// closures.
 ///
 /// ```
 /// use saltus::nalgebra::{self, Vector2, vector};
@@ -76,32 +81,38 @@ pub trait TwoSided {
         0.0
     }
 
-    /// The margin by which the surface holds the state against leaving upwards, in units of h per second; the default is -L₊.
+    /// The margin by which the surface holds the state against leaving upwards, in units of h per
+    /// second; the default is -L₊.
     ///
-    /// More than that is a surface that holds more than it drags: static friction above kinetic friction.
+    /// More than that is a surface that holds more than it drags: static friction above kinetic
+    /// friction.
     fn hold_above(&self, t: f64, x: &Self::State) -> f64 {
         -normal_speed(self, t, x, &self.above(t, x))
     }
 
-    /// The margin by which the surface holds the state against leaving downwards, in units of h per second; the default is L₋.
+    /// The margin by which the surface holds the state against leaving downwards, in units of h per
+    /// second; the default is L₋.
     fn hold_below(&self, t: f64, x: &Self::State) -> f64 {
         normal_speed(self, t, x, &self.below(t, x))
     }
 
-    /// Promises that h(t, x) = a · x + b with constants a and b: crossings cost less, and sliding needs no correction.
+    /// Promises that h(t, x) = a · x + b with constants a and b: crossings cost less, and sliding
+    /// needs no correction.
     fn affine(&self) -> bool {
         false
     }
 
-    /// The times at which a flow or the surface is not smooth, as [`Automaton::stops`]; by default there are none.
+    /// The times at which a flow or the surface is not smooth, as [`Automaton::stops`]; by default
+    /// there are none.
     fn stops(&self) -> &[Clock] {
         &[]
     }
 
-    /// The rate κ, in 1/s, at which a deviation from the surface decays while sliding: h' = -κ h. Not used where the surface is affine.
+    /// The rate κ, in 1/s, at which a deviation from the surface decays while sliding: h' = -κ h.
+    /// Not used where the surface is affine.
     ///
-    /// Anything slow against a step and fast against the slide will do: it acts on deviations of the size of the tolerance.
-    /// The default is 1/s.
+    /// Anything slow against a step and fast against the slide will do: it acts on deviations of
+    /// the size of the tolerance. The default is 1/s.
     fn pull(&self) -> f64 {
         1.0
     }
@@ -175,25 +186,30 @@ pub enum Passage {
     Unpushed,
 }
 
-/// The automaton of a discontinuous flow in Filippov's sense: three modes, [`Side::Above`], [`Side::Below`] and [`Side::Sliding`].
+/// The automaton of a discontinuous flow in Filippov's sense: three modes, [`Side::Above`],
+/// [`Side::Below`] and [`Side::Sliding`].
 ///
-/// **At the surface** the two normal speeds decide. If both point to the same side, the state crosses. If they point at each other
-/// (L₊ < 0 < L₋), it slides, along the one convex combination of the two flows that stays on the surface,
+/// **At the surface** the two normal speeds decide. If both point to the same side, the state
+/// crosses. If they point at each other (L₊ < 0 < L₋), it slides, along the one convex combination
+/// of the two flows that stays on the surface,
 ///
 /// x' = α f₊ + (1 - α) f₋, α = L₋/(L₋ - L₊).
 ///
-/// **The slide ends** where α reaches 1 (upwards: L₊ rises to zero) or 0 (downwards: L₋ falls to zero). These are guards like any
-/// other, so the exit is found to full accuracy although the state leaves tangentially, and nothing chatters: a slide is one arc.
+/// **The slide ends** where α reaches 1 (upwards: L₊ rises to zero) or 0 (downwards: L₋ falls to
+/// zero). These are guards like any other, so the exit is found to full accuracy although the state
+/// leaves tangentially, and nothing chatters: a slide is one arc.
 ///
-/// **If they point away** from each other (L₋ < 0 < L₊, an escaping surface) the future is not unique. No run reaches such a place;
-/// one that starts there must say to which side it goes: [`side`](Self::side) answers `None`, and a run started there in
-/// [`Side::Sliding`] is refused.
+/// **If they point away** from each other (L₋ < 0 < L₊, an escaping surface) the future is not
+/// unique. No run reaches such a place; one that starts there must say to which side it goes:
+/// [`side`](Self::side) answers `None`, and a run started there in [`Side::Sliding`] is refused.
 ///
-/// **If neither points anywhere** (L₊ = L₋ = 0, a surface along which both flows run, or the point at which a slide loses both), the future is not
-/// unique either: a slide ends there, with one of the terminal edges [`Passage::Unpushed`] and [`Passage::Undecided`].
+/// **If neither points anywhere** (L₊ = L₋ = 0, a surface along which both flows run, or the point
+/// at which a slide loses both), the future is not unique either: a slide ends there, with one of
+/// the terminal edges [`Passage::Unpushed`] and [`Passage::Undecided`].
 ///
-/// **Drift.** On entry and exit the state is put on the surface, by no more than its rounding where the surface is affine. In between, an affine surface
-/// keeps the state to rounding, because Runge-Kutta methods conserve linear invariants; for a curved or moving one α is chosen such that
+/// **Drift.** On entry and exit the state is put on the surface, by no more than its rounding where
+/// the surface is affine. In between, an affine surface keeps the state to rounding, because
+/// Runge-Kutta methods conserve linear invariants; for a curved or moving one α is chosen such that
 /// h' = -κ h instead of h' = 0 (see [`TwoSided::pull`]), which stays within the same convex set.
 ///
 /// Limits: one surface. Where two meet, Filippov's solution need not be unique.
@@ -224,7 +240,8 @@ impl<T: TwoSided> Filippov<T> {
         Self { system }
     }
 
-    /// The mode in which the state `x` at time `t` is; `None` on an escaping surface, where the model must choose.
+    /// The mode in which the state `x` at time `t` is; `None` on an escaping surface, where the
+    /// model must choose.
     ///
     /// A state counts as on the surface when h is zero but for the rounding of its coordinates.
     #[must_use]
@@ -248,7 +265,8 @@ impl<T: TwoSided> Filippov<T> {
         4.0 * f64::EPSILON * (size + (self.system.surface_rate(t, x) * t).abs())
     }
 
-    /// How far L₋ - L₊, by which the flows push the state against the surface, is above what rounding may make of zero.
+    /// How far L₋ - L₊, by which the flows push the state against the surface, is above what
+    /// rounding may make of zero.
     fn push(&self, t: f64, x: &T::State) -> f64 {
         let (above, below) = (self.system.above(t, x), self.system.below(t, x));
         let (n, rate) = (self.system.normal(t, x), self.system.surface_rate(t, x));
@@ -261,7 +279,8 @@ impl<T: TwoSided> Filippov<T> {
         let (above, below) = (self.system.above(t, x), self.system.below(t, x));
         let (up, down) = (normal_speed(&self.system, t, x, &above), normal_speed(&self.system, t, x, &below));
         let pull = if self.system.affine() { 0.0 } else { self.system.pull() * self.system.surface(t, x) };
-        // Weighted like this, a coordinate that both flows hold against each other stands still exactly.
+        // Weighted like this, a coordinate that both flows hold against each other stands still
+        // exactly.
         let (up, down, gap) = (up + pull, down + pull, down - up);
         x.with(|i| (down * above.get(i) - up * below.get(i)) / gap)
     }
@@ -308,7 +327,8 @@ impl<T: TwoSided> Automaton for Filippov<T> {
             Side::Above => Edges::from([Passage::FromAbove]),
             Side::Below => Edges::from([Passage::FromBelow]),
             Side::Sliding => {
-                // First what is found at the same time as both exits; last what is asked of a slide that neither exit refuses.
+                // First what is found at the same time as both exits; last what is asked of a slide
+                // that neither exit refuses.
                 Edges::from([Passage::Undecided, Passage::LeaveAbove, Passage::LeaveBelow, Passage::Unpushed])
             }
         }
@@ -347,150 +367,5 @@ impl<T: TwoSided> Automaton for Filippov<T> {
             Passage::Undecided => About::new().entry(Entry::Wait).terminal(),
             Passage::Unpushed => About::new().entry(Entry::Fire).terminal(),
         }
-    }
-}
-
-/// A [`TwoSided`] system made of closures: the flows above and below, h and its gradient.
-///
-/// ```
-/// use saltus::nalgebra::{self, Vector2, vector};
-/// use saltus::{Filippov, Side, Sides, Simulation};
-///
-/// // Two uniform flows against a unit circle that both must keep to: the state runs round it at speed 1.
-/// let rim = Sides::new(
-///     |_, x: &Vector2<f64>| vector![-x[1] - x[0], x[0] - x[1]],
-///     |_, x| vector![-x[1] + x[0], x[0] + x[1]],
-///     |_, x| x.norm_squared() - 1.0,
-///     |_, x| 2.0 * x,
-/// );
-/// let rim = Filippov::of(rim);
-/// let start = vector![1.0, 0.0];
-/// assert_eq!(rim.side(0.0, &start), Some(Side::Sliding));
-/// let run = Simulation::of(&rim).run(Side::Sliding, start, 0.0..100.0)?;
-/// assert!((run.end.state - vector![100.0_f64.cos(), 100.0_f64.sin()]).norm() < 1e-6);
-/// assert!((run.end.state.norm() - 1.0).abs() < 1e-9);
-/// # Ok::<(), saltus::Error>(())
-/// ```
-#[derive(Clone)]
-pub struct Sides<S, F, G, H, N, R = fn(f64, &S) -> f64> {
-    above: F,
-    below: G,
-    surface: H,
-    normal: N,
-    rate: R,
-    affine: bool,
-    pull: f64,
-    stops: Vec<Clock>,
-    state: PhantomData<fn(&S) -> S>,
-}
-
-impl<S, F, G, H, N> Sides<S, F, G, H, N>
-where
-    S: State,
-    F: Fn(f64, &S) -> S,
-    G: Fn(f64, &S) -> S,
-    H: Fn(f64, &S) -> f64,
-    N: Fn(f64, &S) -> S,
-{
-    /// The flow where h > 0, the flow where h < 0, h itself, and its gradient with respect to the state.
-    #[must_use]
-    pub fn new(above: F, below: G, surface: H, normal: N) -> Self {
-        Self {
-            above,
-            below,
-            surface,
-            normal,
-            rate: |_, _| 0.0,
-            affine: false,
-            pull: 1.0,
-            stops: Vec::new(),
-            state: PhantomData,
-        }
-    }
-}
-
-impl<S, F, G, H, N, R> Sides<S, F, G, H, N, R> {
-    /// Lets the surface move: `rate` is ∂h/∂t.
-    #[must_use]
-    pub fn moving<Q: Fn(f64, &S) -> f64>(self, rate: Q) -> Sides<S, F, G, H, N, Q> {
-        let Self { above, below, surface, normal, affine, pull, stops, state, .. } = self;
-        Sides { above, below, surface, normal, rate, affine, pull, stops, state }
-    }
-
-    /// Promises that the surface is affine and at rest; see [`TwoSided::affine`].
-    #[must_use]
-    pub fn affine(mut self) -> Self {
-        self.affine = true;
-        self
-    }
-
-    /// Says when a flow is not smooth in time, as at the knots of an input; see [`TwoSided::stops`].
-    ///
-    /// ```
-    /// use saltus::{Clock, Filippov, Side, Sides, Simulation};
-    ///
-    /// // A block of 1 kg that friction holds with 2 N is pushed with 5 N for 10 ms.
-    /// let push = |t: f64| if (1.0..1.01).contains(&t) { 5.0 } else { 0.0 };
-    /// let block = Sides::new(move |t, _: &f64| push(t) - 2.0, move |t, _| push(t) + 2.0, |_, v| *v, |_, _| 1.0);
-    /// let block = Filippov::of(block.affine().stops(Clock::at([1.0, 1.01])));
-    /// let run = Simulation::of(&block).run(Side::Sliding, 0.0, 0.0..10.0)?;
-    /// let jumps: Vec<_> = run.trajectory.jumps().iter().map(|jump| (jump.to, jump.t())).collect();
-    /// assert_eq!(jumps[0], (Side::Above, 1.0));
-    /// assert!(jumps[1].0 == Side::Sliding && (jumps[1].1 - 1.025).abs() < 1e-12); // 5·0.01/2 after it began
-    /// # Ok::<(), saltus::Error>(())
-    /// ```
-    #[must_use]
-    pub fn stops(mut self, stops: Clock) -> Self {
-        self.stops.push(stops);
-        self
-    }
-
-    /// The rate at which a deviation from the surface decays while sliding, in 1/s; see [`TwoSided::pull`].
-    #[must_use]
-    pub fn pull(mut self, rate: f64) -> Self {
-        self.pull = rate;
-        self
-    }
-}
-
-impl<S, F, G, H, N, R> std::fmt::Debug for Sides<S, F, G, H, N, R> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Sides").field("affine", &self.affine).field("pull", &self.pull).finish_non_exhaustive()
-    }
-}
-
-impl<S, F, G, H, N, R> TwoSided for Sides<S, F, G, H, N, R>
-where
-    S: State,
-    F: Fn(f64, &S) -> S,
-    G: Fn(f64, &S) -> S,
-    H: Fn(f64, &S) -> f64,
-    N: Fn(f64, &S) -> S,
-    R: Fn(f64, &S) -> f64,
-{
-    type State = S;
-    fn above(&self, t: f64, x: &S) -> S {
-        (self.above)(t, x)
-    }
-    fn below(&self, t: f64, x: &S) -> S {
-        (self.below)(t, x)
-    }
-    fn surface(&self, t: f64, x: &S) -> f64 {
-        (self.surface)(t, x)
-    }
-    fn normal(&self, t: f64, x: &S) -> S {
-        (self.normal)(t, x)
-    }
-    fn surface_rate(&self, t: f64, x: &S) -> f64 {
-        (self.rate)(t, x)
-    }
-    fn affine(&self) -> bool {
-        self.affine
-    }
-    fn stops(&self) -> &[Clock] {
-        &self.stops
-    }
-    fn pull(&self) -> f64 {
-        self.pull
     }
 }

@@ -1,6 +1,9 @@
-//! A run as the motion that is shown: cut, snapped and held as asked for, with its squash and stretch.
+//! A run as the motion that is shown: cut, snapped and held as asked for, with its squash and
+//! stretch.
 
-use std::fmt;
+mod departure;
+
+pub use departure::{Departure, length};
 
 use nalgebra::Vector3;
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
@@ -8,7 +11,8 @@ use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, 
 use crate::plan::{Impact, Record, Segment, Sides, With};
 use crate::{Error, Scene};
 
-/// Frames for which a squash is seen where a contact is an instant and no hold is asked for: the contact, the squash, and off again.
+/// Frames for which a squash is seen where a contact is an instant and no hold is asked for: the
+/// contact, the squash, and off again.
 const HELD: u32 = 2;
 
 /// How far a ball is squashed.
@@ -41,7 +45,8 @@ pub struct Staging {
     pub snap: Option<Snap>,
     /// How far the ball is squashed in contacts.
     pub squash: Option<Squash>,
-    /// By which part the ball is longer at the greatest speed, along its velocity; 0 for not at all.
+    /// By which part the ball is longer at the greatest speed, along its velocity; 0 for not at
+    /// all.
     pub stretch: f64,
     /// Squash and stretch so many times as much.
     pub exaggerate: f64,
@@ -53,99 +58,6 @@ pub struct Staging {
     pub mirror: bool,
     /// Whether there is a key at the top of every flight.
     pub apexes: bool,
-}
-
-/// How what is shown departs from the motion of the scene; lengths in m.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Departure {
-    /// One hop alone, as a loop.
-    Loop {
-        /// Counted from 1.
-        hop: u32,
-    },
-    /// Hops shorter than a frame are left out.
-    Cut {
-        /// How high they are in m, at most.
-        height: f64,
-        /// How far heights are from the run for it, in m, at most: the ball lies where it would hop, or a floor would carry it.
-        off: f64,
-    },
-    /// Contacts are on whole frames and gravity is kept: tops move.
-    SnappedByGravity {
-        /// By this much in m, at most.
-        tops: f64,
-    },
-    /// Contacts are on whole frames and heights are kept: the end moves.
-    SnappedByHeights {
-        /// By this much in s.
-        end: f64,
-    },
-    /// The ball is squashed.
-    Squashed {
-        /// To this part of its height.
-        to: f64,
-        /// How many times as far as the contact's law has it; `None` where no law says how far.
-        of_law: Option<f64>,
-    },
-    /// The ball is stretched by hand.
-    Stretched {
-        /// To this part of its length.
-        to: f64,
-    },
-    /// Contacts are shorter than a frame, so that their squash may not be seen.
-    Short {
-        /// How many.
-        contacts: usize,
-    },
-    /// Contacts are held.
-    Held {
-        /// For so many.
-        count: u32,
-        /// Drawings, each of two frames, instead of frames.
-        drawings: bool,
-        /// By how much the end is later, in s.
-        later: f64,
-    },
-    /// A loop begins anew.
-    Again {
-        /// At this frame.
-        last: f64,
-        /// Which is this one.
-        first: i32,
-    },
-}
-
-impl fmt::Display for Departure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Loop { hop } => write!(f, "hop {hop} alone, as a loop"),
-            Self::Cut { height, off } if height < off && length(*height) == length(0.0) => {
-                write!(f, "contacts shorter than a frame left out")
-            }
-            Self::Cut { height, .. } => write!(f, "hops of up to {} left out", length(*height)),
-            Self::SnappedByGravity { tops } => {
-                write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))
-            }
-            Self::SnappedByHeights { end } => write!(f, "snapped by heights, the end moved by {end:.4} s"),
-            Self::Squashed { to, of_law: None } => write!(f, "squashed to {to:.2} of its height by hand"),
-            Self::Squashed { to, of_law: Some(1.0) } => {
-                write!(f, "squashed to {to:.2} of its height as the contact's law has it")
-            }
-            Self::Squashed { to, of_law: Some(times) } => {
-                write!(f, "squashed to {to:.2} of its height, {times:.3} times as far as the contact's law has it")
-            }
-            Self::Stretched { to } => write!(f, "stretched to {to:.2} of its length by hand"),
-            Self::Short { contacts } => {
-                write!(f, "{contacts} contacts are shorter than a frame, and --hold makes them longer")
-            }
-            Self::Held { count, drawings, later } => {
-                let what = if *drawings { "drawings" } else { "frames" };
-                write!(f, "contacts held for {count} {what}, the end {later:.4} s later")
-            }
-            Self::Again { last, first } => write!(f, "frame {last} is frame {first} again"),
-        }
-    }
 }
 
 /// What is shown of a run.
@@ -167,7 +79,8 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// What is shown as a file; where more than gravity acts, keys are within `tolerance` in m of the motion.
+    /// What is shown as a file; where more than gravity acts, keys are within `tolerance` in m of
+    /// the motion.
     ///
     /// # Errors
     /// [`Error`] where the format cannot hold it.
@@ -178,8 +91,9 @@ impl Stage {
             .map_err(Error::new)
     }
 
-    /// How far the heights of a file are from those of the run, in m, at most: what the file is off by, and what the hops left out are. Where contacts
-    /// are moved in time, by snapping, by holding or to a loop, it is how far they are from the motion as it is shown.
+    /// How far the heights of a file are from those of the run, in m, at most: what the file is off
+    /// by, and what the hops left out are. Where contacts are moved in time, by snapping, by
+    /// holding or to a loop, it is how far they are from the motion as it is shown.
     #[must_use]
     pub fn height_error(&self, file: &File) -> f64 {
         let moved = |departure: &Departure| {
@@ -243,7 +157,8 @@ impl Staging {
     /// A run as it is to be shown.
     ///
     /// # Errors
-    /// [`Error`] where there is no such hop, contacts cannot move to frames, or no law says how far the ball is squashed.
+    /// [`Error`] where there is no such hop, contacts cannot move to frames, or no law says how far
+    /// the ball is squashed.
     pub fn stage(&self, record: &Record) -> Result<Stage, Error> {
         let frames = self.frames;
         let (mut whole, drawn) = motion(record.scene(), record)?;
@@ -332,8 +247,9 @@ impl Staging {
 }
 
 impl Record {
-    /// The motion as tracks of polynomials from contact to contact, for animators: all of it, on its own times. A ball without a radius is drawn
-    /// with a fiftieth of the height that all balls go through.
+    /// The motion as tracks of polynomials from contact to contact, for animators: all of it, on
+    /// its own times. A ball without a radius is drawn with a fiftieth of the height that all balls
+    /// go through.
     ///
     /// # Errors
     /// [`Error`] where the run has no length.
@@ -350,7 +266,8 @@ fn hops_below(motion: &Motion, span: f64) -> f64 {
     short.map(high).fold(0.0, f64::max)
 }
 
-/// How far the heights of two motions on the same times are apart, at most, looked at in points of every piece of the first.
+/// How far the heights of two motions on the same times are apart, at most, looked at in points of
+/// every piece of the first.
 fn heights_apart(a: &Motion, b: &Motion) -> f64 {
     /// Points of a piece; between them a parabola is higher by at most a 4 × 16² th of its height.
     const POINTS: u32 = 16;
@@ -366,19 +283,8 @@ fn heights_apart(a: &Motion, b: &Motion) -> f64 {
     apart
 }
 
-/// A length that a person can picture.
-#[must_use]
-pub fn length(metres: f64) -> String {
-    match metres {
-        m if m < 1e-9 => "0 mm".to_owned(),
-        m if m < 1e-5 => format!("{:.1e} mm", m * 1e3),
-        m if m < 0.01 => format!("{:.2} mm", m * 1e3),
-        m if m < 1.0 => format!("{:.1} cm", m * 1e2),
-        m => format!("{m:.2} m"),
-    }
-}
-
-/// The record as tracks, and the radius that balls without one are drawn with: a stretch ends where a velocity jumps, or where a flight begins or ends.
+/// The record as tracks, and the radius that balls without one are drawn with: a stretch ends where
+/// a velocity jumps, or where a flight begins or ends.
 fn motion(scene: &Scene, record: &Record) -> Result<(Motion, Option<f64>), Error> {
     let (events, impacts) = (record.events(), record.impacts());
     let mut tracks = Vec::new();
@@ -447,8 +353,8 @@ fn pressed(stretch: &Stretch) -> bool {
     stretch.contact.is_some_and(|contact| contact.pressed)
 }
 
-/// A ball that a contact lets go of while it is still deformed is shown in contact until its lowest point is where it touched: the first part of its flight,
-/// up to then, and the rest.
+/// A ball that a contact lets go of while it is still deformed is shown in contact until its lowest
+/// point is where it touched: the first part of its flight, up to then, and the rest.
 fn parted(contact: &Stretch, flight: Piece) -> (Option<Piece>, Option<Piece>) {
     let (normal, touch) =
         (contact.contact.map_or([0.0, 0.0, 1.0], |contact| contact.normal), contact.at(contact.start()));
@@ -472,7 +378,8 @@ fn parted(contact: &Stretch, flight: Piece) -> (Option<Piece>, Option<Piece>) {
     (Some(flight.part(0.0, high)), (rest.span > 0.0).then_some(rest))
 }
 
-/// A contact that begins with impacts, the hardest of which counts, and with a jump, if it is one of an instant.
+/// A contact that begins with impacts, the hardest of which counts, and with a jump, if it is one
+/// of an instant.
 fn contact<'a>(scene: &Scene, impacts: impl Iterator<Item = &'a Impact>, jump: Option<&Sides>) -> Contact {
     let hardest = impacts.max_by(|a, b| a.approach.total_cmp(&b.approach));
     let change = jump.map_or(Vector3::z(), |sides| sides.after.velocity - sides.before.velocity);
