@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .mode("closed", flow(SOURCE))
         .mode("open", flow(0.0))
         .edge("closed", "open", |_t, x| x.duty * PERIOD - x.ramp, |_t, x| *x)
-        .affine("closed", "open")
+        .affine()
         .clock("open", "closed", Clock::every(PERIOD), sample)
         .stops("closed", Clock::at([STEP]))
         .stops("open", Clock::at([STEP]));

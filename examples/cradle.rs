@@ -19,15 +19,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cradle = (0..4).fold(Hybrid::new().mode("hang", swing), |cradle, left: usize| {
         let gap = move |_t: f64, x: &Balls| x[left + 1] - x[left];
         // Equal balls that lose nothing exchange their velocities.
-        cradle.edge("hang", "hang", gap, move |_t, x| {
-            let mut after = *x;
-            after.swap_rows(left + 5, left + 6);
-            after
-        })
+        cradle
+            .edge("hang", "hang", gap, move |_t, x| {
+                let mut after = *x;
+                after.swap_rows(left + 5, left + 6);
+                after
+            })
+            .affine()
     });
     let mut start = Balls::zeros();
     start[0] = -1.5;
-    let run = Simulation::of(&cradle.affine("hang", "hang")).tolerance(1e-12).run("hang", start, 0.0..4.0 * PI)?;
+    let run = Simulation::of(&cradle).tolerance(1e-12).run("hang", start, 0.0..4.0 * PI)?;
 
     let ball = |i: usize| {
         let trajectory = &run.trajectory;

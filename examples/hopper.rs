@@ -13,13 +13,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hopper = Hybrid::new()
         .exact("fall", fall)
         .edge("fall", "stance", move |_t, x| x[0] - leg, |_t, x| *x)
-        .affine("fall", "stance")
+        .affine()
         .mode("stance", move |_t, x| [x[1], stiffness / mass * (leg - x[0]) - g])
         .edge("stance", "rise", move |_t, x| leg - x[0], |_t, x| *x)
-        .affine("stance", "rise")
+        .affine()
         .exact("rise", fall)
         .edge("rise", "fall", |_t, x| x[1], |_t, x| *x)
-        .affine("rise", "fall");
+        .affine();
     let run = Simulation::of(&hopper).tolerance(1e-13).run("fall", [start, 0.0], 0.0..650.0)?;
 
     let trajectory = &run.trajectory;

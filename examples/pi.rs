@@ -23,8 +23,9 @@ fn blocks(mass: f64) -> Hybrid<'static, Blocks> {
                 [place, gap, small + mass * pull, big - pull]
             },
         )
+        .affine()
         .edge("slide", "slide", |_t, x| x[0], |_t, &[place, gap, small, big]| [place, gap, -small, big])
-        .affine("slide", "slide")
+        .affine()
 }
 
 fn collide(blocks: &Hybrid<'static, Blocks>) -> Result<RunOf<Hybrid<'static, Blocks>>, saltus::Error> {

@@ -15,10 +15,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let block = Hybrid::new()
         .mode("stick", move |_t, _x: &Vector2<f64>| vector![belt, 0.0])
         .edge("stick", "slip", move |_t, x| holds - spring * x[0], |_t, x| *x)
-        .affine("stick", "slip")
+        .affine()
         .mode("slip", move |_t, x| vector![x[1], (drags - spring * x[0]) / mass])
         .edge("slip", "stick", move |_t, x| belt - x[1], move |_t, x| vector![x[0], belt])
-        .affine("slip", "stick");
+        .affine();
     let run = Simulation::of(&block).tolerance(1e-13).run("stick", vector![0.0, belt], 0.0..330.0)?;
 
     let trajectory = &run.trajectory;

@@ -14,9 +14,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .exact("first", move |_t, x: &[f64; 2]| [*x, [inflow - leaks[0], -leaks[1]]].into())
         .exact("second", move |_t, x| [*x, [-leaks[0], inflow - leaks[1]]].into())
         .edge("first", "second", |_t, x| x[1], |_t, x| *x)
+        .affine()
         .edge("second", "first", |_t, x| x[0], |_t, x| *x)
-        .affine("first", "second")
-        .affine("second", "first");
+        .affine();
     let run = Simulation::of(&tanks).run("first", [1.0, 1.0], 0.0..8.0)?;
 
     // The levels are straight between the jumps.

@@ -116,10 +116,10 @@ pub(crate) fn hopper() -> Answer {
         Hybrid::new()
             .exact("flight", fall)
             .edge("flight", "stance", move |_t, x: &Vector2<f64>| x[0] - leg, |_t, x| *x)
-            .affine("flight", "stance")
+            .affine()
             .mode("stance", move |_t, x| vector![x[1], stiffness / mass * (leg - x[0]) - g])
             .edge("stance", "flight", move |_t, x| leg - x[0], |_t, x| *x)
-            .affine("stance", "flight")
+            .affine()
     };
     let stepped = hopper();
     let expanded = hopper().series("stance", move |_t, [y, v]| [v, stiffness / mass * (leg - y) - g]);

@@ -97,7 +97,7 @@ fn doubling_map(case: &mut Report) {
     let map = Hybrid::new()
         .exact("run", |_t, x: &[f64; 2]| Polynomial::from([*x, [1.0, 0.0]]))
         .edge("run", "run", |_t, x| 1.0 - x[0], |_t, x| [0.0, (2.0 * x[1]).rem_euclid(1.0)])
-        .affine("run", "run");
+        .affine();
     let run = Simulation::of(&map).run("run", [0.0, case.param("x0")], 0.0..60.0).unwrap();
     case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();

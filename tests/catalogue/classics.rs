@@ -3,7 +3,7 @@
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, RunOf, Simulation};
-use saltus_tests::watched::watched;
+use saltus_tests::watched::{watched, watched_affine};
 
 use crate::report::Report;
 use crate::root::{tight, times};
@@ -130,9 +130,9 @@ fn bang_bang_oscillator(case: &mut Report) {
         .exact("right", arc(-1.0))
         .exact("left", arc(1.0))
         .edge("right", "left", |_t, x| x[0], |_t, x| *x)
+        .affine()
         .edge("left", "right", |_t, x| -x[0], |_t, x| *x)
-        .affine("right", "left")
-        .affine("left", "right");
+        .affine();
     let run = Simulation::of(&automaton).run("right", vector![x0, 0.0], 0.0..14143.0).unwrap();
     case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps();
@@ -168,7 +168,7 @@ fn chebyshev_roots(case: &mut Report) {
 fn van_der_pol(case: &mut Report) {
     let mu = case.param("mu");
     let flow = move |_t: f64, x: &Vector2<f64>| vector![x[1], mu * (1.0 - x[0] * x[0]) * x[1] - x[0]];
-    let automaton = watched(flow, |_t, x| x[0]).affine("run", "run");
+    let automaton = watched_affine(flow, |_t, x| x[0]);
     let run = Simulation::of(&automaton).stepper(Dop853).tolerance(1e-13).run("run", vector![2.0, 0.0], 0.0..330.0);
     let run = run.unwrap();
     case.ran(&run.end.stats);
@@ -187,9 +187,11 @@ fn robertson(case: &mut Report) {
     let automaton = Hybrid::new()
         .mode("run", flow)
         .edge("run", "run", move |_t, y| lev3 - y[2], |_t, y| *y)
+        .affine()
+        .entry(Entry::Wait)
         .edge("run", "run", move |_t, y| y[0] - lev1, |_t, y| *y)
-        .entry("run", "run", Entry::Wait)
-        .affine("run", "run");
+        .affine()
+        .entry(Entry::Wait);
     let simulation = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-12).absolute_tolerance(1e-20);
     let run = simulation.run("run", vector![1.0, 0.0, 0.0], 0.0..1e8).unwrap();
     case.ran(&run.end.stats);

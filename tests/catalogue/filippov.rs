@@ -215,9 +215,9 @@ fn thermostat(case: &mut Report) {
         .mode("heating", move |_, x: &f64| -a * (x - te) + q)
         .mode("cooling", move |_, x| -a * (x - te))
         .edge("heating", "cooling", move |_, x| high - x, |_, x| *x)
-        .affine("heating", "cooling")
+        .affine()
         .edge("cooling", "heating", move |_, x| x - low, |_, x| *x)
-        .affine("cooling", "heating");
+        .affine();
     let simulation = Simulation::of(&thermostat).stepper(Dop853).tolerance(1e-13).most_jumps(100_003);
     let run = simulation.run("heating", 20.0, 0.0..5e5).unwrap();
     case.ran(&run.end.stats);

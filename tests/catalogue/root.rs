@@ -2,7 +2,7 @@
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, RunOf, Simulation, State};
-use saltus_tests::watched::watched;
+use saltus_tests::watched::{watched, watched_affine};
 
 use crate::report::Report;
 
@@ -92,9 +92,10 @@ fn graze_cross_closer(case: &mut Report) {
 /// By steps, by the exact parabola, and with the guard promised affine.
 fn double_cross(case: &mut Report) {
     let [x0, v0, a] = case.params(["x0", "v0", "a"]);
-    let steps = || watched(move |_t, x: &Vector2<f64>| vector![x[1], a], |_t, x| x[0]);
-    let arcs = || steps().exact("run", move |_t, x| Polynomial::from([*x, vector![x[1], a], vector![0.5 * a, 0.0]]));
-    for automaton in [steps(), arcs(), arcs().affine("run", "run")] {
+    let flow = move |_t: f64, x: &Vector2<f64>| vector![x[1], a];
+    let exact = move |_t: f64, x: &Vector2<f64>| Polynomial::from([*x, vector![x[1], a], vector![0.5 * a, 0.0]]);
+    let steps = || watched(flow, |_t, x| x[0]);
+    for automaton in [steps(), steps().exact("run", exact), watched_affine(flow, |_t, x| x[0]).exact("run", exact)] {
         let run = Simulation::of(&automaton).run("run", vector![x0, v0], 0.0..1.0).unwrap();
         case.ran(&run.end.stats);
         let t = times(&run);
@@ -150,8 +151,9 @@ fn event_at_the_start(case: &mut Report) {
     let automaton = Hybrid::new()
         .exact("run", |_t, x: &f64| [*x, 1.0].into())
         .edge("run", "run", |_t, x| -x, |_t, x| *x)
+        .entry(Entry::Wait)
         .edge("run", "run", |_t, x| 0.5 - x, |_t, x| *x)
-        .entry("run", "run", Entry::Wait);
+        .entry(Entry::Wait);
     let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
     case.ran(&run.end.stats);
     let of =

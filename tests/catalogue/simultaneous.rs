@@ -235,12 +235,13 @@ fn galperin_7(case: &mut Report) {
 fn noncommuting_resets(case: &mut Report) {
     for a_first in [true, false] {
         let clock = Hybrid::new().exact("run", |_t, x: &[f64; 2]| Polynomial::from([*x, [0.0, 1.0]]));
-        let a =
-            |clock: Hybrid<'static, [f64; 2]>| clock.edge("run", "run", |_t, x| 1.0 - x[1], |_t, x| [x[0] + 1.0, x[1]]);
-        let b = |clock: Hybrid<'static, [f64; 2]>| {
-            clock.edge("run", "run", |_t, x| 2.0 - 2.0 * x[1], |_t, x| [2.0 * x[0], x[1]])
+        let a = |clock: Hybrid<'static, [f64; 2]>| {
+            clock.edge("run", "run", |_t, x| 1.0 - x[1], |_t, x| [x[0] + 1.0, x[1]]).entry(Entry::Wait)
         };
-        let automaton = if a_first { b(a(clock)) } else { a(b(clock)) }.entry("run", "run", Entry::Wait);
+        let b = |clock: Hybrid<'static, [f64; 2]>| {
+            clock.edge("run", "run", |_t, x| 2.0 - 2.0 * x[1], |_t, x| [2.0 * x[0], x[1]]).entry(Entry::Wait)
+        };
+        let automaton = if a_first { b(a(clock)) } else { a(b(clock)) };
         let run = Simulation::of(&automaton).run("run", [1.0, 0.0], 0.0..2.0).unwrap();
         case.ran(&run.end.stats);
         case.check("n_resets", run.trajectory.jumps().len() as f64);

@@ -34,7 +34,7 @@ fn ticks(p: f64) -> Hybrid<'static, f64> {
     Hybrid::new()
         .exact("tick", |_t, x: &f64| [*x, 1.0].into())
         .edge("tick", "tick", move |_t, x| p - x, |_t, _x| 0.0)
-        .affine("tick", "tick")
+        .affine()
 }
 
 fn clock(case: &mut Report) {

@@ -225,7 +225,7 @@ fn incline(case: &mut Report) {
             Polynomial::from([*x, [x[2], x[3], along, -across], [0.5 * along, -0.5 * across, 0.0, 0.0]])
         })
         .edge("flight", "flight", |_t, x| x[1], move |_t, x| [x[0], 0.0, x[2], -e * x[3]])
-        .affine("flight", "flight")
+        .affine()
         .beyond("flight", "slide", |_t, x| [x[0], 0.0, x[2], 0.0])
         .exact("slide", move |_t, x| Polynomial::from([*x, [x[2], 0.0, along, 0.0], [0.5 * along, 0.0, 0.0, 0.0]]));
     let run = Simulation::of(&ball).run("flight", [0.0, n0, 0.0, 0.0], 0.0..10.0).unwrap();
@@ -246,7 +246,7 @@ fn false_zeno(case: &mut Report) {
     let ball = Hybrid::new()
         .exact("flight", move |_t, x: &Vector2<f64>| Polynomial::from([*x, vector![x[1], -g], vector![-0.5 * g, 0.0]]))
         .edge("flight", "flight", |_t, x| x[0], move |_t, x| vector![0.0, -x[1] / (1.0 - x[1] / c)])
-        .affine("flight", "flight");
+        .affine();
     let (numbers, times) = ([1, 10, 1000, 1_000_000], [2.0]);
     let mut samples = Samples::new(&numbers, &times, |_| {});
     let end = Simulation::of(&ball).drive("flight", vector![h, 0.0], 0.0..3.4, &mut samples).unwrap();
@@ -269,8 +269,9 @@ fn closing_wall(case: &mut Report) {
     let ball = Hybrid::new()
         .exact("between", move |_t, x: &Vector3<f64>| Polynomial::from([*x, vector![x[1], 0.0, -u]]))
         .edge("between", "between", |_t, x| x[0], |_t, x| vector![0.0, -x[1], x[2]])
+        .affine()
         .edge("between", "between", |_t, x| x[2] - x[0], move |_t, x| vector![x[2], -x[1] - 2.0 * u, x[2]])
-        .affine("between", "between");
+        .affine();
     let simulation = Simulation::of(&ball).most_jumps(20_001);
     let run = simulation.run("between", vector![0.0, v0, 1.0], 0.0..8.0).unwrap();
     case.ran(&run.end.stats);

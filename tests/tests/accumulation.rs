@@ -19,13 +19,13 @@ fn meets_the_limit(cases: &[Case]) {
                 .mode("first", move |_t, _x: &[f64; 2]| [w - v[0], -v[1]])
                 .mode("second", move |_t, _x| [-v[0], w - v[1]])
                 .edge("first", "second", move |_t, x| x[1] - marks[1], |_t, x| *x)
+                .affine()
                 .edge("second", "first", move |_t, x| x[0] - marks[0], |_t, x| *x)
+                .affine()
         };
         let exact = stepped()
             .exact("first", move |_t, x| [*x, [w - v[0], -v[1]]].into())
-            .exact("second", move |_t, x| [*x, [-v[0], w - v[1]]].into())
-            .affine("first", "second")
-            .affine("second", "first");
+            .exact("second", move |_t, x| [*x, [-v[0], w - v[1]]].into());
         for tanks in [stepped(), exact] {
             let run = Simulation::of(&tanks).most_jumps(1000).run("first", start, 0.0..2.0 * limit).unwrap();
             let Stop::Zeno { limit: found } = run.end.stop else { panic!("{}", run.end.stop) };

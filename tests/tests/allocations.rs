@@ -40,7 +40,7 @@ fn series_make_room_once_for_a_run() {
         .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8 - 0.1 * x[1] * x[1].abs()])
         .series("flight", |_t, [_, v]| [v, -9.8 - 0.1 * (v * v.abs())])
         .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.9 * x[1]])
-        .affine("flight", "flight");
+        .affine();
     let allocations = |jumps: usize| {
         let simulation = Simulation::of(&ball).most_jumps(jumps);
         let counted = measure(|| {

@@ -236,7 +236,7 @@ fn an_exact_touch_is_shown_and_is_no_jump() {
         .mode("flight", |_t, x: &[f64; 2]| [x[1], -8.0])
         .exact("flight", |_t, x| Polynomial::from([*x, [x[1], -8.0], [-4.0, 0.0]]))
         .edge("flight", "flight", |_t, x| 1.0 - x[0], |_t, x| *x)
-        .affine("flight", "flight");
+        .affine();
     let run = Simulation::of(&ball).run("flight", [0.0, 4.0], 0.0..0.9).unwrap();
     assert_eq!(run.trajectory.jumps().len(), 0);
     let doubts: Vec<_> = run.trajectory.doubts().iter().filter_map(saltus::Inspection::doubt).collect();

@@ -136,8 +136,8 @@ proptest! {
         let over: Arm<3, f64> = x.over();
         prop_assert_eq!(over, x);
         let doubled: Over<Arm<3>, f64> = x.lift(|i| 2.0 * x.get(i));
-        for i in 0..7 {
-            prop_assert_eq!(x.pick(&doubled, i), 2.0 * values[i]);
+        for (i, value) in values.into_iter().enumerate() {
+            prop_assert_eq!(x.pick(&doubled, i), 2.0 * value);
         }
         prop_assert!(x.pick(&doubled, 7).is_nan());
     }

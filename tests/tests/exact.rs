@@ -85,7 +85,7 @@ fn every_path_gives_the_same_impacts() {
         |_t, x| vector![0.0, -e * x[1]],
     );
     let general = Simulation::of(&stepped).run("flight", vector![1.0, 0.0], 0.0..3.0).unwrap();
-    let stepped = stepped.affine("flight", "flight");
+    let stepped = stepped.affine();
     let affine = Simulation::of(&stepped).run("flight", vector![1.0, 0.0], 0.0..3.0).unwrap();
     assert_eq!(arcs.trajectory.jumps().len(), 6);
     for n in 1..=6_usize {

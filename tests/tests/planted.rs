@@ -9,7 +9,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::cross::{Start, first_fall};
-use saltus::{Entry, Hybrid, Simulation};
+use saltus::{Edge, Entry, Hybrid, Simulation};
 
 /// A generator of numbers that look random and are the same in every run (S. Vigna's `splitmix64`).
 struct Random(u64);
@@ -159,8 +159,9 @@ fn a_run_finds_each_crossing_once() {
             .mode("run", |_t, _x: &f64| 1.0)
             .exact("run", |_t, x| saltus::Polynomial::from([*x, 1.0]))
             .edge("run", "run", |_t, x| guard(&roots, *x), |_t, x| *x)
+            .entry(Entry::Wait)
             .edge("run", "run", |_t, x| -guard(&roots, *x), |_t, x| *x)
-            .entry("run", "run", Entry::Wait);
+            .entry(Entry::Wait);
         let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0 - GRID).unwrap();
         let found: Vec<_> = run.trajectory.jumps().iter().map(|j| (j.t(), j.edge().unwrap().place == 0)).collect();
         let close = found.len() == wanted.len()
@@ -179,12 +180,12 @@ fn promised_and_unpromised_guards_agree() {
         let level = |random: &mut Random| (random.below(1 << 20) as f64) / f64::from(1 << 20);
         let (a, b) = (level(&mut random), level(&mut random));
         let list = |affine: bool| {
-            let automaton = Hybrid::new()
-                .mode("run", |_t, _x: &f64| 1.0)
-                .edge("run", "run", |_t, x| a - x, |_t, x| *x)
-                .edge("run", "run", |_t, x| b - x, |_t, x| *x)
-                .entry("run", "run", Entry::Wait);
-            let automaton = if affine { automaton.affine("run", "run") } else { automaton };
+            let at = |level: f64| {
+                let edge = Edge::new(move |_t, x: &f64| level - x, |_t, x| *x).entry(Entry::Wait);
+                if affine { edge.affine() } else { edge }
+            };
+            let run_on = Hybrid::new().mode("run", |_t, _x: &f64| 1.0);
+            let automaton = run_on.edge_with("run", "run", at(a)).edge_with("run", "run", at(b));
             let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
             run.trajectory.jumps().iter().map(|j| (j.t(), j.edge().unwrap().place)).collect::<Vec<_>>()
         };

@@ -81,7 +81,7 @@ fn closures_exact(bencher: Bencher) {
     let ball = closures().exact("flight", |_t, x: &Vector2<f64>| {
         Polynomial::from([*x, vector![x[1], -GRAVITY], vector![-0.5 * GRAVITY, 0.0]])
     });
-    let ball = ball.affine("flight", "flight");
+    let ball = ball.affine();
     let simulation = Simulation::of(&ball).most_jumps(IMPACTS);
     bencher
         .counter(ItemsCount::new(IMPACTS))

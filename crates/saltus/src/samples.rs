@@ -40,7 +40,7 @@ pub struct Sample<M, S> {
 /// let tank = Hybrid::new()
 ///     .exact("fill", |_t, x: &f64| [*x, 1.0].into())
 ///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0)
-///     .affine("fill", "fill");
+///     .affine();
 /// let mut table = Sampler::every(0.5).named(["level (m)"]);
 /// Simulation::of(&tank).drive("fill", 0.0, 0.0..1.5, &mut table)?;
 /// assert_eq!(table.to_string(), "\

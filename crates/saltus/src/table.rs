@@ -25,7 +25,7 @@ pub(crate) const MOST_ROWS: usize = 10_000_000;
 /// let tank = Hybrid::new()
 ///     .exact("fill", |_t, x: &f64| [*x, 1.0].into())
 ///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0)
-///     .affine("fill", "fill");
+///     .affine();
 /// let mut table = JumpTable::new().named(["level (m)"]);
 /// Simulation::of(&tank).drive("fill", 0.0, 0.0..3.0, &mut table)?;
 /// assert_eq!(table.to_string(), "\

@@ -70,7 +70,7 @@ fn every_edge_is_watched() {
 fn a_hybrid_with_many_edges() {
     let ladder = (0..40).fold(Hybrid::new().mode("up", |_t, _x: &f64| 1.0), |ladder, rung| {
         let mark = f64::from(rung) + 0.5;
-        ladder.edge("up", "up", move |_t, x| mark - x, move |_t, x| *x).entry("up", "up", saltus::Entry::Wait)
+        ladder.edge("up", "up", move |_t, x| mark - x, move |_t, x| *x).entry(saltus::Entry::Wait)
     });
     let run = Simulation::of(&ladder).run("up", 0.0, 0.0..40.0).unwrap();
     let taken: Vec<_> = run.trajectory.jumps().iter().filter_map(|jump| Some(jump.edge()?.place)).collect();

@@ -55,7 +55,7 @@ proptest! {
         affine in any::<bool>(),
     ) {
         let height = 10_f64.powf(height);
-        let ball = if affine { ball(e).affine("flight", "flight") } else { ball(e) };
+        let ball = if affine { ball(e).affine() } else { ball(e) };
         bounces_as_it_should(&ball, Tsit5, e, height, end);
         bounces_as_it_should(&ball, Dop853, e, height, end);
         bounces_as_it_should(&ball, Rodas5P, e, height, end);

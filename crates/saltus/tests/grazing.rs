@@ -32,9 +32,9 @@ fn falls(
             },
             |_t, x| *x,
         )
-        .entry("swing", "swing", Entry::Wait);
+        .entry(Entry::Wait);
     if affine && form == 0 {
-        oscillator = oscillator.affine("swing", "swing");
+        oscillator = oscillator.affine();
     }
     let mut certificate = Certificate::new();
     let simulation = Simulation::of(&oscillator).tolerance(tolerance);

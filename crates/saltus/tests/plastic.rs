@@ -63,7 +63,7 @@ impl Floor {
             )
             .beyond("flight", "rest", move |t, _x| [self.height(t), self.speed(t)])
             .edge("rest", "flight", move |t, _x| self.press(t), move |t, _x| [self.height(t), self.speed(t)])
-            .entry("rest", "flight", Entry::Fire)
+            .entry(Entry::Fire)
     }
 
     /// Runs to the end of three seconds: the ball is never below the floor, and leaves it where

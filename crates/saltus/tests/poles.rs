@@ -15,7 +15,7 @@ fn falls(guard: impl Fn(f64) -> f64 + Send + Sync, start: f64, span: f64) -> (Ve
     let clock = Hybrid::new()
         .mode("run", |_t, _x: &f64| 1.0)
         .edge("run", "run", move |t, _x| guard(t), |_t, x| *x)
-        .entry("run", "run", Entry::Wait);
+        .entry(Entry::Wait);
     let mut certificate = Certificate::new();
     let mut times = Vec::new();
     let simulation = Simulation::of(&clock).most_jumps(1000);

@@ -57,7 +57,7 @@ proptest! {
         prop_assume!(turns(end * (1.0 - 1e-12)) == turns(end * (1.0 + 1e-12)));
         let wave = counter()
             .edge("run", "run", move |t, _x| (omega * t + phase).sin(), |_t, x| *x)
-            .entry("run", "run", Entry::Wait);
+            .entry(Entry::Wait);
         let run = Simulation::of(&wave).run("run", 0.0, 0.0..end).unwrap();
         prop_assert_eq!(run.end.stop, Stop::Time);
         prop_assert_eq!(run.trajectory.jumps().len() as f64, turns(end) - turns(0.0));
@@ -74,8 +74,8 @@ proptest! {
             let ball = Hybrid::new()
                 .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
                 .edge("flight", "flight", move |_t, x| x[0] - elsewhere, move |_t, x| [x[0], kept * x[1]])
-                .entry("flight", "flight", entry);
-            let ball = if affine { ball.affine("flight", "flight") } else { ball };
+                .entry(entry);
+            let ball = if affine { ball.affine() } else { ball };
             if solved { ball.exact("flight", |_t, x| Polynomial::from([*x, [x[1], -9.81], [-4.905, 0.0]])) } else { ball }
         };
         let start = [elsewhere + height, 0.0];
@@ -97,12 +97,14 @@ proptest! {
         let [a, b] = if swapped { [second, first] } else { [first, second] };
         let of_time = counter()
             .edge("run", "run", move |t, _x| a - t, |_t, x| *x)
+            .entry(Entry::Wait)
             .edge("run", "run", move |t, _x| b - t, |_t, x| *x)
-            .entry("run", "run", Entry::Wait);
+            .entry(Entry::Wait);
         let of_state = counter()
             .edge("run", "run", move |_t, x| a - x, |_t, x| *x)
+            .entry(Entry::Wait)
             .edge("run", "run", move |_t, x| b - x, |_t, x| *x)
-            .entry("run", "run", Entry::Wait);
+            .entry(Entry::Wait);
         for counter in [of_time, of_state] {
             for places in [taken(&counter, Tsit5), taken(&counter, Dop853), taken(&counter, Rodas5P)] {
                 prop_assert!(places == order || apart < 2 && places == [0, 1], "{places:?} instead of {order:?}");

@@ -12,7 +12,7 @@ fn saw(top: f64, kick: f64) -> Hybrid<'static, f64> {
     Hybrid::new()
         .mode("rise", |_t, _x: &f64| 1.0)
         .edge("rise", "rise", move |_t, x| top - x, |_t, _x| 0.0)
-        .entry("rise", "rise", saltus::Entry::Fire)
+        .entry(saltus::Entry::Fire)
         .clock("rise", "rise", Clock::every(kick), |_t, x| x + 1.0)
 }
 

@@ -236,7 +236,7 @@ proptest! {
             .mode("swing", move |t, &[x, v]: &[f64; 2]| [v, force * t.cos() - rate * rate * x.sin() - damping * v])
             .series("swing", move |t, [x, v]| [v, force * t.cos() - rate * rate * x.sin() - damping * v])
             .edge("swing", "swing", move |_t, x| x[0] - level, move |_t, x| [x[0], kick])
-            .affine("swing", "swing");
+            .affine();
         let simulation = Simulation::of(&swing).stepper(Dop853).tolerance(1e-11);
         let start = [level + 0.5, 0.0];
         let series = simulation.run("swing", start, 0.0..10.0).unwrap();

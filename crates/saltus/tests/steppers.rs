@@ -262,7 +262,7 @@ fn a_dense_output_may_be_a_straight_line() {
     let ball = Hybrid::new()
         .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
         .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.8 * x[1]])
-        .affine("flight", "flight");
+        .affine();
     let run = Simulation::of(&ball).stepper(Heun).tolerance(1e-6).longest_step(1e-3).most_jumps(3);
     let run = run.run("flight", [1.0, 0.0], 0.0..10.0).unwrap();
     let first = (2.0 / 9.81_f64).sqrt();
@@ -274,8 +274,8 @@ fn a_dense_output_may_be_a_straight_line() {
     let through = Hybrid::new()
         .mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81])
         .edge("flight", "flight", |_t, x| x[0], |_t, _x| [0.0, -0.1])
-        .affine("flight", "flight")
-        .entry("flight", "flight", Entry::Wait);
+        .entry(Entry::Wait)
+        .affine();
     let end = Simulation::of(&through).stepper(Heun).tolerance(1e-4).longest_step(1e-3).most_jumps(3);
     let end = end.run("flight", [1.0, 0.0], 0.0..0.6).unwrap();
     assert_eq!((end.end.stop, end.trajectory.jumps().len()), (Stop::Time, 1));

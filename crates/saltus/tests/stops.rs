@@ -81,7 +81,7 @@ proptest! {
     fn crossings_among_stops(input in held(), level in -2000..2000_i32, stepper in 0..4_usize) {
         let level = f64::from(level) + 0.5;
         let crossed = |_t: f64, x: &[f64; 2]| if level > 0.0 { level - x[0] } else { x[0] - level };
-        let model = integrator(&input).edge("run", "run", crossed, |_t, x| *x).entry("run", "run", Entry::Wait);
+        let model = integrator(&input).edge("run", "run", crossed, |_t, x| *x).entry(Entry::Wait);
         let mut expected = 0;
         let inside = |t: f64| crossed(t, &[input.integral(t), t]) >= 0.0;
         for pair in [0.0].iter().chain(&input.knots).chain(&[10.0]).collect::<Vec<_>>().windows(2) {

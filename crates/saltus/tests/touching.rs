@@ -16,13 +16,14 @@ fn a_cradle_swings_on_whatever_its_start() {
     let swing = |_t: f64, x: &Balls| Balls::from_fn(|i, _| if i < 5 { x[i + 5] } else { -x[i - 5] });
     let cradle = (0..4).fold(Hybrid::new().mode("hang", swing), |cradle, left: usize| {
         let gap = move |_t: f64, x: &Balls| x[left + 1] - x[left];
-        cradle.edge("hang", "hang", gap, move |_t, x| {
-            let mut after = *x;
-            after.swap_rows(left + 5, left + 6);
-            after
-        })
+        cradle
+            .edge("hang", "hang", gap, move |_t, x| {
+                let mut after = *x;
+                after.swap_rows(left + 5, left + 6);
+                after
+            })
+            .affine()
     });
-    let cradle = cradle.affine("hang", "hang");
     for k in 0..200 {
         let mut start = Balls::zeros();
         start[0] = -1.5 + 0.005 * f64::from(k);

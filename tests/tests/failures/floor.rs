@@ -73,7 +73,7 @@ fn a_floor_at_any_height_on(paths: &[Path]) {
                 .edge("flight", "flight", move |_t, x| x[0] - floor, move |_t, x| vector![floor, -0.5 * x[1]])
                 .mode("rest", |_t, _x| vector![0.0, 0.0])
                 .beyond("flight", "rest", move |_t, _x| vector![floor, 0.0]);
-            let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
+            let automaton = path.prepare(automaton, "flight", super::parabola(G));
             let run = Simulation::of(&automaton).run("flight", vector![floor + 1.0, 0.0], 0.0..4.0).unwrap();
             assert_eq!(
                 (run.end.mode, run.end.stop),
@@ -146,9 +146,9 @@ fn a_ball_stopped_below_a_least_speed_on(paths: &[Path]) {
             .mode("flight", |_t, x: &Flight| vector![x[1], -9.81])
             .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.7 * x[1]])
             .edge("flight", "rest", |_t, x| if x[0] == 0.0 { x[1] - 0.1 } else { 1.0 }, |_t, _x| vector![0.0, 0.0])
-            .entry("flight", "rest", saltus::Entry::Fire)
+            .entry(saltus::Entry::Fire)
             .mode("rest", |_t, _x| vector![0.0, 0.0]);
-        let automaton = path.prepare(automaton, "flight", "flight", super::parabola(9.81));
+        let automaton = path.prepare(automaton, "flight", super::parabola(9.81));
         let run = Simulation::of(&automaton).run("flight", vector![1.0, 0.0], 0.0..3.0).unwrap();
         let bounces = run.trajectory.jumps().iter().filter(|jump| jump.to == "flight").count();
         let rest = run.trajectory.jumps().last().unwrap();
@@ -223,7 +223,7 @@ fn a_resting_ball_is_pulled_off_with_an_affine_floor() {
         .edge("contact", "flight", |t, _x| G * (1.0 - t), |_t, x| *x)
         .mode("flight", |t, x| vector![x[1], G * (t - 1.0)])
         .edge("flight", "contact", |_t, x| x[0], |_t, _x| vector![0.0, 0.0])
-        .affine("flight", "contact");
+        .affine();
     let run = Simulation::of(&automaton).run("contact", vector![0.0, 0.0], 0.0..2.0).unwrap();
     assert_eq!((run.trajectory.jumps().len(), run.end.mode), (1, "flight"), "{:?}", run.trajectory.jumps());
     assert!((run.end.state[0] - G / 6.0).abs() < 1e-12, "{:?}", run.end.state);

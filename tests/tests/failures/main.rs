@@ -16,7 +16,7 @@ use std::ops::Range;
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Hybrid, Link, Polynomial, Run, RunOf, Simulation, State};
-use saltus_tests::watched::watched;
+use saltus_tests::watched::{watched, watched_affine};
 
 /// Gravity, m/s².
 const G: f64 = 9.8;
@@ -53,11 +53,9 @@ impl Path {
         self,
         automaton: Hybrid<'a, S>,
         mode: &'static str,
-        to: &'static str,
         solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a,
     ) -> Hybrid<'a, S> {
-        let automaton =
-            if matches!(self, Self::ExactAffine | Self::Affine) { automaton.affine(mode, to) } else { automaton };
+        let automaton = if matches!(self, Self::ExactAffine | Self::Affine) { automaton.affine() } else { automaton };
         if matches!(self, Self::ExactAffine | Self::Exact) { automaton.exact(mode, solution) } else { automaton }
     }
 }
@@ -76,7 +74,7 @@ fn ball(g: f64, e: f64, path: Path) -> Hybrid<'static, Flight> {
         .mode("rest", |_t, _x| vector![0.0, 0.0])
         .exact("rest", |_t, x| Polynomial::from([*x]))
         .beyond("flight", "rest", |_t, _x| vector![0.0, 0.0]);
-    path.prepare(automaton, "flight", "flight", parabola(g))
+    path.prepare(automaton, "flight", parabola(g))
 }
 
 /// The crossings of a watched guard in order.
@@ -88,7 +86,7 @@ fn crossings<S: State>(run: &RunOf<Hybrid<'_, S>>) -> Vec<(f64, Way)> {
 /// The crossings of a throw from `start` through the height `level`, by the given path.
 fn throw(g: f64, start: Flight, level: f64, end: f64, path: Path) -> Vec<(f64, Way)> {
     let automaton = watched(move |_t, x: &Flight| vector![x[1], -g], move |_t, x| x[0] - level);
-    let automaton = path.prepare(automaton, "run", "run", parabola(g));
+    let automaton = path.prepare(automaton, "run", parabola(g));
     crossings(&Simulation::of(&automaton).run("run", start, 0.0..end).unwrap())
 }
 

@@ -6,13 +6,15 @@ use saltus::nalgebra::vector;
 use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
 use saltus::{Entry, Hybrid, Jump, JumpOf, Observer, Piece, Simulation};
 
-use super::{Down, Flight, G, PATHS, Path, Up, Way, assert_crossings, ball, crossings, of_time, throw, watched};
+use super::{
+    Down, Flight, G, PATHS, Path, Up, Way, assert_crossings, ball, crossings, of_time, throw, watched, watched_affine,
+};
 
 /// A search for sign changes between step ends finds one of three roots; they are -6, -2 and 2.
 #[test]
 fn three_roots_of_a_cubic() {
     let automaton = watched(|t, _y: &f64| 3.0 * t * t + 12.0 * t - 4.0, |_t, y| *y);
-    for automaton in [watched(|t, _y: &f64| 3.0 * t * t + 12.0 * t - 4.0, |_t, y| *y).affine("run", "run"), automaton] {
+    for automaton in [watched_affine(|t, _y: &f64| 3.0 * t * t + 12.0 * t - 4.0, |_t, y| *y), automaton] {
         let run = Simulation::of(&automaton).run("run", -120.0, -8.0..4.0).unwrap();
         assert_crossings(&crossings(&run), &[(-6.0, Up), (-2.0, Down), (2.0, Up)], 1e-12);
     }
@@ -117,8 +119,8 @@ fn a_flight_inside_one_step() {
         let automaton = Hybrid::new()
             .mode("flight", |_t, x: &Flight| vector![x[1], -G])
             .terminal("flight", |_t, x| x[0])
-            .entry("flight", "flight", Entry::Wait);
-        let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
+            .entry(Entry::Wait);
+        let automaton = path.prepare(automaton, "flight", super::parabola(G));
         let run = Simulation::of(&automaton)
             .tolerance(1e-3)
             .first_step(3.0)

@@ -57,7 +57,7 @@ fn the_earlier_crossing_is_first() {
                 .mode("flight", |_t, x: &Flight| vector![x[1], -G])
                 .terminal("flight", move |_t, x| x[0] - levels[0])
                 .terminal("flight", move |_t, x| x[0] - levels[1]);
-            let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
+            let automaton = path.prepare(automaton, "flight", super::parabola(G));
             let run = Simulation::of(&automaton).first_step(2.0).run("flight", vector![1.0, 0.0], 0.0..2.0).unwrap();
             let Stop::Terminal { edge } = run.end.stop else { unreachable!("{:?}", run.end.stop) };
             assert_eq!(edge.place, usize::from(floor_first), "{path:?}");
@@ -98,12 +98,10 @@ fn backwards_through_three_guards_close_together() {
     let levels = [("a", "b", 0.0), ("b", "c", 1e-8), ("c", "d", 2e-8)];
     for exact in [true, false] {
         let clock = levels.into_iter().fold(Hybrid::new().mode("d", |_t, _x: &f64| 1.0), |clock, (from, to, level)| {
-            clock.mode(from, |_t, _x| 1.0).edge(from, to, move |_t, x| level - x, |_t, x| *x).inverse(
-                from,
-                to,
-                move |_t, x| x - level,
-                |_t, x| *x,
-            )
+            clock
+                .mode(from, |_t, _x| 1.0)
+                .edge(from, to, move |_t, x| level - x, |_t, x| *x)
+                .inverse(move |_t, x| x - level, |_t, x| *x)
         });
         let line = |_t: f64, x: &f64| [*x, 1.0].into();
         let clock = if exact {
@@ -250,7 +248,7 @@ fn a_root_after_the_time_asked_for() {
     let automaton = Hybrid::new()
         .mode("run", |_t, x: &Vector2<f64>| vector![x[1], -x[0]])
         .terminal("run", |_t, x| x[0] - 0.5)
-        .entry("run", "run", Entry::Wait);
+        .entry(Entry::Wait);
     let simulation = Simulation::of(&automaton).first_step(1.0);
     // x = cos t falls through 0.5 at pi/3, rises at 5 pi/3, falls again at 7 pi/3.
     let early = simulation.run("run", vector![1.0, 0.0], 0.0..1.0).unwrap();
@@ -274,7 +272,7 @@ fn a_state_changed_to_violate_a_guard() {
         let automaton = Hybrid::new()
             .mode("filling", |_t, _x: &f64| 1.0)
             .edge("filling", "full", |_t, x| 2.0 - x, |_t, x| *x)
-            .entry("filling", "full", entry)
+            .entry(entry)
             .mode("full", |_t, _x| 0.0);
         let simulation = Simulation::of(&automaton);
         let first = simulation.run("filling", 0.0, 0.0..1.0).unwrap();

@@ -3,7 +3,7 @@
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Entry, ErrorKind, Hybrid, Jump, JumpOf, Observer, Simulation, Stop};
 
-use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, crossings, of_time, watched};
+use super::{Down, Flight, G, PATHS, Path, Up, assert_crossings, ball, crossings, of_time, watched, watched_affine};
 
 /// A guard that is not a number in part of the span makes a search loop for ever; here an error
 /// names guard, time and state.
@@ -37,7 +37,7 @@ fn tiny_guard_values() {
     for scale in [1e-300, 1e-160, 1e300] {
         assert_crossings(&of_time(|t| scale * (0.3 - t), 0.0..1.0), &[(0.3, Down)], 1e-16);
         assert_crossings(&of_time(|t| scale * (0.3 - t) * (t - 0.7), 0.0..1.0), &[(0.3, Up), (0.7, Down)], 2e-16);
-        let automaton = watched(|_t, _x: &f64| scale, move |_t, x| 0.3 * scale - x).affine("run", "run");
+        let automaton = watched_affine(|_t, _x: &f64| scale, move |_t, x| 0.3 * scale - x);
         let run = Simulation::of(&automaton).run("run", 0.0, 0.0..1.0).unwrap();
         assert_crossings(&crossings(&run), &[(0.3, Down)], 1e-15);
     }
@@ -68,9 +68,10 @@ fn two_identical_guards() {
         let automaton = Hybrid::new()
             .mode("run", |_t, x: &Flight| vector![x[1], -G])
             .edge("run", "run", |_t, x| x[0] - 0.5, |_t, x| *x)
+            .entry(Entry::Wait)
             .edge("run", "run", |_t, x| x[0] - 0.5, |_t, x| *x)
-            .entry("run", "run", Entry::Wait);
-        let automaton = path.prepare(automaton, "run", "run", super::parabola(G));
+            .entry(Entry::Wait);
+        let automaton = path.prepare(automaton, "run", super::parabola(G));
         let run = Simulation::of(&automaton).run("run", vector![1.0, 0.0], 0.0..1.0).unwrap();
         let places: Vec<usize> = run.trajectory.jumps().iter().map(|jump| jump.edge().unwrap().place).collect();
         assert_eq!(places, [0, 1], "{path:?}: {:?}", run.trajectory.jumps());
@@ -88,7 +89,7 @@ fn two_identical_guards_of_which_one_bounces() {
             .mode("run", |_t, x: &Flight| vector![x[1], -G])
             .edge("run", "run", |_t, x| x[0], |_t, x| vector![0.0, -0.5 * x[1]])
             .edge("run", "run", |_t, x| x[0], |_t, x| vector![0.0, -0.25 * x[1]]);
-        let automaton = path.prepare(automaton, "run", "run", super::parabola(G));
+        let automaton = path.prepare(automaton, "run", super::parabola(G));
         let run = Simulation::of(&automaton).run("run", vector![1.0, 0.0], 0.0..1.2).unwrap();
         assert!(
             run.trajectory.jumps().iter().all(|jump| jump.edge().unwrap().place == 0),
@@ -106,9 +107,11 @@ fn a_reset_that_trips_two_other_guards() {
     let automaton = Hybrid::new()
         .mode("run", |_t, _x: &[f64; 3]| [1.0, 0.0, 0.0])
         .edge("run", "run", |_t, x| 0.5 - x[0], |_t, x| [x[0] - 10.0, -1.0, -1.0])
+        .entry(Entry::Fire)
         .edge("run", "run", |_t, x| x[1], |_t, x| [x[0], 1.0, x[2]])
+        .entry(Entry::Fire)
         .edge("run", "run", |_t, x| x[2], |_t, x| [x[0], x[1], 1.0])
-        .entry("run", "run", Entry::Fire);
+        .entry(Entry::Fire);
     let run = Simulation::of(&automaton).run("run", [0.0, 1.0, 1.0], 0.0..1.0).unwrap();
     let taken: Vec<_> = run.trajectory.jumps().iter().map(|jump| jump.edge().unwrap().place).collect();
     assert_eq!(taken, [0, 1, 2]);
@@ -194,7 +197,7 @@ fn a_reset_one_unit_off_the_wall() {
                 |_t, x| x[0] - 1.0,
                 move |_t, x| vector![left, -0.8 * x[1]],
             );
-            let automaton = path.prepare(automaton, "flight", "flight", super::parabola(G));
+            let automaton = path.prepare(automaton, "flight", super::parabola(G));
             let run = Simulation::of(&automaton).run("flight", vector![2.0, 0.0], 0.0..3.0).unwrap();
             assert_eq!(run.trajectory.jumps().len(), 6, "{path:?}, left at {left:?}: {:?}", run.trajectory.jumps());
             for pair in run.trajectory.jumps().windows(2) {

@@ -261,7 +261,7 @@ impl<A: Automaton + ?Sized> Debug for Limit<'_, A> {
 ///     .mode("on", |_t, _x: &f64| 1.0)
 ///     .mode("off", |_t, _x| -1.0)
 ///     .edge("on", "off", |_t, x| 22.0 - x, |_t, x| *x)
-///     .entry("on", "off", entry);
+///     .entry(entry);
 /// // Switched on at 25 °C, which is too warm already.
 /// let mode = |entry| Simulation::of(&heater(entry)).run("on", 25.0, 0.0..1.0).map(|run| run.end.mode);
 /// assert_eq!(mode(Entry::Refuse).unwrap_err().error.kind(), ErrorKind::Entry);

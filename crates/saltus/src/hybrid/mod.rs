@@ -63,8 +63,10 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
-    /// What was said of edges that were not there, and of which.
-    misses: Vec<(&'static str, &'static str, &'static str)>,
+    /// The mode of the edge declared last.
+    last: Option<&'static str>,
+    /// The first method that was to say something of the last edge before there was one.
+    early: Option<&'static str>,
     /// By which method something was said twice of a mode, and of which.
     twice: Option<(&'static str, &'static str)>,
     /// What is wrong with it as a whole, once it was asked.
@@ -115,7 +117,7 @@ impl fmt::Debug for Link {
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), misses: Vec::new(), twice: None, flaw: OnceLock::new() }
+        Self { modes: Vec::new(), last: None, early: None, twice: None, flaw: OnceLock::new() }
     }
 }
 
@@ -154,7 +156,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///     .mode("flight", |_t, x: &[f64; 2]| [x[1], k * x[1] * x[1] - g])
     ///     .series("flight", |_t, [_, v]| [v, k * v * v - g])
     ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| *x)
-    ///     .affine("flight", "flight");
+    ///     .affine();
     /// let run = Simulation::of(&ball).tolerance(1e-13).most_jumps(1).run("flight", [h, 0.0], 0.0..9.0)?;
     /// assert!((run.end.state[1] + (g / k * (1.0 - (-2.0 * k * h).exp())).sqrt()).abs() < 1e-14);
     /// assert!(run.end.stats.steps <= 3);
@@ -182,7 +184,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// let ball = Hybrid::new()
     ///     .exact("flight", |_t, x: &[f64; 2]| [*x, [x[1], -9.8], [-4.9, 0.0]].into())
     ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]])
-    ///     .affine("flight", "flight");
+    ///     .affine();
     /// let run = Simulation::of(&ball).run("flight", [4.9, 0.0], 0.0..1.5)?;
     /// assert_eq!((run.trajectory.jumps()[0].t(), run.end.stats.steps), (1.0, 0));
     /// # Ok::<(), saltus::Error>(())
@@ -227,6 +229,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         let mode = self.entry_of(from);
         mode.guarded.push(Link { from, to, place: mode.edges.len() });
         mode.edges.push((to, edge));
+        self.last = Some(from);
         self
     }
 
@@ -254,6 +257,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         let place = mode.edges.len();
         mode.edges.push((to, Edge::clocked(reset)));
         mode.clocks.push((clock, Link { from, to, place }));
+        self.last = Some(from);
         self
     }
 
@@ -296,36 +300,38 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.edge_with(from, from, Edge::new(guard, |_t, x: &S| *x).terminal())
     }
 
-    /// [`Edge::entry`] of every edge with a guard declared so far from `from` to `to`. A
-    /// [`terminal`](Self::terminal) edge leads from its mode to itself.
+    /// [`Edge::entry`] of the edge declared last.
+    ///
+    /// ```
+    /// use saltus::{Entry, Hybrid, Simulation};
+    /// // A counter of passages through zero, and a mark that ends the run.
+    /// let swing = Hybrid::new()
+    ///     .mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]])
+    ///     .edge("swing", "swing", |_t, x| x[0], |_t, x| *x)
+    ///     .entry(Entry::Wait)
+    ///     .terminal("swing", |t, _x| 20.0 - t);
+    /// assert_eq!(Simulation::of(&swing).run("swing", [-1.0, 0.0], 0.0..1e9)?.end.stats.jumps, 4);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
     #[must_use]
-    pub fn entry(mut self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>, entry: Entry) -> Self {
-        self.between("entry", kept(from), kept(to), |edge| edge.about.entry = entry);
-        self
+    pub fn entry(self, entry: Entry) -> Self {
+        self.of_last("entry", |edge| edge.entry(entry))
     }
 
-    /// [`Edge::affine`] of every edge declared so far from `from` to `to`.
+    /// [`Edge::affine`] of the edge declared last.
     #[must_use]
-    pub fn affine(mut self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>) -> Self {
-        self.between("affine", kept(from), kept(to), |edge| edge.about.affine = true);
-        self
+    pub fn affine(self) -> Self {
+        self.of_last("affine", Edge::affine)
     }
 
-    /// [`Edge::inverse`] of the edge declared last from `from` to `to`.
+    /// [`Edge::inverse`] of the edge declared last.
     #[must_use]
     pub fn inverse(
-        mut self,
-        from: impl Into<Cow<'static, str>>,
-        to: impl Into<Cow<'static, str>>,
+        self,
         image: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
         undo: impl Fn(f64, &S) -> S + Send + Sync + 'a,
     ) -> Self {
-        let (from, to) = (kept(from), kept(to));
-        match self.entry_of(from).edges.iter_mut().rfind(|edge| edge.0 == to) {
-            Some((_, edge)) => edge.inverse = Some((Box::new(image), Box::new(undo))),
-            None => self.misses.push(("inverse", from, to)),
-        }
-        self
+        self.of_last("inverse", |edge| edge.inverse(image, undo))
     }
 
     /// What lies beyond a Zeno limit reached in `from`: the mode `to`, with the state given by
@@ -375,21 +381,14 @@ impl<'a, S: State> Hybrid<'a, S> {
         &mut self.modes[index]
     }
 
-    fn between(
-        &mut self,
-        method: &'static str,
-        from: &'static str,
-        to: &'static str,
-        mut change: impl FnMut(&mut Edge<'a, S>),
-    ) {
-        let mut any = false;
-        for (_, edge) in self.entry_of(from).edges.iter_mut().filter(|edge| edge.0 == to) {
-            change(edge);
-            any = true;
+    /// What a `method` says of the edge declared last.
+    fn of_last(mut self, method: &'static str, about: impl FnOnce(Edge<'a, S>) -> Edge<'a, S>) -> Self {
+        let last = self.last.and_then(|name| self.modes.iter_mut().find(|mode| mode.name == name));
+        match last.and_then(|mode| mode.edges.pop().map(|edge| (mode, edge))) {
+            Some((mode, (to, edge))) => mode.edges.push((to, about(edge))),
+            None => self.early = self.early.or(Some(method)),
         }
-        if !any {
-            self.misses.push((method, from, to));
-        }
+        self
     }
 
     /// Every edge of `mode`, also those of clocks.

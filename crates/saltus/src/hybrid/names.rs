@@ -55,9 +55,9 @@ impl<S: State> Hybrid<'_, S> {
                 return Some(format!("the clock of the stops in {name:?} {flaw}"));
             }
         }
-        let (method, from, to) = self.misses.first()?;
+        let method = self.early?;
         Some(format!(
-            "Hybrid::{method} is about an edge {from} -> {to} that was not declared before it: declare it first, or mend the names"
+            "Hybrid::{method} is about the edge declared last, and there is none yet: write it after its edge"
         ))
     }
 }
