@@ -262,3 +262,78 @@ fn stops_without_a_promise() {
     let by_start = Sensitive::of(&converter, [Wrt::Initial(1)]);
     assert!(Simulation::of(&by_start).run((), by_start.start(0.0, start), 0.0..1e-3).is_ok());
 }
+
+/// Runs at night, when power is cheap: by a guard that switches in stops, beside one of the state.
+struct Heater {
+    power: f64,
+    stops: [Clock; 1],
+}
+
+impl Linearize for Heater {
+    type Parameters = [f64; 1];
+    fn parameters(&self) -> [f64; 1] {
+        [self.power]
+    }
+    fn flow_over<D: Number>(&self, on: bool, _t: D, x: D, [power]: [D; 1]) -> D {
+        -x * 0.1 + if on { power } else { D::zero() }
+    }
+    fn guard_over<D: Number>(&self, on: bool, t: D, x: D, _: [D; 1]) -> D {
+        let cheap = (t.re() / 6.0).floor() % 2.0 == 0.0;
+        match (on, cheap) {
+            (true, true) => -x + 20.0,
+            (true, false) | (false, true) => D::from(-1.0),
+            (false, false) => D::one(),
+        }
+    }
+    fn reset_over<D: Number>(&self, _: bool, _t: D, x: D, _: [D; 1]) -> D {
+        x
+    }
+    fn stops_stand(&self, _: bool) -> bool {
+        true
+    }
+}
+
+impl Automaton for Heater {
+    type Mode = bool;
+    type State = f64;
+    type Edge = bool;
+    fn flow(&self, on: bool, t: f64, x: &f64) -> f64 {
+        self.flow_at(on, t, x)
+    }
+    fn edges(&self, on: bool) -> Edges<'_, bool> {
+        Edges::from([on])
+    }
+    fn guard(&self, edge: bool, t: f64, x: &f64) -> f64 {
+        self.guard_at(edge, t, x)
+    }
+    fn stops(&self, _: bool) -> std::borrow::Cow<'_, [Clock]> {
+        (&self.stops).into()
+    }
+    fn reset(&self, on: bool, edge: bool, t: f64, x: &f64) -> Result<(bool, f64), Refusal> {
+        Ok((!on, self.reset_at(edge, t, x)))
+    }
+}
+
+/// A jump in a stop has a time that nothing moves, and is no graze; as differences say.
+#[test]
+fn derivatives_through_guards_that_switch() {
+    let heater = |power| Heater { power, stops: [Clock::every(6.0)] };
+    for end in [5.0, 11.0, 17.5, 47.0] {
+        let at = |power: f64, start: f64| {
+            let run = Simulation::of(&heater(power)).tolerance(1e-12).run(true, start, 0.5..end).unwrap();
+            (run.end.state, run.trajectory.jumps().len())
+        };
+        let model = heater(3.0);
+        let both = Sensitive::of(&model, [Wrt::Parameter(0), Wrt::Initial(0)]);
+        let run = Simulation::of(&both).tolerance(1e-12).run(true, both.start(0.5, 10.0), 0.5..end).unwrap();
+        assert_eq!(run.trajectory.jumps().len(), at(3.0, 10.0).1);
+        let step = 1e-4;
+        let by_power = (at(3.0 + step, 10.0).0 - at(3.0 - step, 10.0).0) / (2.0 * step);
+        let by_start = (at(3.0, 10.0 + step).0 - at(3.0, 10.0 - step).0) / (2.0 * step);
+        let [power, start] = run.end.state.columns;
+        assert!(
+            (power - by_power).abs() < 1e-6 && (start - by_start).abs() < 1e-6,
+            "{power} {by_power}, {start} {by_start}"
+        );
+    }
+}

@@ -353,3 +353,17 @@ proptest! {
         prop_assert!(run.trajectory.doubts().is_empty());
     }
 }
+
+/// A short pulse of a guard is met on exact arcs as well.
+#[test]
+fn pulses_of_a_guard_on_exact_arcs() {
+    let pulse = |t: f64| t.rem_euclid(1.0) < 1e-6;
+    let pulses = Clock::at([0.0, 1e-6]).repeated(1.0);
+    let counter = Hybrid::new()
+        .exact("run", |_t, x: &f64| [*x, 1.0].into())
+        .edge("run", "run", move |t, _x| if pulse(t) { -1.0 } else { 1.0 }, |_t, x| *x)
+        .stops("run", pulses);
+    let run = Simulation::of(&counter).run("run", 0.0, 0.5..100.5).unwrap();
+    assert_eq!(run.trajectory.jumps().len(), 100);
+    assert!((run.end.state - 100.0).abs() < 1e-12 && run.trajectory.doubts().is_empty());
+}

@@ -340,17 +340,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state: *x });
         }
         let stepped = self.options.stepped;
-        let smooth = std::mem::replace(&mut self.smooth, Smooth::ALWAYS); // as an exact solution is
-        if !stepped
+        let exact = !stepped && self.smooth == Smooth::ALWAYS;
+        if exact
             && !observer.wants_pieces()
             && let Some(end) = self.told(mode, x, now, clock.end.since(now), observer)
         {
             return Ok(end);
         }
         let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
-        if matches!(solution, Solution::Series(_) | Solution::Steps) {
-            self.smooth = smooth;
-        }
+        let solution = match solution {
+            // No exact solution is cut in stops.
+            Solution::Polynomial(_) | Solution::Formula(_) if !exact => Solution::Steps,
+            solution => solution,
+        };
         let end = match solution {
             Solution::Polynomial(polynomial) => self.exact(mode, &polynomial, clock, observer),
             Solution::Formula(formula) => self.closed(mode, x, formula, clock, observer),

@@ -24,7 +24,7 @@ impl Smooth {
     pub(crate) const ALWAYS: Self = Self { from: f64::NEG_INFINITY, until: f64::INFINITY, stop: f64::INFINITY };
 
     /// The stretch that begins at `t`, or at a stop at the same instant.
-    fn beginning(stops: &[Clock], t: f64) -> Result<Self, String> {
+    pub(crate) fn beginning(stops: &[Clock], t: f64) -> Result<Self, String> {
         let instant = grace(t);
         let (mut from, mut stop) = (f64::NEG_INFINITY, f64::INFINITY);
         for clock in stops {
@@ -44,7 +44,7 @@ impl Smooth {
     }
 
     /// The stop in which it begins, if it begins in one.
-    fn start(&self) -> Option<f64> {
+    pub(crate) fn start(&self) -> Option<f64> {
         (self.from > f64::NEG_INFINITY).then(|| self.from.next_down())
     }
 

@@ -137,7 +137,8 @@ pub trait Automaton {
     /// Flow and guards are asked for strictly between two stops: whether they have their values of
     /// before or after a stop at the stop itself does not matter. A guard that is inside just
     /// before a stop and outside just after it has fallen there: its edge is taken, at the time of
-    /// the stop. An exact solution has no steps, and so no stops. By default there are none.
+    /// the stop. A mode with stops ahead is stepped, or expanded in series, even if it has an exact
+    /// solution. By default there are none.
     #[inline]
     fn stops(&self, mode: Self::Mode) -> Cow<'_, [Clock]> {
         let _ = mode;

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, RowDVector};
 use num_dual::{Dual2_64, Dual64};
 
 use super::{Lift, Linearize, moving, moving_in, velocity};
+use crate::advance::Smooth;
 use crate::error::{Error, ErrorKind, Place, Refusal};
 use crate::state::State;
 use crate::time::resolution;
@@ -117,8 +118,18 @@ pub(super) struct Passage<'a, A: Linearize> {
     gradient: A::State,
     rate: f64,
     bend: f64,
-    /// Whether a clock takes it, at a time that only parameters move.
-    by_clock: bool,
+    at: At,
+}
+
+/// What says when a jump happens.
+#[derive(Clone, Copy, PartialEq)]
+enum At {
+    /// A guard, which reaches zero along the flow.
+    Guard,
+    /// A clock, at a time that only parameters move.
+    Clock,
+    /// A guard that switches in a stop, at a time that nothing moves.
+    Stop,
 }
 
 impl<'a, A: Linearize> Passage<'a, A> {
@@ -139,10 +150,13 @@ impl<'a, A: Linearize> Passage<'a, A> {
             gradient: x.with(|_| 0.0),
             rate: 0.0,
             bend: 0.0,
-            by_clock: true,
+            at: At::Clock,
         };
         if automaton.clocks(mode).edges().any(|other| other == edge) {
             return Ok(standing);
+        }
+        if standing.switches() {
+            return Ok(Self { at: At::Stop, ..standing });
         }
         // Along the flow x moves with velocity f and acceleration df/dt.
         let f = &standing.flows.0;
@@ -153,7 +167,15 @@ impl<'a, A: Linearize> Passage<'a, A> {
         let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;
         let gradient = x.with(slope);
         let (guard, rate, bend) = (guard.re, guard.v1, guard.v2);
-        Ok(Self { guard, gradient, rate, bend, by_clock: false, ..standing })
+        Ok(Self { guard, gradient, rate, bend, at: At::Guard, ..standing })
+    }
+
+    /// Whether the guard switches from inside to outside in a stop.
+    fn switches(&self) -> bool {
+        let stops = self.automaton.stops(self.mode);
+        let stop = Smooth::beginning(&stops, self.t).ok().and_then(|smooth| smooth.start());
+        let guard = |t: f64| self.automaton.guard(self.edge, t, self.x);
+        stop.is_some_and(|stop| guard(stop.next_down()) >= 0.0 && guard(stop.next_up()) < 0.0)
     }
 
     /// Whether the crossing has no speed, but for rounding, at the end of an arc of `duration`.
@@ -163,7 +185,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// last of a ball's bounces, however low), the guard must have fallen from further away than
     /// its rounding, ġ²/2g̈.
     pub(super) fn grazes(&self, duration: f64) -> bool {
-        if self.by_clock {
+        if self.at != At::Guard {
             return false;
         }
         let (rate, bend) = (self.rate.abs(), self.bend.abs());
@@ -177,18 +199,17 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// Whether the state before is outside the guard by more than rounding, as only an edge that
     /// fires on entry allows.
     pub(super) fn is_outside(&self) -> bool {
-        !self.by_clock
+        self.at == At::Guard
             && self.guard < -8.0 * (self.rate.abs() * resolution(self.t)).max(f64::EPSILON * self.size(self.x))
     }
 
     /// How much later the neighbour crosses, τ: off by `dx`, and with the parameter `p`, if any,
     /// moving.
     pub(super) fn delay(&self, dx: &A::State, p: Option<usize>) -> Result<f64, Refusal> {
-        if !self.by_clock {
-            return Ok(-(self.along(dx) + self.by_parameter(p)) / self.rate);
-        }
-        if p.is_none() {
-            return Ok(0.0);
+        match self.at {
+            At::Guard => return Ok(-(self.along(dx) + self.by_parameter(p)) / self.rate),
+            At::Clock if p.is_some() => {}
+            At::Clock | At::Stop => return Ok(0.0),
         }
         let parameters = moving_in(&self.automaton.parameters(), p);
         let tick = self.automaton.tick_over(self.mode, self.edge, self.t, parameters);
@@ -198,7 +219,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// Whether the neighbour crosses later by `last`, the delay of the jump before, as far as the
     /// rounding of the guard's terms can tell.
     pub(super) fn keeps(&self, last: f64, dx: &A::State, p: Option<usize>) -> bool {
-        if self.by_clock {
+        if self.at != At::Guard {
             return false;
         }
         let by_parameter = self.by_parameter(p);
