@@ -238,7 +238,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// Advances to the end.
     ///
     /// # Errors
-    /// See [`Error`]; the observer has been told of everything before it, and the course stays
+    /// See [`Error`]; the observer has had everything before it, and the course stays
     /// where it was.
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
         let stop = match self.at.stop {

@@ -230,7 +230,7 @@ impl Stats {
     }
 }
 
-/// The limits of accumulating jumps that a run went beyond, as [`Automaton::beyond`] said.
+/// The limits of accumulating jumps that a run went beyond, by [`Automaton::beyond`].
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};

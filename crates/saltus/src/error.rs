@@ -109,7 +109,7 @@ pub enum ErrorKind {
     Guard,
     /// The reset gave a state that is not finite.
     Reset,
-    /// The reset refused, and said why: see [`Refusal`].
+    /// The reset refused, with a reason: see [`Refusal`].
     Refused,
     /// A guard is already negative as its mode is entered, and its edge refuses that.
     Entry,

@@ -37,7 +37,7 @@ pub struct Inspection<M, E> {
     pub start: Time,
     /// How far the search went, in seconds; infinite on an exact arc of a run without an end.
     pub span: f64,
-    /// What is known: no crossing, one that was isolated, or where rounding or haste hides one.
+    /// What was found: no crossing, one that was isolated, or where rounding or haste hides one.
     /// Times count from `start`.
     pub evidence: Evidence,
 }
@@ -108,7 +108,7 @@ impl<M: fmt::Debug, E: fmt::Debug> fmt::Debug for Inspection<M, E> {
 }
 
 impl<M: Copy + fmt::Debug, E: Copy + fmt::Debug> fmt::Display for Inspection<M, E> {
-    /// What is known, where, and, of a doubt, what to do.
+    /// What was found, where, and, of a doubt, what to do.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mode, edge, start, span, evidence } = self;
         let Range { start: from, end: to } =
@@ -149,7 +149,7 @@ const fn advice(why: Doubt) -> &'static str {
 }
 
 /// The doubts of a run: first those that stand, then those of the step in progress, whose end is
-/// not known yet.
+/// not built yet.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Clone)]
 pub(crate) struct Doubts<M, E> {

@@ -13,7 +13,7 @@ use crate::time::Time;
 pub enum Cause<E> {
     /// An edge was taken.
     Edge(E),
-    /// Jumps accumulated here, and the model said what lies beyond.
+    /// Jumps accumulated here, and the model gave what lies beyond.
     Zeno,
 }
 

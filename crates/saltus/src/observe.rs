@@ -1,4 +1,4 @@
-//! Who is told of pieces and jumps as they come: nobody, a recorder, or the user.
+//! Who is given pieces and jumps as they come: nobody, a recorder, or the user.
 
 use std::ops::ControlFlow;
 
@@ -7,7 +7,7 @@ use crate::inspection::InspectionOf;
 use crate::jump::JumpOf;
 use crate::piece::Piece;
 
-/// Is told of each piece and each jump of a run, in order; may end the run.
+/// Is given each piece and each jump of a run, in order; may end the run.
 ///
 /// The order of a step is: one [`inspection`](Self::inspection) per edge, the
 /// [`piece`](Self::piece) up to the first crossing or the end of the step (none if it has no
@@ -44,7 +44,7 @@ pub trait Observer<A: Automaton> {
         ControlFlow::Continue(())
     }
 
-    /// Whether pieces are wanted. If not, some may not be told of: those of a mode without edges
+    /// Whether pieces are wanted. If not, some may be left out: those of a mode without edges
     /// are then not even computed.
     fn wants_pieces(&self) -> bool {
         true

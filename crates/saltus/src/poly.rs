@@ -43,7 +43,7 @@ pub(crate) enum Shape {
     Falling,
     /// Rising throughout, likewise.
     Rising,
-    /// Zero throughout, as far as can be told.
+    /// Zero throughout, but for the margin.
     Flat,
     /// Not decided: halve the interval.
     Unclear,
@@ -85,7 +85,7 @@ impl Bernstein {
         self.coefficients().iter().fold(0.0, |most, b| b.abs().max(most))
     }
 
-    /// What can be said when every value may be off by `margin`.
+    /// What holds when every value may be off by `margin`.
     pub(crate) fn shape(&self, margin: f64) -> Shape {
         let b = self.coefficients();
         if b.iter().all(|&b| b > margin) {

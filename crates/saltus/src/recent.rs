@@ -2,8 +2,8 @@
 
 /// How many jumps are remembered: two rounds of the longest cycle.
 const MEMORY: usize = 2 * LONGEST;
-/// The longest cycle of jumps that is told from jumps in no order: two balls that come to rest in a
-/// corner each meet floor and wall, there and back.
+/// The longest cycle of jumps that is distinguished from jumps in no order: two balls that come to
+/// rest in a corner each meet floor and wall, there and back.
 const LONGEST: usize = 8;
 
 /// The edges of the last jumps.

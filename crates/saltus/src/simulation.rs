@@ -295,10 +295,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         }
     }
 
-    /// Runs and tells `observer` of each piece and jump, recording nothing.
+    /// Runs and hands each piece and jump to `observer`, recording nothing.
     ///
     /// # Errors
-    /// See [`Error`]; the observer has been told of everything before it.
+    /// See [`Error`]; the observer has had everything before it.
     pub fn drive(
         &self,
         mode: A::Mode,

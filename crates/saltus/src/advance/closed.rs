@@ -1,4 +1,4 @@
-//! An arc whose flow is known by a formula that is no polynomial.
+//! An arc whose solution is a formula that is no polynomial.
 
 use std::ops::ControlFlow;
 

@@ -195,7 +195,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
-/// Whether a guard that is `start` where it is known stays above zero when it changes by `most`,
+/// Whether a guard of the value `start` stays above zero when it changes by `most`,
 /// with room for the digits that its `constant` costs.
 #[inline]
 pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
@@ -287,14 +287,14 @@ impl<A: Automaton> Clone for OnStep<A> {
 impl<A: Automaton> Copy for OnStep<A> {}
 
 impl<A: Automaton> OnStep<A> {
-    /// The state after a time `s`, as the search saw it.
+    /// The state after a time `s`, as the search computes it.
     #[inline]
     pub(super) fn at(&self, c: &[A::State], scale: f64, s: f64) -> A::State {
         at(&self.near, c, scale, s)
     }
 }
 
-/// The state after a time `s` on a dense output that may be known `near` it.
+/// The state after a time `s` on a dense output that may be summed up `near` it.
 #[inline]
 fn at<S: State>(near: &Option<Near<S>>, c: &[S], scale: f64, s: f64) -> S {
     match near {

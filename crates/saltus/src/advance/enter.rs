@@ -126,7 +126,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ///
     /// The shortest time is taken over which the change of the guard doubles (or, where it never
     /// does, quadruples) with time twice in a row: longer than rounding, shorter than the way to
-    /// the guard's next root. A change by no more than `rounding` tells nothing.
+    /// the guard's next root. A change by no more than `rounding` is none.
     pub(super) fn guard_slope(
         &mut self,
         mode: A::Mode,
@@ -146,7 +146,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let ahead = x.with(|i| x.get(i) + h * (slope.get(i) + bend * (middle.get(i) - slope.get(i))));
             automaton.guard(edge, smooth.within(t + h), &ahead) - g
         };
-        // A guard that moves is seen to move by no less than some roundings of time.
+        // A guard that moves changes by no less than some roundings of time.
         guards.set(guards.get() + 1);
         let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
         let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);

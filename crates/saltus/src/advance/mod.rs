@@ -124,7 +124,7 @@ pub(crate) struct Memory<E, S> {
     /// Edges that were taken in the last stop because their guards switch there.
     pub(super) switched: Switched<E>,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from
-    /// zero: jumps have accumulated as far as can be told.
+    /// zero: jumps have accumulated as far as numbers resolve.
     pub(crate) spurious: bool,
 }
 

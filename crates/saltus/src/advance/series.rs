@@ -1,4 +1,4 @@
-//! An arc whose flow is known over jets: each step is as long as its Taylor series allows, and
+//! An arc whose flow is given over jets: each step is as long as its Taylor series allows, and
 //! exact to the tolerance all along.
 
 use crate::automaton::Automaton;
@@ -109,7 +109,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// How far a step may go by what is known of its series: no further than its last coefficients
+    /// How far a step may go by its series: no further than its last coefficients
     /// allow, nor beyond a kink.
     #[inline]
     fn ahead(&self, expansion: &Expansion, c: &[A::State; MOST_COEFFICIENTS], longest: f64) -> Ahead {
@@ -117,7 +117,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut step = reach.min(longest);
         if step == f64::INFINITY {
             let natural = unit * natural(&c[..=order]);
-            // Of a polynomial from zero nothing tells how fast it changes.
+            // A polynomial from zero has no time scale of its own.
             step = if natural > 0.0 { LONGEST * natural } else { longest };
         }
         step = evened(step, longest);
@@ -263,7 +263,7 @@ struct Believed<A: Automaton> {
     end: A::State,
 }
 
-/// Holds back what was seen of guards until the step is believed.
+/// Holds back the inspections of guards until the step is believed.
 pub(crate) struct Held<A: Automaton>(Vec<InspectionOf<A>>);
 
 impl<A: Automaton> Default for Held<A> {
@@ -286,7 +286,7 @@ struct Ahead {
     kink: Option<usize>,
 }
 
-/// A series as far as it is known.
+/// A series as far as it is computed.
 #[derive(Clone, Copy)]
 struct Expansion {
     /// The unit of time of its coefficients, in seconds.

@@ -1,4 +1,4 @@
-//! The first crossing on a solution that is known, and the end of the arc there.
+//! The first crossing on an exact solution, and the end of the arc there.
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Fall;
@@ -17,9 +17,9 @@ use super::{Advance, ArcEnd};
 pub(super) struct First<A: Automaton> {
     pub(super) edge: A::Edge,
     pub(super) crossing: Crossing,
-    /// Whether a formula told its time, which the rounding of a spent root does not spoil then.
+    /// Whether a formula gave its time, which the rounding of a spent root does not spoil then.
     by_formula: bool,
-    /// The state there, where a formula told that too.
+    /// The state there, where a formula gave that too.
     state: Option<A::State>,
 }
 
@@ -29,7 +29,7 @@ impl<A: Automaton> First<A> {
         self.crossing.inside
     }
 
-    /// Whether a formula told where it is, so that nobody has looked at the guard on the solution
+    /// Whether a formula gave its place, so that nobody has looked at the guard on the solution
     /// there.
     pub(super) fn is_told(&self) -> bool {
         self.state.is_some()
@@ -78,7 +78,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(found)
     }
 
-    /// How an arc of a mode with one edge ends, where a formula tells the time of its fall and the
+    /// How an arc of a mode with one edge ends, where a formula gives the time of its fall and the
     /// state there: nothing is then searched, nor even the solution asked for, if no observer wants
     /// its pieces.
     #[inline]

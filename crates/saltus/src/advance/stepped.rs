@@ -86,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if let Some(rough) = found {
                     return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
                 }
-                // Where guards were looked at, the state goes on from where they were seen last.
+                // Where guards were looked at, the state goes on from where they were asked last.
                 let state = if clear { trial.end } else { horner(step.c, 1.0) };
                 if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
                     return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
@@ -312,7 +312,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// Whether no guard can come to zero over a step, for how far the dense output reaches from its
-    /// start at most: then it need not be known.
+    /// start at most: then it need not be computed.
     ///
     /// Only affine guards say how far they follow the state. The answer is the same whoever
     /// observes.

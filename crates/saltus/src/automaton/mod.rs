@@ -192,7 +192,7 @@ impl About {
 
     /// Promises that the guard is g(t, x) = a·x + b with constants a and b.
     ///
-    /// The guard along a step is then a polynomial known exactly, and a crossing costs next to
+    /// The guard along a step is then a polynomial without error, and a crossing costs next to
     /// nothing to exclude. A promise that does not hold breaks the guarantee that no crossing is
     /// missed.
     #[must_use]
@@ -223,7 +223,7 @@ impl About {
     }
 }
 
-/// Where infinitely many jumps have accumulated: what [`Automaton::beyond`] is told.
+/// Where infinitely many jumps have accumulated: what [`Automaton::beyond`] is given.
 #[non_exhaustive]
 pub struct Limit<'a, A: Automaton + ?Sized> {
     /// The mode of the last jump: any mode of the cycle of jumps.

@@ -13,7 +13,7 @@ pub(crate) type Flow<A> = fn(&A, Mode<A>, &mut Series<'_, State<A>>);
 type Mode<A> = <A as Automaton>::Mode;
 type State<A> = <A as Automaton>::State;
 
-/// How the state of a mode goes on from where it is: what a model knows of its own flow. A mode
+/// How the state of a mode goes on from where it is: what a model gives of its own flow. A mode
 /// answers with the same kind wherever it is entered.
 ///
 /// ```
@@ -159,7 +159,7 @@ impl<A: Automaton + ?Sized> fmt::Debug for Solution<A> {
     }
 }
 
-/// When a guard falls on a solution that is known.
+/// When a guard falls on an exact solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Fall<S> {

@@ -11,8 +11,8 @@ use super::search::{Part, Search, Side};
 /// What the stretches that begin at a spent root have shown of the guard there.
 ///
 /// On a long stretch the interpolant errs by what it leaves out, on a short one by the guard's
-/// rounding over its length. The slope is known best on one between them, which is remembered: so a
-/// rebound of 10⁻¹⁰ m/s is told though it rises by 10⁻²¹ m, a thousandth of what the guard is
+/// rounding over its length. The slope is best determined on one between them, which is remembered:
+/// so a rebound of 10⁻¹⁰ m/s is found though it rises by 10⁻²¹ m, a thousandth of what the guard is
 /// rounded by.
 #[derive(Clone, Copy)]
 pub(super) struct Departure {
@@ -28,7 +28,7 @@ pub(super) struct Departure {
     order: Option<f64>,
 }
 
-/// So much longer a stretch tells the slope better than the steps of rounding on a shorter one.
+/// So much longer a stretch gives the slope better than the steps of rounding on a shorter one.
 const FAR: f64 = 1024.0;
 /// A guard is seen where it is by this larger than its rounding, which a few samples may show too
 /// small.
@@ -48,7 +48,7 @@ const SURE: f64 = 0.4;
 const NONE: f64 = 64.0;
 
 impl Departure {
-    /// The guard with its root at the start of `0..=length` divided out, whose values are known to
+    /// The guard with its root at the start of `0..=length` divided out, whose values are exact to
     /// within `margin`, and away from the start to `roughness` more.
     pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
         let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
@@ -68,7 +68,7 @@ impl Departure {
         self.slope > SURE * self.doubt
     }
 
-    /// Whether nothing is seen of a slope, and the guard falls as the square of time.
+    /// Whether no slope stands out of the rounding, and the guard falls as the square of time.
     pub(super) fn touches(&self) -> bool {
         self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
     }
@@ -78,7 +78,7 @@ impl Departure {
         self.slope.abs() + self.doubt
     }
 
-    /// Whether it was told by a stretch so long that it knows better than steps of rounding within
+    /// Whether it comes from a stretch so long that it is better than steps of rounding within
     /// `0..=b`.
     pub(super) fn is_far(&self, b: f64) -> bool {
         self.length > FAR * b
@@ -90,7 +90,7 @@ fn is_even(order: f64) -> bool {
 }
 
 impl Search<'_> {
-    /// Whether the guard on `0..=b` is nothing but rounding, and was seen to rise on a longer
+    /// Whether the guard on `0..=b` is nothing but rounding, and rises on a longer
     /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a
     /// step of rounding.
     pub(super) fn is_under_a_rise(

@@ -28,7 +28,7 @@ impl Search<'_> {
         Ok(self.passed(side, walk.side, b))
     }
 
-    /// A walk from one side to another, on which no fall but one from the start was seen; the signs
+    /// A walk from one side to another, on which no sample falls but from the start; the signs
     /// of its steps count.
     fn passed(&self, from: Side, to: Side, b: f64) -> Part {
         if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
@@ -64,7 +64,7 @@ impl Search<'_> {
         Ok((samples, turns))
     }
 
-    /// Whether the guard is seen to go up and down without order.
+    /// Whether the samples go up and down without order.
     pub(super) fn is_rough(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
         Ok(self.samples(a, b)?.1 > MOST_TURNS)
     }
@@ -156,9 +156,9 @@ pub(super) fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
 
 /// What samples of a guard show that no polynomial fits.
 pub(super) enum Look {
-    /// Steps of rounding, seen one by one: their signs count.
+    /// Steps of rounding, sampled one by one: their signs count.
     Steps(Part),
-    /// Ups and downs without order, and what can be seen through them.
+    /// Ups and downs without order, and what stands out of them.
     Rounding(Part),
     /// Neither: it is to be looked at more closely.
     Smooth,

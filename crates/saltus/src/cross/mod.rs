@@ -41,7 +41,7 @@ impl Crossing {
         Self { inside: 0.0, outside, root: 0.0, rest: 0.0 }
     }
 
-    /// A crossing just after a time that is known.
+    /// A crossing just after a given time.
     pub(crate) const fn after(root: f64) -> Self {
         Self { inside: root, outside: root.next_up(), root, rest: 0.0 }
     }
@@ -127,7 +127,7 @@ pub(crate) fn first_fall_on_arc(
     Search::new(guard, span, bend, tick).first_fall(start, None)
 }
 
-/// The same for a guard on a step that is known to be the polynomial `p(s / span)` to within
+/// The same for a guard on a step that is the polynomial `p(s / span)` to within
 /// `margin`; where that decides, `guard` is not asked.
 pub(crate) fn first_fall_of_polynomial(
     p: &Bernstein,

@@ -7,7 +7,7 @@ const DEEPEST: u32 = 4;
 /// Where the last correction is this part of the root, and the bend's part of the correction as
 /// small, what is left is rounding: their squares' product.
 const CLOSE: f64 = 1e-6;
-/// Closer than this a root is not known if it may be two.
+/// Closer than this a root is left to the search if it may be two.
 const CLOSEST: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
@@ -311,7 +311,7 @@ mod tests {
         roots.iter().fold(vec![scale, 0.0, scale * bend], |p, r| times(&p, &[1.0, -1.0 / r]))
     }
 
-    /// How well its rounded powers let a root be known.
+    /// How well its rounded powers determine a root.
     fn within_rounding(a: &[f64], root: f64) -> f64 {
         let [_, slope, _] = value_slope_and_bend(a, root);
         let size = a.iter().rev().fold(0.0, |size, a| size * root + a.abs());

@@ -34,17 +34,17 @@ impl Search<'_> {
     }
 }
 
-/// A guard seen at the Chebyshev points of an interval.
+/// A guard sampled at the Chebyshev points of an interval.
 pub(super) struct Samples {
     series: [f64; 9],
-    /// How far the guard is from its interpolant, as far as seen.
+    /// How far the guard is from its interpolant, by its checks.
     off: f64,
     /// The spacing of numbers, as a part of the interval.
     spacing: f64,
     /// The guard at both ends.
     start: f64,
     end: f64,
-    /// The least value seen.
+    /// The least sample.
     least: f64,
     /// All of them.
     values: [f64; 9],
@@ -101,6 +101,6 @@ pub(super) struct Proxy {
     /// The guard at both ends.
     pub(super) start: f64,
     pub(super) end: f64,
-    /// The least value seen of it.
+    /// Its least sample.
     pub(super) least: f64,
 }

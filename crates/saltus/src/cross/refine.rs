@@ -3,9 +3,9 @@
 use super::search::{AT_START, ROUNDING, Search};
 use super::{Crossing, Doubt, Evidence, Undefined};
 
-/// The fall close to `near`, a root known but for rounding, between neighbouring numbers.
+/// The fall close to `near`, a root exact but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
-    // Where rounding hides the guard's sign all around, the root that is known decides: a ball does
+    // Where rounding hides the guard's sign all around, the given root decides: a ball does
     // not fall through a floor at height one.
     let known = Crossing::after(near);
     let mut step = near.next_up() - near;

@@ -45,7 +45,7 @@ pub(super) struct Search<'a> {
     /// How the guard leaves a spent root at the start, as far as its samples have shown.
     pub(super) departure: Option<Departure>,
     /// What a guard on a step is rough by: close to its start, where the solution is zero but for
-    /// rounding, it is known no better than to this times the square of the part of the step.
+    /// rounding, it is exact to no more than this times the square of the part of the step.
     rough: f64,
     /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros
     /// after it are rounding and no plateau.
@@ -91,7 +91,7 @@ pub(super) struct Stretch {
     a: f64,
     b: f64,
     depth: u32,
-    /// How far the guard may be from its polynomial: from the one that is known, or from the
+    /// How far the guard may be from its polynomial: from the given one, or from the
     /// interpolant on the interval of which this is a half.
     margin: f64,
     known: Option<Bernstein>,
@@ -161,7 +161,7 @@ impl<'a> Search<'a> {
         if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
     }
 
-    /// The search, for a polynomial that is known to within a margin or for interpolants.
+    /// The search, for a polynomial that is given to within a margin or for interpolants.
     pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Searched, Undefined> {
         let side = self.side_at(start)?;
         let margin = known.map_or(f64::INFINITY, |(_, margin)| margin);
@@ -290,7 +290,7 @@ impl<'a> Search<'a> {
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
         let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
         let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (*p, margin) };
-        // A stretch of zeros tells nothing, and least of all that it is sure of it.
+        // A stretch of zeros has no slope, and no margin for one.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
             self.doubt_noise(&q, b, sampled)?;
@@ -363,7 +363,7 @@ impl<'a> Search<'a> {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
-                // Too close to zero for the polynomial that is known, whose margin is that of the
+                // Too close to zero for the given polynomial, whose margin is that of the
                 // whole step: its own values tell more.
                 Look::Smooth if known.is_some() => {
                     return self.part(&Stretch { margin: f64::INFINITY, known: None, ..*stretch }, side);

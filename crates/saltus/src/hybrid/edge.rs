@@ -1,4 +1,4 @@
-//! An edge of an automaton of closures, and what is said of it.
+//! An edge of an automaton of closures, and what holds of it.
 
 use std::fmt;
 

@@ -67,7 +67,7 @@ pub struct Hybrid<'a, S> {
     last: Option<&'static str>,
     /// The first method that was to say something of the last edge before there was one.
     early: Option<&'static str>,
-    /// By which method something was said twice of a mode, and of which.
+    /// The method that was called twice for a mode, and the mode.
     twice: Option<(&'static str, &'static str)>,
     /// What is wrong with it as a whole, once it was asked.
     flaw: OnceLock<Option<String>>,
@@ -217,7 +217,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.edge_with(from, to, Edge::new(guard, reset))
     }
 
-    /// Declares an edge of which more is to be said than its guard and its reset: see [`Edge`].
+    /// Declares an edge that was put together before, or whose reset may fail: see [`Edge`].
     #[must_use]
     pub fn edge_with(
         mut self,

@@ -61,8 +61,8 @@ impl<'a> Jet<'a> {
     }
 
     /// `of` the value of a constant; for another number the next place on the tape, whose
-    /// coefficient k is `next(k, a, c)`, where a are its coefficients and c those known so far of
-    /// the result.
+    /// coefficient k is `next(k, a, c)`, where a are its coefficients and c those computed so far
+    /// of the result.
     #[inline(always)]
     pub(super) fn function(self, of: impl FnOnce(f64) -> f64, next: impl FnOnce(usize, &Row, &Row) -> f64) -> Self {
         match self.0 {
@@ -118,7 +118,7 @@ impl<'a> Jet<'a> {
 
     /// Gives `self` and `other`, which only hold places as yet, their next coefficients
     /// `next(k, a, c, d)`, where a are those of the number `of` which they are functions, c and d
-    /// theirs known so far.
+    /// theirs computed so far.
     #[inline]
     pub(super) fn together(self, other: Self, of: Self, next: impl FnOnce(usize, &Row, &Row, &Row) -> (f64, f64)) {
         if let (Placed(pass, c), Placed(_, d), Placed(_, a)) = (self.0, other.0, of.0) {

@@ -41,7 +41,7 @@ impl Kinks {
     }
 
     /// The sign of the number at a place whose first coefficient that is not zero, as far as is
-    /// known, is this: that of it, unless the number has turned.
+    /// given, is this: that of it, unless the number has turned.
     pub(super) fn sign(&self, place: usize, leading: f64) -> f64 {
         let sign = if leading == 0.0 { 0.0 } else { leading.signum() };
         let mut kinks = self.0.borrow_mut();

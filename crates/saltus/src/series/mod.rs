@@ -25,7 +25,7 @@ pub struct Series<'a, S> {
     tape: &'a mut Tape,
     t: f64,
     x: &'a S,
-    /// The orders that are known already, and those that are to be.
+    /// The orders that are computed already, and those that are to be.
     known: usize,
     order: usize,
     /// The unit of time of the coefficients, in seconds.
@@ -111,7 +111,7 @@ pub(crate) const RECIPROCALS: [f64; MOST_COEFFICIENTS] = {
 };
 
 /// The numbers that an evaluation of a flow comes by, in the order in which it does, each with its
-/// coefficients as far as they are known: time, the coordinates, and what the flow computes of
+/// coefficients as far as they are computed: time, the coordinates, and what the flow computes of
 /// them.
 pub(crate) struct Tape {
     rows: Vec<Row>,

@@ -15,7 +15,7 @@ use crate::state::State;
 /// Every 32 steps the largest eigenvalue λ of the flow's Jacobian is estimated, for three
 /// evaluations. If steps h are so long time and again that h |λ| is as large as the explicit method
 /// is stable to, stability limits them, the flow is stiff, and [`Rodas5P`] goes on; and the other
-/// way round. [`Stats::stiff`](crate::Stats::stiff) tells its steps.
+/// way round. [`Stats::stiff`](crate::Stats::stiff) counts its steps.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};

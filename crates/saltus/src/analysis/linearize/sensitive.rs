@@ -273,7 +273,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         self.polynomial(mode, t, x).map_or(Solution::Steps, Solution::Polynomial)
     }
 
-    /// Where the solution is exact, its columns are known at every time.
+    /// Where the solution is exact, its columns are exact at every time.
     fn falls(&self, mode: A::Mode, edge: A::Edge, t: f64, x: &Self::State) -> Fall<Self::State> {
         match self.automaton.falls(mode, edge, t, &x.x) {
             Fall::Unknown => Fall::Unknown,
