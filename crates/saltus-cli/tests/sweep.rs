@@ -210,6 +210,38 @@ fn what_is_wrong_is_said_before_anything_is_written() {
     }
 }
 
+/// A line, lines, a map, dots; and what cannot be drawn is refused before a run is made.
+#[test]
+fn sweeps_are_drawn() {
+    let place = Place::of(DROP);
+    let drawn = |vary: &[&str]| {
+        let mut arguments = vary.to_vec();
+        arguments.extend(["-o", "table.csv", "--force", "--plot", "picture.svg"]);
+        place.done(&arguments);
+        let svg = place.read("picture.svg");
+        assert!(svg.starts_with("<svg") && place.read("table.csv").lines().count() > 3, "{svg}");
+        svg
+    };
+    let line = drawn(&["--vary", "restitution=0.3:0.7:5"]);
+    assert!(line.contains("Rest by restitution") && line.contains("rest (s)"));
+    let lines = drawn(&["--vary", "restitution=0.3:0.7:5", "--vary", "ball.height=1m:2m:2", "--show", "impacts"]);
+    assert!(lines.contains("ball.height = 2 m") && lines.contains("Impacts by"), "{lines}");
+    let words = drawn(&["--vary", "gravity=earth,moon", "--vary", "restitution=0.3:0.7:5", "--show", "first_apex_m"]);
+    assert!(words.contains("gravity = moon") && words.contains("first apex (cm)"), "{words}");
+    let map = drawn(&["--vary", "restitution=0.3:0.7:9", "--vary", "ball.height=1cm:10m:8:log"]);
+    assert!(map.contains("fill-opacity") && map.contains("ball.height (cm)"), "{map}");
+    drawn(&["--vary", "restitution=0.3:0.7", "--random", "9"]);
+
+    let refused = |arguments: &[&str]| place.refused(&[arguments, &["--plot", "p.svg", "-o", "t.csv"]].concat());
+    let text = refused(&["--vary", "restitution=0.3:0.7:5", "--show", "rest"]);
+    assert!(text.contains("no number called 'rest': choose one of impacts, first_impact_s"), "{text}");
+    assert!(refused(&["--vary", "gravity=earth,moon"]).contains("an axis is made of numbers"));
+    assert!(refused(&["--vary", "restitution=0.3:0.7:500", "--vary", "ball.height=1m:2m:500"]).contains("100000 runs"));
+    let three = ["--vary", "restitution=0.3:0.7:2", "--vary", "ball.height=1m:2m:2", "--vary", "gravity=9.8,1.6"];
+    assert!(refused(&three).contains("one key, or a grid of two"));
+    assert!(!place.path("t.csv").exists() && !place.path("p.svg").exists());
+}
+
 #[test]
 fn files_are_not_lost() {
     let place = Place::of(DROP);

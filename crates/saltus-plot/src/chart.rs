@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::chart_page;
 use crate::error::{PlotError, finite, magnitude};
 use crate::height_time::Background;
+use crate::map::Map;
 use crate::stroke::Stroke;
 
 /// What an axis measures; data are given in SI units.
@@ -91,6 +92,7 @@ pub struct Chart {
     pub(crate) arrows: Vec<[[f64; 2]; 2]>,
     pub(crate) marks: Vec<[f64; 2]>,
     pub(crate) discs: Vec<(usize, Disc)>,
+    pub(crate) map: Option<Map>,
     pub(crate) ground: Vec<Stroke>,
     pub(crate) to_scale: bool,
     /// Which axes go by powers of ten, across and up.
@@ -116,6 +118,7 @@ impl Chart {
             arrows: Vec::new(),
             marks: Vec::new(),
             discs: Vec::new(),
+            map: None,
             ground: Vec::new(),
             to_scale: false,
             logarithmic: [false; 2],
@@ -189,6 +192,13 @@ impl Chart {
         self
     }
 
+    /// Puts a quantity in tones over both axes, under all else.
+    #[must_use]
+    pub fn map(mut self, map: Map) -> Self {
+        self.map = Some(map);
+        self
+    }
+
     /// Adds floors and walls.
     #[must_use]
     pub fn ground(mut self, strokes: impl IntoIterator<Item = Stroke>) -> Self {
@@ -207,6 +217,13 @@ impl Chart {
     #[must_use]
     pub const fn logarithmic(mut self) -> Self {
         self.logarithmic[1] = true;
+        self
+    }
+
+    /// Shows the axis across by powers of ten; what is not above zero is refused.
+    #[must_use]
+    pub const fn logarithmic_across(mut self) -> Self {
+        self.logarithmic[0] = true;
         self
     }
 
@@ -281,6 +298,12 @@ impl Chart {
                 let value = finite(value, || format!("a coordinate of disc {}", n + 1))?;
                 include(k, value - radius);
                 include(k, value + radius);
+            }
+        }
+        if let Some(map) = &self.map {
+            map.check()?;
+            for k in 0..2 {
+                map.edges(k, self.logarithmic[k]).into_iter().for_each(|edge| include(k, edge));
             }
         }
         if reach[0].0 > reach[0].1 {

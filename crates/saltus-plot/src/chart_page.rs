@@ -114,6 +114,10 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let edges = ([x.at(across.0), x.at(across.1)], [y.at(up.1), y.at(up.0)]);
     let [x, y] = [(x, 0), (y, 1)].map(|(map, k)| if chart.logarithmic[k] { map } else { map.per_unit(units[k].size) });
     let place = Place { chart, x, y, sizes: [units[0].size, units[1].size] };
+    for (alpha, cells) in chart.map.iter().flat_map(|map| map.cells(&place, chart.logarithmic)) {
+        let mut canvas = canvas.try_borrow_mut().map_err(|e| PlotError::Drawing(e.to_string()))?;
+        canvas.glaze(&cells, Ink::series(0), alpha);
+    }
     for trace in traces(&place, edges.1, ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
@@ -141,7 +145,8 @@ fn legend(chart: &Chart) -> Vec<(Sign, String)> {
         }
     };
     let lines = named.map(|(i, (label, _))| (sign(i), label.clone()));
-    lines.chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
+    let tones = chart.map.iter().flat_map(crate::map::Map::legend);
+    tones.chain(lines).chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
 }
 
 pub(crate) fn unit(measure: &Measure, (low, high): (f64, f64)) -> Unit {

@@ -52,6 +52,13 @@ pub enum PlotError {
         /// The names of those that there are.
         names: Vec<String>,
     },
+    /// A sweep has no such result, or one that is no number.
+    Column {
+        /// Which was asked for; `None` if one was to be found.
+        asked: Option<String>,
+        /// The headings of those that are numbers.
+        names: Vec<String>,
+    },
     /// The drawing library could not place an element.
     Drawing(String),
 }
@@ -79,6 +86,17 @@ impl fmt::Display for PlotError {
                 write!(f, "the drawing library could not place an element ({reason}): try a larger size")
             }
             Self::Missing(says) => f.write_str(says),
+            Self::Column { asked, names } if names.is_empty() => {
+                let which = asked.as_deref().unwrap_or("result");
+                write!(f, "no run of the sweep came to a number, so that there is no {which} to draw")
+            }
+            Self::Column { asked, names } => {
+                let names = names.join(", ");
+                match asked {
+                    Some(asked) => write!(f, "the sweep has no number called '{asked}': choose one of {names}"),
+                    None => write!(f, "which result is to be drawn? Choose one of {names}"),
+                }
+            }
             Self::Coordinate { asked, names } => write!(
                 f,
                 "the state has no coordinate {asked}, only {}: name one of these, or its place counted from 0",

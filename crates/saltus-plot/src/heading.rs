@@ -1,5 +1,6 @@
 //! What stands above the panels: the title, the captions, the legend.
 
+use plotters::element::Rectangle;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
@@ -24,6 +25,8 @@ pub(crate) enum Sign {
     Jump,
     Spot(Mark),
     Contact,
+    /// A patch of a map, so opaque.
+    Tone(f64),
     /// Words alone: what the marks after them have in common.
     Nothing,
 }
@@ -35,6 +38,7 @@ impl Sign {
             Self::Line(..) | Self::Dots(..) => 2.2 * ty.base,
             Self::Spot(_) => 0.7 * ty.base,
             Self::Contact | Self::Limit | Self::Jump => 0.5 * ty.base,
+            Self::Tone(_) => 1.3 * ty.base,
             Self::Nothing => 0.0,
         }
     }
@@ -44,7 +48,7 @@ impl Sign {
         match self {
             Self::Nothing => 0.0,
             Self::Line(..) | Self::Dots(..) => self.width(ty) + 0.55 * ty.base,
-            Self::Spot(_) | Self::Contact | Self::Limit | Self::Jump => self.width(ty) + 0.38 * ty.base,
+            Self::Spot(_) | Self::Contact | Self::Limit | Self::Jump | Self::Tone(_) => self.width(ty) + 0.38 * ty.base,
         }
     }
 
@@ -53,7 +57,7 @@ impl Sign {
         match self {
             Self::Nothing => 0.4 * ty.base,
             Self::Line(..) | Self::Dots(..) => ty.base,
-            Self::Spot(_) | Self::Contact | Self::Limit | Self::Jump => 0.9 * ty.base,
+            Self::Spot(_) | Self::Contact | Self::Limit | Self::Jump | Self::Tone(_) => 0.9 * ty.base,
         }
     }
 }
@@ -244,6 +248,11 @@ fn sign(area: &Area, sign: Sign, (x, y): (f64, f64), ty: Type) -> Result<(), Plo
         Sign::Limit => {
             let data = upright(x, 0.5 * ty.base);
             area.draw(&Trace { data, ink: Ink::Text, width: ty.rule(), dash: Dash::Dashed, alpha: 1.0 }).map_err(failed)
+        }
+        Sign::Tone(alpha) => {
+            let half = 0.5 * CAPITAL * ty.base;
+            let corners = [(grains(x), grains(y - half)), (grains(x + broad), grains(y + half))];
+            area.draw(&Rectangle::new(corners, Ink::series(0).wash(alpha))).map_err(failed)
         }
         Sign::Jump => area.draw(&crate::marks::event(upright(x, 0.5 * ty.base), ty)).map_err(failed),
         Sign::Spot(mark) => {

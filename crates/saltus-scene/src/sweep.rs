@@ -165,10 +165,12 @@ pub struct Sweep<'a> {
 }
 
 /// A run as a row.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// The line, its end included.
     pub text: String,
+    /// Its cells that are numbers, in the order of [`Sweep::headers`].
+    pub numbers: Vec<Option<f64>>,
     /// Why it came to nothing, if it did.
     pub why: Option<String>,
 }
@@ -213,6 +215,12 @@ impl<'a> Sweep<'a> {
     #[must_use]
     pub const fn runs(&self) -> u64 {
         self.runs
+    }
+
+    /// What varies.
+    #[must_use]
+    pub const fn vary(&self) -> &Vary {
+        self.vary
     }
 
     /// The scene of the first run.
@@ -260,8 +268,8 @@ impl<'a> Sweep<'a> {
     pub fn row(&self, run: u64) -> Row {
         let values = self.vary.values(run);
         let came = self.came(&values);
-        let text = self.rows.row(run, &values, &came);
-        Row { text, why: came.err().map(|nothing| nothing.why) }
+        let (text, numbers) = self.rows.row(run, &values, &came);
+        Row { text, numbers, why: came.err().map(|nothing| nothing.why) }
     }
 
     /// The whole table, its runs made on all cores where `saltus` has its feature `rayon`.
@@ -295,6 +303,18 @@ enum Cell {
     Written(String),
     Count(u64),
     Word(String),
+}
+
+impl Cell {
+    #[allow(clippy::cast_precision_loss)] // counts are below 10^12
+    fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(*value),
+            Self::Count(count) => Some(*count as f64),
+            Self::Written(number) => number.parse().ok(),
+            Self::None | Self::Word(_) => None,
+        }
+    }
 }
 
 impl From<Option<f64>> for Cell {
@@ -368,10 +388,14 @@ impl Rows {
     }
 
     /// The row of a run, or of one that came to nothing: `end` says how, and `why`.
-    fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> String {
+    fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> (String, Vec<Option<f64>>) {
         let mut row = String::with_capacity(200);
+        let mut numbers = Vec::with_capacity(self.headers.len());
         let mut names = self.headers.iter();
-        let mut put = |cell: Cell| self.put(&mut row, names.next().map_or("", String::as_str), &cell);
+        let mut put = |cell: Cell| {
+            self.put(&mut row, names.next().map_or("", String::as_str), &cell);
+            numbers.push(cell.number());
+        };
         put(Cell::Count(run));
         for value in values {
             put(if value.word { Cell::Word(value.cell.clone()) } else { Cell::Written(value.cell.clone()) });
@@ -409,7 +433,7 @@ impl Rows {
             }
         }
         row.push_str(if self.format == RowFormat::Csv { "\n" } else { "}\n" });
-        row
+        (row, numbers)
     }
 
     fn parts(&self, column: Column, moment: &Moment) -> impl Iterator<Item = Cell> {

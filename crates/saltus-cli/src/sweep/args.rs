@@ -30,6 +30,12 @@ pub(crate) struct Sweep {
     /// How to write it; without it, after the extension of the output file, or else as CSV.
     #[arg(long, value_parser = one_of(&RowFormat::ALL, RowFormat::name, RowFormat::about))]
     pub(crate) format: Option<RowFormat>,
+    /// Draw a result of the runs against the one or two keys that vary, as SVG.
+    #[arg(long, value_name = "FILE", conflicts_with = "resume")]
+    pub(crate) plot: Option<PathBuf>,
+    /// The result to draw, a heading of the table; when all was at rest unless given.
+    #[arg(long, value_name = "NAME", requires = "plot")]
+    pub(crate) show: Option<String>,
     /// Go on with a file that the same sweep has begun.
     #[arg(long, requires = "output", conflicts_with = "force")]
     pub(crate) resume: bool,

@@ -4,6 +4,7 @@ mod args;
 mod table;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) use args::Sweep as SweepArgs;
@@ -14,9 +15,12 @@ use serde_json::{Value as Json, json};
 use table::Table;
 
 use crate::error::Error;
-use crate::output::{extension, say};
+use crate::output::{self, extension, say};
 use crate::progress::Progress;
 use crate::scenes::{ending, note, read};
+
+/// The most runs that a picture shows: a map of them is a few megabytes.
+const MOST_DRAWN: u64 = 100_000;
 
 pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
@@ -30,6 +34,19 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         say(quiet, &note);
     }
     let runs = sweep.runs();
+    if args.plot.is_some() {
+        saltus_plot::sweep::check(&sweep, args.show.as_deref()).map_err(Error::new)?;
+        if runs > MOST_DRAWN {
+            return Err(Error::new(format!(
+                "a picture shows {MOST_DRAWN} runs at most, and these are {runs}: vary in fewer steps, or leave out --plot"
+            )));
+        }
+        if args.plot.as_deref() == Some(Path::new("-"))
+            && args.output.as_deref().is_none_or(|path| path == Path::new("-"))
+        {
+            return Err(Error::new("the picture and the table cannot both go to standard output: name a file for one"));
+        }
+    }
     let (mut table, done) = Table::open(args, &sweep, &whose(args, &toml, &sweep, &vary, format))?;
     if done > 0 {
         say(
@@ -43,6 +60,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         pool = pool.num_threads(threads.into());
     }
     let pool = pool.build().map_err(|error| Error::new(format!("cannot start that many threads: {error}")))?;
+    let mut rows = Vec::new();
     let mut progress = Progress::new(runs, quiet);
     let mut nothing = (0_u64, None);
     let left = usize::try_from(done).map_err(Error::new)?..usize::try_from(runs).map_err(Error::new)?;
@@ -51,12 +69,16 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
             left,
             |k| sweep.row(k as u64),
             |k, row| {
-                if let Some(why) = row.why {
+                if let Some(why) = &row.why {
                     nothing.0 += 1;
-                    nothing.1.get_or_insert((k, why));
+                    nothing.1.get_or_insert_with(|| (k, why.clone()));
                 }
                 progress.reached(k as u64 + 1);
-                match table.push(&row.text) {
+                let pushed = table.push(&row.text);
+                if args.plot.is_some() {
+                    rows.push(row);
+                }
+                match pushed {
                     Ok(()) => ControlFlow::Continue(()),
                     Err(error) => ControlFlow::Break(error),
                 }
@@ -71,6 +93,10 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     if let (count, Some((first, why))) = nothing {
         let values = vary.says(first as u64);
         say(quiet, &format!("{count} of {runs} runs came to nothing; the first is run {first}, {values}: {why}"));
+    }
+    if let Some(path) = &args.plot {
+        let svg = saltus_plot::sweep::svg(&sweep, &rows, args.show.as_deref()).map_err(Error::new)?;
+        output::write(Some(path), svg.as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
 }

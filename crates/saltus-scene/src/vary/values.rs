@@ -171,8 +171,7 @@ impl Variation {
     /// The name of its column.
     #[must_use]
     pub fn header(&self) -> String {
-        let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
-        match unit {
+        match self.unit() {
             None => self.key.clone(),
             Some(unit) => {
                 let unit = unit.strip_prefix("1/").map_or_else(|| unit.to_owned(), |rest| format!("per_{rest}"));
@@ -180,6 +179,25 @@ impl Variation {
                 format!("{}_{}", self.key, unit.trim_start_matches('_'))
             }
         }
+    }
+
+    /// Whether its values follow each other by equal factors.
+    #[must_use]
+    pub const fn is_logarithmic(&self) -> bool {
+        matches!(self.values, Values::Range { logarithmic: true, .. })
+    }
+
+    /// Whether its values are words, or numbers of several units.
+    #[must_use]
+    pub fn is_words(&self) -> bool {
+        matches!(&self.values, Values::List { list, .. } if list.iter().any(|value| value.word))
+    }
+
+    /// The unit of its numbers, as the scene file has it.
+    #[must_use]
+    pub fn unit(&self) -> Option<&str> {
+        let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
+        unit.as_deref()
     }
 
     /// Value `n` of as many as it takes.
