@@ -337,3 +337,88 @@ fn derivatives_through_guards_that_switch() {
         );
     }
 }
+
+/// Fills at a rate, and is emptied above a mark given by a table.
+struct Marked {
+    rate: f64,
+    mark: saltus::Signal,
+    stops: [Clock; 1],
+}
+
+impl Linearize for Marked {
+    type Parameters = [f64; 1];
+    fn parameters(&self) -> [f64; 1] {
+        [self.rate]
+    }
+    fn flow_over<D: Number>(&self, (): (), _t: D, _x: D, [rate]: [D; 1]) -> D {
+        rate
+    }
+    fn guard_over<D: Number>(&self, (): (), t: D, x: D, _: [D; 1]) -> D {
+        self.mark.over(t) - x
+    }
+    fn reset_over<D: Number>(&self, (): (), _t: D, _x: D, _: [D; 1]) -> D {
+        D::zero()
+    }
+    fn stops_stand(&self, (): ()) -> bool {
+        true
+    }
+}
+
+impl Automaton for Marked {
+    type Mode = ();
+    type State = f64;
+    type Edge = ();
+    fn flow(&self, (): (), t: f64, x: &f64) -> f64 {
+        self.flow_at((), t, x)
+    }
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
+        Edges::from([()])
+    }
+    fn guard(&self, edge: (), t: f64, x: &f64) -> f64 {
+        self.guard_at(edge, t, x)
+    }
+    fn stops(&self, (): ()) -> std::borrow::Cow<'_, [Clock]> {
+        (&self.stops).into()
+    }
+    fn reset(&self, (): (), edge: (), t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        Ok(((), self.reset_at(edge, t, x)))
+    }
+}
+
+/// A mark that falls is met earlier by its own rate; one that leaps is met when it leaps.
+#[test]
+fn derivatives_through_marks_by_a_table() {
+    let linear = saltus::Signal::linear([(0.0, 4.0), (4.0, 0.0)]).unwrap();
+    let held = saltus::Signal::held([(0.0, 9.0), (2.0, 1.5)]).unwrap();
+    for (mark, later, by_rate) in [(linear, -1.0, 1.5), (held, 0.0, 0.5)] {
+        let tank = Marked { rate: 1.0, stops: [mark.stops()], mark };
+        let by = Sensitive::of(&tank, [Wrt::Parameter(0)]);
+        let run = Simulation::of(&by).run((), by.start(0.0, 0.0), 0.0..2.5).unwrap();
+        let jump = run.trajectory.jumps()[0];
+        assert!((jump.t() - 2.0).abs() < 1e-9 && (jump.after.dt[0] - later).abs() < 1e-9, "{jump:?}");
+        assert!((run.end.state.columns[0] - by_rate).abs() < 1e-9, "{}", run.end.state.columns[0]);
+    }
+}
+
+/// A format whose numbers lose their last digit neither takes a tick twice nor loses one.
+#[test]
+fn a_checkpoint_through_rounded_numbers() {
+    let clocks = || Clock::every(0.3).after(0.1);
+    let model = Hybrid::new().mode("run", |_t, _x: &f64| 0.0).clock("run", "run", clocks(), |_t, x| x + 1.0).clock(
+        "run",
+        "run",
+        Clock::every(0.1),
+        |_t, x| x + 1000.0,
+    );
+    let simulation = Simulation::of(&model);
+    let whole = simulation.run("run", 0.0, 0.0..30.0).unwrap().end.state;
+    let mut course = simulation.start("run", 0.0, 0.0..30.0).unwrap();
+    let mut pauses = 0;
+    while course.advance(&mut ()).unwrap().is_none() {
+        let text = serde_json::to_string(&course.checkpoint()).unwrap();
+        let read: saltus::CheckpointOf<Hybrid<f64>> = serde_json::from_str(text.leak()).unwrap();
+        assert_eq!(simulation.resume(read).finish(&mut ()).unwrap().state, whole);
+        pauses += 1;
+    }
+    assert!(pauses > 300);
+}

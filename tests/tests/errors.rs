@@ -134,7 +134,7 @@ impl Automaton for Stairs {
     fn reset(&self, _: u8, edge: u8, _t: f64, x: &f64) -> Result<(u8, f64), Refusal> {
         Ok((edge + 1, *x))
     }
-    fn validate(&self, mode: u8) -> Result<(), String> {
+    fn validate(&self, mode: u8, _t: f64, _x: &f64) -> Result<(), String> {
         if mode < 2 { Ok(()) } else { Err("there are two modes, 0 and 1".into()) }
     }
 }

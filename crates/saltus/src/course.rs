@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Held, Memory, Smooth};
+use crate::advance::{Advance, ArcEnd, Held, Memory, Smooth, later_stop};
 use crate::automaton::{Automaton, Limit};
 use crate::ending::Options;
 use crate::ending::{Ending, EndingOf, Limits, Stats, Stop};
@@ -124,7 +124,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 6;
+    const NUMBER: u32 = 7;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -296,7 +296,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let mut span = Span { now: began, ..at.span };
         let due = at.ticks.next(*automaton, mode, &x, &span)?;
         if let Some(due) = &due {
-            span.end = due.time;
+            span.end = later_stop(&automaton.stops(mode), due.time);
         }
         let memory = &mut at.memory;
         let mut arc = Advance {
@@ -346,8 +346,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 at.cascade = Cascade::NONE;
             }
             at.instant = instant;
-            if !after.is_finite() || to != mode && automaton.validate(to).is_err() {
-                let (kind, note) = wrong(*automaton, to, after);
+            if !after.is_finite() || to != mode && automaton.validate(to, now, &after).is_err() {
+                let (kind, note) = wrong(*automaton, to, now, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy
@@ -357,8 +357,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             if observer.jump(&jump).is_break() {
                 return Ok(Next::Stop(Stop::Observer));
             }
-            if automaton.about(edge).terminal {
-                return Ok(Next::Stop(Stop::Terminal { edge }));
+            let about = automaton.about(edge);
+            if about.terminal || about.undetermined {
+                return Ok(Next::Stop(if about.terminal {
+                    Stop::Terminal { edge }
+                } else {
+                    Stop::Undetermined { edge }
+                }));
             }
         }
         arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
@@ -417,8 +422,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Some((to, after)) = at.recent.cycle().with(beyond) else {
             return Ok(Some(if certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
         };
-        if !after.is_finite() || automaton.validate(to).is_err() {
-            let (kind, note) = wrong(*automaton, to, after);
+        if !after.is_finite() || automaton.validate(to, limit, &after).is_err() {
+            let (kind, note) = wrong(*automaton, to, limit, after);
             let note = if kind == ErrorKind::Model { format!("Automaton::beyond {note}") } else { note };
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
@@ -441,8 +446,8 @@ fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl
 
 /// What is wrong with a mode and a state that a jump led to and that cannot be gone on from.
 #[cold]
-fn wrong<A: Automaton>(automaton: &A, to: A::Mode, x: A::State) -> (ErrorKind, String) {
-    match automaton.validate(to) {
+fn wrong<A: Automaton>(automaton: &A, to: A::Mode, t: f64, x: A::State) -> (ErrorKind, String) {
+    match automaton.validate(to, t, &x) {
         Err(flaw) if x.is_finite() => (ErrorKind::Model, format!("leads to mode {to:?}: {flaw}")),
         _ => (ErrorKind::Reset, listed(&x)),
     }

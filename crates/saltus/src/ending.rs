@@ -90,6 +90,12 @@ pub enum Stop<E> {
         /// The edge.
         edge: E,
     },
+    /// An edge was met behind which the model does not say how it goes on: see
+    /// [`About::undetermined`](crate::About::undetermined).
+    Undetermined {
+        /// The edge.
+        edge: E,
+    },
     /// The observer asked for the end.
     Observer,
     /// The limit on jumps was reached.
@@ -161,6 +167,10 @@ impl<E: fmt::Debug> fmt::Display for Stop<E> {
                 "jumps come closer together at t = {limit} than rounding can tell apart: count time and lengths from nearer by (a floor at zero), or say what lies beyond by Automaton::beyond or Hybrid::beyond"
             ),
             Self::Terminal { edge } => write!(f, "the terminal edge {edge:?} was taken"),
+            Self::Undetermined { edge } => write!(
+                f,
+                "edge {edge:?} was met, behind which the model does not determine how the state goes on: start a run behind it in the mode that is meant"
+            ),
             Self::Observer => write!(f, "the observer ended the run"),
             Self::Jumps { most } => {
                 write!(f, "the limit of {most} jumps was reached: raise Simulation::most_jumps to go on")

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::automaton::clocks::Clock;
+use crate::series::Jet;
 
 /// An input u(t) through samples: what was measured, or what a schedule says.
 ///
@@ -192,10 +193,7 @@ impl Signal {
     /// The input at `t`, in seconds.
     #[must_use]
     pub fn at(&self, t: f64) -> f64 {
-        let Some([before, after]) = self.around(t) else {
-            let last = self.knots[self.knots.len() - 1];
-            return if t < self.knots[0].t { self.knots[0].value } else { last.value };
-        };
+        let Some([before, after]) = self.around(t) else { return self.beyond(t) };
         let length = after.t - before.t;
         let u = (t - before.t) / length;
         let rise = after.value - before.value;
@@ -207,6 +205,83 @@ impl Signal {
                 before.value + u * (m + u * ((3.0 * rise - 2.0 * m - n) + u * (m + n - 2.0 * rise)))
             }
         }
+    }
+
+    /// The rate at which the input changes at `t`, in its unit per second; at a sample that behind it.
+    ///
+    /// ```
+    /// use saltus::Signal;
+    /// let ramp = Signal::linear([(0.0, 1.0), (2.0, 5.0)])?;
+    /// assert_eq!([ramp.rate(-1.0), ramp.rate(0.0), ramp.rate(2.0)], [0.0, 2.0, 0.0]);
+    /// # Ok::<(), saltus::SignalError>(())
+    /// ```
+    #[must_use]
+    pub fn rate(&self, t: f64) -> f64 {
+        let (from, [_, slope, bend, twist]) = self.piece(t);
+        let s = t - from;
+        slope + s * (2.0 * bend + s * (3.0 * twist))
+    }
+
+    /// The input at a time that carries a derivative, in a model for [`Linearize`](crate::Linearize):
+    /// a guard that asks for `at(t.re())` instead would lose how the input changes.
+    ///
+    /// ```
+    /// use saltus::Signal;
+    /// use saltus::num_dual::Dual64;
+    /// let ramp = Signal::linear([(0.0, 1.0), (2.0, 5.0)])?;
+    /// assert_eq!(ramp.over(Dual64::new(1.0, 1.0)), Dual64::new(3.0, 2.0));
+    /// # Ok::<(), saltus::SignalError>(())
+    /// ```
+    #[cfg(feature = "num-dual")]
+    #[must_use]
+    pub fn over<D: crate::Number>(&self, t: D) -> D {
+        let (from, [value, slope, bend, twist]) = self.piece(t.re());
+        let s = t - from;
+        (((s * twist) + bend) * s + slope) * s + value
+    }
+
+    /// The input along a series, in a flow for [`Hybrid::series`](crate::Hybrid::series); its knots are stops of
+    /// the mode all the same.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Signal, Simulation};
+    /// let ramp = Signal::linear([(0.0, 0.0), (2.0, 2.0)])?;
+    /// let filled = Hybrid::new()
+    ///     .mode("fill", |t, _x: &[f64; 1]| [ramp.at(t)])
+    ///     .series("fill", |t, [_]| [ramp.along(t)])
+    ///     .stops("fill", ramp.stops());
+    /// let run = Simulation::of(&filled).run("fill", [0.0], 0.0..3.0)?;
+    /// assert!((run.end.state[0] - 4.0).abs() < 1e-14 && run.end.stats.steps <= 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn along<'a>(&self, t: Jet<'a>) -> Jet<'a> {
+        let (from, [value, slope, bend, twist]) = self.piece(t.value());
+        let s = t - from;
+        ((s * twist + bend) * s + slope) * s + value
+    }
+
+    /// Before the first sample and after the last.
+    fn beyond(&self, t: f64) -> f64 {
+        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        if t < first.t { first.value } else { last.value }
+    }
+
+    /// The polynomial at `t`: from when it counts, and its coefficients.
+    fn piece(&self, t: f64) -> (f64, [f64; 4]) {
+        let Some([before, after]) = self.around(t) else { return (t, [self.beyond(t), 0.0, 0.0, 0.0]) };
+        let length = after.t - before.t;
+        let secant = (after.value - before.value) / length;
+        let (m, n) = (before.slope, after.slope);
+        let coefficients = match self.kind {
+            Kind::Held => [before.value, 0.0, 0.0, 0.0],
+            Kind::Linear => [before.value, secant, 0.0, 0.0],
+            Kind::Cubic => {
+                let (bend, twist) = ((3.0 * secant - 2.0 * m - n) / length, (m + n - 2.0 * secant) / length / length);
+                [before.value, m, bend, twist]
+            }
+        };
+        (before.t, coefficients)
     }
 
     /// When it is not smooth: at its knots, for [`Hybrid::stops`](crate::Hybrid::stops) or

@@ -20,12 +20,30 @@ pub(crate) struct Ticks<M> {
 }
 
 /// A tick at a `time`, of the clock at a `place` in the list of a `mode`.
+///
+/// The time is written bit by bit: it is compared with what the clock says, and a format that rounds
+/// numbers must not make it another.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Tick<M> {
     mode: M,
     place: usize,
+    #[cfg_attr(feature = "serde", serde(with = "bits"))]
     time: f64,
+}
+
+#[cfg(feature = "serde")]
+mod bits {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+    pub(super) fn serialize<S: Serializer>(time: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u64(time.to_bits())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        u64::deserialize(deserializer).map(f64::from_bits)
+    }
 }
 
 /// The tick that comes next, and when it is taken.

@@ -90,7 +90,7 @@ impl Automaton for Tank {
     fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Mode, [f64; 2])> {
         Some((limit.mode, [self.number, 1.0]))
     }
-    fn validate(&self, mode: Mode) -> Result<(), String> {
+    fn validate(&self, mode: Mode, _t: f64, _x: &[f64; 2]) -> Result<(), String> {
         if mode == Mode::Nowhere { Err("there is nothing here: stay".into()) } else { Ok(()) }
     }
 }

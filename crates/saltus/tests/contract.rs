@@ -166,7 +166,7 @@ fn modes_are_validated() {
             assert_eq!((limit.mode, limit.edges), (2, &[2][..]));
             Some((9, [1.0, 0.0]))
         }
-        fn validate(&self, mode: u8) -> Result<(), String> {
+        fn validate(&self, mode: u8, _t: f64, _x: &[f64; 2]) -> Result<(), String> {
             if mode < 5 { Ok(()) } else { Err(format!("{mode} is too high")) }
         }
     }

@@ -309,12 +309,12 @@ proptest! {
         };
         let run = run.unwrap();
         let mut expected = Vec::new();
-        for (place, &knot) in input.knots.iter().enumerate().filter(|(_, knot)| (start..=end).contains(*knot)) {
+        for (place, &knot) in input.knots.iter().enumerate().filter(|(_, knot)| start < **knot && **knot <= end) {
             let falls = |&(_, &level): &(usize, &f64)| {
                 margin(level, input.rates[place]) >= 0.0 && margin(level, input.rates[place + 1]) < 0.0
             };
             expected.extend(levels.iter().enumerate().filter(falls).map(|(edge, _)| (knot, edge)));
-            if clocked && knot > start {
+            if clocked {
                 expected.push((knot, levels.len()));
             }
         }
@@ -366,4 +366,71 @@ fn pulses_of_a_guard_on_exact_arcs() {
     let run = Simulation::of(&counter).run("run", 0.0, 0.5..100.5).unwrap();
     assert_eq!(run.trajectory.jumps().len(), 100);
     assert!((run.end.state - 100.0).abs() < 1e-12 && run.trajectory.doubts().is_empty());
+}
+
+proptest! {
+    /// What a tick reads of an input that switches at the same instant is the value behind the switch, however both
+    /// times are rounded.
+    #[test]
+    fn ticks_read_what_is_behind_a_knot(tenths in 1..23_i32, phase in 0..5_i32, knot in 1..60_i32) {
+        let decimal = |tenths: i32| format!("{}.{}", tenths / 10, tenths % 10).parse::<f64>().unwrap();
+        let set = Signal::held([(0.0, 0.0), (decimal(knot), 1.0)]).unwrap();
+        let clock = Clock::every(decimal(tenths)).after(decimal(phase));
+        let model = Hybrid::new()
+            .stops_everywhere(set.stops())
+            .mode("run", |_t, _x: &[f64; 2]| [0.0; 2])
+            .clock("run", "run", clock, |t, x| [x[0] + set.at(t), x[1] + 1.0]);
+        let run = Simulation::of(&model).run("run", [0.0; 2], 0.0..6.5).unwrap();
+        let ticks = |k: &i32| phase + k * tenths;
+        let all = (0..100).filter(|k| (1..=65).contains(&ticks(k)));
+        let behind = all.clone().filter(|k| ticks(k) >= knot).count();
+        prop_assert_eq!(run.end.state, [behind as f64, all.count() as f64]);
+    }
+
+    /// A block on a belt whose speed leaps: it slips until it has the new speed, and sticks.
+    #[test]
+    fn a_surface_that_leaps(input in held(), grip in 50.0..5000.0_f64, stepper in 0..4_usize) {
+        let belt = Sides::new(|_, _: &f64| -grip, |_, _| grip, |t, v| v - input.at(t), |_, _| 1.0);
+        let belt = Filippov::of(belt.stops(Clock::at(input.knots.clone())));
+        let start = input.at(0.0);
+        let simulation = Simulation::of(&belt);
+        let run = match stepper {
+            0 => simulation.run(Side::Sliding, start, 0.0..11.0),
+            1 => simulation.stepper(Tsit5).run(Side::Sliding, start, 0.0..11.0),
+            2 => simulation.stepper(Dop853).run(Side::Sliding, start, 0.0..11.0),
+            _ => simulation.stepper(Rodas5P).run(Side::Sliding, start, 0.0..11.0),
+        };
+        let run = run.unwrap().complete().unwrap();
+        // Towards the speed of each stretch, and no further.
+        let (mut v, mut t) = (start, 0.0);
+        for (place, until) in (0..).zip(input.knots.iter().copied().chain([11.0])) {
+            let (speed, way) = (input.rates[place], grip * (until - t));
+            v += (speed - v).clamp(-way, way);
+            t = until;
+            let off = run.trajectory.before(t).or_else(|| run.trajectory.at(t)).unwrap() - v;
+            prop_assert!(off.abs() < 1e-8, "{} at {}", off, t);
+        }
+    }
+}
+
+/// Released by both sides alike, a slide goes on as both flows do.
+#[test]
+fn a_brake_that_is_released() {
+    let grip = |t: f64| if t < 1.0 { 4.0 } else { 0.0 };
+    for kick in [0.0, 1.0] {
+        let flow = move |sign: f64| move |t: f64, _: &[f64; 2]| [1.0, if t < 2.0 { sign * grip(t) } else { kick }];
+        let brake = Sides::new(flow(-1.0), flow(1.0), |_, x: &[f64; 2]| x[1], |_, _| [0.0, 1.0]);
+        let brake = Filippov::of(brake.affine().stops(Clock::at([1.0, 2.0])));
+        let run = Simulation::of(&brake).run(Side::Sliding, [0.0; 2], 0.0..4.0).unwrap().complete().unwrap();
+        assert!((run.end.state[0] - 4.0).abs() < 1e-12 && (run.end.state[1] - 2.0 * kick).abs() < 1e-9, "{run:?}");
+    }
+}
+
+/// A slide that does not start on its surface is refused, with where it is.
+#[test]
+fn a_slide_off_its_surface() {
+    let block = Filippov::of(Sides::new(|_, _: &f64| -2.0, |_, _| 2.0, |_, v| *v, |_, _| 1.0).affine());
+    let error = Simulation::of(&block).run(Side::Sliding, 0.5, 0.0..3.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Model);
+    assert!(error.to_string().contains("h = 0.5 here: start in Above"), "{error}");
 }

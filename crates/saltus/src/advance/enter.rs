@@ -90,7 +90,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(!spent && slope < 0.0);
         }
         match self.automaton.about(edge).entry {
-            _ if self.fell_at_stop(edge, x) => Ok(true),
+            // What fell as the run starts was before it, as a tick there is.
+            _ if self.memory.last.is_some() && self.fell_at_stop(edge, x) => Ok(true),
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {

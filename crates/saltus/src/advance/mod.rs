@@ -14,8 +14,8 @@ mod stepped;
 mod stiff;
 
 pub(crate) use series::Held;
-pub(crate) use smooth::Smooth;
 use smooth::Switched;
+pub(crate) use smooth::{Smooth, later_stop};
 
 use self::stiff::Gait;
 

@@ -59,9 +59,10 @@ impl Smooth {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Switched<E> {
-    edges: Vec<(f64, E)>,
+    /// Each with the bits of the stop: a format that rounds numbers must not make it another.
+    edges: Vec<(u64, E)>,
     /// The one to be taken next, and the stop.
-    next: Option<(f64, E)>,
+    next: Option<(u64, E)>,
 }
 
 impl<E: Copy + PartialEq> Switched<E> {
@@ -70,7 +71,7 @@ impl<E: Copy + PartialEq> Switched<E> {
     }
 
     fn has(&self, stop: f64, edge: E) -> bool {
-        self.edges.contains(&(stop, edge))
+        self.edges.contains(&(stop.to_bits(), edge))
     }
 
     /// `edge` is taken, for this or another reason.
@@ -81,6 +82,20 @@ impl<E: Copy + PartialEq> Switched<E> {
             self.edges.push((stop, edge));
         }
     }
+}
+
+/// The first stop at the same instant as `time` and not before it, or `time` itself: what a clock's tick reads of an input
+/// that switches there is the value behind.
+#[inline]
+pub(crate) fn later_stop(stops: &[Clock], time: Time) -> Time {
+    if stops.is_empty() { time } else { later(stops, time) }
+}
+
+#[cold]
+fn later(stops: &[Clock], time: Time) -> Time {
+    let t = time.seconds();
+    let ticks = stops.iter().filter_map(|clock| tick(clock, t.next_up()).ok().flatten());
+    ticks.filter(|&stop| stop <= t + grace(t)).map(Time::new).next().unwrap_or(time)
 }
 
 /// The first tick at `from` or later.
@@ -134,7 +149,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let fell = before >= 0.0 && behind < 0.0 && clear;
         if fell {
             self.memory.slack = 4.0 * before.max(-behind);
-            self.memory.switched.next = Some((stop, edge));
+            self.memory.switched.next = Some((stop.to_bits(), edge));
         }
         fell
     }

@@ -252,8 +252,8 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
         Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { *c }))
     }
 
-    fn validate(&self, mode: A::Mode) -> Result<(), String> {
-        self.automaton.validate(mode)?;
+    fn validate(&self, mode: A::Mode, s: f64, x: &A::State) -> Result<(), String> {
+        self.automaton.validate(mode, -s, x)?;
         self.automaton.validate_backwards(mode)
     }
 }

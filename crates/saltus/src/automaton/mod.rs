@@ -145,14 +145,14 @@ pub trait Automaton {
         Cow::Borrowed(&[])
     }
 
-    /// Whether a run can be in `mode`: asked as a run starts, before anything else, and of each
-    /// other mode that a jump leads to. By default it can.
+    /// Whether a run can be in `mode` with the state `x` at time `t`: asked as a run starts, before
+    /// anything else, and as a jump leads to another mode. By default it can.
     ///
     /// # Errors
     /// A sentence that says what is wrong and what to do.
     #[inline]
-    fn validate(&self, mode: Self::Mode) -> Result<(), String> {
-        let _ = mode;
+    fn validate(&self, mode: Self::Mode, t: f64, x: &Self::State) -> Result<(), String> {
+        let _ = (mode, t, x);
         Ok(())
     }
 }
@@ -173,6 +173,8 @@ pub struct About {
     pub affine: bool,
     /// Whether the run ends where the edge is taken.
     pub terminal: bool,
+    /// Whether the run ends there because the model does not determine how the state goes on.
+    pub undetermined: bool,
 }
 
 impl About {
@@ -180,7 +182,7 @@ impl About {
     #[must_use]
     #[inline]
     pub const fn new() -> Self {
-        Self { entry: Entry::Refuse, affine: false, terminal: false }
+        Self { entry: Entry::Refuse, affine: false, terminal: false, undetermined: false }
     }
 
     /// With what to do when the guard is already negative as the mode is entered.
@@ -213,6 +215,14 @@ impl About {
     #[inline]
     pub const fn terminal(self) -> Self {
         self.terminal_if(true)
+    }
+
+    /// The run ends where it is taken, and not as it was asked to: the model does not determine how
+    /// the state goes on. [`Stop::Undetermined`](crate::Stop::Undetermined) names it.
+    #[must_use]
+    #[inline]
+    pub const fn undetermined(self) -> Self {
+        Self { undetermined: true, ..self }
     }
 
     /// The same where some edges only end the run.

@@ -7,6 +7,7 @@ pub use sides::Sides;
 
 use std::borrow::Cow;
 
+use crate::advance::Smooth;
 use crate::automaton::clocks::Clock;
 use crate::automaton::edges::Edges;
 use crate::automaton::{About, Automaton, Entry};
@@ -152,6 +153,20 @@ impl<T: TwoSided + ?Sized> TwoSided for &T {
     }
 }
 
+/// So many roundings of its terms h may be off zero where a state is on the surface: what is left of
+/// a curved surface, of a state that was worked out elsewhere.
+const OFF: f64 = (1_u64 << 20) as f64;
+
+/// How far ahead two flows that agree are looked at once more, as a part of the time, in s at zero:
+/// far enough for a difference to show, near enough for nothing else to happen.
+const AHEAD: f64 = 1.0 / (1_u64 << 26) as f64;
+
+/// Whether two flows agree but for rounding.
+fn agree<S: State>(f: &S, g: &S) -> bool {
+    let apart = |i: usize| (f.get(i) - g.get(i)).abs() > 4.0 * f64::EPSILON * (f.get(i).abs() + g.get(i).abs());
+    !(0..f.len()).any(apart)
+}
+
 /// L = n · f + ∂h/∂t: how fast h grows along the flow `f`.
 fn normal_speed<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State, f: &T::State) -> f64 {
     let n = system.normal(t, x);
@@ -267,16 +282,34 @@ impl<T: TwoSided> Filippov<T> {
 
     /// How far L₋ - L₊, by which the flows push the state against the surface, is above what
     /// rounding may make of zero.
+    ///
+    /// Where both flows are one no push is needed.
     fn push(&self, t: f64, x: &T::State) -> f64 {
         let (above, below) = (self.system.above(t, x), self.system.below(t, x));
+        if self.are_one(t, x, &above, &below) {
+            return 1.0;
+        }
         let (n, rate) = (self.system.normal(t, x), self.system.surface_rate(t, x));
         let size: f64 = (0..x.len()).map(|i| n.get(i).abs() * (above.get(i).abs() + below.get(i).abs())).sum();
         let gap: f64 = (0..x.len()).map(|i| n.get(i) * (below.get(i) - above.get(i))).sum();
         gap - f64::MIN_POSITIVE - 4.0 * f64::EPSILON * (size + 2.0 * rate.abs())
     }
 
+    /// Whether both flows are one from here on, and not only at this point: a brake that is released.
+    fn are_one(&self, t: f64, x: &T::State, above: &T::State, below: &T::State) -> bool {
+        if !agree(above, below) {
+            return false;
+        }
+        let ahead = if t == 0.0 { AHEAD } else { AHEAD * t.abs() };
+        let (t, x) = (t + ahead, x.with(|i| x.get(i) + ahead * above.get(i)));
+        agree(&self.system.above(t, &x), &self.system.below(t, &x))
+    }
+
     fn slide(&self, t: f64, x: &T::State) -> T::State {
         let (above, below) = (self.system.above(t, x), self.system.below(t, x));
+        if self.are_one(t, x, &above, &below) {
+            return above;
+        }
         let (up, down) = (normal_speed(&self.system, t, x, &above), normal_speed(&self.system, t, x, &below));
         let pull = if self.system.affine() { 0.0 } else { self.system.pull() * self.system.surface(t, x) };
         // Weighted like this, a coordinate that both flows hold against each other stands still
@@ -301,6 +334,17 @@ impl<T: TwoSided> Filippov<T> {
             x.with(|i| x.get(i) + missing * (n.get(i) / total))
         };
         if y.is_finite() { y } else { *x }
+    }
+
+    /// The surface where it leaps in a stop at the same instant as `t`: when that is, and h behind it.
+    fn leap(&self, t: f64, x: &T::State) -> Option<(f64, f64)> {
+        let stops = self.system.stops();
+        if stops.is_empty() {
+            return None;
+        }
+        let stop = Smooth::beginning(stops, t).ok()?.start()?;
+        let [before, behind] = [stop.next_down(), stop.next_up()].map(|t| self.system.surface(t, x));
+        ((behind - before).abs() > self.rounding(stop, x)).then_some((stop, behind))
     }
 
     /// On the surface: two of Newton's steps.
@@ -338,14 +382,24 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         match edge {
             Passage::FromAbove => self.system.surface(t, x),
             Passage::FromBelow => -self.system.surface(t, x),
-            Passage::LeaveAbove => self.system.hold_above(t, x),
-            Passage::LeaveBelow => self.system.hold_below(t, x),
+            Passage::LeaveAbove => match self.leap(t, x) {
+                Some((stop, h)) if t > stop && h > 0.0 => -h,
+                _ => self.system.hold_above(t, x),
+            },
+            Passage::LeaveBelow => match self.leap(t, x) {
+                Some((stop, h)) if t > stop && h < 0.0 => h,
+                _ => self.system.hold_below(t, x),
+            },
             Passage::Undecided | Passage::Unpushed => self.push(t, x),
         }
     }
 
     fn reset(&self, _: Side, edge: Passage, t: f64, x: &T::State) -> Result<(Side, T::State), Refusal> {
+        // A surface that leaps leaves the state where it is.
+        let leap = self.leap(t, x).map_or(0.0, |(_, h)| h);
         Ok(match edge {
+            Passage::FromAbove | Passage::LeaveBelow if leap < 0.0 => (Side::Below, *x),
+            Passage::FromBelow | Passage::LeaveAbove if leap > 0.0 => (Side::Above, *x),
             Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => (Side::Below, *x),
             Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => (Side::Above, *x),
             Passage::FromAbove | Passage::FromBelow => (Side::Sliding, self.onto(t, x)),
@@ -359,13 +413,24 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         self.system.stops().into()
     }
 
+    fn validate(&self, mode: Side, t: f64, x: &T::State) -> Result<(), String> {
+        let h = self.system.surface(t, x);
+        if mode != Side::Sliding || h.abs() <= OFF * self.rounding(t, x) {
+            return Ok(());
+        }
+        let side = if h > 0.0 { Side::Above } else { Side::Below };
+        Err(format!(
+            "{mode:?} is on the surface, and h = {h} here: start in {side:?}, or in the mode that Filippov::side gives"
+        ))
+    }
+
     #[inline]
     fn about(&self, edge: Passage) -> About {
         match edge {
             Passage::FromAbove | Passage::FromBelow => About::new().affine_if(self.system.affine()),
             Passage::LeaveAbove | Passage::LeaveBelow => About::new(),
-            Passage::Undecided => About::new().entry(Entry::Wait).terminal(),
-            Passage::Unpushed => About::new().entry(Entry::Fire).terminal(),
+            Passage::Undecided => About::new().entry(Entry::Wait).undetermined(),
+            Passage::Unpushed => About::new().entry(Entry::Fire).undetermined(),
         }
     }
 }

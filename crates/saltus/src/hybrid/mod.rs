@@ -63,6 +63,8 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
+    /// Stops of every mode.
+    everywhere: Vec<Clock>,
     /// The mode of the edge declared last.
     last: Option<&'static str>,
     /// The first method that was to say something of the last edge before there was one.
@@ -117,7 +119,7 @@ impl fmt::Debug for Link {
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), last: None, early: None, twice: None, flaw: OnceLock::new() }
+        Self { modes: Vec::new(), everywhere: Vec::new(), last: None, early: None, twice: None, flaw: OnceLock::new() }
     }
 }
 
@@ -280,6 +282,30 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
+    /// [`stops`](Self::stops) of every mode, those that are declared later as well: for an input that
+    /// all of them read.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Signal, Simulation};
+    /// let outside = Signal::linear([(0.0, 0.0), (12.0, 12.0)])?.repeated(24.0)?;
+    /// let house = Hybrid::new()
+    ///     .stops_everywhere(outside.stops())
+    ///     .mode("off", |t, x: &f64| 0.1 * (outside.at(t) - x))
+    ///     .mode("on", |t, x| 0.1 * (outside.at(t) - x) + 2.0)
+    ///     .edge("off", "on", |_t, x| x - 19.0, |_t, x| *x)
+    ///     .edge("on", "off", |_t, x| 21.0 - x, |_t, x| *x);
+    /// let run = Simulation::of(&house).run("off", 20.0, 0.0..48.0)?;
+    /// assert!(run.end.stats.jumps > 10);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn stops_everywhere(mut self, stops: Clock) -> Self {
+        self.modes.iter_mut().for_each(|mode| mode.stops.push(stops.clone()));
+        self.everywhere.push(stops);
+        self.flaw = OnceLock::new();
+        self
+    }
+
     /// An edge at which the run ends, without a reset; it leads from its mode to itself.
     ///
     /// ```
@@ -373,7 +399,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
         self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
-            let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), self.everywhere.clone());
             let (flow, series, exact, beyond) = (None, None, None, None);
             self.modes.push(Mode { name, flow, series, exact, beyond, edges, guarded, clocks, stops });
             self.modes.len() - 1

@@ -67,7 +67,7 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         Some((to, reset(limit.t, limit.x)))
     }
 
-    fn validate(&self, mode: &'static str) -> Result<(), String> {
+    fn validate(&self, mode: &'static str, _t: f64, _x: &S) -> Result<(), String> {
         if !self.declares(mode) {
             return Err(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));
         }

@@ -313,7 +313,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         self.automaton.stops(mode)
     }
 
-    fn validate(&self, mode: A::Mode) -> Result<(), String> {
+    fn validate(&self, mode: A::Mode, t: f64, x: &Self::State) -> Result<(), String> {
         let count = self.automaton.parameters().len();
         if let Some(p) = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
             return Err(format!("there is no parameter {p}: the model has {count}, counted from 0"));
@@ -324,6 +324,6 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
                 "mode {mode:?} has stops, and whether a parameter moves them is not given: promise that none does with `Linearize::stops_stand`, or make each a clock with `Linearize::tick_over`"
             ));
         }
-        self.automaton.validate(mode)
+        self.automaton.validate(mode, t, &x.x)
     }
 }
