@@ -1,5 +1,6 @@
 //! A run at regular times: rows of a table, with both limits at each jump.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -66,6 +67,7 @@ pub struct Sampler<M, S> {
     j: usize,
     /// Of the coordinates, where the state's are not wanted.
     names: Vec<String>,
+    time: Cow<'static, str>,
 }
 
 /// The samples of the automaton `A`.
@@ -75,7 +77,16 @@ impl<M: Copy, S: State> Sampler<M, S> {
     /// Every `dt` seconds; with one that is not above zero only where arcs begin and end.
     #[must_use]
     pub const fn every(dt: f64) -> Self {
-        Self { dt, start: None, next: 1, rows: Vec::new(), end: None, j: 0, names: Vec::new() }
+        Self {
+            dt,
+            start: None,
+            next: 1,
+            rows: Vec::new(),
+            end: None,
+            j: 0,
+            names: Vec::new(),
+            time: Cow::Borrowed("s"),
+        }
     }
 
     /// Names the coordinates in the table, units in brackets at the end; those left over keep the
@@ -83,6 +94,21 @@ impl<M: Copy, S: State> Sampler<M, S> {
     #[must_use]
     pub fn named<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.names = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times `t (h)`.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let room = Hybrid::new().mode("cools", |_t, x: &f64| -0.1 * x);
+    /// let run = Simulation::of(&room).run("cools", 20.0, 0.0..24.0)?;
+    /// assert!(run.trajectory.sampled(1.0).time("h").to_string().starts_with("t (h),j,mode,x0\n"));
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn time(mut self, unit: impl Into<Cow<'static, str>>) -> Self {
+        self.time = unit.into();
         self
     }
 
@@ -151,7 +177,7 @@ impl<A: Automaton> Observer<A> for SamplerOf<A> {
 impl<M: Copy + fmt::Debug, S: State> fmt::Display for Sampler<M, S> {
     /// As CSV. Of modes that differ in dimension a row has as many numbers as its state.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("t (s),j,mode")?;
+        write!(f, "{},j,mode", cell(&format!("t ({})", self.time)))?;
         if let Some(widest) = self.rows().max_by_key(|row| row.state.len()) {
             for i in 0..widest.state.len() {
                 write!(f, ",{}", cell(&heading(&self.names, &widest.state, i, "")))?;

@@ -36,8 +36,9 @@ use crate::series::Jet;
 /// ```
 ///
 /// # Limits
-/// Each knot costs a step. Of a long record of smooth measurements, with many samples in the time
-/// in which the state changes, leave the stops out: what a kink costs is then below the tolerance.
+/// Each knot costs a step, and without its stops an input costs more: steps are rejected at its
+/// kinks, and errors are 25 to 150 tolerances at 1e-9. Only of a smooth record with many samples in
+/// the time in which the state changes, at 1e-6 or looser, are fewer steps taken without.
 #[derive(Clone, Debug)]
 pub struct Signal {
     knots: Arc<[Knot]>,
@@ -207,7 +208,8 @@ impl Signal {
         }
     }
 
-    /// The rate at which the input changes at `t`, in its unit per second; at a sample that behind it.
+    /// The rate at which the input changes at `t`, in its unit per second; at a sample that behind
+    /// it.
     ///
     /// ```
     /// use saltus::Signal;
@@ -222,8 +224,9 @@ impl Signal {
         slope + s * (2.0 * bend + s * (3.0 * twist))
     }
 
-    /// The input at a time that carries a derivative, in a model for [`Linearize`](crate::Linearize):
-    /// a guard that asks for `at(t.re())` instead would lose how the input changes.
+    /// The input at a time that carries a derivative, in a model for
+    /// [`Linearize`](crate::Linearize): a guard that asks for `at(t.re())` instead would lose how
+    /// the input changes.
     ///
     /// ```
     /// use saltus::Signal;
@@ -240,8 +243,8 @@ impl Signal {
         (((s * twist) + bend) * s + slope) * s + value
     }
 
-    /// The input along a series, in a flow for [`Hybrid::series`](crate::Hybrid::series); its knots are stops of
-    /// the mode all the same.
+    /// The input along a series, in a flow for [`Hybrid::series`](crate::Hybrid::series); its knots
+    /// are stops of the mode all the same.
     ///
     /// ```
     /// use saltus::{Hybrid, Signal, Simulation};

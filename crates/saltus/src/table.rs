@@ -1,5 +1,6 @@
 //! The jumps of a run as rows of a table, and how tables are written.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -39,6 +40,7 @@ pub(crate) const MOST_ROWS: usize = 10_000_000;
 pub struct JumpTable<M, E, S> {
     jumps: Vec<Jump<M, E, S>>,
     names: Vec<String>,
+    time: Cow<'static, str>,
 }
 
 /// The jumps of the automaton `A`.
@@ -54,7 +56,7 @@ impl<M, E, S> JumpTable<M, E, S> {
     /// Without a row yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { jumps: Vec::new(), names: Vec::new() }
+        Self { jumps: Vec::new(), names: Vec::new(), time: Cow::Borrowed("s") }
     }
 
     /// Names the coordinates in the table, units in brackets at the end; those left over keep the
@@ -62,6 +64,19 @@ impl<M, E, S> JumpTable<M, E, S> {
     #[must_use]
     pub fn named<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.names = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times `t (h)`.
+    ///
+    /// ```
+    /// use saltus::JumpTable;
+    /// let table = JumpTable::<(), (), f64>::new().time("h");
+    /// assert_eq!(table.to_string(), "t (h),j,edge,from,to\n");
+    /// ```
+    #[must_use]
+    pub fn time(mut self, unit: impl Into<Cow<'static, str>>) -> Self {
+        self.time = unit.into();
         self
     }
 
@@ -93,7 +108,7 @@ impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Display for JumpTable<M, E, S>
     /// empty.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = [0, 1].map(|side| self.jumps.iter().map(|jump| limits(jump)[side]).max_by_key(|x| x.len()));
-        f.write_str("t (s),j,edge,from,to")?;
+        write!(f, "{},j,edge,from,to", cell(&format!("t ({})", self.time)))?;
         for (state, side) in widest.iter().zip(["before", "after"]) {
             let Some(state) = state else { continue };
             for i in 0..state.len() {
@@ -142,7 +157,7 @@ impl<M: Copy, E: Copy, S: State> Trajectory<M, E, S> {
     /// ```
     #[must_use]
     pub fn jump_table(&self) -> JumpTable<M, E, S> {
-        JumpTable { jumps: self.jumps().to_vec(), names: Vec::new() }
+        JumpTable { jumps: self.jumps().to_vec(), ..JumpTable::new() }
     }
 }
 
