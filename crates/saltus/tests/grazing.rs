@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use saltus::cross::Doubt;
-use saltus::{Certificate, Dop853, Entry, Hybrid, Rodas5P, Simulation, Tsit5};
+use saltus::{Certificate, Dop853, Entry, Filippov, Hybrid, Rodas5P, Side, Sides, Simulation, Tsit5};
 
 /// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1
 /// of an oscillator, in three forms; and how often that is doubted.
@@ -96,5 +96,24 @@ fn a_motion_below_the_absolute_tolerance_is_doubted() {
             assert!(off < 1e-3 || doubts > 0, "of size {size:e} at {tolerance:e}: off by {off:e}, and no doubt");
             assert!(doubts == 0 || size < 1e4 * tolerance, "of size {size:e} at {tolerance:e}: {doubts} doubts");
         }
+    }
+}
+
+proptest! {
+    /// A slide is left tangentially, from zero: that start is no least value in doubt, at any tolerance.
+    #[test]
+    fn a_slide_is_left_without_a_doubt(strength in 1.05..4.0_f64, phase in 0.0..TAU, decades in 6..13_i32, method in 0..3_u32) {
+        let push = move |t: f64| strength * (t + phase).sin();
+        let relay = Sides::new(move |t, _: &f64| push(t) - 1.0, move |t, _| push(t) + 1.0, |_, x| *x, |_, _| 1.0);
+        let relay = Filippov::of(relay.affine());
+        let simulation = Simulation::of(&relay).tolerance(10.0_f64.powi(-decades));
+        let run = match method {
+            0 => simulation.stepper(Tsit5).run(Side::Above, 1.0, 0.0..30.0),
+            1 => simulation.stepper(Dop853).run(Side::Above, 1.0, 0.0..30.0),
+            _ => simulation.stepper(Rodas5P).run(Side::Above, 1.0, 0.0..30.0),
+        };
+        let run = run.unwrap();
+        prop_assert!(run.trajectory.jumps().len() > 6);
+        prop_assert!(run.trajectory.doubts().is_empty(), "{:?}", run.trajectory.doubts());
     }
 }

@@ -72,7 +72,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     (Some(crossing), _) => {
                         self.dips(edge, step, crossing.root).or_else(|| self.unresolved(edge, step, crossing.root))
                     }
-                    (None, Some(turn)) => self.missed(edge, step, turn),
+                    (None, Some(turn)) => {
+                        let leaves = first && (start == Start::Spent || self.memory.wall(edge).is_some());
+                        self.missed(edge, step, turn, leaves)
+                    }
                     (None, None) => None,
                 };
                 evidence = grazing.map_or(evidence, |grazing| evidence.and(grazing));

@@ -23,9 +23,16 @@ const SECTIONS: usize = 40;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Of a guard that does not fall on a step, and turns between two times: whether its least
-    /// value is within the error of the step, and when.
+    /// value is within the error of the step, and when. Of a guard that `leaves` zero at the start
+    /// of the step a least value that reaches back to there is that zero.
     #[cold]
-    pub(super) fn missed(&mut self, edge: A::Edge, step: Step<'_, A::State>, turn: [f64; 2]) -> Option<Evidence> {
+    pub(super) fn missed(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        turn: [f64; 2],
+        leaves: bool,
+    ) -> Option<Evidence> {
         let ends = turn.map(|s| self.on(edge, step, s));
         let (s, least) = self.least(edge, step, turn);
         let rise = ends[0].max(ends[1]) - least;
@@ -35,7 +42,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let room = self.error_of(edge, step, s, least) - least;
         // As far to both sides as a parabola through the least value and an end stays within it.
         let half = |end: usize| (turn[end] - s).abs() * (room / (ends[end] - least)).sqrt().min(1.0);
-        (room >= 0.0).then(|| Evidence::doubtful(Doubt::Grazing, s - half(0), s + half(1)))
+        let (from, to) = (s - half(0), s + half(1));
+        (room >= 0.0 && !(leaves && from <= 0.0)).then(|| Evidence::doubtful(Doubt::Grazing, from, to))
     }
 
     /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
