@@ -4,6 +4,13 @@
 /// The highest degree handled.
 pub(crate) const MAX_DEGREE: usize = 28;
 
+/// Roundings of its largest term by which a sum of some ten terms may be off.
+pub(crate) const SUMMED: f64 = 8.0;
+
+/// So many times the margin of a guard is that of its slope at the start, with the root there
+/// divided out: twice the degree of its interpolant, eight.
+pub(crate) const DIVIDED: f64 = 16.0;
+
 /// C(n, k) in row n.
 const BINOMIALS: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
     let mut rows = [[0.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
@@ -83,6 +90,11 @@ impl Bernstein {
     /// The largest magnitude among the coefficients.
     pub(crate) fn scale(&self) -> f64 {
         self.coefficients().iter().fold(0.0, |most, b| b.abs().max(most))
+    }
+
+    /// What rounding leaves of its values.
+    pub(crate) fn rounding(&self) -> f64 {
+        SUMMED * f64::EPSILON * self.scale()
     }
 
     /// What holds when every value may be off by `margin`.

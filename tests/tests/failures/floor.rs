@@ -70,7 +70,11 @@ fn a_floor_at_any_height_on(paths: &[Path]) {
         for floor in [1.0, -3.7, 1234.5] {
             let automaton = Hybrid::new()
                 .mode("flight", |_t, x: &Flight| vector![x[1], -G])
-                .edge("flight", "flight", move |_t, x| x[0] - floor, move |_t, x| vector![floor, -0.5 * x[1]])
+                .edge_with(
+                    "flight",
+                    "flight",
+                    path.edge(move |_t, x: &Flight| x[0] - floor, move |_t, x| vector![floor, -0.5 * x[1]]),
+                )
                 .mode("rest", |_t, _x| vector![0.0, 0.0])
                 .beyond("flight", "rest", move |_t, _x| vector![floor, 0.0]);
             let automaton = path.prepare(automaton, "flight", super::parabola(G));
@@ -144,7 +148,7 @@ fn a_ball_stopped_below_a_least_speed_on(paths: &[Path]) {
     for &path in paths {
         let automaton = Hybrid::new()
             .mode("flight", |_t, x: &Flight| vector![x[1], -9.81])
-            .edge("flight", "flight", |_t, x| x[0], |_t, x| vector![0.0, -0.7 * x[1]])
+            .edge_with("flight", "flight", path.edge(|_t, x: &Flight| x[0], |_t, x| vector![0.0, -0.7 * x[1]]))
             .edge("flight", "rest", |_t, x| if x[0] == 0.0 { x[1] - 0.1 } else { 1.0 }, |_t, _x| vector![0.0, 0.0])
             .entry(saltus::Entry::Fire)
             .mode("rest", |_t, _x| vector![0.0, 0.0]);

@@ -15,7 +15,7 @@ mod twice;
 use std::ops::Range;
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Hybrid, Link, Polynomial, Run, RunOf, Simulation, State};
+use saltus::{Edge, Hybrid, Link, Polynomial, Run, RunOf, Simulation, State};
 use saltus_tests::watched::{watched, watched_affine};
 
 /// Gravity, m/s².
@@ -49,13 +49,26 @@ enum Path {
 const PATHS: [Path; 4] = [Path::ExactAffine, Path::Exact, Path::Affine, Path::General];
 
 impl Path {
+    /// An edge whose guard is affine, promised or not.
+    fn edge<'a, S: State>(
+        self,
+        guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
+        reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
+    ) -> Edge<'a, S> {
+        let edge = Edge::new(guard, reset);
+        if self.promises() { edge.affine() } else { edge }
+    }
+
+    fn promises(self) -> bool {
+        matches!(self, Self::ExactAffine | Self::Affine)
+    }
+
     fn prepare<'a, S: State>(
         self,
         automaton: Hybrid<'a, S>,
         mode: &'static str,
         solution: impl Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a,
     ) -> Hybrid<'a, S> {
-        let automaton = if matches!(self, Self::ExactAffine | Self::Affine) { automaton.affine() } else { automaton };
         if matches!(self, Self::ExactAffine | Self::Exact) { automaton.exact(mode, solution) } else { automaton }
     }
 }
@@ -70,7 +83,7 @@ fn parabola(g: f64) -> impl Fn(f64, &Flight) -> Polynomial<Flight> + Send + Sync
 fn ball(g: f64, e: f64, path: Path) -> Hybrid<'static, Flight> {
     let automaton = Hybrid::new()
         .mode("flight", move |_t, x: &Flight| vector![x[1], -g])
-        .edge("flight", "flight", |_t, x| x[0], move |_t, x| vector![0.0, -e * x[1]])
+        .edge_with("flight", "flight", path.edge(|_t, x: &Flight| x[0], move |_t, x| vector![0.0, -e * x[1]]))
         .mode("rest", |_t, _x| vector![0.0, 0.0])
         .exact("rest", |_t, x| Polynomial::from([*x]))
         .beyond("flight", "rest", |_t, _x| vector![0.0, 0.0]);
@@ -85,7 +98,9 @@ fn crossings<S: State>(run: &RunOf<Hybrid<'_, S>>) -> Vec<(f64, Way)> {
 
 /// The crossings of a throw from `start` through the height `level`, by the given path.
 fn throw(g: f64, start: Flight, level: f64, end: f64, path: Path) -> Vec<(f64, Way)> {
-    let automaton = watched(move |_t, x: &Flight| vector![x[1], -g], move |_t, x| x[0] - level);
+    let flow = move |_t: f64, x: &Flight| vector![x[1], -g];
+    let height = move |_t: f64, x: &Flight| x[0] - level;
+    let automaton = if path.promises() { watched_affine(flow, height) } else { watched(flow, height) };
     let automaton = path.prepare(automaton, "run", parabola(g));
     crossings(&Simulation::of(&automaton).run("run", start, 0.0..end).unwrap())
 }

@@ -118,7 +118,7 @@ fn a_flight_inside_one_step() {
     for path in PATHS {
         let automaton = Hybrid::new()
             .mode("flight", |_t, x: &Flight| vector![x[1], -G])
-            .terminal("flight", |_t, x| x[0])
+            .edge_with("flight", "flight", path.edge(|_t, x: &Flight| x[0], |_t, x| *x).terminal())
             .entry(Entry::Wait);
         let automaton = path.prepare(automaton, "flight", super::parabola(G));
         let run = Simulation::of(&automaton)

@@ -55,8 +55,12 @@ fn the_earlier_crossing_is_first() {
             let levels = if floor_first { [0.0, 0.9] } else { [0.9, 0.0] };
             let automaton = Hybrid::new()
                 .mode("flight", |_t, x: &Flight| vector![x[1], -G])
-                .terminal("flight", move |_t, x| x[0] - levels[0])
-                .terminal("flight", move |_t, x| x[0] - levels[1]);
+                .edge_with("flight", "flight", path.edge(move |_t, x: &Flight| x[0] - levels[0], |_t, x| *x).terminal())
+                .edge_with(
+                    "flight",
+                    "flight",
+                    path.edge(move |_t, x: &Flight| x[0] - levels[1], |_t, x| *x).terminal(),
+                );
             let automaton = path.prepare(automaton, "flight", super::parabola(G));
             let run = Simulation::of(&automaton).first_step(2.0).run("flight", vector![1.0, 0.0], 0.0..2.0).unwrap();
             let Stop::Terminal { edge } = run.end.stop else { unreachable!("{:?}", run.end.stop) };

@@ -67,9 +67,9 @@ fn two_identical_guards() {
     for path in PATHS {
         let automaton = Hybrid::new()
             .mode("run", |_t, x: &Flight| vector![x[1], -G])
-            .edge("run", "run", |_t, x| x[0] - 0.5, |_t, x| *x)
+            .edge_with("run", "run", path.edge(|_t, x: &Flight| x[0] - 0.5, |_t, x| *x))
             .entry(Entry::Wait)
-            .edge("run", "run", |_t, x| x[0] - 0.5, |_t, x| *x)
+            .edge_with("run", "run", path.edge(|_t, x: &Flight| x[0] - 0.5, |_t, x| *x))
             .entry(Entry::Wait);
         let automaton = path.prepare(automaton, "run", super::parabola(G));
         let run = Simulation::of(&automaton).run("run", vector![1.0, 0.0], 0.0..1.0).unwrap();
@@ -87,8 +87,8 @@ fn two_identical_guards_of_which_one_bounces() {
     for path in PATHS {
         let automaton = Hybrid::new()
             .mode("run", |_t, x: &Flight| vector![x[1], -G])
-            .edge("run", "run", |_t, x| x[0], |_t, x| vector![0.0, -0.5 * x[1]])
-            .edge("run", "run", |_t, x| x[0], |_t, x| vector![0.0, -0.25 * x[1]]);
+            .edge_with("run", "run", path.edge(|_t, x: &Flight| x[0], |_t, x| vector![0.0, -0.5 * x[1]]))
+            .edge_with("run", "run", path.edge(|_t, x: &Flight| x[0], |_t, x| vector![0.0, -0.25 * x[1]]));
         let automaton = path.prepare(automaton, "run", super::parabola(G));
         let run = Simulation::of(&automaton).run("run", vector![1.0, 0.0], 0.0..1.2).unwrap();
         assert!(
@@ -191,12 +191,9 @@ fn as_many_events_as_impacts() {
 fn a_reset_one_unit_off_the_wall() {
     for path in PATHS {
         for left in [1.0_f64.next_down(), 1.0, 1.0_f64.next_up()] {
-            let automaton = Hybrid::new().mode("flight", |_t, x: &Flight| vector![x[1], -G]).edge(
-                "flight",
-                "flight",
-                |_t, x| x[0] - 1.0,
-                move |_t, x| vector![left, -0.8 * x[1]],
-            );
+            let floor = path.edge(|_t, x: &Flight| x[0] - 1.0, move |_t, x| vector![left, -0.8 * x[1]]);
+            let automaton =
+                Hybrid::new().mode("flight", |_t, x: &Flight| vector![x[1], -G]).edge_with("flight", "flight", floor);
             let automaton = path.prepare(automaton, "flight", super::parabola(G));
             let run = Simulation::of(&automaton).run("flight", vector![2.0, 0.0], 0.0..3.0).unwrap();
             assert_eq!(run.trajectory.jumps().len(), 6, "{path:?}, left at {left:?}: {:?}", run.trajectory.jumps());

@@ -117,17 +117,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
+/// Where on a piece it is compared with the solution: between the nodes of its interpolant.
+const FITS_AT: [f64; 3] = [0.221_324_6, 0.635_914_1, 0.97];
+/// Roundings of time by which a solution may be off.
+const LATE: f64 = 4.0;
+
 /// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as
 /// the exact state `at` it.
 fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
-    [0.221_324_6, 0.635_914_1, 0.97].iter().all(|&u| {
+    FITS_AT.iter().all(|&u| {
         let (exact, fit) = (at(u), horner(c, u));
         (0..exact.len()).all(|i| {
             let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
             // No nearer than the rounding of time allows, late in an arc that swings or in a run,
             // nor than the smallest numbers can say.
             let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
-            let hidden = f64::MIN_POSITIVE + 4.0 * f64::EPSILON * rate * late / h;
+            let hidden = f64::MIN_POSITIVE + LATE * f64::EPSILON * rate * late / h;
             (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
         })
     })

@@ -8,15 +8,27 @@ use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
-use crate::poly::{Bernstein, MAX_DEGREE, value_and_slope};
+use crate::poly::{Bernstein, MAX_DEGREE, SUMMED, value_and_slope};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::Advance;
+use super::{Advance, SLACK};
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
+
+/// An arc so many roundings of time long is resolved.
+const RESOLVED: f64 = 64.0;
+/// A guard that rises by less than so many of its roundings on a short arc spoils its duration.
+const SHOWN: f64 = 65536.0;
+/// How far aside of a fall its guard is looked at, in the length at which the rounding of time and
+/// what a guard bends by weigh alike: (ulp(t) T²)^⅓.
+const ASIDE: f64 = 0.3;
+/// Roundings of its terms by which a guard may be off that is added up coordinate by coordinate.
+const ADDED_UP: f64 = 64.0;
+/// Roundings of its terms by which an affine guard may be off at the start of a step.
+const STARTS: f64 = 4.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
@@ -153,9 +165,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let nearest = at(root);
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
-        self.memory.slack = 4.0 * g.abs().max(outer.abs());
+        self.memory.slack = SLACK * g.abs().max(outer.abs());
         let short = self.memory.is_short(root);
-        let resolved = root > 64.0 * f64::EPSILON * t.abs();
+        let resolved = root > RESOLVED * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();
         let hidden =
             short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
@@ -176,7 +188,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.guard(edge, t, end);
         let moved = (self.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < 65536.0 * self.guard_rounding(edge, t, end, g, end) + 64.0 * by_time
+        rise < SHOWN * self.guard_rounding(edge, t, end, g, end) + RESOLVED * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that
@@ -187,7 +199,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += 2;
         // So that the rounding of time and what the guard bends by weigh alike.
         let (longest, t) = (self.memory.longest_duration, now.seconds());
-        let far = 0.3 * longest * (resolution(t) / longest).cbrt();
+        let far = ASIDE * longest * (resolution(t) / longest).cbrt();
         let [before, after] = [root - far, root + far].map(|s| self.guard(edge, now.after(s).seconds(), &at(s)));
         after > before
     }
@@ -202,7 +214,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// with room for the digits that its `constant` costs.
 #[inline]
 pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
-    let rounding = 64.0 * f64::EPSILON * (constant.abs() + start.abs() + most);
+    let rounding = ADDED_UP * f64::EPSILON * (constant.abs() + start.abs() + most);
     start > most + rounding && rounding < f64::INFINITY
 }
 
@@ -237,7 +249,7 @@ pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x:
     *count += x.len() as u64 + 1;
     let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
     let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
-    less_constant(guard, constant, x).abs() <= 8.0 * f64::EPSILON * parts
+    less_constant(guard, constant, x).abs() <= SUMMED * f64::EPSILON * parts
 }
 
 /// What was found of a guard less its `level` at the start, of the `guard` itself.
@@ -392,7 +404,7 @@ struct Along<'p> {
 impl Along<'_> {
     /// How far its value at the start may be off.
     fn rounding(&self) -> f64 {
-        4.0 * f64::EPSILON * (self.constant.abs() + self.start.abs())
+        STARTS * f64::EPSILON * (self.constant.abs() + self.start.abs())
     }
 
     /// Where it first falls, as far as its powers show it at once.
@@ -415,7 +427,7 @@ impl Along<'_> {
     /// The same in the Bernstein basis, how far it may be off, and how far it bends.
     fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
         let p = Bernstein::from_powers(self.powers.coefficients())?;
-        Some((p, self.rounding() + 8.0 * f64::EPSILON * p.scale(), self.powers.bend()))
+        Some((p, self.rounding() + p.rounding(), self.powers.bend()))
     }
 }
 

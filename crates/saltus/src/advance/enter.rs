@@ -19,6 +19,16 @@ const SURELY: f64 = 64.0;
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
 
+/// The longest time over which a guard's slope is looked at, as a part of the last arc's duration, or
+/// in s where there was none.
+const GLANCE: f64 = 1e-6;
+/// The shortest, in spacings of time, of a guard that moves.
+const TICKS: f64 = 1024.0;
+/// Each look is so many times as long as the one before.
+const LONGER: f64 = 8.0;
+/// The change of a guard doubles with time if it differs from that by no more than this part.
+const DOUBLES: f64 = 0.1;
+
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
     #[inline]
@@ -119,7 +129,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// The longest time over which a guard's slope is looked at.
     fn glance(&self) -> f64 {
-        if self.memory.last_duration > 0.0 { self.memory.last_duration * 1e-6 } else { 1e-6 }
+        if self.memory.last_duration > 0.0 { self.memory.last_duration * GLANCE } else { GLANCE }
     }
 
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is
@@ -150,17 +160,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A guard that moves changes by no less than some roundings of time.
         guards.set(guards.get() + 1);
         let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
-        let shortest = (longest / (1_u64 << 60) as f64).max(1024.0 * tick).min(longest);
+        let shortest = (longest / (1_u64 << 60) as f64).max(TICKS * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
             while h < longest && h > 0.0 {
                 let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
                 let doubles =
-                    (far - by * half).abs() < 0.1 * far.abs() && (half - by * quarter).abs() < 0.1 * half.abs();
+                    (far - by * half).abs() < DOUBLES * far.abs() && (half - by * quarter).abs() < DOUBLES * half.abs();
                 if doubles && far.abs() > ROUNDINGS * rounding {
                     return far / h;
                 }
-                h *= 8.0;
+                h *= LONGER;
             }
         }
         change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)

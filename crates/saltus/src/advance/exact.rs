@@ -163,8 +163,11 @@ fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> 
     }
 }
 
-/// The time in which the fastest coordinate of a polynomial changes by its own size, but no
-/// thousandth of that of the slowest one.
+/// The shortest of its time scales that counts, as a part of the longest.
+const FASTEST: f64 = 1e-3;
+
+/// The time in which the fastest coordinate of a polynomial changes by its own size, but no less
+/// than a part of that of the slowest one.
 pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     let of = |i: usize| {
         (1..c.len())
@@ -176,7 +179,7 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     };
     let times = || (0..c[0].len()).map(of).filter(|&time| time > 0.0);
     let slowest = times().fold(0.0, f64::max);
-    times().fold(slowest, f64::min).max(1e-3 * slowest)
+    times().fold(slowest, f64::min).max(FASTEST * slowest)
 }
 
 /// The state at the end of a piece that may last for ever.

@@ -82,6 +82,12 @@ const MOST_IDLE: usize = 16;
 /// Why a guard below zero at the end of an arc is one at its entry.
 const FELL_ON: &str = "goes on falling after its own reset, out of the mode";
 
+/// A jump this many roundings of the last arc's duration after another is at once after it.
+const AT_ONCE: f64 = 4.0;
+
+/// The root of an edge that was taken is spent as far as so many times what was left of its guard.
+const SLACK: f64 = 4.0;
+
 /// An arc this small a part of the longest one is short.
 const SHORT: f64 = 1e-4;
 
@@ -219,7 +225,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
     #[inline]
     pub(crate) fn at_once(&self, since: f64) -> bool {
-        since <= 4.0 * f64::EPSILON * self.last_duration
+        since <= AT_ONCE * f64::EPSILON * self.last_duration
     }
 
     /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row,

@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Place};
 use crate::step::Stepper;
 use crate::time::{Span, Time, grace};
 
-use super::{Advance, ArcEnd};
+use super::{Advance, ArcEnd, SLACK};
 
 /// The times strictly between two stops, at which a step asks for the flow: at a stop itself the
 /// flow may have the value of either side.
@@ -148,7 +148,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let clear = self.memory.wall(edge).is_none() || -behind > self.guard_rounding(edge, stop, x, behind, x);
         let fell = before >= 0.0 && behind < 0.0 && clear;
         if fell {
-            self.memory.slack = 4.0 * before.max(-behind);
+            self.memory.slack = SLACK * before.max(-behind);
             self.memory.switched.next = Some((stop.to_bits(), edge));
         }
         fell

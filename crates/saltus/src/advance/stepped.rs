@@ -18,7 +18,7 @@ use crate::time::{LAST, Span, Time, grace, resolution};
 use super::crossing::{OnStep, Step, exceeds, is_rounding, less_constant};
 use super::noise::PROBE;
 use super::smooth::Arrival;
-use super::{Advance, ArcEnd};
+use super::{Advance, ArcEnd, SLACK};
 
 /// The shortest step, in spacings of time.
 const SHORTEST: f64 = 2.0;
@@ -26,6 +26,27 @@ const SHORTEST: f64 = 2.0;
 /// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond
 /// rounding.
 const INSIDE: f64 = 0.875;
+
+/// A first step that contradicts the flow is tried again at this part of its size.
+const RETRIED: f64 = 0.1;
+/// A dense output falls from a wall by more than so many roundings of the guard.
+const FALLS: f64 = 8.0;
+
+/// A crossing within this part of a step of its start is where the dense output is exact.
+const EXACT: f64 = 1e-9;
+/// How far before a crossing its guard is looked at for its slope, as a part of the step.
+const BESIDE: f64 = 1e-3;
+/// A correction of a crossing by more than this part of the step is none.
+const TOO_FAR: f64 = 0.1;
+/// A correction this small leaves an error of its square only.
+const NEAR_ENOUGH: f64 = 1e-5;
+/// Roundings of a step's size, past its end, that a crossing on it is looked for as well.
+const ROOM: f64 = 16.0;
+
+/// A last step is lengthened by up to this factor rather than followed by a tiny one.
+const STRETCHED: f64 = 1.01;
+/// Roundings of a step's size, past the end of the span, in which a crossing is still in it.
+const PAST: f64 = 8.0;
 
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
@@ -74,7 +95,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                     self.memory.stats.steps -= 1;
                     self.memory.stats.rejected += 1;
-                    self.memory.step = Some(0.1 * h);
+                    self.memory.step = Some(RETRIED * h);
                     continue;
                 }
                 if first {
@@ -246,7 +267,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let root = by * here / (here - there);
                 // A state a little inside where rounding leaves the nearest one outside.
                 let s = [root, INSIDE * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
-                self.memory.slack = 4.0 * (here - there);
+                self.memory.slack = SLACK * (here - there);
                 return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
             }
         }
@@ -302,7 +323,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
                 let g = self.guard(edge, t, x);
-                (rate, told, told < 0.0 && -told > 8.0 * self.guard_rounding(edge, t, x, g, x))
+                (rate, told, told < 0.0 && -told > FALLS * self.guard_rounding(edge, t, x, g, x))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
@@ -367,10 +388,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<Closer<M::Dense<A::State>>> {
         let Step { now, scale, .. } = step;
         let mut h = crossing.outside;
-        if h <= scale * 1e-9 {
+        if h <= scale * EXACT {
             return None; // at the start, where the dense output is exact
         }
-        let near = (crossing.inside - scale * 1e-3).max(0.0);
+        let near = (crossing.inside - scale * BESIDE).max(0.0);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
             self.guard(edge, step.time(s), &step.at(s))
@@ -385,11 +406,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.memory.stats.guards += 1;
             let shift = self.guard(edge, now.after(h).seconds(), &trial.end) / fall;
-            if shift.is_nan() || shift.abs() > 0.1 * h {
+            if shift.is_nan() || shift.abs() > TOO_FAR * h {
                 return None;
             }
-            if shift.abs() <= 1e-5 * h {
-                let ahead = (h + 2.0 * shift.abs() + 16.0 * f64::EPSILON * h).min(limit);
+            if shift.abs() <= NEAR_ENOUGH * h {
+                let ahead = (h + 2.0 * shift.abs() + ROOM * f64::EPSILON * h).min(limit);
                 return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);
@@ -416,7 +437,7 @@ pub(super) fn remaining(span: &Span) -> f64 {
 /// than followed by a tiny one.
 #[inline]
 pub(super) fn evened(h: f64, longest: f64) -> f64 {
-    if h * 1.01 >= longest {
+    if h * STRETCHED >= longest {
         longest
     } else if h * 2.0 > longest {
         longest * 0.5
@@ -429,7 +450,7 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
 /// began: the last one a few roundings past its end.
 #[inline]
 pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
-    if h >= remaining { h + (8.0 * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
+    if h >= remaining { h + (PAST * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

@@ -1,7 +1,7 @@
 //! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a
 //! long stretch shows to more digits than a short one.
 
-use crate::poly::Bernstein;
+use crate::poly::{Bernstein, DIVIDED};
 
 use super::Undefined;
 use super::looks::order;
@@ -47,11 +47,20 @@ const SURE: f64 = 0.4;
 /// change its sign, and it is not to be lost then.
 const NONE: f64 = 64.0;
 
+/// A margin that keeps more than this part of itself, while a stretch is halved, is rounding.
+const STAYS: f64 = 0.125;
+/// The part of a stretch on which rounding is to show if it hides all of it.
+const EARLY: f64 = 0.25;
+/// A fall as tᵐ with m below this has speed: rounding may add a quarter to m = 1.
+const LINEAR: f64 = 1.25;
+/// How far apart times beside a hidden fall are looked at, as a part of the time to it.
+const NEARBY: f64 = 1.0 / 64.0;
+
 impl Departure {
     /// The guard with its root at the start of `0..=length` divided out, whose values are exact to
     /// within `margin`, and away from the start to `roughness` more.
     pub(super) fn seen(last: Option<Self>, rest: &Bernstein, length: f64, margin: f64, roughness: f64) -> Self {
-        let (slope, doubt) = (rest.start() / length, 16.0 * margin / length);
+        let (slope, doubt) = (rest.start() / length, DIVIDED * margin / length);
         let mut best = match last {
             Some(last) if last.doubt <= doubt => last,
             _ => Self { slope, doubt, rest: *rest, length, order: last.and_then(|last| last.order) },
@@ -105,11 +114,11 @@ impl Search<'_> {
         }
         // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
         // number by number its steps have an order.
-        let stays = |then: f64| 0.125 * then < margin && margin < SEEN * then;
+        let stays = |then: f64| STAYS * then < margin && margin < SEEN * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
             && p.end() < HIDDEN * margin
-            && self.is_rough(0.0, 0.25 * b)?)
+            && self.is_rough(0.0, EARLY * b)?)
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =
@@ -129,7 +138,7 @@ impl Search<'_> {
         {
             return Part::Hidden(root * it.length);
         }
-        let linear = order.is_some_and(|order| order < 1.25);
+        let linear = order.is_some_and(|order| order < LINEAR);
         let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
         if touched { Part::AtStart } else { Part::None(Side::Outside) }
     }
@@ -138,7 +147,7 @@ impl Search<'_> {
     /// guard inside; or the fall, if there is none.
     pub(super) fn inside_near(&mut self, fall: f64) -> Result<f64, Undefined> {
         for k in 0..=16 {
-            for s in [fall * (1.0 + f64::from(k) / 64.0), fall * (1.0 - f64::from(k) / 64.0)] {
+            for s in [fall * (1.0 + f64::from(k) * NEARBY), fall * (1.0 - f64::from(k) * NEARBY)] {
                 if self.value(s)? >= 0.0 {
                     return Ok(s);
                 }

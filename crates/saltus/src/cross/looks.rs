@@ -11,6 +11,12 @@ const LOOKS: usize = 128;
 const PER_STEP: usize = 4;
 /// If they change direction no more often than this, they are not rounding and their signs count.
 const MOST_TURNS: usize = 8;
+/// Where on a stretch two neighbouring samples are compared, to see whether the guard stands still.
+const STANDS_AT: [f64; 2] = [0.3, 0.6];
+/// A fall of which the slope explains less than this part has no speed.
+const SLOW: f64 = 0.25;
+/// The rounding of samples is so many times the largest by which one is off its two neighbours.
+const ROUNDED: f64 = 4.0;
 
 impl Search<'_> {
     /// Number by number.
@@ -36,7 +42,7 @@ impl Search<'_> {
 
     /// Whether the guard seems to go in steps: it stands still between neighbouring samples.
     pub(super) fn stands(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
-        for at in [0.3, 0.6] {
+        for at in STANDS_AT {
             let s = a + at * (b - a);
             if self.value(s)? == self.value(s + (b - a) / LOOKS as f64)? {
                 return Ok(true);
@@ -102,7 +108,7 @@ impl Search<'_> {
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));
             // The slope that it allows is too small for this fall: two steps, one twice as far as
             // the other, are not its sign.
-            let without_speed = far.is_some_and(|it| it.steepest() * b < 0.25 * (self.base - last));
+            let without_speed = far.is_some_and(|it| it.steepest() * b < SLOW * (self.base - last));
             let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
             let order = if slow && without_speed {
                 2.0
@@ -119,7 +125,7 @@ impl Search<'_> {
     /// What is left of samples when all that is as small as their rounding counts as zero.
     fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
-        let rounding = 4.0 * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let rounding = ROUNDED * samples.windows(3).map(bend).fold(0.0, f64::max);
         let came_from = side;
         let mut side = side;
         let mut hidden: Option<(f64, f64)> = None;

@@ -141,7 +141,7 @@ pub(crate) fn first_fall_of_polynomial(
         // Away from the wall only the change counts, and it carries no rounding of the value at the
         // wall.
         let change = p.less_start();
-        let margin = 8.0 * f64::EPSILON * change.scale();
+        let margin = change.rounding();
         Search::new(guard, span, bend, 0.0).first_fall(start, Some((change, margin)))
     } else if p.shape(margin) == Shape::Above {
         Ok(Searched::solved(None))

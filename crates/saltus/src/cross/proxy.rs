@@ -1,7 +1,7 @@
 //! A polynomial in place of a guard: its interpolant at nine Chebyshev points, and how far off that
 //! may be.
 
-use crate::poly::Bernstein;
+use crate::poly::{Bernstein, SUMMED};
 
 use super::search::Search;
 use super::{Undefined, chebyshev};
@@ -23,7 +23,7 @@ impl Search<'_> {
         }
         let series = chebyshev::series(&values);
         let mut off = 0.0_f64;
-        for x in [-0.557_350_921, 0.271_828_183] {
+        for x in CHECKS {
             off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
@@ -33,6 +33,12 @@ impl Search<'_> {
         Ok(Samples { series, off, spacing, start: values[0], end: values[8], least, values })
     }
 }
+
+/// Where a guard is compared with its interpolant: away from the nodes, and at no fraction that a
+/// guard is likely to have a period of.
+const CHECKS: [f64; 2] = [-0.557_350_921, 0.271_828_183];
+/// Elsewhere a guard may be so many times as far from its interpolant.
+const UNCHECKED: f64 = 8.0;
 
 /// A guard sampled at the Chebyshev points of an interval.
 pub(super) struct Samples {
@@ -82,12 +88,12 @@ impl Samples {
             square += (2 * k + 1) as f64;
         }
         let scale = self.series[0].abs() + most;
-        self.series[0] > most + 8.0 * (self.off + steepest * self.spacing) + 16.0 * f64::EPSILON * scale
+        self.series[0] > most + UNCHECKED * (self.off + steepest * self.spacing) + 2.0 * SUMMED * f64::EPSILON * scale
     }
 
     pub(super) fn proxy(&self) -> Proxy {
         let p = Bernstein::new(&chebyshev::bernstein(&self.series));
-        let margin = 8.0 * (self.off + p.steepest() * self.spacing) + 16.0 * f64::EPSILON * p.scale();
+        let margin = UNCHECKED * (self.off + p.steepest() * self.spacing) + 2.0 * p.rounding();
         let margin = if margin.is_finite() { margin } else { f64::INFINITY };
         Proxy { p, margin, start: self.start, end: self.end, least: self.least }
     }

@@ -67,8 +67,13 @@ const FARTHER: f64 = 1024.0;
 /// What a guard grows or shrinks by, by then.
 const CLEARLY: f64 = 4.0;
 
-/// How often a fall is looked for around its guess, each time four times as far.
+/// How often a fall is looked for around its guess, each time so much farther; at first so many
+/// numbers away.
 const TRIES: usize = 4;
+const WIDER: f64 = 4.0;
+
+/// κ₁ of the ITP method, in parts of the interval: its authors' choice.
+const TRUNCATION: f64 = 0.2;
 
 impl Search<'_> {
     /// How the guard changes its sign at a crossing between neighbouring times; what is no root is
@@ -139,7 +144,7 @@ impl Search<'_> {
         let mut near = (guess, self.value(guess)?);
         let end = self.value(b)?;
         let towards = if near.1 >= 0.0 { 1.0 } else { -1.0 };
-        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(4.0 * (guess.next_up() - guess));
+        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(WIDER * (guess.next_up() - guess));
         for _ in 0..TRIES {
             let s = guess + towards * by;
             if s <= a || s >= b {
@@ -150,7 +155,7 @@ impl Search<'_> {
                 return Ok(Some(if towards > 0.0 { [near, next] } else { [next, near] }));
             }
             near = next;
-            by *= 4.0;
+            by *= WIDER;
         }
         Ok(None)
     }
@@ -164,7 +169,7 @@ impl Search<'_> {
         (mut b, mut below): (f64, f64),
     ) -> Result<Crossing, Undefined> {
         let mut allowance = 2.0 * (b - a);
-        let truncation = 0.2 / (b - a);
+        let truncation = TRUNCATION / (b - a);
         while a.next_up() < b && b - a > f64::MIN_POSITIVE {
             let (middle, width) = (0.5 * (a + b), b - a);
             let slack = (allowance - 0.5 * width).max(0.0);

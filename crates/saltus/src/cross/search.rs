@@ -1,6 +1,6 @@
 //! Halving an interval until bounds exclude a fall in each part, or show one.
 
-use crate::poly::{Bernstein, Shape};
+use crate::poly::{Bernstein, DIVIDED, Shape};
 
 use super::departure::Departure;
 use super::looks::{Look, order};
@@ -29,6 +29,23 @@ const MOST_EVALUATIONS: u32 = 20_000;
 /// A guard that falls from a spent root by this more than its samples leave open does so: that is
 /// the fall that was spent.
 const SURELY: f64 = 1024.0;
+
+/// An interpolant whose error is this small beside its size shows the shape of the guard.
+const SHAPED: f64 = 1e-4;
+/// An error that halving a stretch does not bring below this part of what it was is the guard's own
+/// rounding: that of a smooth guard shrinks by hundreds.
+const STUCK: f64 = 0.1;
+/// A guard no larger than so many margins may be nothing but rounding.
+const BURIED: f64 = 8.0;
+/// From this part of the guard's size on an error may come from a guard that goes in steps.
+const IN_STEPS: f64 = 1e-3;
+/// A slope over a half and over a quarter of a stretch is that over the whole, if it differs by no
+/// more than this part of it.
+const SAME: f64 = 0.2;
+/// A rise from a spent start is looked for at so many times, each this part of the one before: down
+/// to 2⁻³² of the stretch.
+const LOOKS_BACK: usize = 8;
+const NEARER: f64 = 1.0 / 16.0;
 
 /// Compiled once for every guard: it is much code, and a call through a table costs little beside a
 /// guard on a dense output.
@@ -274,7 +291,7 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, depth, margin, known } = stretch;
         if let Some(p) = known {
             // Zero at the start: every power of time keeps its digits.
-            let margin = if side == Side::Wall && a == 0.0 { 8.0 * f64::EPSILON * p.scale() } else { margin };
+            let margin = if side == Side::Wall && a == 0.0 { p.rounding() } else { margin };
             return Seen::As(Proxy { p, margin, start: p.start(), end: p.end(), least: p.start() });
         }
         let Ok(samples) = self.sampled(a, b) else { return Seen::Undefined };
@@ -289,7 +306,7 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
         let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
-        let (q, q_margin) = if leaving { (p.without_root_at_start(), 16.0 * margin) } else { (*p, margin) };
+        let (q, q_margin) = if leaving { (p.without_root_at_start(), DIVIDED * margin) } else { (*p, margin) };
         // A stretch of zeros has no slope, and no margin for one.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
             self.departure = Some(Departure::seen(self.departure, &q, b, sampled, self.roughness(b)));
@@ -297,7 +314,7 @@ impl<'a> Search<'a> {
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the
         // guard's own rounding.
-        let resolved = known.is_some() || margin <= 1e-4 * scale || margin >= 0.1 * whole;
+        let resolved = known.is_some() || margin <= SHAPED * scale || margin >= STUCK * whole;
         let from = self.flat.unwrap_or(a);
         if leaving
             && !self.spent
@@ -358,8 +375,8 @@ impl<'a> Search<'a> {
     /// or goes in steps.
     fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
         let &Stretch { a, b, ref known, .. } = stretch;
-        let rounding = scale <= 8.0 * margin && (known.is_some() || margin <= ROUNDING * self.largest);
-        if rounding || margin > 1e-3 * scale && self.stands(a, b)? {
+        let rounding = scale <= BURIED * margin && (known.is_some() || margin <= ROUNDING * self.largest);
+        if rounding || margin > IN_STEPS * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
@@ -404,8 +421,8 @@ impl<'a> Search<'a> {
     /// it.
     fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
         let mut s = b;
-        for _ in 0..8 {
-            s *= 1.0 / 16.0;
+        for _ in 0..LOOKS_BACK {
+            s *= NEARER;
             if self.value(s)? - self.base > self.roughness(s) {
                 return Ok(true);
             }
@@ -418,7 +435,7 @@ impl<'a> Search<'a> {
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {
             let shorter = self.sampled(0.0, part * b)?.proxy().p.without_root_at_start().start();
-            if (shorter - part * change).abs() > 0.2 * part * change.abs() {
+            if (shorter - part * change).abs() > SAME * part * change.abs() {
                 return Ok(false);
             }
         }
