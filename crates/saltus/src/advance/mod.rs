@@ -337,7 +337,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let &Span { now, .. } = clock;
-        self.smooth_from(mode, now, x)?;
+        let smooth = self.automaton.stops(mode).is_empty();
+        if !smooth {
+            self.smooth_from(mode, now, x)?;
+        }
         if let Some(edge) = self.enter(mode, x, now)? {
             return Ok(ArcEnd::Crossing { edge, time: now, before: *x });
         }
@@ -346,7 +349,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state: *x });
         }
         let stepped = self.options.stepped;
-        let exact = !stepped && self.smooth == Smooth::ALWAYS;
+        let exact = !stepped && (smooth || self.smooth == Smooth::ALWAYS);
         if exact
             && !observer.wants_pieces()
             && let Some(end) = self.told(mode, x, now, clock.end.since(now), observer)
@@ -354,16 +357,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(end);
         }
         let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
-        let solution = match solution {
-            // No exact solution is cut in stops.
-            Solution::Polynomial(_) | Solution::Formula(_) if !exact => Solution::Steps,
-            solution => solution,
-        };
         let end = match solution {
-            Solution::Polynomial(polynomial) => self.exact(mode, &polynomial, clock, observer),
-            Solution::Formula(formula) => self.closed(mode, x, formula, clock, observer),
+            Solution::Polynomial(polynomial) if exact => self.exact(mode, &polynomial, clock, observer),
+            Solution::Formula(formula) if exact => self.closed(mode, x, formula, clock, observer),
             Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
-            Solution::Steps => self.stepped(mode, *x, *clock, true, observer),
+            // Nor is an exact solution cut in stops.
+            _ => self.stepped(mode, *x, *clock, true, observer),
         };
         let end = end?;
         self.stayed_inside(mode, x, now, &end, observer)?;

@@ -77,6 +77,13 @@ impl<E: Copy + PartialEq> Switched<E> {
     /// `edge` is taken, for this or another reason.
     #[inline]
     pub(super) fn take(&mut self, edge: E) {
+        if self.next.is_some() {
+            self.note(edge);
+        }
+    }
+
+    #[cold]
+    fn note(&mut self, edge: E) {
         if let Some((stop, _)) = self.next.take().filter(|(_, next)| *next == edge) {
             self.edges.retain(|(other, _)| *other == stop);
             self.edges.push((stop, edge));

@@ -63,7 +63,8 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
-    /// Stops of every mode.
+    /// Whether any mode has stops, and those of every mode.
+    stopped: bool,
     everywhere: Vec<Clock>,
     /// The mode of the edge declared last.
     last: Option<&'static str>,
@@ -119,7 +120,15 @@ impl fmt::Debug for Link {
 
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
-        Self { modes: Vec::new(), everywhere: Vec::new(), last: None, early: None, twice: None, flaw: OnceLock::new() }
+        Self {
+            modes: Vec::new(),
+            stopped: false,
+            everywhere: Vec::new(),
+            last: None,
+            early: None,
+            twice: None,
+            flaw: OnceLock::new(),
+        }
     }
 }
 
@@ -279,6 +288,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     #[must_use]
     pub fn stops(mut self, name: impl Into<Cow<'static, str>>, stops: Clock) -> Self {
         self.entry_of(kept(name)).stops.push(stops);
+        self.stopped = true;
         self
     }
 
@@ -302,6 +312,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     pub fn stops_everywhere(mut self, stops: Clock) -> Self {
         self.modes.iter_mut().for_each(|mode| mode.stops.push(stops.clone()));
         self.everywhere.push(stops);
+        self.stopped = true;
         self.flaw = OnceLock::new();
         self
     }

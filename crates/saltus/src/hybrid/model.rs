@@ -42,7 +42,8 @@ impl<S: State> Automaton for Hybrid<'_, S> {
     }
 
     fn stops(&self, mode: &'static str) -> Cow<'_, [Clock]> {
-        self.find(mode).map_or(Cow::Borrowed(&[]), |mode| Cow::Borrowed(&mode.stops))
+        let mode = if self.stopped { self.find(mode) } else { None };
+        mode.map_or(Cow::Borrowed(&[]), |mode| Cow::Borrowed(&mode.stops))
     }
 
     fn reset(&self, _: &'static str, link: Link, t: f64, x: &S) -> Result<(&'static str, S), Refusal> {
