@@ -213,7 +213,7 @@ const REFUSALS: &[(&str, u64, usize, &str)] = &[
     ("bounce,height_cm\n0,100\n1,1e999\n", 3, 3, "not a finite number"),
     ("bounce,height_cm\n0,100\n1,-30\n", 3, 3, "a height below the floor"),
     ("bounce,height_cm\n0,100\n1,30 s\n", 3, 3, "the unit of '30 s' is not one of length"),
-    ("bounce,height\n0,100 cm\n1,30\n", 3, 3, "this number has no unit"),
+    ("bounce,height\n0,100\n1,30 cm\n", 2, 3, "this number has no unit"),
     ("bounce,height_cm\n0,100\n1,64 (predicted)\n", 3, 3, "no reading"),
     ("bounce,height_cm\n0,100\n1,> 60\n", 3, 3, "a bound and no reading"),
     ("bounce,height_cm\n0,100\n1,30,5\n", 3, 6, "3 cells, but the header names 2"),

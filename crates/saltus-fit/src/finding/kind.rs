@@ -136,6 +136,14 @@ pub enum FindingKind {
         p: f64,
     },
     MeanOfSettings,
+    /// The COR differs by what stands in a column that was left aside.
+    AsideDiffers {
+        column: String,
+        /// The cell of the trials with the lowest COR, and that COR; and of those with the highest.
+        low: (String, f64),
+        high: (String, f64),
+        p: f64,
+    },
     Loud {
         readings: Readings,
         part: f64,
@@ -162,7 +170,8 @@ pub enum FindingKind {
     /// The contacts can be read in another way about as well, with another COR.
     ReadOtherwise {
         cor: f64,
-        /// Which way: the flights that it counts from the first contact to the last, of the first trial that differs.
+        /// Which way: the flights that it counts from the first contact to the last, of the first
+        /// trial that differs.
         flights: usize,
         instead_of: usize,
     },

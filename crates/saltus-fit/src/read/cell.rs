@@ -1,4 +1,5 @@
-//! What a cell holds: a number, with a unit, an error and a remark if they stand there; nothing; or words.
+//! What a cell holds: a number, with a unit, an error and a remark if they stand there; nothing; or
+//! words.
 
 use super::units::{Scale, Unit};
 use super::vocabulary::{Atom, folded, meanings};
@@ -157,7 +158,8 @@ fn error_of(number: Measured, error: Measured) -> Option<Measured> {
     Some(Measured { error: Some(size).filter(|e| *e > 0.0 && e.is_finite()), ..number })
 }
 
-/// The text without a remark in brackets or a mark behind it, and whether the remark turns the meaning.
+/// The text without a remark in brackets or a mark behind it, and whether the remark turns the
+/// meaning.
 fn without_remark(text: &str) -> (&str, bool) {
     let text = text.trim_end_matches(['*', '?', '!', '†', '‡', ' ']);
     let Some((number, remark)) = text.strip_suffix([')', ']']).and_then(|t| t.split_once(['(', '['])) else {
@@ -202,7 +204,8 @@ fn split_error(text: &str) -> Option<(&str, &str)> {
     ["±", "+/-", "+-", "+/−"].iter().find_map(|mark| text.split_once(mark)).map(|(a, b)| (a.trim(), b))
 }
 
-/// One number, or several with falling units that add up: `5' 3"`, `1 m 20 cm`; `None` if it is something else.
+/// One number, or several with falling units that add up: `5' 3"`, `1 m 20 cm`; `None` if it is
+/// something else.
 fn lengths(text: &str, comma: bool) -> Result<Option<Measured>, Fault> {
     let mut sum: Option<Measured> = None;
     let mut rest = text.trim();
@@ -316,18 +319,19 @@ fn decimal(number: &str, comma: bool) -> Result<Option<f64>, Fault> {
     }
 }
 
-/// A number whose thousands are parted by blanks, `1 500`, without them.
+/// A number whose thousands are parted by blanks or by apostrophes, `1 500`, `1'500`, without them.
 fn spaced(text: &str) -> Option<String> {
-    let end =
-        text.find(|c: char| !(c.is_ascii_digit() || matches!(c, ' ' | '\u{a0}' | '\u{202f}'))).unwrap_or(text.len());
-    let number = text[..end].trim_end();
-    let parts: Vec<&str> = number.split([' ', '\u{a0}', '\u{202f}']).collect();
+    const PARTS: [char; 5] = [' ', '\u{a0}', '\u{202f}', '\'', '’'];
+    let end = text.find(|c: char| !(c.is_ascii_digit() || PARTS.contains(&c))).unwrap_or(text.len());
+    let number = text[..end].trim_end_matches(PARTS);
+    let parts: Vec<&str> = number.split(PARTS).collect();
     let grouped =
         parts.len() > 1 && (1..=3).contains(&parts[0].len()) && parts.iter().skip(1).all(|part| part.len() == 3);
     grouped.then(|| parts.concat() + &text[number.len()..])
 }
 
-/// A number with separators of thousands beside a decimal mark of the other kind: `1.000,5`, `1,234.5`.
+/// A number with separators of thousands beside a decimal mark of the other kind: `1.000,5`,
+/// `1,234.5`.
 fn thousands(number: &str) -> Option<f64> {
     let (first, last) = (number.find(['.', ','])?, number.rfind(['.', ','])?);
     let (mark, point) = (number[first..].chars().next()?, number[last..].chars().next()?);
@@ -337,13 +341,23 @@ fn thousands(number: &str) -> Option<f64> {
     (mark != point && grouped).then(|| format!("{}.{}", whole.concat(), &number[last + 1..]).parse().ok())?
 }
 
-/// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does not.
+/// A date and the time of day behind it, `2024-05-12T10:15:30.120Z`, `12.05.2024 10:15:30`.
+pub(super) fn dated(cell: &str) -> Option<(&str, &str)> {
+    let (date, time) = cell.trim().split_once(['T', ' '])?;
+    let parts = date.split(['-', '.', '/']);
+    let digits = |part: &str| !part.is_empty() && part.len() <= 4 && part.chars().all(|c| c.is_ascii_digit());
+    (parts.clone().count() == 3 && parts.clone().all(digits)).then_some((date, time.trim().trim_end_matches('Z')))
+}
+
+/// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does
+/// not.
 pub(super) fn clock(cell: &str) -> Option<f64> {
     let mut seconds = 0.0;
     if !cell.contains(':') {
         return None;
     }
-    for part in cell.trim().split(':') {
+    let time = dated(cell).map_or(cell.trim(), |(_, time)| time);
+    for part in time.split(':') {
         let digits = part.starts_with(|c: char| c.is_ascii_digit());
         seconds = 60.0 * seconds + part.replace(',', ".").parse::<f64>().ok().filter(|_| digits)?;
     }
@@ -373,6 +387,8 @@ mod tests {
             ("1.000,5", 1000.5, None, false),
             ("1,234.5 mm", 1.2345, None, true),
             ("1 500", 1500.0, None, false),
+            ("1'500 mm", 1.5, None, true),
+            ("5' 3\"", 1.6002, None, true),
             ("~62", 62.0, None, false),
             ("ca. 62 cm", 0.62, None, true),
             ("62 (approx.)", 62.0, None, false),

@@ -1,4 +1,5 @@
-//! What speaks against trusting the readings of a table, and rebounds that follow from a time only with gravity.
+//! What speaks against trusting the readings of a table, and rebounds that follow from a time only
+//! with gravity.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -19,7 +20,15 @@ pub enum Doubt {
         /// Its line.
         line: u64,
     },
-    /// The COR follows from the time until the ball rests, and the last contacts are not those of a ball in flight.
+    /// A line speaks of heights and states a length that no reading takes in.
+    Length {
+        /// The line, as it stands.
+        text: String,
+        /// Its number.
+        line: u64,
+    },
+    /// The COR follows from the time until the ball rests, and the last contacts are not those of a
+    /// ball in flight.
     UntilRest,
 }
 
@@ -29,6 +38,11 @@ impl fmt::Display for Doubt {
             Self::Title { text, line } => {
                 write!(f, "line {line} says '{text}': were the readings below it measured?")
             }
+            Self::Length { text, line } => write!(
+                f,
+                "line {line} says '{text}', a length that no reading takes in: if the scale does not begin at the floor, state what it reads there \
+                 (--zero); if the ball was dropped from there, --drop; else take the line out"
+            ),
             Self::UntilRest => f.write_str(
                 "the COR follows from the time until the ball rests, as if it bounced ever smaller; its last contacts are no bounces, and rolling \
                  or ringing lengthens the time",
@@ -38,7 +52,8 @@ impl fmt::Display for Doubt {
 }
 
 impl Table {
-    /// The balls, surfaces or sheets of the table, each with a COR of its own; a single one, without a name, where nothing tells any apart.
+    /// The balls, surfaces or sheets of the table, each with a COR of its own; a single one,
+    /// without a name, where nothing tells any apart.
     #[must_use]
     pub fn groups(&self) -> Vec<&str> {
         let mut found: Vec<&str> = Vec::new();
@@ -56,10 +71,12 @@ impl Table {
         Self { trials, ..self.clone() }
     }
 
-    /// The table with the rebounds that follow from times where gravity is `g`; `sigma` is the error of a time that states none.
+    /// The table with the rebounds that follow from times where gravity is `g`; `sigma` is the
+    /// error of a time that states none.
     ///
-    /// The rebound after the only flight, of time T, is g T²/8. From release at h to rest a ball takes T = t (1 + e)/(1 - e) with the time of fall
-    /// t = √(2h/g), so that e = (T - t)/(T + t), and it rebounds to e² h.
+    /// The rebound after the only flight, of time T, is g T²/8. From release at h to rest a ball
+    /// takes T = t (1 + e)/(1 - e) with the time of fall t = √(2h/g), so that e = (T - t)/(T + t),
+    /// and it rebounds to e² h.
     pub(crate) fn at_gravity(&self, g: f64, sigma: f64) -> Cow<'_, Self> {
         if self.trials.iter().all(|trial| trial.timed.is_none()) {
             return Cow::Borrowed(self);

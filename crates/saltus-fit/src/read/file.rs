@@ -1,4 +1,5 @@
-//! From the bytes of a file to a table: what kind of file, which tables in it, their trials together.
+//! From the bytes of a file to a table: what kind of file, which tables in it, their trials
+//! together.
 
 use saltus_bounce::units::Quantity;
 
@@ -93,10 +94,21 @@ fn joined_up<'a>(
     filmed(&mut regions, metadata.frame_rate);
     let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
     for (n, region) in regions.iter_mut().enumerate() {
-        let own = Metadata { drop: metadata.drop.or(titles[n].drop.map(|(drop, _)| drop)), ..metadata };
+        let title = &titles[n];
+        let own = Metadata {
+            drop: metadata.drop.or(title.drop.map(|(drop, _)| drop)),
+            sigma_height: metadata.sigma_height.or(title.sigma.0),
+            sigma_time: metadata.sigma_time.or(title.sigma.1),
+            ..metadata
+        };
+        region.units = (region.units.0.or(title.units.0), region.units.1.or(title.units.1));
         match one(region, options, own) {
             Ok(mut table) => {
                 titled(region, &mut table);
+                // Whoever states the zero or the height of release answers it.
+                let answered = options.zero.or(options.drop).is_some();
+                let length = title.length.clone().filter(|_| !answered);
+                table.doubts.extend(length.map(|(text, line)| Doubt::Length { text, line }));
                 parts.push((region.label.clone(), table));
             }
             // A table below another, of something else.
@@ -123,7 +135,8 @@ fn joined_up<'a>(
     Ok(table)
 }
 
-/// What tables of one text are called: by themselves, by the lines above them, or by their number; balls and surfaces are groups.
+/// What tables of one text are called: by themselves, by the lines above them, or by their number;
+/// balls and surfaces are groups.
 fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)]) {
     if parts.len() < 2 {
         return;
@@ -145,9 +158,10 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
     }
 }
 
-/// The table of a region: its columns by their names, the rows that hold readings, the quantities, and then the trials.
+/// The table of a region: its columns by their names, the rows that hold readings, the quantities,
+/// and then the trials.
 fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
-    let mut columns = Columns::named(region, options)?;
+    let mut columns = Columns::named(region, options, metadata.drop.is_some())?;
     let rows = sifted(region, &columns)?;
     region.rows = rows.rows.iter().map(|row| row.at).collect();
     columns.measure(region, options, metadata.frame_rate)?;
@@ -173,7 +187,8 @@ fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
     }
 }
 
-/// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks of.
+/// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
+/// of.
 fn titled(region: &Region<'_>, table: &mut Table) {
     let turned = |text: &str| Heading::parse(text).turns();
     if region.header.iter().any(|name| turned(name)) {
@@ -187,7 +202,7 @@ fn titled(region: &Region<'_>, table: &mut Table) {
 fn no_table(grid: &Grid<'_>, options: &ReadOptions) -> TableError {
     let view = View { grid, across: false };
     let region = region::nearest(view);
-    match Columns::named(&region, options) {
+    match Columns::named(&region, options, false) {
         Err(error) => error,
         Ok(_) => region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"),
     }
@@ -257,7 +272,8 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
     Ok(table)
 }
 
-/// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether they are heights.
+/// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether
+/// they are heights.
 fn told_apart(found: &mut [(String, Table)]) -> bool {
     let several = found.len() > 1;
     let mut drops = false;

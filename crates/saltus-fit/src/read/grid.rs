@@ -7,7 +7,8 @@ use super::Metadata;
 use super::cell::{self, Cell};
 use crate::error::{Place, TableError};
 
-/// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a hundred megabytes.
+/// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
+/// hundred megabytes.
 const CELLS: usize = 1 << 22;
 
 /// A text of cells.
@@ -170,7 +171,8 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`, `# sigma time: 5 ms`.
+    /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`,
+    /// `# sigma time: 5 ms`.
     pub(super) fn metadata(&self) -> Result<Metadata, TableError> {
         let mut found = Metadata::default();
         if !self.text.contains('#') {
@@ -297,41 +299,59 @@ fn ruled(record: &StringRecord) -> bool {
 fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
     let lines: Vec<&str> = lines.collect();
     let number = |cell: &str| cell.parse::<f64>().is_ok();
-    // The line below the names of a table in Markdown.
-    let rule = |line: &&str| {
-        let bare = line.trim();
-        bare.contains('|') && bare.contains('-') && bare.chars().all(|c| matches!(c, '|' | '-' | ':' | '+' | ' '))
-    };
-    if lines.iter().any(rule) {
+    let piped = lines.iter().filter(|line| line.contains('|')).count();
+    // A table drawn in characters has lines that are rules, or bars in every line.
+    if piped > 0 && lines.iter().any(|line| rule(line)) || piped > 1 && piped == lines.len() {
         return b'|';
     }
-    match lines.iter().find_map(|line| mark(line).map(|mark| (mark, *line))) {
+    match [b'\t', b';', b','].into_iter().find(|&mark| separates(&lines, mark)) {
         // Below a name without a comma, a comma that makes a number is no delimiter.
-        Some((b',', line)) if line != lines[0] && number(&line.trim().replacen(',', ".", 1)) => b';',
-        // A comma in a title is none where tabs or semicolons follow.
-        Some((b',', _)) if lines.iter().filter(|line| matches!(mark(line), Some(b'\t' | b';'))).count() > 1 => {
-            lines.iter().filter_map(|line| mark(line)).find(|mark| *mark != b',').unwrap_or(b',')
-        }
-        Some((mark, _)) => mark,
+        Some(b',') if decimal_commas(&lines) => b';',
+        Some(mark) => mark,
         None if lines.iter().skip(1).any(|line| line.contains(' ') && line.split(' ').all(number)) => b' ',
         None => b',',
     }
 }
 
-/// What separates the cells of a line, if anything does: a tab before a semicolon before a comma.
-fn mark(line: &str) -> Option<u8> {
+/// Whether a line is drawn and holds nothing: `|---|:--:|`, `----+----`.
+fn rule(line: &str) -> bool {
+    let bare = line.trim();
+    bare.contains(['|', '+'])
+        && bare.contains(['-', '='])
+        && bare.chars().all(|c| matches!(c, '|' | '-' | '=' | ':' | '+' | ' '))
+}
+
+/// Whether a mark separates cells: alike in several lines, and in half as many as any mark that
+/// ranks below it. Commas of prose and of decimals rank last, so that they outvote no semicolon,
+/// and a semicolon in a title outvotes no column of commas.
+fn separates(lines: &[&str], mark: u8) -> bool {
+    let alike = |mark: u8| {
+        let counts: Vec<usize> = lines.iter().map(|line| count(line, mark)).filter(|n| *n > 0).collect();
+        counts.iter().map(|n| counts.iter().filter(|other| *other == n).count()).max().unwrap_or(0)
+    };
+    let below: &[u8] = match mark {
+        b'\t' => b";,",
+        b';' => b",",
+        _ => b"",
+    };
+    let (own, others) = (alike(mark), below.iter().map(|&mark| alike(mark)).max().unwrap_or(0));
+    own > 0 && 2 * own >= others
+}
+
+/// Whether the first line with a comma stands below a name and is a number with a decimal comma.
+fn decimal_commas(lines: &[&str]) -> bool {
+    let first = lines.iter().position(|line| count(line, b',') > 0);
+    first.is_some_and(|at| at > 0 && lines[at].trim().replacen(',', ".", 1).parse::<f64>().is_ok())
+}
+
+/// How often a mark stands in a line outside of quotes.
+fn count(line: &str, mark: u8) -> usize {
     let mut quoted = false;
-    let mut found = None;
-    for byte in line.bytes() {
-        match byte {
-            b'"' => quoted = !quoted,
-            b'\t' if !quoted => return Some(b'\t'),
-            b';' if !quoted => found = Some(b';'),
-            b',' if !quoted && found.is_none() => found = Some(b','),
-            _ => {}
-        }
-    }
-    found
+    let mut outside = |byte: &u8| {
+        quoted ^= *byte == b'"';
+        !quoted && *byte == mark
+    };
+    line.as_bytes().iter().filter(|byte| outside(byte)).count()
 }
 
 /// Lines as a message names them: `lines 3 and 4`; of many the first, and how many there are.

@@ -1,4 +1,5 @@
-//! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a ball, and the words that are not understood.
+//! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a
+//! ball, and the words that are not understood.
 
 mod inside;
 
@@ -6,7 +7,7 @@ use super::aside::Why;
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use super::words::{Kind, Numbers, Word, numbers, split};
-pub(super) use inside::{DropHeight, release};
+pub(super) use inside::{DropHeight, release, released};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -172,7 +173,8 @@ impl Heading {
         if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {
             heading.atoms.push(Atom::Before);
         }
-        if !heading.atoms.is_empty() || heading.unit.is_some() {
+        let placed = matches!(words.as_slice(), [Word { kind: Kind::Ordinal(_), .. }]);
+        if !heading.atoms.is_empty() || heading.unit.is_some() || placed {
             heading.meaning = heading.interpret(&words, run);
         }
         heading
@@ -247,7 +249,8 @@ impl Heading {
         left + rest
     }
 
-    /// A unit at the end, behind a slash or a comma, or one that a blank does not part: `height / cm`, `v, m/s`.
+    /// A unit at the end, behind a slash or a comma, or one that a blank does not part: `height /
+    /// cm`, `v, m/s`.
     fn take_unit(&mut self, text: &str) -> String {
         if self.unit.is_some() {
             return text.to_owned();
@@ -265,7 +268,8 @@ impl Heading {
         text.to_owned()
     }
 
-    /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is a preposition.
+    /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is
+    /// a preposition.
     fn take_unit_word(&mut self, words: &mut Vec<Word>) {
         let is_unit = |w: &Word| match w.kind {
             Kind::Known([Atom::Unit(_)]) => true,
@@ -399,7 +403,11 @@ impl Heading {
             return Meaning::Aside(Why::Derived);
         }
         // Components of a vector, the rise of something, a change of a change.
-        if has(Speed) && (has(Position) || has(Release)) || numbers.bounce.len() > 1 && what != What::Interval {
+        // At an impact it is the vertical one that turns round.
+        let at_impact = has(Before) || has(After);
+        if has(Speed) && (has(Position) && !at_impact || has(Release))
+            || numbers.bounce.len() > 1 && what != What::Interval
+        {
             return Meaning::Aside(Why::Other);
         }
         let role = match () {

@@ -20,6 +20,7 @@ mod region;
 mod roles;
 mod rows;
 mod samples;
+mod scales;
 mod stray;
 mod text;
 mod title;
@@ -58,7 +59,8 @@ pub enum Event {
 pub struct Reading {
     /// What the reading was taken of.
     pub event: Event,
-    /// Which one. A contact counts from 1; an apex bears the number of the contact before it; a release is 0.
+    /// Which one. A contact counts from 1; an apex bears the number of the contact before it; a
+    /// release is 0.
     pub bounce: usize,
     /// When, in seconds on the trial's own clock.
     pub time: Option<f64>,
@@ -93,6 +95,9 @@ pub struct Trial {
     pub(crate) timed: Option<Timed>,
     /// The CORs that the table itself works out for it.
     pub(crate) stated: Vec<f64>,
+    /// What stands in its rows in columns that were left aside and may matter: the name of the
+    /// column, the cell.
+    pub(crate) beside: Vec<(String, String)>,
 }
 
 /// The time of the only flight, or that from release to rest, s.
@@ -105,7 +110,8 @@ pub(crate) struct Timed {
 }
 
 impl Trial {
-    /// What tells this trial from the others, such as `ball golf, h0_cm 80, trial 3`; empty if the table holds one trial.
+    /// What tells this trial from the others, such as `ball golf, h0_cm 80, trial 3`; empty if the
+    /// table holds one trial.
     #[must_use]
     pub fn label(&self) -> &str {
         &self.label
@@ -157,7 +163,8 @@ pub(crate) struct Metadata {
     pub(crate) drop: Option<f64>,
     pub(crate) sigma_height: Option<f64>,
     pub(crate) sigma_time: Option<f64>,
-    /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only ratios mean anything.
+    /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only
+    /// ratios mean anything.
     pub(crate) pixels: bool,
     /// Times are sums of times between contacts.
     pub(crate) intervals: bool,
@@ -186,7 +193,8 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// Those of [`Table::read`], for the first file that has one; when the files state different gravity; and for no file at all.
+    /// Those of [`Table::read`], for the first file that has one; when the files state different
+    /// gravity; and for no file at all.
     pub fn read_all(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, TableError> {
         let mut parts = Vec::with_capacity(paths.len());
         let (mut given, mut repairs): (Vec<(Vec<u8>, String)>, Vec<String>) = (Vec::new(), Vec::new());
@@ -217,16 +225,18 @@ impl Table {
 
     /// Reads a table from bytes; `name` stands in messages.
     ///
-    /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's and phyphox' programs export;
-    /// bare numbers, if the options say what they are), workbooks (`.xlsx`, `.xls`) and zip archives of CSV. `docs/fitting.md`
-    /// shows every layout.
+    /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's
+    /// and phyphox' programs export; bare numbers, if the options say what they are), workbooks
+    /// (`.xlsx`, `.xls`) and zip archives of CSV. `docs/fitting.md` shows every layout.
     ///
-    /// The reader of workbooks may panic over a damaged one. That becomes an error like any other, but the program's panic hook hears of it first
-    /// and, as it is by default, prints a line to standard error; it belongs to the program, and is left as it is.
+    /// The reader of workbooks may panic over a damaged one. That becomes an error like any other,
+    /// but the program's panic hook hears of it first and, as it is by default, prints a line to
+    /// standard error; it belongs to the program, and is left as it is.
     ///
     /// # Errors
-    /// [`TableError`], with line and column, for a cell that is not a finite number, a height below the floor, a column
-    /// that is not known or has no unit, times that run backwards, readings given twice; and for an empty file.
+    /// [`TableError`], with line and column, for a cell that is not a finite number, a height below
+    /// the floor, a column that is not known or has no unit, times that run backwards, readings
+    /// given twice; and for an empty file.
     pub fn parse(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, TableError> {
         Ok(file::table(name, bytes, options)?.checked())
     }
@@ -239,7 +249,8 @@ impl Table {
         self
     }
 
-    /// One trial from the heights of its apexes in metres: the height of release first, then each rebound.
+    /// One trial from the heights of its apexes in metres: the height of release first, then each
+    /// rebound.
     ///
     /// ```
     /// let table = saltus_fit::Table::from_heights(&[1.0, 0.30, 0.10])?;
@@ -304,6 +315,7 @@ impl Table {
             readings,
             timed: None,
             stated: Vec::new(),
+            beside: Vec::new(),
         }];
         let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
         check::table(&mut table);

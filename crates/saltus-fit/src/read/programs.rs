@@ -1,4 +1,5 @@
-//! What programs write: Tracker, `ImageJ`, Vernier, Audacity's labels, runs side by side, bare numbers.
+//! What programs write: Tracker, `ImageJ`, Vernier, Audacity's labels, runs side by side, bare
+//! numbers.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -9,7 +10,7 @@ use super::cell::Cell;
 use super::grid::{Grid, View};
 use super::heading::{Heading, What};
 use super::region::{self, Region};
-use super::units::Unit;
+use super::units::{Dimension, Unit};
 use crate::error::TableError;
 
 /// The tables of a text, and what they are.
@@ -82,7 +83,11 @@ fn position(view: View<'_>, row: usize, name: &str) -> Option<usize> {
 /// Whether every cell of a row that holds anything is a number.
 fn numbers(view: View<'_>, row: usize) -> bool {
     let bare = |column: usize| {
-        view.cell(row, column).is_empty() || matches!(view.read(row, column), Cell::Number(_) | Cell::Lost)
+        let measured = |cell: Cell| match cell {
+            Cell::Number(m) => m.unit.is_none_or(|unit| unit.dimension != Dimension::Other),
+            other => other == Cell::Lost,
+        };
+        view.cell(row, column).is_empty() || measured(view.read(row, column))
     };
     (0..view.width(row)).all(bare)
 }
@@ -95,7 +100,8 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
     Region { given: true, ..Region::new(view, header, 0, (start..view.rows()).collect()) }
 }
 
-/// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels stand at the contacts.
+/// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
+/// stand at the contacts.
 fn labels(view: View<'_>) -> Option<Region<'_>> {
     let number = |row: usize, column: usize| match view.read(row, column) {
         Cell::Number(measured) => Some(measured.value),
@@ -148,7 +154,8 @@ fn picked(width: usize, chosen: &[(usize, &str)]) -> Vec<String> {
     (0..width).map(name).collect()
 }
 
-/// A line of track names (not always), then `t x y ...` in any order, `x y ...` again for every further track.
+/// A line of track names (not always), then `t x y ...` in any order, `x y ...` again for every
+/// further track.
 fn tracker<'a>(view: View<'a>, options: &ReadOptions) -> Option<Recognised<'a>> {
     let at =
         (0..view.rows().min(3)).find(|&row| view.cell(row, 0) == "t" && view.cells(row).any(|cell| cell == "y"))?;
@@ -182,8 +189,8 @@ fn tracker<'a>(view: View<'a>, options: &ReadOptions) -> Option<Recognised<'a>> 
     (!regions.is_empty()).then_some(Recognised { what: Some("a Tracker export (s, m)"), regions, tracks: true })
 }
 
-/// Data sets below one another: a line of the format, one of the source, one of the name; then long names, short names (not
-/// always), units; then rows up to one of zeros or the next data set.
+/// Data sets below one another: a line of the format, one of the source, one of the name; then long
+/// names, short names (not always), units; then rows up to one of zeros or the next data set.
 fn vernier(view: View<'_>) -> Result<Recognised<'_>, TableError> {
     let begins = |row: usize| view.cell(row, 0).to_lowercase().starts_with("vernier format");
     let starts: Vec<usize> = (0..view.rows()).filter(|&row| begins(row)).collect();
@@ -228,7 +235,8 @@ fn distinct(regions: &mut [Region<'_>]) {
     }
 }
 
-/// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank column or not.
+/// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank
+/// column or not.
 fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let header = &region.header;
     let run = |cell: &str| {
@@ -289,7 +297,8 @@ fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> {
     (groups.len() > 1 && same).then_some(groups)
 }
 
-/// Numbers without names: a list, if the options say of what; a track of pixels, if they say how many frames a second.
+/// Numbers without names: a list, if the options say of what; a track of pixels, if they say how
+/// many frames a second.
 fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<Region<'a>, TableError> {
     let rows = || (0..view.rows()).collect::<Vec<usize>>();
     let width = view.cells(0).collect::<Vec<_>>().iter().rposition(|cell| !cell.is_empty()).map_or(1, |last| last + 1);
@@ -302,8 +311,8 @@ fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<R
         };
         let own = (0..view.rows()).find_map(of);
         let kind = match (&options.height_unit, &options.time_unit, own) {
-            (Some(_), None, _) | (_, _, Some(super::units::Dimension::Length)) => "height",
-            (None, Some(_), _) | (_, _, Some(super::units::Dimension::Time)) => "time",
+            (Some(_), None, _) | (_, _, Some(Dimension::Length)) => "height",
+            (None, Some(_), _) | (_, _, Some(Dimension::Time)) => "time",
             _ => {
                 return Err(view
                     .error(0, 0, "the list has no header: are these heights or times, and in which unit?")

@@ -78,7 +78,8 @@ fn line_across(region: &Region<'_>, line: u64) -> usize {
 /// Lines that may stand above the names of the columns, and between two tables.
 const HEAD: usize = 60;
 
-/// A header: its names, the first of its lines, the first row below, and how much of it is understood.
+/// A header: its names, the first of its lines, the first row below, and how much of it is
+/// understood.
 struct Header {
     names: Vec<String>,
     at: usize,
@@ -118,7 +119,9 @@ pub(super) fn nearest(view: View<'_>) -> Region<'_> {
 fn texts(view: View<'_>, span: std::ops::Range<usize>) -> Vec<LeftAside> {
     let text = |row: usize| {
         let words: Vec<&str> = view.cells(row).filter(|cell| !cell.is_empty()).collect();
-        let numbers = (0..view.width(row)).filter(|&c| view.is_number(row, c)).count();
+        // A number of something else, such as a frame rate, is none of a table.
+        let other = |c: usize| matches!(view.read(row, c), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension == Dimension::Other));
+        let numbers = (0..view.width(row)).filter(|&c| view.is_number(row, c) && !other(c)).count();
         (numbers * 2 <= words.len())
             .then(|| LeftAside::new(Part::Text, shown(&words.join(" ")), Why::Note).at(view.line(row, 0)))
     };
@@ -166,15 +169,19 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     let line = |n: usize| -> Vec<String> { view.cells(n).map(str::to_owned).collect() };
     let one = line(row);
     let below = |n: usize| n < end && names_only(view, n);
-    // Units are no names.
-    if of_units(&one) {
+    // Units are no names; and one name alone above several is a title.
+    let names = |n: usize| view.cells(n).filter(|cell| !cell.is_empty()).count();
+    let titled =
+        names(row) == 1 && !one[0].is_empty() && row + 1 < end && names_only(view, row + 1) && names(row + 1) > 1;
+    if of_units(&one) || titled {
         return found;
     }
     let mut push = |names: Vec<String>, next: usize| {
         let score = score(&names);
         let score = if (1..VALUE).contains(&score) && measured(view, &names, next) { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
-        // A row of words may stand between, such as of units that are not known; a header without rows is one too.
+        // A row of words may stand between, such as of units that are not known; a header without
+        // rows is one too.
         if score > 0 && (next >= end || numbers(next) || next + 1 < end && numbers(next + 1) || events(view, next)) {
             found.push(Header { names, at: row, below: next, score });
         }

@@ -1,4 +1,5 @@
-//! What part columns play beside one another: means and errors, repeats and bounces, clocks and intervals; and their quantity and unit.
+//! What part columns play beside one another: means and errors, repeats and bounces, clocks and
+//! intervals; and their quantity and unit.
 
 use std::collections::BTreeSet;
 
@@ -9,13 +10,14 @@ use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
-use super::units::{Dimension, Scale, Unit};
+use super::units::Dimension;
 use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
 use crate::statistics::median;
 
 impl Columns {
-    /// `Drop` is the height of release beside trials; beside readings that say what they are it may only count, and then holds 1, 2, 3.
+    /// `Drop` is the height of release beside trials; beside readings that say what they are it may
+    /// only count, and then holds 1, 2, 3.
     pub(super) fn drops(&mut self, region: &Region<'_>) {
         let trials = self.values().any(|(_, _, v)| !v.trial.is_empty() || !v.group.is_empty());
         let rows = self.values().any(|(_, c, v)| !v.or_trial && v.at != At::Release && (c.unit.is_some() || !trials));
@@ -51,7 +53,7 @@ impl Columns {
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
                         // The greatest height between two bounces is that of the apex.
-                        None if value.role == Role::Max && self.number().is_some_and(|(_, sure)| sure) => {
+                        None if value.role == Role::Max && self.of_bounces(*index) => {
                             self.read(*index);
                         }
                         None => return Err(self.extreme(region, *index)),
@@ -76,6 +78,14 @@ impl Columns {
             }
         }
         Ok(())
+    }
+
+    /// Whether the rows are bounces, by the name that counts them or by that of the column itself:
+    /// `after the n-th impact`.
+    fn of_bounces(&self, index: usize) -> bool {
+        let column = &self.columns[index];
+        let nth = column.heading.place == Some(0) || matches!(column.value().map(|v| v.at), Some(At::Nth(_)));
+        nth && column.heading.has(Atom::After) || self.number().is_some_and(|(_, sure)| sure)
     }
 
     /// A column that plays another part is that of the readings.
@@ -111,8 +121,9 @@ impl Columns {
         }
     }
 
-    /// Columns that are numbered may be bounces or repeats. Repeats are averaged, or are as high as one another below the release.
-    pub(super) fn repeats(&mut self, region: &Region<'_>) {
+    /// Columns that are numbered may be bounces or repeats. Repeats are averaged, or are as high as
+    /// one another below the release.
+    pub(super) fn repeats(&mut self, region: &Region<'_>, released: bool) {
         // Where rows are bounces, columns that are numbered are trials, whatever they hold.
         let rows = self.number().is_some_and(|(_, sure)| sure);
         let numbered = |v: &Value| match v.at {
@@ -134,9 +145,9 @@ impl Columns {
         if nth.len() < 2 || counted {
             return;
         }
-        let averaged =
-            drop.is_some() && self.columns.iter().any(|c| c.heading.has(Atom::Mean) && c.kind == Kind::Aside);
-        if !rows && !averaged && !drop.is_some_and(|drop| level(region, drop, &nth)) {
+        let mean = self.columns.iter().any(|c| c.heading.has(Atom::Mean) && c.kind == Kind::Aside);
+        let averaged = mean && (drop.is_some() || released);
+        if !rows && !averaged && !level(region, drop, &nth, mean) {
             return;
         }
         let names: Vec<String> = nth.iter().map(|&n| self.columns[n].heading.text.clone()).collect();
@@ -149,7 +160,8 @@ impl Columns {
             .push(format!("'{}' are taken for repeats and not for bounces one after another", names.join("', '")));
     }
 
-    /// The quantity of columns that do not say it: from their cells, the rows' names, their neighbours, the options.
+    /// The quantity of columns that do not say it: from their cells, the rows' names, their
+    /// neighbours, the options.
     pub(super) fn infer(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
         let silent: Vec<usize> = self.values().filter(|(_, _, v)| v.what == What::Unsaid).map(|(n, _, _)| n).collect();
         let label = self.one(&Kind::Label).or(self.number().map(|(n, _)| n));
@@ -163,6 +175,10 @@ impl Columns {
                 _ if clock(region.cell(row, index)).is_some() => Some(Dimension::Time),
                 _ => None,
             });
+            if own == Some(Dimension::Other) {
+                self.leave(index, Why::Other);
+                continue;
+            }
             let neighbour =
                 self.values().find(|(_, c, v)| v.what != What::Unsaid && c.unit.is_some()).map(|(_, _, v)| v.what);
             let what = match (own, of_rows, options) {
@@ -177,6 +193,8 @@ impl Columns {
                 (_, _, ReadOptions { height_unit: Some(_), time_unit: None, .. }) => What::Height,
                 (_, _, ReadOptions { height_unit: None, time_unit: Some(_), .. }) => What::Time,
                 _ if neighbour.is_some_and(|what| what == What::Time) => What::Time,
+                _ if matches!(region.units, (None, Some(_))) => What::Height,
+                _ if matches!(region.units, (Some(_), None)) => What::Time,
                 _ => {
                     let text = shown(&self.columns[index].heading.text);
                     let message = format!("does '{text}' hold heights or times, and in which unit?");
@@ -267,180 +285,10 @@ impl Columns {
             }
         }
     }
-
-    /// The unit of every column of numbers.
-    pub(super) fn scales(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
-        let placed = self.any(What::Height, None) || self.any(What::Time, None);
-        for index in 0..self.columns.len() {
-            // Programs write speeds in units of their own beside the places that they follow from.
-            let column = &self.columns[index];
-            if placed && column.holds(What::Speed) && column.unit.is_none_or(|unit| unit.dimension != Dimension::Speed)
-            {
-                self.leave(index, Why::Derived);
-            }
-            let dimension = match &self.columns[index].kind {
-                Kind::Value(value) => value.what.dimension(),
-                Kind::Lost => Some(Dimension::Length),
-                Kind::Error(of) | Kind::High(of) => self.columns[*of].value().and_then(|v| v.what.dimension()),
-                _ => None,
-            };
-            if let Some(dimension) = dimension {
-                self.columns[index].unit = self.scale(region, options, index, dimension)?;
-            }
-        }
-        for dimension in [Dimension::Length, Dimension::Time] {
-            self.overrule(region, options, dimension)?;
-        }
-        Ok(())
-    }
-
-    fn scale(
-        &mut self,
-        region: &Region<'_>,
-        options: &ReadOptions,
-        index: usize,
-        dimension: Dimension,
-    ) -> Result<Option<Unit>, TableError> {
-        let sized = |unit: Unit| match (unit.scale, options.scale) {
-            (Scale::Pixels, Some(metres)) => Unit::pixel_of(metres),
-            _ => unit,
-        };
-        let column = &self.columns[index];
-        let name = shown(&column.heading.text);
-        let of = match column.kind {
-            Kind::Error(of) | Kind::High(of) => Some(of),
-            _ => None,
-        };
-        if let Some(unit) = column.unit {
-            if unit.dimension == dimension {
-                return Ok(Some(sized(unit)));
-            }
-            return Err(self.mismatch(region, index, dimension));
-        }
-        if let Some(unit) = stated(region, options, dimension)? {
-            return Ok(Some(sized(unit)));
-        }
-        if let Some(of) = of {
-            return Ok(self.columns[of].unit);
-        }
-        let default = if dimension == Dimension::Time { region.units.0 } else { region.units.1 };
-        // Only pixels are scaled: whoever gives a scale has pixels.
-        let pixels = options.scale.is_some() && dimension == Dimension::Length;
-        if let Some(unit) = default.or(pixels.then_some(Unit::PIXEL)).filter(|unit| unit.dimension == dimension) {
-            return Ok(Some(sized(unit)));
-        }
-        let cells: Vec<usize> = region.rows.iter().copied().filter(|&row| region.view.is_number(row, index)).collect();
-        let clocks = cells.iter().filter(|&&row| clock(region.cell(row, index)).is_some()).count();
-        if dimension == Dimension::Time && clocks > 0 && clocks == cells.len() {
-            return Ok(Some(Unit::SECOND));
-        }
-        let bare = |row: &&usize| !matches!(region.view.read(**row, index), Cell::Number(m) if m.unit.is_some());
-        match cells.iter().find(bare) {
-            None if !cells.is_empty() => return Ok(None),
-            Some(&row) if cells.len() > 1 && cells.iter().filter(bare).count() < cells.len() => {
-                return Err(region
-                    .view
-                    .error(row, index, format!("this number has no unit, and others of '{name}' have one"))
-                    .help("write the unit behind each, or once in the header"));
-            }
-            _ => {}
-        }
-        // A film needs no scale.
-        let filmed = region.frames || self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Frame));
-        if dimension == Dimension::Length && filmed {
-            self.notes
-                .push(format!("'{name}' has no unit: taken as pixels of unknown size, which a COR does not need"));
-            return Ok(Some(Unit::PIXEL));
-        }
-        if let Some(unit) = self.of_the_drop(region, index, dimension) {
-            return Ok(Some(unit));
-        }
-        if let Some(unit) = self.adopted(region, index, dimension) {
-            return Ok(Some(unit));
-        }
-        Err(self.no_unit(region, index, dimension))
-    }
-
-    /// The unit of the height of release in the heading, if the numbers below it are no higher in it.
-    fn of_the_drop(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
-        let drop = self.columns[index].value()?.drop.as_ref().filter(|drop| drop.unit.dimension == dimension)?;
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(m) => Some(m.value),
-            _ => None,
-        };
-        let most = region.rows.iter().filter_map(number).fold(0.0, f64::max);
-        (NEAR * drop.value..=drop.value).contains(&most).then_some(drop.unit)
-    }
-
-    /// The unit of the neighbours, if they have one and the numbers below it make sense: no rebound is higher than the release.
-    fn adopted(&mut self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
-        let mut units: Vec<(usize, Unit)> = self
-            .values()
-            .filter(|(n, c, v)| *n != index && v.what.dimension() == Some(dimension) && c.heading.unit.is_some())
-            .filter_map(|(n, c, _)| Some((n, c.heading.unit?)))
-            .collect();
-        let (from, unit) = units.pop()?;
-        if units.iter().any(|(_, other)| *other != unit) || unit.unscaled() {
-            return None;
-        }
-        let most = |column: usize| {
-            let number = |row: &usize| match region.view.read(*row, column) {
-                Cell::Number(m) => Some(m.value),
-                _ => None,
-            };
-            region.rows.iter().filter_map(number).fold(0.0, f64::max)
-        };
-        let (own, other) = (most(index), most(from));
-        let sane = own > 0.0 && (NEAR * other..=other / NEAR).contains(&own);
-        let release = self.columns[from].value().is_some_and(|v| v.at == At::Release);
-        if !sane || release && own > other {
-            return None;
-        }
-        let (name, of) = (shown(&self.columns[index].heading.text), shown(&self.columns[from].heading.text));
-        self.notes.push(format!("'{name}' is taken to be in the unit of '{of}'"));
-        Some(unit)
-    }
-
-    fn no_unit(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> TableError {
-        let text = shown(&self.columns[index].heading.text);
-        let (example, option) = match dimension {
-            Dimension::Time => (format!("{text} (s)"), "--time-unit s"),
-            Dimension::Speed => (format!("{text} (m/s)"), "--header with it"),
-            _ => (format!("{text} (cm)"), "--height-unit cm (or px)"),
-        };
-        region
-            .header_error(index, format!("the column '{text}' has no unit"))
-            .question()
-            .help(format!("name it '{example}', or give {option}; known are {}", dimension.known()))
-    }
-
-    /// A unit that is stated is for columns that name none. Where all of them name one, and another, it can only mean that they are wrong: what
-    /// is stated holds, with a warning.
-    fn overrule(&mut self, region: &Region<'_>, options: &ReadOptions, dimension: Dimension) -> Result<(), TableError> {
-        let Some(unit) = stated(region, options, dimension)? else { return Ok(()) };
-        let unit = match (unit.scale, options.scale) {
-            (Scale::Pixels, Some(metres)) => Unit::pixel_of(metres),
-            _ => unit,
-        };
-        let name = if dimension == Dimension::Time { &options.time_unit } else { &options.height_unit };
-        let (name, of) = (name.as_deref().unwrap_or_default(), |c: &super::columns::Column| {
-            c.unit.is_some_and(|u| u.dimension == dimension) && !matches!(c.kind, Kind::Aside | Kind::Setting)
-        });
-        if !self.columns.iter().filter(|c| of(c)).all(|c| c.heading.unit.is_some()) {
-            return Ok(());
-        }
-        for column in self.columns.iter_mut().filter(|c| of(c) && c.unit != Some(unit)) {
-            column.unit = Some(unit);
-            self.warnings.push(format!(
-                "the numbers of '{}' are taken to be in {name}, as stated, against its name",
-                column.heading.text
-            ));
-        }
-        Ok(())
-    }
 }
 
-/// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them left out.
+/// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them left
+/// out.
 fn counts(region: &Region<'_>, index: usize) -> bool {
     let cells = || region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
     let numbers: Option<BTreeSet<usize>> = cells().map(|cell| cell.parse().ok()).collect();
@@ -450,27 +298,9 @@ fn counts(region: &Region<'_>, index: usize) -> bool {
     })
 }
 
-/// A rebound is read down to this part of its neighbour.
-const NEAR: f64 = 0.02;
-
-/// The unit that is stated beside the table.
-fn stated(region: &Region<'_>, options: &ReadOptions, dimension: Dimension) -> Result<Option<Unit>, TableError> {
-    let given = match dimension {
-        Dimension::Time => &options.time_unit,
-        Dimension::Length => &options.height_unit,
-        _ => return Ok(None),
-    };
-    let Some(name) = given.as_deref().map(str::trim) else { return Ok(None) };
-    match Unit::parse(name).filter(|unit| unit.dimension == dimension) {
-        Some(unit) => Ok(Some(unit)),
-        None => Err(region
-            .error(format!("the unit given, '{name}', is not a unit of {}", dimension.noun()))
-            .help(format!("use one of {}", dimension.known()))),
-    }
-}
-
-/// Whether heights side by side are nearly as high as one another, and well below the release: repeats, and not bounces.
-fn level(region: &Region<'_>, drop: usize, nth: &[usize]) -> bool {
+/// Whether heights side by side are nearly as high as one another, and well below the release:
+/// repeats, and not bounces.
+fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
     /// A ball that keeps more of its height than this keeps it at the first bounce too.
     const LEVEL: f64 = 0.95;
     const FALLS: f64 = 0.9;
@@ -486,5 +316,6 @@ fn level(region: &Region<'_>, drop: usize, nth: &[usize]) -> bool {
         median(&mut all.collect::<Vec<f64>>())
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
-    ratios(&[(drop, nth[0])]).zip(ratios(&later)).is_some_and(|(first, later)| later > LEVEL && first < FALLS)
+    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < FALLS));
+    below && ratios(&later).is_some_and(|later| later > LEVEL)
 }

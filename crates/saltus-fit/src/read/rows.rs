@@ -1,5 +1,8 @@
 //! Which rows of a table hold readings, what their first cells call them, and which are left aside.
 
+use std::collections::HashMap;
+
+use super::Event;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::columns::{Columns, Kind};
@@ -28,6 +31,8 @@ pub(super) struct Rows {
     pub(super) aside: Vec<LeftAside>,
     /// What the scale reads at the floor: the row, and the column of heights.
     pub(super) floor: Option<(usize, usize)>,
+    /// Numbers of bounces were rounded to whole ones.
+    pub(super) rounded: bool,
 }
 
 /// Sorts the rows of a table out.
@@ -37,6 +42,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         .filter(|&n| !matches!(columns.columns[n].kind, Kind::Aside | Kind::Setting))
         .collect();
     let key = columns.number().map(|(n, _)| n).or(columns.one(&Kind::Label));
+    let diagram = columns.number().map_or_else(HashMap::new, |(key, _)| off_a_diagram(region, key));
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
         let line = region.view.line(row, key.unwrap_or(0));
@@ -94,7 +100,9 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Statistic, Part::Row));
             continue;
         }
-        found.rows.push(named(region, columns, row, key)?);
+        let read = named(region, columns, row, key, &diagram)?;
+        found.rounded |= diagram.contains_key(&row);
+        found.rows.push(read);
     }
     Ok(found)
 }
@@ -120,9 +128,32 @@ fn event_named(heading: &Heading) -> bool {
 
 /// Whether a row tells where the floor is on the scale.
 fn is_floor(heading: &Heading) -> bool {
-    let floors = ["floor", "ground", "table", "desk", "boden", "tisch", "sol", "pavimento", "suelo", "zero level"];
-    matches!(heading.meaning, Meaning::Setting)
-        && folded(&heading.text).split_whitespace().any(|word| floors.contains(&word))
+    matches!(heading.meaning, Meaning::Setting) && names_floor(&heading.text)
+}
+
+/// Whether a word of a text is what a ball bounces on, at the zero of heights.
+pub(super) fn names_floor(text: &str) -> bool {
+    let floors = ["floor", "ground", "table", "desk", "boden", "tisch", "sol", "pavimento", "suelo"];
+    folded(text).split(|c: char| !c.is_alphanumeric()).any(|word| floors.contains(&word))
+}
+
+/// The event that a cell names.
+pub(super) fn event(cell: &str) -> Option<Event> {
+    match cell.to_lowercase().as_str() {
+        "release" | "released" | "drop" | "dropped" | "start" => return Some(Event::Release),
+        "contact" | "impact" | "bounce" | "floor" | "hit" | "touch" | "touchdown" | "ground" => {
+            return Some(Event::Contact);
+        }
+        "apex" | "peak" | "top" | "rebound" | "max" | "maximum" => return Some(Event::Apex),
+        _ => {}
+    }
+    let heading = Heading::parse(cell);
+    let contact = heading.has(Atom::Impact) && !heading.has(Atom::After);
+    match heading.unknown.is_empty() {
+        true if heading.has(Atom::Release) => Some(Event::Release),
+        true if contact => Some(Event::Contact),
+        _ => None,
+    }
 }
 
 /// The number of the bounce that a cell names: `3`, `Bounce 3`, `2nd`, `drop`.
@@ -167,12 +198,18 @@ fn sums(region: &Region<'_>, columns: &Columns, row: usize, above: &[Row]) -> bo
     !pairs.is_empty() && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * b.abs())
 }
 
-fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>) -> Result<Row, TableError> {
+fn named(
+    region: &Region<'_>,
+    columns: &Columns,
+    row: usize,
+    key: Option<usize>,
+    diagram: &HashMap<usize, usize>,
+) -> Result<Row, TableError> {
     let mut found = Row { at: row, bounce: None, name: String::new(), group: String::new() };
     let Some(key) = key else { return Ok(found) };
     let cell = region.cell(row, key);
-    found.bounce = bounce(cell);
     let number = matches!(columns.columns[key].kind, Kind::Number { .. });
+    found.bounce = bounce(cell).or(diagram.get(&row).copied());
     if found.bounce.is_some() {
         return Ok(found);
     }
@@ -196,4 +233,23 @@ fn named(region: &Region<'_>, columns: &Columns, row: usize, key: Option<usize>)
     found.group = heading.value().map_or(String::new(), |v| v.group.clone());
     cell.clone_into(&mut found.name);
     Ok(found)
+}
+
+/// The numbers of bounces that were read off a diagram, row by row: near whole numbers, each near
+/// another one. None where a cell holds anything else, or all are whole.
+fn off_a_diagram(region: &Region<'_>, key: usize) -> HashMap<usize, usize> {
+    /// Numbers read off a diagram are off by so much at most.
+    const OFF: f64 = 0.1;
+    let near = |row: usize| match region.view.read(row, key) {
+        Cell::Number(m) if m.unit.is_none() && (m.value - m.value.round()).abs() <= OFF && m.value > -OFF => {
+            // In range and whole: the cast is exact.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            Some((row, m.value.round().clamp(0.0, 1e6) as usize))
+        }
+        _ => None,
+    };
+    let whole = region.rows.iter().all(|&row| bounce(region.cell(row, key)).is_some());
+    let all: Option<Vec<(usize, usize)>> = region.rows.iter().map(|&row| near(row)).collect();
+    let all = all.filter(|all| !whole && all.windows(2).all(|pair| pair[1].1 > pair[0].1));
+    all.into_iter().flatten().collect()
 }

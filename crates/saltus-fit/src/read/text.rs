@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::cell::{self, Cell};
 use crate::error::TableError;
 
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
@@ -29,6 +30,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     } else {
         text
     };
+    let text = latex(&text).or_else(|| listed(&text)).map_or(text, Cow::Owned);
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }
@@ -40,7 +42,48 @@ fn numero(text: &str) -> Option<usize> {
     after.starts_with([',', ';', '\t']).then_some(at)
 }
 
-/// A text whose columns are made by runs of spaces, with a tab at the end of each run in their place; `None` if it is none.
+/// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, with tabs between
+/// them; `None` if any is something else.
+fn listed(text: &str) -> Option<String> {
+    let line = |line: &str| {
+        let (name, values) = line.split_once(": ")?;
+        let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
+        let values: Vec<&str> = values.split(", ").map(str::trim).collect();
+        let plain = !name.contains(['\t', ';']) && !name.trim().is_empty() && values.iter().all(number);
+        plain.then(|| format!("{}\t{}", name.trim(), values.join("\t")))
+    };
+    let lines = || text.lines().filter(|line| !line.trim().is_empty());
+    let found: Option<Vec<String>> = lines().map(line).collect();
+    // A blank line stays one, so that lines keep their numbers.
+    let mut found = found.filter(|found| found.len() > 1)?.into_iter();
+    let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
+    Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// A table of LaTeX, whose rows end in `\\` and whose cells are parted by `&`, with tabs in their
+/// place; `None` if it is none. A line stays a line.
+fn latex(text: &str) -> Option<String> {
+    let row = |line: &str| {
+        let (cells, after) = line.rsplit_once(r"\\")?;
+        let ends = after.trim().is_empty() || after.trim_start().starts_with('\\');
+        (ends && cells.contains('&')).then(|| cells.replace('&', "\t"))
+    };
+    if text.lines().filter(|line| row(line).is_some()).count() < 2 {
+        return None;
+    }
+    let plain = |line: &str| match row(line) {
+        Some(cells) => {
+            let spelt = cells.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ");
+            spelt.replace(['$', '{', '}'], "").replace(r"\textbf", "").replace(r"\mathrm", "")
+        }
+        None if line.trim_start().starts_with('\\') => String::new(),
+        None => line.to_owned(),
+    };
+    Some(text.lines().map(plain).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A text whose columns are made by runs of spaces, with a tab at the end of each run in their
+/// place; `None` if it is none.
 fn aligned(text: &str) -> Option<String> {
     let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
     let numbers = |line: &str| line.split_whitespace().all(|cell| cell.parse::<f64>().is_ok());
@@ -93,12 +136,14 @@ fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => (Cow::Borrowed(text), None),
-        // What is no UTF-8 was written by a program that knew one byte a character: Latin-1, near enough.
+        // What is no UTF-8 was written by a program that knew one byte a character: Latin-1, near
+        // enough.
         Err(_) => (Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()), Some("Latin-1")),
     }
 }
 
-/// Whether this is UTF-16, and then whether its low byte comes first: by its mark, or by the zeros between Latin letters.
+/// Whether this is UTF-16, and then whether its low byte comes first: by its mark, or by the zeros
+/// between Latin letters.
 fn utf16(bytes: &[u8]) -> Option<bool> {
     match bytes {
         [0xFF, 0xFE, ..] => Some(true),

@@ -1,8 +1,12 @@
-//! What the lines above a table state: how many frames were filmed in a second, and the height of release.
+//! What the lines above a table state: a frame rate, the height of release, the unit and the error
+//! of all readings; and lengths that are not used.
 
-use super::heading::{Heading, release};
+use super::cell::{self, Cell};
+use super::grid::shown;
+use super::heading::{At, Heading, Role, released};
 use super::region::Region;
-use super::units::Dimension;
+use super::rows::names_floor;
+use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
 
@@ -15,6 +19,12 @@ pub(super) struct Stated {
     pub(super) fps: Option<(f64, u64)>,
     /// The height of release, m, and the line.
     pub(super) drop: Option<(f64, u64)>,
+    /// The units of all times and of all heights.
+    pub(super) units: (Option<Unit>, Option<Unit>),
+    /// The standard errors of heights, m, and of times, s.
+    pub(super) sigma: (Option<f64>, Option<f64>),
+    /// A line that speaks of heights, states a length, and is not used; and its number.
+    pub(super) length: Option<(String, u64)>,
 }
 
 /// Remarks below a table are looked for in so many of its last lines.
@@ -52,8 +62,23 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         let line = region.view.line(row, 0);
         let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
         let text = cells.join(" ");
-        found.fps = found.fps.or(frame_rate(&text).map(|fps| (fps, line)));
-        found.drop = found.drop.or(drop(&text).map(|drop| (drop, line)));
+        let (fps, height, sigma, unit) =
+            (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text), unit(&text));
+        if fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
+            found.length = found.length.or(Some((shown(&text), line)));
+        }
+        found.fps = found.fps.or(fps.map(|fps| (fps, line)));
+        found.drop = found.drop.or(height.map(|drop| (drop, line)));
+        if let Some((value, Dimension::Time)) = sigma {
+            found.sigma.1 = found.sigma.1.or(Some(value));
+        } else if let Some((value, _)) = sigma {
+            found.sigma.0 = found.sigma.0.or(Some(value));
+        }
+        match unit.map(|unit| unit.dimension) {
+            Some(Dimension::Time) => found.units.0 = found.units.0.or(unit),
+            Some(_) => found.units.1 = found.units.1.or(unit),
+            None => {}
+        }
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
     found
@@ -80,23 +105,78 @@ fn frame_rate(text: &str) -> Option<f64> {
     number.or_else(named).map(|(value, _)| value)
 }
 
-/// `Drop height: 1 m`, `Drop height (cm) 100`, `Dropped from 100 cm`; every other word has to be understood.
+/// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
+/// clause that states it every word up to the number has to be understood.
 fn drop(text: &str) -> Option<f64> {
-    let understood = |text: &str| {
-        let words = split(text);
-        let released = words.iter().any(|w| w.is(Atom::Release));
+    clauses(text).find_map(|clause| {
         let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
-        let plain =
-            |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turned.iter().any(|atom| w.is(*atom));
-        released && words.iter().all(plain)
+        let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
+        let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
+        if let Some((height, before, after)) = released(clause) {
+            // The sign that stands for it: `Fallhöhe h0 = 1 m`.
+            let named = before.trim_end_matches([' ', '=', ':', '(']);
+            let sign = ["h0", "h_0", "h₀"].iter().find_map(|sign| named.strip_suffix(sign));
+            let (before, after) = (split(sign.unwrap_or(named)), split(after));
+            let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
+            // What is dropped from a height is dropped from it, wherever it falls.
+            let said = before.iter().any(|w| w.is(Atom::Release)) && before.iter().any(of_height);
+            let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
+            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns));
+            return fits.then(|| height.metres());
+        }
+        let (value, before) = last_number(clause.trim_end())?;
+        let heading = Heading::parse(before);
+        let unit = heading.unit.filter(|unit| unit.dimension == Dimension::Length && !unit.unscaled())?;
+        (heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.turns()).then(|| unit.si(value))
+    })
+}
+
+/// The parts of a sentence; a comma within a number parts none.
+fn clauses(text: &str) -> impl Iterator<Item = &str> {
+    text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "))
+}
+
+/// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.
+/// Every word has to be understood.
+fn error(text: &str) -> Option<(f64, Dimension)> {
+    let (name, size) = text.split_once([':', '=', '±'])?;
+    let size = size.trim().trim_start_matches(['±', '+', '/', '-', ' ']);
+    let Cell::Number(measured) = cell::read(size, false) else { return None };
+    let (heading, unit) = (Heading::parse(name), measured.unit.filter(|unit| !unit.unscaled())?);
+    let stated = heading.has(Atom::Error) || text.contains('±');
+    let alike = match unit.dimension {
+        Dimension::Length => !heading.has(Atom::Time) && !heading.has(Atom::Interval),
+        Dimension::Time => !heading.has(Atom::Height) && !heading.has(Atom::Distance),
+        _ => false,
     };
-    if let Some((height, rest)) = release(text) {
-        return understood(&rest).then(|| height.metres());
-    }
-    let (value, before) = last_number(text.trim_end())?;
-    let heading = Heading::parse(before);
-    let unit = heading.unit.filter(|unit| unit.dimension == Dimension::Length && !unit.unscaled())?;
-    (heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.turns()).then(|| unit.si(value))
+    let fits = stated && alike && heading.unknown.is_empty() && !heading.turns() && measured.value > 0.0;
+    fits.then(|| (unit.si(measured.value), unit.dimension))
+}
+
+/// `All heights in cm`: the unit of what names none. Every word has to be understood, and nothing
+/// is counted.
+fn unit(text: &str) -> Option<Unit> {
+    let heading = Heading::parse(text);
+    let value = heading.value().filter(|_| heading.unknown.is_empty() && !heading.has(Atom::Release))?;
+    let unit = heading.unit.filter(|unit| value.what.dimension() == Some(unit.dimension) && !unit.unscaled());
+    let counted = text.contains(|c: char| c.is_ascii_digit());
+    let several = heading.text.trim().contains(' ') && value.at == At::Row && value.role == Role::Reading;
+    unit.filter(|_| several && !counted)
+}
+
+/// Whether a text states a length and speaks of heights, places or the floor: `the floor is at the
+/// 12 cm mark`.
+fn states_length(text: &str) -> bool {
+    let words: Vec<&str> =
+        text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';', ':', '='])).collect();
+    let length = |unit: Option<Unit>| unit.is_some_and(|u| u.dimension == Dimension::Length && !u.unscaled());
+    let measured = |text: &str| matches!(cell::read(text, false), Cell::Number(m) if length(m.unit));
+    let stated = words.iter().any(|word| measured(word))
+        || words.windows(2).any(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()) && measured(&pair.join(" ")));
+    let of_heights = split(text)
+        .iter()
+        .any(|w| [Atom::Height, Atom::Position, Atom::Distance, Atom::Release].iter().any(|atom| w.is(*atom)));
+    stated && (of_heights || names_floor(text))
 }
 
 #[cfg(test)]
@@ -117,8 +197,54 @@ mod tests {
             ("The ball was released 5 cm from the edge", None, None),
             ("Expected drop height: 1 m", None, None),
             ("Mass (g) 58", None, None),
+            ("TP n°4 : rebonds ; hauteur initiale h0 = 1,50 m", None, Some(1.5)),
+            ("Test of batch 3, drop height 305 mm onto a steel block", None, Some(0.305)),
+            ("By group 4 on 3 May, dropped from 1.20 m onto the gym floor", None, Some(1.2)),
+            ("Predicted for a ball dropped from 1.20 m", None, None),
         ] {
             assert_eq!((frame_rate(text), drop(text)), (fps, height), "{text}");
+        }
+    }
+
+    #[test]
+    fn titles_state_units_and_errors() {
+        for (text, of_time, metres) in [
+            ("All heights in cm", None, Some(0.01)),
+            ("Heights in m", None, Some(1.0)),
+            ("Times in ms", Some(0.001), None),
+            ("Alle Höhen in cm", None, Some(0.01)),
+            ("Height of the wobble in m", None, None),
+            ("Drop height in cm", None, None),
+            ("Ball diameter in cm", None, None),
+            ("Bounce 1 in cm", None, None),
+        ] {
+            let found = unit(text).map(|unit| (unit.dimension, unit.si(1.0)));
+            let expected = of_time.map(|s| (Dimension::Time, s)).or(metres.map(|m| (Dimension::Length, m)));
+            assert_eq!(found, expected, "{text}");
+        }
+        for (text, expected) in [
+            ("Uncertainty in heights: ±1 cm", Some((0.01, Dimension::Length))),
+            ("Heights ± 5 mm", Some((0.005, Dimension::Length))),
+            ("Error of times = 0.01 s", Some((0.01, Dimension::Time))),
+            ("Uncertainty in heights: 0.01 s", None),
+            ("Diameter: 6.7 cm", None),
+            ("Heights were wobbly: ± 1 cm", None),
+        ] {
+            assert_eq!(error(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_length_that_is_said_of_heights_is_not_passed_over() {
+        for (text, states) in [
+            ("Heights measured to the top of the ball (diameter 6.7 cm)", true),
+            ("The floor is at the 12 cm mark of the tape", true),
+            ("Distance from the ceiling; floor is at 240cm", true),
+            ("Tennis ball, diameter 6.7 cm, mass 58 g", false),
+            ("Table 3: bounce heights of 2 balls", false),
+            ("Bounce heights, class 7b", false),
+        ] {
+            assert_eq!(states_length(text), states, "{text}");
         }
     }
 }

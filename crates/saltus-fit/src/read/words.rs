@@ -35,6 +35,9 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             Kind::Known(atoms)
         } else if let Some(n) = ordinal(&folded) {
             Kind::Ordinal(n)
+        } else if words.last().is_some_and(counts) && folded.len() > 1 && ORDINALS.contains(&&*folded) {
+            // `n-th`, `n-ten`: the end of a letter that counts.
+            continue;
         } else if let Ok(n) = folded.parse::<usize>() {
             if n <= COUNTED { Kind::Number(n) } else { Kind::Unknown }
         } else if folded.chars().count() == 1 {
@@ -70,7 +73,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
     words
 }
 
-/// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`; another one is not understood.
+/// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`;
+/// another one is not understood.
 pub(super) fn lettered(words: &mut [Word]) {
     let measured = |w: &Word| w.is(Atom::Height) || w.is(Atom::Rebound) || w.is(Atom::Interval);
     for n in 1..words.len().saturating_sub(1) {
@@ -133,12 +137,22 @@ pub(super) fn joined(word: &str) -> Option<(&str, &str)> {
     (!letters.is_empty() && digits.chars().all(|c| c.is_ascii_digit())).then_some((letters, digits))
 }
 
+/// What numbers end in that put something in a place of an order.
+const ORDINALS: [&str; 20] = [
+    "st", "nd", "rd", "th", "er", "re", "ere", "e", "eme", "ieme", "a", "o", "º", "ª", "°", "ter", "te", "ten", "tes",
+    "esimo",
+];
+
+/// Whether a word is a letter that stands for any number.
+fn counts(word: &Word) -> bool {
+    word.is(Atom::Number) && word.text.chars().count() == 1
+}
+
 /// The number that a word such as `2nd` or `1er` puts a bounce or a trial in.
 pub(super) fn ordinal(word: &str) -> Option<usize> {
     let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
     let (digits, end) = word.split_at(at);
-    let ends = ["st", "nd", "rd", "th", "er", "re", "ere", "e", "eme", "a", "o", "º", "ª", "°", "ter", "te"];
-    ends.contains(&end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
+    ORDINALS.contains(&end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
 }
 
 /// The numbers and names in a heading, each with what it counts.

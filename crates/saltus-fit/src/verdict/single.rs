@@ -1,7 +1,7 @@
 //! The COR of heights alone or of times alone, with what speaks against it.
 
 use super::judgement::{Cor, Judgement};
-use crate::compare::settings::{differ, drift};
+use crate::compare::settings::{differ, differ_beside, drift};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{FindingKind, Widening};
 use crate::model::LOSSLESS;
@@ -16,7 +16,8 @@ const LOUD: f64 = 0.1;
 /// A fit more probable than this has reading errors that were stated too large.
 const TOO_GOOD: f64 = 0.999;
 
-/// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated their error: the tallest height, the longest interval.
+/// The scatter of the readings about the fit, as a part of the largest of them, where nobody stated
+/// their error: the tallest height, the longest interval.
 fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {
     let of_bounces = kind.scatter.unwrap_or(0.0);
     if kind.sigma.source != Source::Scatter {
@@ -35,7 +36,8 @@ fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {
     of_bounces.max(kind.sigma.value / largest)
 }
 
-/// The COR of one kind of reading, with what speaks against it; `alone` where heights and times are not fitted together.
+/// The COR of one kind of reading, with what speaks against it; `alone` where heights and times are
+/// not fitted together.
 pub(crate) fn single<M: OneKind>(
     judgement: &mut Judgement,
     kind: &Kind<M>,
@@ -57,6 +59,12 @@ pub(crate) fn single<M: OneKind>(
         judgement.doubt(FindingKind::Lossless { readings });
     }
     let differ = settings::<M>(judgement, kind, (trials, evidence), &mut cor);
+    let beside = differ_beside(trials, &kind.separate, cor.value).filter(|(_, d)| d.p < REJECT && !differ);
+    if let Some((column, found)) = beside {
+        cor = Cor::within(cor.value, cor.low.min(found.low.1), cor.high.max(found.high.1));
+        judgement.widen(Widening::Settings);
+        judgement.doubt(FindingKind::AsideDiffers { column, low: found.low, high: found.high, p: found.p });
+    }
     let part = loudness(kind, trials);
     if part > LOUD && !differ {
         judgement.doubt(FindingKind::Loud { readings, part });
@@ -71,7 +79,8 @@ pub(crate) fn single<M: OneKind>(
         judgement.note(FindingKind::BouncesScatter { readings, scatter, sigma: kind.sigma });
     }
     if let Some(p) = kind.trend.filter(|p| *p < REJECT) {
-        // Where the chi-square is tested and holds, or trials repeat each other, the trend is worth a word, not a doubt.
+        // Where the chi-square is tested and holds, or trials repeat each other, the trend is worth
+        // a word, not a doubt.
         let held = kind.replicated || kind.estimate.p.is_some_and(|p| p >= REJECT);
         let trend = FindingKind::Trend { p };
         if held {
@@ -84,7 +93,8 @@ pub(crate) fn single<M: OneKind>(
     Some(cor)
 }
 
-/// Whether the readings scatter as their errors say; where they scatter by more, the error of the COR grows with it.
+/// Whether the readings scatter as their errors say; where they scatter by more, the error of the
+/// COR grows with it.
 fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor) {
     let (estimate, readings) = (&kind.estimate, M::READINGS);
     let (Some(p), Some(chi_square), Some(degrees_of_freedom)) =
@@ -115,7 +125,8 @@ fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor)
     }
 }
 
-/// Whether trials of different balls, floors or drop heights have different CORs; then the interval takes in each of them.
+/// Whether trials of different balls, floors or drop heights have different CORs; then the interval
+/// takes in each of them.
 fn settings<M: OneKind>(
     judgement: &mut Judgement,
     kind: &Kind<M>,
@@ -135,7 +146,8 @@ fn settings<M: OneKind>(
     true
 }
 
-/// The COR of the trials of one setting by themselves; what all trials together say of it is linear in how far it is from theirs.
+/// The COR of the trials of one setting by themselves; what all trials together say of it is linear
+/// in how far it is from theirs.
 fn of_setting<M: OneKind>(evidence: &Evidence, trials: &[Trial], setting: &str, sigma: Sourced) -> Option<f64> {
     let of = |t: &&TrialEvidence| trials.get(t.trial).is_some_and(|trial| trial.setting == setting);
     let own = Evidence { trials: evidence.trials.iter().filter(of).cloned().collect(), ..Evidence::default() };

@@ -43,7 +43,8 @@ fn kind(model: &ModelChoice) -> Option<Kind> {
     }
 }
 
-/// Notes models that fit better than one COR, or as well with another COR; doubts one COR where the first is so and it matters.
+/// Notes models that fit better than one COR, or as well with another COR; doubts one COR where the
+/// first is so and it matters.
 ///
 /// The models come with the best first. Answers whether one COR is doubted.
 pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
@@ -51,7 +52,8 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
     let least = list.first().map_or(0.0, |m| m.bic);
     let fits = !judgement.findings.iter().any(|f| matches!(f.kind, FindingKind::Misfit { .. }));
     let (mut seen, allowed) = (Vec::new(), judgement.cor.filter(|_| fits));
-    // What matters, beside one COR: if one of these is better, whatever comes close to the best may be the cause.
+    // What matters, beside one COR: if one of these is better, whatever comes close to the best may
+    // be the cause.
     let mut close: Vec<(Kind, &ModelChoice)> = Vec::new();
     // A model that another beats clearly is out of the question.
     for model in list.iter().filter(|m| !m.chosen && m.bic < least + CLEAR) {
@@ -67,7 +69,8 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
         if differ || changes(model) > LEVEL || matches!(kind, Kind::Each | Kind::Missed) {
             close.push((kind, model));
         }
-        // One that fits better counts even where its own error is as large as the difference; one that hardly does, with its COR alone.
+        // One that fits better counts even where its own error is as large as the difference; one
+        // that hardly does, with its COR alone.
         let reach = match (differ || model.bic < -BETTER && apart > SAME, model.bic < 0.0) {
             (true, _) => Some(NORMAL * model.cor.standard_error),
             (false, better) => better.then_some(0.0),
@@ -86,14 +89,16 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
     decided && one_cor_fails(judgement, close, list)
 }
 
-/// One COR, and the interval that is allowed for whatever other models say; none where one COR does not fit, and its interval is as long as the misfit.
+/// One COR, and the interval that is allowed for whatever other models say; none where one COR does
+/// not fit, and its interval is as long as the misfit.
 struct Open<'a> {
     one: &'a ModelChoice,
     allowed: Option<Cor>,
 }
 
 impl Open<'_> {
-    /// Whether a model is better than one COR by more than chance: of few readings a BIC is less by as much more often than it says.
+    /// Whether a model is better than one COR by more than chance: of few readings a BIC is less by
+    /// as much more often than it says.
     fn surely(&self, model: &ModelChoice) -> bool {
         let chance = model.misfit.zip(self.one.misfit).and_then(|(misfit, one)| misfit.by_chance(one));
         chance.is_none_or(|p| p < REJECT) && model.bic < 0.0
@@ -137,8 +142,9 @@ fn one_cor_fails(judgement: &mut Judgement, mut close: Vec<(Kind, &ModelChoice)>
     true
 }
 
-/// Says where it is the error of reading that decides for or against one COR: one that is stated may be larger than the readings show, and one that is
-/// not stated is no larger than what the best model leaves.
+/// Says where it is the error of reading that decides for or against one COR: one that is stated
+/// may be larger than the readings show, and one that is not stated is no larger than what the best
+/// model leaves.
 pub(crate) fn error_decides(
     judgement: &mut Judgement,
     list: &[ModelChoice],
@@ -169,7 +175,8 @@ pub(crate) fn error_decides(
     if scattered && left.scatter() > WORSE * misfit.scatter() {
         return;
     }
-    // With an error as large as the scatter about one COR, no other model is to be better by so much.
+    // With an error as large as the scatter about one COR, no other model is to be better by so
+    // much.
     if scattered != doubted || list.iter().any(|m| by_errors(m) < -CLEAR) {
         return;
     }
@@ -224,6 +231,7 @@ fn of_one_cor(kind: &FindingKind) -> bool {
             | FindingKind::Misfit { .. }
             | FindingKind::Trend { .. }
             | FindingKind::SettingsDiffer { .. }
+            | FindingKind::AsideDiffers { .. }
     )
 }
 

@@ -36,7 +36,8 @@ struct Builder<'a> {
     index: HashMap<String, usize>,
     /// Whether each column, of those that tell what was tried, tells groups apart.
     apart: Vec<bool>,
-    /// The rows of the last cells that are not empty, by column: a merged cell leaves the next ones empty.
+    /// The rows of the last cells that are not empty, by column: a merged cell leaves the next ones
+    /// empty.
     merged: HashMap<usize, usize>,
     /// The lines of rows of a series without a position.
     missing: Vec<u64>,
@@ -76,6 +77,9 @@ pub(super) fn table(
         table.notes.push(format!("{} rows kept and {skipped} left out by the filter", rows.rows.len()));
     }
     table.rows = rows.rows.len();
+    if rows.rounded {
+        table.repairs.push("numbers of bounces, as if read off a diagram, are rounded to whole ones".to_owned());
+    }
     let mut tracks = tracks(columns);
     let mut builder = Builder {
         region,
@@ -106,6 +110,9 @@ pub(super) fn table(
     let (region, columns) = (builder.region, builder.columns.clone());
     let mut table = builder.finish(options, &tracks, flights, table)?;
     stated::cors(region, &columns, &rows, &mut table.trials);
+    if !options.groups.iter().any(|name| name.trim() == "-") {
+        stated::beside(region, &columns, &rows, &mut table);
+    }
     Ok(table)
 }
 
@@ -154,7 +161,8 @@ fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &Read
     Ok(())
 }
 
-/// Heights without a scale: places on a picture need a zero, and a pixel is the error of reading one.
+/// Heights without a scale: places on a picture need a zero, and a pixel is the error of reading
+/// one.
 fn unscaled(
     region: &Region<'_>,
     columns: &Columns,
@@ -196,7 +204,8 @@ impl Builder<'_> {
             .filter(|n| columns[*n].kind == Kind::Setting || drops && release(n) && self.columns.values().count() > 1)
             .collect();
         self.keys = all.filter(|n| columns[*n].kind == Kind::Trial || self.settings.contains(n)).collect();
-        // A condition that is measured, such as a temperature, tells groups apart where its values repeat, or stand beside several trials.
+        // A condition that is measured, such as a temperature, tells groups apart where its values
+        // repeat, or stand beside several trials.
         let trials = match self.layout {
             Layout::Pairs | Layout::Wide => rows.rows.len(),
             _ => rows.rows.iter().map(|row| self.key(row)).collect::<HashSet<String>>().len(),
@@ -224,7 +233,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether a column of times holds those of flights: within each trial they fall, as the times of contacts cannot.
+    /// Whether a column of times holds those of flights: within each trial they fall, as the times
+    /// of contacts cannot.
     fn descending(&mut self, rows: &Rows, tracks: &[Track]) -> Result<bool, TableError> {
         if !matches!(self.layout, Layout::Numbered | Layout::Listed | Layout::Wide) {
             return Ok(false);

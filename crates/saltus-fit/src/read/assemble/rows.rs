@@ -7,12 +7,11 @@ use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::Cell;
 use crate::read::columns::Kind;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Heading, What};
+use crate::read::heading::{At, What};
 use crate::read::layout::{Layout, Track};
 use crate::read::region::Region;
-use crate::read::rows::Row;
+use crate::read::rows::{Row, event};
 use crate::read::units::Scale;
-use crate::read::vocabulary::Atom;
 use crate::read::{Event, Reading, Timed, Trial};
 
 impl Builder<'_> {
@@ -110,6 +109,7 @@ impl Builder<'_> {
             readings,
             timed: None,
             stated: Vec::new(),
+            beside: Vec::new(),
         });
         Ok(self.trials.len() - 1)
     }
@@ -159,7 +159,8 @@ impl Builder<'_> {
         }
         let high = height.map(|column| self.height(row.at, column)).transpose()?.flatten();
         if height.is_some() && (track.time.is_some() && !flights) && bounce == 0 {
-            // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds to.
+            // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds
+            // to.
             let (sigma_time, sigma_height) = (time.and_then(|t| t.1), high.and_then(|h| h.1));
             let (time, height) = (time.map(|t| t.0), high.map(|h| h.0));
             self.trials[trial].readings.push(Reading {
@@ -394,7 +395,8 @@ impl Builder<'_> {
         match (event, readings.last().map(|last| last.event)) {
             (Event::Release, _) => 0,
             (Event::Contact, _) => contacts + 1,
-            // An apex right after an apex or a release: there was a contact between, only nobody noted it.
+            // An apex right after an apex or a release: there was a contact between, only nobody
+            // noted it.
             (_, Some(Event::Apex | Event::Release)) => contacts + 1,
             _ => contacts,
         }
@@ -403,25 +405,13 @@ impl Builder<'_> {
 
 fn event_of(region: &Region<'_>, row: usize, index: usize) -> Result<Event, TableError> {
     let cell = region.cell(row, index);
-    Ok(match cell.to_lowercase().as_str() {
-        "release" | "released" | "drop" | "dropped" | "start" => Event::Release,
-        "contact" | "impact" | "bounce" | "floor" | "hit" | "touch" | "touchdown" | "ground" => Event::Contact,
-        "apex" | "peak" | "top" | "rebound" | "max" | "maximum" => Event::Apex,
-        "" => return Err(region.view.error(row, index, "the event is empty").help("write release, contact or apex")),
-        _ => {
-            let heading = Heading::parse(cell);
-            let release = heading.has(Atom::Release) && heading.unknown.is_empty();
-            let contact = heading.has(Atom::Impact) && !heading.has(Atom::After) && heading.unknown.is_empty();
-            if release {
-                return Ok(Event::Release);
-            }
-            if contact {
-                return Ok(Event::Contact);
-            }
-            return Err(region
-                .view
-                .error(row, index, format!("the event '{}' is not known", shown(cell)))
-                .help("write release (or drop), contact (or impact, bounce), or apex (or peak)"));
-        }
+    if cell.is_empty() {
+        return Err(region.view.error(row, index, "the event is empty").help("write release, contact or apex"));
+    }
+    event(cell).ok_or_else(|| {
+        region
+            .view
+            .error(row, index, format!("the event '{}' is not known", shown(cell)))
+            .help("write release (or drop), contact (or impact, bounce), or apex (or peak)")
     })
 }

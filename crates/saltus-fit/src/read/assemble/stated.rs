@@ -1,19 +1,23 @@
-//! What a table states beside its readings: a height of release above it or in an option, the CORs that its writer worked out.
+//! What a table states beside its readings: a height of release above it or in an option, the CORs
+//! that its writer worked out, and what is not used.
 
 use std::collections::HashMap;
 
 use super::Builder;
 use crate::error::TableError;
-use crate::read::Trial;
+use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::Cell;
 use crate::read::columns::{Columns, Kind};
+use crate::read::grid::shown;
 use crate::read::heading::What;
 use crate::read::layout::Track;
 use crate::read::region::Region;
 use crate::read::rows::Rows;
 use crate::read::units::Scale;
+use crate::read::{Table, Trial};
 
-/// A first height down to this part of the stated one is the release itself: no ball rebounds so high.
+/// A first height down to this part of the stated one is the release itself: no ball rebounds so
+/// high.
 const RELEASE: f64 = 0.99;
 
 /// Gives each trial the CORs that a column of the table works out beside its readings.
@@ -40,8 +44,40 @@ pub(super) fn cors(region: &Region<'_>, columns: &Columns, rows: &Rows, trials: 
     }
 }
 
+/// Gives each trial what stands in its rows in columns of other quantities, or of names that are
+/// not understood.
+pub(super) fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows, table: &mut Table) {
+    if region.view.across {
+        return;
+    }
+    let other = |name: &str| {
+        let of = |aside: &&LeftAside| aside.what == Part::Column && aside.name == name;
+        table.left_aside.iter().find(of).is_some_and(|aside| matches!(aside.why, Why::Other | Why::NotUnderstood))
+    };
+    let left: Vec<(usize, String)> = columns
+        .columns
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| c.kind == Kind::Aside)
+        .map(|(n, c)| (n, shown(&c.heading.text)))
+        .filter(|(_, name)| other(name))
+        .collect();
+    let rows: HashMap<u64, usize> = rows.rows.iter().map(|row| (region.view.line(row.at, 0), row.at)).collect();
+    for trial in &mut table.trials {
+        let own: Vec<usize> = trial.readings.iter().filter_map(|r| rows.get(&r.line).copied()).collect();
+        for (column, name) in &left {
+            let mut cells = own.iter().map(|&row| region.cell(row, *column));
+            let first = cells.next().filter(|cell| !cell.is_empty());
+            if let Some(cell) = first.filter(|first| cells.all(|cell| cell == *first)) {
+                trial.beside.push((name.clone(), cell.to_owned()));
+            }
+        }
+    }
+}
+
 impl Builder<'_> {
-    /// Gives the tracks the stated height of release, unless a column, or a row, tells it; says whether any took it.
+    /// Gives the tracks the stated height of release, unless a column, or a row, tells it; says
+    /// whether any took it.
     pub(super) fn dropped(&self, rows: &Rows, tracks: &mut [Track], drop: Option<f64>) -> Result<bool, TableError> {
         // Hundredths are of the release.
         let percent = self.columns.values().any(|(_, c, _)| c.unit.is_some_and(|unit| unit.scale == Scale::Percent));

@@ -2,11 +2,13 @@
 
 use super::{Column, Columns, Kind};
 use crate::error::TableError;
+use crate::read::Event;
 use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::{Cell, read};
 use crate::read::grid::shown;
 use crate::read::heading::{Heading, Meaning};
 use crate::read::region::Region;
+use crate::read::rows::event;
 use crate::read::units::Dimension;
 use crate::read::vocabulary::{Atom, folded, nearest};
 
@@ -61,7 +63,8 @@ impl Columns {
         Ok(())
     }
 
-    /// Columns whose words are not understood: left aside, unless their cells may tell balls or surfaces apart.
+    /// Columns whose words are not understood: left aside, unless their cells may tell balls or
+    /// surfaces apart.
     pub(super) fn not_understood(&mut self, region: &Region<'_>) -> Result<(), TableError> {
         for index in 0..self.columns.len() {
             let heading = &self.columns[index].heading;
@@ -70,6 +73,14 @@ impl Columns {
                 return Err(self.unknown(region, index, &word));
             }
             let cells: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, index)).collect();
+            let events = cells.iter().filter_map(|cell| event(cell));
+            let (release, impact) =
+                (events.clone().any(|e| e == Event::Release), events.clone().any(|e| e == Event::Contact));
+            // What happened, whatever stands above it.
+            if events.count() == cells.len() && release && impact && self.one(&Kind::Event).is_none() {
+                (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Event, Vec::new());
+                continue;
+            }
             let words = cells.iter().filter(|cell| !cell.is_empty()).all(|cell| read(cell, false) == Cell::Words);
             let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
             let differ = cells.iter().any(|cell| *cell != cells[0]);
@@ -129,7 +140,8 @@ impl Columns {
         region.error("no column holds heights or times").nothing().help(help)
     }
 
-    /// Several columns of readings that nothing in their names tells apart but words that are not understood: of persons, or of balls.
+    /// Several columns of readings that nothing in their names tells apart but words that are not
+    /// understood: of persons, or of balls.
     fn several(&self, region: &Region<'_>) -> Option<TableError> {
         let unknown = |c: &&Column| {
             let unit = c.heading.unit.is_some_and(|u| matches!(u.dimension, Dimension::Length | Dimension::Time));

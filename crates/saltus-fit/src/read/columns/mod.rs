@@ -1,11 +1,12 @@
-//! What the columns of a table are: a heading alone says much, its neighbours and its cells the rest.
+//! What the columns of a table are: a heading alone says much, its neighbours and its cells the
+//! rest.
 
 mod faults;
 mod pairs;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
-use super::cell::Cell;
+use super::cell::{Cell, dated};
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::region::Region;
@@ -78,8 +79,9 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// What the names of the columns say of them, and what they are beside one another.
-    pub(super) fn named(region: &Region<'_>, options: &ReadOptions) -> Result<Self, TableError> {
+    /// What the names of the columns say of them, and what they are beside one another; `released`
+    /// where a height of release is stated.
+    pub(super) fn named(region: &Region<'_>, options: &ReadOptions, released: bool) -> Result<Self, TableError> {
         let mut found =
             Self { columns: Vec::new(), aside: Vec::new(), notes: Vec::new(), warnings: Vec::new(), unscaled: false };
         for text in &region.header {
@@ -88,6 +90,7 @@ impl Columns {
         found.counted(region);
         found.measured(region);
         found.counting(region);
+        found.spanning(region);
         found.placed();
         found.unnamed(region)?;
         found.groups(region, options)?;
@@ -96,11 +99,12 @@ impl Columns {
         found.drops(region);
         found.statistics(region)?;
         found.paired(region)?;
-        found.repeats(region);
+        found.repeats(region, released);
         Ok(found)
     }
 
-    /// Gives the columns their quantities and units, by the rows that hold readings; `fps` is the frame rate, where one is known.
+    /// Gives the columns their quantities and units, by the rows that hold readings; `fps` is the
+    /// frame rate, where one is known.
     pub(super) fn measure(
         &mut self,
         region: &Region<'_>,
@@ -186,7 +190,9 @@ impl Columns {
 
     /// Times that are written in words, such as the date of a form, are remarks beside readings.
     fn wordy(&mut self, region: &Region<'_>) {
-        let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        let numbers = |n: usize| {
+            region.rows.iter().any(|&row| region.view.is_number(row, n) && dated(region.cell(row, n)).is_none())
+        };
         let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
         let of: Vec<(usize, What)> = self.values().map(|(n, _, v)| (n, v.what)).collect();
         let others = of.iter().any(|(n, what)| *what != What::Time && numbers(*n));
@@ -381,7 +387,8 @@ impl Columns {
         Ok(())
     }
 
-    /// The coarser of two columns that say the same in every row to their last digits, as in centimetres and in inches.
+    /// The coarser of two columns that say the same in every row to their last digits, as in
+    /// centimetres and in inches.
     fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
         // A number, and half a unit in its last place.
         let si = |row: usize, column: usize| match region.view.read(row, column) {

@@ -1,16 +1,19 @@
-//! Columns that are what they are beside others: drops with their own rebounds, counts of rows, measured cells under the name of a key.
+//! Columns that are what they are beside others: drops with their own rebounds, counts of rows,
+//! measured cells under the name of a key.
 
 use super::{Columns, Kind, plain};
 use crate::error::TableError;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, What};
+use crate::read::heading::{At, Role, What};
 use crate::read::region::Region;
+use crate::read::rows::bounce;
 use crate::read::units::{Dimension, Scale};
 use crate::read::vocabulary::Atom;
 
 impl Columns {
-    /// `Drop 1,Rebound 1,Drop 2,Rebound 2`: each drop with its own rebound; a single numbered drop is that of all bounces.
+    /// `Drop 1,Rebound 1,Drop 2,Rebound 2`: each drop with its own rebound; a single numbered drop
+    /// is that of all bounces.
     pub(super) fn paired(&mut self, region: &Region<'_>) -> Result<(), TableError> {
         let number = |trial: &str| trial.rsplit(' ').next().and_then(|n| n.parse::<usize>().ok());
         let mut drops: Vec<(usize, usize)> = Vec::new();
@@ -56,12 +59,15 @@ impl Columns {
         }
     }
 
-    /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak height (m)`.
+    /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak
+    /// height (m)`.
     pub(super) fn counting(&mut self, region: &Region<'_>) {
         if self.number().is_some() {
             return;
         }
-        let measured = |n: usize| self.values().any(|(other, c, _)| other != n && c.unit.is_some());
+        let measured = |n: usize| {
+            self.one(&Kind::Frame).is_some() || self.values().any(|(other, c, _)| other != n && c.unit.is_some())
+        };
         let found = self.values().find(|(n, c, v)| {
             let bare = c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
             let rows = region.rows.iter().filter(|&&row| !region.cell(row, *n).is_empty());
@@ -77,7 +83,35 @@ impl Columns {
         }
     }
 
-    /// Under the name of a key, such as `Bounce` or `Experiment`, cells that all bear units are readings.
+    /// `Impact time (s),Drop 1,Drop 2` above 1, 2, 3: the first column counts the bounces, and its
+    /// name is that of what stands in the others.
+    pub(super) fn spanning(&mut self, region: &Region<'_>) {
+        let Some((index, first, value)) = self.values().next() else { return };
+        let of_bounces = first.heading.has(Atom::Impact) || first.heading.has(Atom::Rebound);
+        let (what, unit, sure) = (value.what, first.unit, first.heading.has(Atom::Impact));
+        let silent: Vec<usize> = self
+            .values()
+            .filter(|(_, c, v)| v.what == What::Unsaid && c.unit.is_none() && v.role == Role::Reading)
+            .map(|(n, _, _)| n)
+            .collect();
+        let alone = silent.len() + 1 == self.values().count() && !silent.is_empty() && !silent.contains(&index);
+        let cells = region.rows.iter().map(|&row| bounce(region.cell(row, index)));
+        let counts = cells.clone().enumerate().all(|(n, cell)| cell == Some(n) || cell == Some(n + 1));
+        if !of_bounces || unit.is_none() || !alone || !counts || cells.count() < 2 || value.at != At::Row {
+            return;
+        }
+        self.columns[index].kind = Kind::Number { sure };
+        self.columns[index].unit = None;
+        for column in silent {
+            self.columns[column].unit = unit;
+            if let Kind::Value(value) = &mut self.columns[column].kind {
+                value.what = what;
+            }
+        }
+    }
+
+    /// Under the name of a key, such as `Bounce` or `Experiment`, cells that all bear units are
+    /// readings.
     pub(super) fn measured(&mut self, region: &Region<'_>) {
         for column in 0..self.columns.len() {
             let key = matches!(self.columns[column].kind, Kind::Number { .. } | Kind::Trial | Kind::Event);

@@ -1,4 +1,5 @@
-//! What stands within a heading beside its words: a height of release, what hundredths are of, the place of a reading before or after a bounce.
+//! What stands within a heading beside its words: a height of release, what hundredths are of, the
+//! place of a reading before or after a bounce.
 
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
@@ -24,8 +25,14 @@ impl DropHeight {
 /// Drops that are only counted are not more than this.
 const COUNTED: f64 = 20.0;
 
-/// The height of release in a text, `dropped from 1.5 m`, `50 cm drop`, `h0 = 1 m`, and the text without it.
+/// The height of release in a text, `dropped from 1.5 m`, `50 cm drop`, `h0 = 1 m`, and the text
+/// without it.
 pub(in crate::read) fn release(text: &str) -> Option<(DropHeight, String)> {
+    released(text).map(|(drop, before, after)| (drop, format!("{before} {after}")))
+}
+
+/// The height of release in a text, what stands before it, and what behind it.
+pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> {
     let starts = |(at, c): &(usize, char)| {
         let before = text[..*at].chars().next_back();
         c.is_ascii_digit() && before.is_none_or(|b| !b.is_alphanumeric() && !matches!(b, '.' | ',' | '_' | '±' | '-'))
@@ -38,19 +45,22 @@ pub(in crate::read) fn release(text: &str) -> Option<(DropHeight, String)> {
         let end = after.find(|c: char| !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
         let unit = Unit::parse(&after[..end])?;
         let length = unit.dimension == Dimension::Length && matches!(unit.scale, Scale::Si { .. });
-        let rest = format!("{} {}", &text[..at], &after[end..]);
         let before = folded(text[..at].trim_end_matches([' ', '=', ':', '(']));
         let word = before.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         let is = |word: &str, atom: Atom| meanings(word).is_some_and(|atoms| atoms.contains(&atom));
         let counted = value.fract() == 0.0 && value <= COUNTED && is(word, Atom::Trial);
         let from = matches!(word, "from" | "aus" | "depuis" | "desde" | "vanaf" | "h0" | "h_0");
-        let released = folded(&rest).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release));
-        let text = format!("{} {}", &text[at..at + digits], &after[..end]);
-        (length && value > 0.0 && !counted && (from || released)).then_some((DropHeight { text, value, unit }, rest))
+        let parts = [&text[..at], &after[end..]];
+        let word_of_release =
+            |part: &&str| folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release));
+        let written = format!("{} {}", &text[at..at + digits], &after[..end]);
+        let fits = length && value > 0.0 && !counted && (from || parts.iter().any(word_of_release));
+        fits.then_some((DropHeight { text: written, value, unit }, parts[0], parts[1]))
     })
 }
 
-/// Takes what hundredths are of out of the words, `% of drop height`; says whether they are of the height before.
+/// Takes what hundredths are of out of the words, `% of drop height`; says whether they are of the
+/// height before.
 pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     let at = words.iter().position(|w| w.is(Atom::Percent))?;
     let of = words.get(at + 1).is_some_and(|w| {
@@ -65,29 +75,50 @@ pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     Some(before)
 }
 
-/// The place of a reading beside the bounce of its row: 1 for `h_n+1`, -1 for `h_n-1`, 0 for `h_n`; and the text without the sum.
+/// The place of a reading beside the bounce of its row, and the text without the sums: 1 for
+/// `h_n+1`, -1 for `h_n-1`, 0 for `h_n`; none for what lies between two places, `between bounce n
+/// and n+1`.
 pub(super) fn place(text: &str) -> (Option<i8>, String) {
     let spelt = text.replace('ₙ', "_n").replace('ₖ', "_k").replace('₊', "+").replace('₋', "-").replace('₁', "1");
-    let letters: Vec<(usize, char)> = spelt.char_indices().collect();
-    for (n, &(at, letter)) in letters.iter().enumerate().skip(1) {
-        let alone = !letters[n - 1].1.is_alphanumeric() && letters.get(n + 1).is_none_or(|(_, c)| !c.is_alphanumeric());
-        if !matches!(letter, 'n' | 'i' | 'k') || !alone {
-            continue;
-        }
-        let after = spelt[at + 1..].trim_start_matches([' ', '}']);
-        let step = match after.chars().next() {
-            Some('+') => 1,
-            Some('-' | '−' | '–') => -1,
-            _ => return (Some(0), text.to_owned()),
-        };
-        let sign = after.chars().next().map_or(0, char::len_utf8);
-        let Some(rest) = after[sign..].trim_start().strip_prefix('1') else { return (Some(0), text.to_owned()) };
-        if rest.starts_with(char::is_alphanumeric) {
-            return (Some(0), text.to_owned());
-        }
-        return (Some(step), format!("{}{rest}", &spelt[..at]));
+    let (mut rest, mut bare) = (spelt.as_str(), String::new());
+    let mut found: Vec<i8> = Vec::new();
+    while let Some((end, step, after)) = counter(rest, bare.chars().next_back()) {
+        bare.push_str(&rest[..end]);
+        rest = after;
+        found.push(step);
     }
-    (None, text.to_owned())
+    bare.push_str(rest);
+    match found.as_slice() {
+        [] => (None, text.to_owned()),
+        [first, others @ ..] if others.iter().all(|step| step == first) => match first {
+            0 => (Some(0), text.to_owned()),
+            step => (Some(*step), bare),
+        },
+        _ => (None, bare),
+    }
+}
+
+/// The first letter that counts bounces, `n`, `i` or `k` by itself: where it ends, what is added to
+/// it, and the text behind the sum. `last` is the letter before the text.
+fn counter(text: &str, last: Option<char>) -> Option<(usize, i8, &str)> {
+    let letters: Vec<(usize, char)> = text.char_indices().collect();
+    let alone = |n: usize| {
+        let before = n.checked_sub(1).map_or(last, |before| Some(letters[before].1));
+        before.is_some_and(|c| !c.is_alphanumeric()) && letters.get(n + 1).is_none_or(|(_, c)| !c.is_alphanumeric())
+    };
+    let (_, &(at, _)) = letters.iter().enumerate().find(|(n, (_, c))| matches!(c, 'n' | 'i' | 'k') && alone(*n))?;
+    let after = text[at + 1..].trim_start_matches([' ', '}']);
+    let plain = Some((at + 1, 0, &text[at + 1..]));
+    let step = match after.chars().next() {
+        Some('+') => 1,
+        Some('-' | '−' | '–') => -1,
+        _ => return plain,
+    };
+    let sign = after.chars().next().map_or(0, char::len_utf8);
+    match after[sign..].trim_start().strip_prefix('1') {
+        Some(rest) if !rest.starts_with(char::is_alphanumeric) => Some((at + 1, step, rest)),
+        _ => plain,
+    }
 }
 
 /// Whether words name the COR, and neither its square nor an energy.

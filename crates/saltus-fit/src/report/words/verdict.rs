@@ -74,6 +74,15 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
             "one COR for different balls, floors or drop heights is a mean of them: fit each by itself (--filter)"
                 .to_owned()
         }
+        FindingKind::AsideDiffers { column, low, high, p } => format!(
+            "the COR differs by '{column}', which was left aside: {:.3} for {}, {:.3} for {} (by chance: p {}); give --group '{column}' if it tells \
+             balls or surfaces apart, --group - if not",
+            low.1,
+            low.0,
+            high.1,
+            high.0,
+            chance(*p)
+        ),
         FindingKind::Loud { readings, part } => format!(
             "the {readings} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
             100.0 * part
