@@ -117,7 +117,8 @@ impl Fit {
     }
 
     /// By how far the zero of the height scale may be off, in metres (a standard error): 0 where heights are those of the bottom of the ball
-    /// above the floor, and that was checked with the ball at rest. Without it, that of a ball that was read anywhere on it: its diameter over √12.
+    /// above the floor, and that was checked with the ball at rest. Without it, it may be
+    /// off by a ball at most, up or down, as far as the chi-square of the readings allows.
     #[must_use]
     pub fn sigma_zero(mut self, metres: f64) -> Self {
         self.sigma_zero = Some(metres);

@@ -233,7 +233,7 @@ pub enum Widening {
     EveryImpact,
     /// The zero of the height scale, which no height shows.
     Zero {
-        /// Its standard error, m.
+        /// By how much it may be off at most, m.
         zero_m: f64,
         /// By how much the COR may be off.
         share: f64,

@@ -1,16 +1,19 @@
-//! Readings as they would have been: with another zero of the height scale, another height of release, or without the air.
+//! Readings as they would have been: with another zero of the height scale, another height of
+//! release, or without the air.
 
 use super::drag::Air;
 use super::flight::FOLLOWED;
 use crate::evidence::{Evidence, TrialEvidence};
 
-/// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many rounds: each leaves a tenth of the error at most.
+/// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many
+/// rounds: each leaves a tenth of the error at most.
 const ROUNDS: usize = 12;
 
 /// So many readings tell what a change of all does to the COR; all the others would only cost time.
 const TELLING: usize = 1000;
 
-/// A part of the readings that tells what a change does to the COR: trials evenly spaced, each from its beginning.
+/// A part of the readings that tells what a change does to the COR: trials evenly spaced, each from
+/// its beginning.
 pub(crate) fn telling(evidence: &Evidence) -> Evidence {
     let readings: usize = evidence.trials.iter().map(|t| t.heights.len().max(t.moments.len()).min(TELLING)).sum();
     let trials = evidence.trials.iter().step_by(readings.div_ceil(TELLING).max(1)).cloned();
@@ -22,11 +25,19 @@ pub(crate) fn telling(evidence: &Evidence) -> Evidence {
     few
 }
 
-/// With heights read higher by so much, m; lower by half the least of them at most, since the ball did leave the floor.
+/// The ball left the floor by this part of the least height that was read, at least.
+const LEFT: f64 = 0.1;
+
+/// By how much heights may be read too high, m: the ball did leave the floor.
+pub(crate) fn lowered_at_most(evidence: &Evidence) -> f64 {
+    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
+    (1.0 - LEFT) * read.fold(f64::INFINITY, f64::min)
+}
+
+/// With heights read higher by so much, m.
 pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     let mut altered = evidence.clone();
-    let read = evidence.trials.iter().flat_map(|trial| trial.heights.iter().map(|h| h.1));
-    let by = by.max(-0.5 * read.fold(f64::INFINITY, f64::min));
+    let by = by.max(-lowered_at_most(evidence));
     for trial in &mut altered.trials {
         trial.heights.iter_mut().for_each(|h| h.1 += by);
         trial.release_height.iter_mut().for_each(|h| h.0 += by);
@@ -34,7 +45,8 @@ pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     altered
 }
 
-/// With one rebound missing before that of this number in every trial: the later ones count one more.
+/// With one rebound missing before that of this number in every trial: the later ones count one
+/// more.
 pub(crate) fn missed(evidence: &Evidence, before: usize) -> Evidence {
     let mut altered = evidence.clone();
     for trial in &mut altered.trials {
@@ -54,7 +66,8 @@ pub(crate) fn released_higher(evidence: &Evidence, by: f64) -> Evidence {
 
 /// Without the air: less by what drag `k`, 1/m, makes of a motion with the COR `e`.
 ///
-/// The motion starts at the first height of a trial, or with its first flight, and is followed with drag and without.
+/// The motion starts at the first height of a trial, or with its first flight, and is followed with
+/// drag and without.
 pub(crate) fn without_air(evidence: &Evidence, (gravity, drag): (f64, f64), e: f64) -> Evidence {
     let mut altered = evidence.clone();
     let airs = [drag, 0.0].map(|drag| Air { gravity, drag });
@@ -78,7 +91,8 @@ fn heights(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
     }
 }
 
-/// The speed that a ball leaves the first contact with if the flights from one number to another last so long together.
+/// The speed that a ball leaves the first contact with if the flights from one number to another
+/// last so long together.
 fn launch(air: Air, e: f64, (from, to, lasts): (usize, usize, f64)) -> f64 {
     let flights = (from..to).fold(0.0, |sum, n| sum + e.powi(i32::try_from(n).unwrap_or(i32::MAX)));
     let mut speed = 0.5 * air.gravity * lasts / flights;
@@ -132,7 +146,8 @@ fn times(trial: &mut TrialEvidence, airs: [Air; 2], e: f64) {
 mod tests {
     use super::*;
 
-    /// A motion with drag, taken without it, is that of the same COR in a vacuum: to first order in what is taken off, and here exactly.
+    /// A motion with drag, taken without it, is that of the same COR in a vacuum: to first order in
+    /// what is taken off, and here exactly.
     #[test]
     fn the_air_is_taken_off() {
         let (e, air) = (0.8, Air { gravity: 9.81, drag: 0.05 });

@@ -1,27 +1,33 @@
-//! What a table cannot show and the interval must allow for: the zero of its heights, the height of release, the air.
+//! What a table cannot show and the interval must allow for: the zero of its heights, the height of
+//! release, the air.
 //!
-//! Each is a change of the readings, and its share of the error is how far the COR moves when they are fitted anew.
+//! Each is a change of the readings, and its share of the error is how far the COR moves when they
+//! are fitted anew.
 
 use super::judgement::{Cor, Judgement, NAMED};
 use super::whole;
 use crate::error::FitError;
 use crate::evidence::{Evidence, TrialEvidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
-use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, missed, raised, released_higher, telling, without_air};
+use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, lowered_at_most, missed, raised, released_higher, telling, without_air};
 use crate::quantity::{Ball, Readings, Source};
 use crate::read::Table;
 use crate::solve::fits::{Fits, Known};
 use crate::statistics::{CLEAR, NORMAL, student};
 
-/// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule without naming where on it.
+/// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule
+/// without naming where on it.
 const USUAL_BALL: f64 = 0.067;
 
-/// The COR without the air is found when it moves by less than this, a thousandth of the best error there is.
+/// The COR without the air is found when it moves by less than this, a thousandth of the best error
+/// there is.
 const SETTLED: f64 = 1e-7;
-/// What drag does to the readings hardly depends on the COR: a round leaves less than a fifth of the error for k h below 0.3, so these are plenty.
+/// What drag does to the readings hardly depends on the COR: a round leaves less than a fifth of
+/// the error for k h below 0.3, so these are plenty.
 const ROUNDS: usize = 30;
 
-/// A rebound that is missing is looked for among so many: more leave readings enough to tell by the comparison of models.
+/// A rebound that is missing is looked for among so many: more leave readings enough to tell by the
+/// comparison of models.
 const TRIED: usize = 8;
 
 /// What is stated of what the readings cannot show.
@@ -38,10 +44,11 @@ pub(crate) struct Stated {
 }
 
 impl Stated {
-    /// A ball is read at its bottom, its top or anywhere between: a rectangle as wide as the ball, whose standard deviation is its width over √12
-    /// (Guide to the expression of uncertainty in measurement, 4.3.7).
+    /// By how much the zero of heights may be off, m: a ball is read at its bottom, its top or
+    /// anywhere between, and the scale may be set by any of these with the ball at rest, so that
+    /// readings are too high, or too low, by the ball at most.
     pub(crate) fn zero(self) -> f64 {
-        self.sigma_zero.unwrap_or(self.ball.unwrap_or(USUAL_BALL) / 12f64.sqrt())
+        self.sigma_zero.map_or(self.ball.unwrap_or(USUAL_BALL), |sigma| NORMAL * sigma)
     }
 }
 
@@ -53,7 +60,8 @@ fn judged(fits: &Fits<'_>) -> Option<Cor> {
     judgement.cor.filter(|_| !refused)
 }
 
-/// The readings as they would be in a vacuum: what drag does to them depends on the COR, which is found with it, round by round.
+/// The readings as they would be in a vacuum: what drag does to them depends on the COR, which is
+/// found with it, round by round.
 pub(crate) fn in_a_vacuum(
     table: &Table,
     evidence: Evidence,
@@ -106,7 +114,9 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     let zero_m = if has(fits.table, Readings::Heights) { stated.zero() } else { 0.0 };
     if zero_m > 0.0 {
         // Low heights bend the COR over the zero: both ends are fitted.
-        let ends = [-NORMAL * zero_m, NORMAL * zero_m].map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0));
+        let by = zero(fits, known, zero_m);
+        let ends = by.map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0));
+        let zero_m = by[1].max(-by[0]);
         let (low, high) = (-ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
         shares.push(([low, high], Widening::Zero { zero_m, share: low.max(high) }));
     }
@@ -131,7 +141,8 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     one_missing(judgement, fits, known);
 }
 
-/// Contacts that can be read in other ways about as well: the interval takes in the COR of each, and one far outside is a doubt.
+/// Contacts that can be read in other ways about as well: the interval takes in the COR of each,
+/// and one far outside is a doubt.
 pub(crate) fn read_otherwise(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
     if fits.evidence.rivals.is_empty() || fits.times.is_none() {
         return;
@@ -155,9 +166,11 @@ pub(crate) fn read_otherwise(judgement: &mut Judgement, fits: &Fits<'_>, known: 
     }
 }
 
-/// Heights that fit as well if a rebound is missing are not known to be without a gap: the interval takes in the COR that they then have.
+/// Heights that fit as well if a rebound is missing are not known to be without a gap: the interval
+/// takes in the COR that they then have.
 ///
-/// Two heights fit everything, and say nothing of it; from four rebounds on the comparison of models looks for the gap.
+/// Two heights fit everything, and say nothing of it; from four rebounds on the comparison of
+/// models looks for the gap.
 fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
     let last = fits.evidence.trials.iter().filter_map(|t| t.heights.last()).map(|h| h.0).max().unwrap_or(0);
     let checked = fits.evidence.trials.iter().any(|t| t.heights.len() > 2);
@@ -180,10 +193,29 @@ fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
     }
 }
 
+/// How much lower and higher the heights may be than they were read, m: by `most`, or by less where
+/// the chi-square rules it out.
+fn zero(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
+    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let lower = most.min(lowered_at_most(fits.evidence));
+    let at = |by: f64| misfit(&Fits::of(fits.table, &raised(fits.evidence, by), &same, false).ok()?);
+    let (Some(down), Some((still, freedom)), Some(up)) = (at(-lower), at(0.0), at(most)) else { return [-lower, most] };
+    let unit = unit(fits, (still, freedom));
+    allowed([(-lower, (down.0 - still) / unit), (most, (up.0 - still) / unit)])
+}
+
+/// What a chi-square may be above its least, 95 %: more where the error of reading is that of the
+/// scatter, or too small for it.
+fn unit(fits: &Fits<'_>, (chi_square, freedom): (f64, usize)) -> f64 {
+    let scattered = [fits.sigma_height, fits.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
+    let reach = if scattered { student(freedom) } else { NORMAL };
+    reach * reach * (chi_square / freedom.max(1) as f64).max(1.0)
+}
+
 /// The most drag that the readings allow, and how far it moves the COR.
 ///
-/// That is the drag of the ball that is named; else of the lightest ball, or less where the chi-square, a parabola over the drag, rules it out; that of
-/// ordinary balls is always allowed.
+/// That is the drag of the ball that is named; else of the lightest ball, or less where the
+/// chi-square, a parabola over the drag, rules it out; that of ordinary balls is always allowed.
 fn air(fits: &Fits<'_>, known: &Known, (e, named): (f64, Option<Ball>)) -> Option<(f64, f64)> {
     // In units of one and the same error of reading.
     let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
@@ -198,12 +230,11 @@ fn air(fits: &Fits<'_>, known: &Known, (e, named): (f64, Option<Ball>)) -> Optio
         return share(ball.drag(), at(0.0)?.0);
     }
     let (still, ordinary, light) = (at(0.0)?, at(ORDINARY_DRAG)?, at(LIGHT_DRAG));
-    let scattered = [fits.sigma_height, fits.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
     let most = match (still.1, ordinary.1, light.and_then(|light| light.1)) {
         (Some((zero, freedom)), Some((few, _)), Some((many, _))) => {
-            let reach = if scattered { student(freedom) } else { NORMAL };
-            let unit = reach * reach * (zero / freedom.max(1) as f64).max(1.0);
-            allowed((few - zero) / unit, (many - zero) / unit)
+            let unit = unit(fits, (zero, freedom));
+            let [_, most] = allowed([(ORDINARY_DRAG, (few - zero) / unit), (LIGHT_DRAG, (many - zero) / unit)]);
+            most.max(ORDINARY_DRAG)
         }
         _ if light.is_some() => LIGHT_DRAG,
         _ => ORDINARY_DRAG,
@@ -211,20 +242,26 @@ fn air(fits: &Fits<'_>, known: &Known, (e, named): (f64, Option<Ball>)) -> Optio
     share(most, still.0)
 }
 
-/// The drag, from that of ordinary balls to that of the lightest, up to which a chi-square stays within one of its least; it rises by so much from no drag
-/// to these two, in units of what is allowed.
-fn allowed(ordinary: f64, light: f64) -> f64 {
-    // b k + c k² through both.
-    let c = (light / LIGHT_DRAG - ordinary / ORDINARY_DRAG) / (LIGHT_DRAG - ORDINARY_DRAG);
-    let b = ordinary / ORDINARY_DRAG - c * ORDINARY_DRAG;
-    let best = (-0.5 * b / c).max(0.0);
-    // Within one of the value at the best that is no less than none: c k² + b k = c best² + b best + 1.
-    let least = best * (c * best + b) + 1.0;
-    let root = -0.5 * b / c + (0.25 * b * b / (c * c) + least / c).sqrt();
-    if c > 0.0 && root.is_finite() { root.clamp(ORDINARY_DRAG, LIGHT_DRAG) } else { LIGHT_DRAG }
+/// How far something may be off, down and up from nothing and between two ends, until a chi-square
+/// is more than one above its least; it rises by so much from nothing to each end, in units of what
+/// is allowed, and is a parabola between.
+fn allowed([(p, at_p), (q, at_q)]: [(f64, f64); 2]) -> [f64; 2] {
+    let (low, high) = (p.min(q).min(0.0), p.max(q).max(0.0));
+    // b x + c x² through both.
+    let c = (at_q / q - at_p / p) / (q - p);
+    let b = at_p / p - c * p;
+    let middle = -0.5 * b / c;
+    let best = middle.clamp(low, high);
+    let half = (middle * middle + (best * (c * best + b) + 1.0) / c).sqrt();
+    if c > 0.0 && half.is_finite() {
+        [(middle - half).clamp(low, 0.0), (middle + half).clamp(0.0, high)]
+    } else {
+        [low, high]
+    }
 }
 
-/// The chi-square of the fit that the COR rests on, and its degrees of freedom; none where bounces scatter, which no reading error measures.
+/// The chi-square of the fit that the COR rests on, and its degrees of freedom; none where bounces
+/// scatter, which no reading error measures.
 fn misfit(fits: &Fits<'_>) -> Option<(f64, usize)> {
     if let Some(joint) = &fits.joint {
         return Some((joint.fitted.chi_square, joint.fitted.freedom));
@@ -249,16 +286,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn drag_is_allowed_up_to_where_the_chi_square_rules_it_out() {
-        // (k − best)² / s², less its value at no drag.
-        let rise = |best: f64, s: f64| move |k: f64| (k - best).powi(2) / (s * s) - (best / s).powi(2);
-        for (best, s, most) in
-            [(0.02, 0.03, 0.05), (0.05, 0.5, LIGHT_DRAG), (-0.05, 0.1, 0.0618), (-0.2, 0.05, ORDINARY_DRAG)]
-        {
+    fn what_the_chi_square_does_not_rule_out_is_allowed() {
+        // (x − best)² / s², less its value at nothing.
+        let rise = |best: f64, s: f64| move |x: f64| (x, ((x - best) / s).powi(2) - (best / s).powi(2));
+        for (best, s, [low, high]) in [
+            (0.02, 0.03, [-0.01, 0.05]),
+            (0.05, 0.5, [-0.067, 0.14]),
+            (0.0, 0.01, [-0.01, 0.01]),
+            (-0.05, 0.1, [-0.067, 0.05]),
+            // Beyond an end: all the way to it, and not past nothing.
+            (-0.2, 0.05, [-0.067, 0.0]),
+            (0.5, 0.05, [0.0, 0.14]),
+        ] {
             let rise = rise(best, s);
-            let found = allowed(rise(ORDINARY_DRAG), rise(LIGHT_DRAG));
-            assert!((found - most).abs() < 1e-4, "{best} {s}: {found}");
+            let found = allowed([rise(-0.067), rise(0.14)]);
+            assert!((found[0] - low).abs() < 1e-9 && (found[1] - high).abs() < 1e-9, "{best} {s}: {found:?}");
+            let above = allowed([rise(0.022), rise(0.14)]);
+            assert!(above[0] == 0.0 && (above[1] - high).abs() < 1e-3 || best < 0.0, "{best} {s}: {above:?}");
         }
-        assert!((allowed(0.0, 0.0) - LIGHT_DRAG).abs() < 1e-12);
+        // What the chi-square does not see is allowed altogether.
+        assert_eq!(allowed([(-0.067, 0.0), (0.067, 0.0)]), [-0.067, 0.067]);
     }
 }

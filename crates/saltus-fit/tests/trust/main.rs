@@ -1,7 +1,9 @@
-//! How often *trusted* is wrong, and how often what is sound is not trusted: planted experiments of every kind with every known fault.
+//! How often *trusted* is wrong, and how often what is sound is not trusted: planted experiments of
+//! every kind with every known fault.
 //!
-//! `cargo test -p saltus-fit --test trust` runs a few of each; with `RUNS=200` and `-- --nocapture` it prints the table of
-//! docs/fitting-inside.md; `SEED=1000` begins at another number, `KIND=Film` runs one kind.
+//! `cargo test -p saltus-fit --test trust` runs a few of each; with `RUNS=200` and `-- --nocapture`
+//! it prints the table of docs/fitting-inside.md; `SEED=1000` begins at another number, `KIND=Film`
+//! runs one kind.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -17,7 +19,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use saltus_fit::{Report, Table, Verdict};
 
 /// What became of the experiments of one kind with one fault.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Tally {
     runs: u32,
     trusted: u32,
@@ -29,6 +31,8 @@ struct Tally {
     ranged: u32,
     /// The same of the trusted ones.
     held_trusted: u32,
+    /// How long the intervals of the trusted ones are.
+    lengths: Vec<f64>,
 }
 
 /// Whether an interval holds a COR of the impacts, and whether one twice as wide does.
@@ -59,6 +63,7 @@ impl Tally {
             self.ranged += 1;
             self.held += u32::from(held);
             self.held_trusted += u32::from(held && trusted);
+            self.lengths.extend(report.cor().filter(|_| trusted).map(|cor| cor.high - cor.low));
             if trusted && !wide {
                 self.wrong += 1;
                 if std::env::var_os("SHOW").is_some() {
@@ -72,7 +77,8 @@ impl Tally {
         self
     }
 
-    fn plus(self, other: Self) -> Self {
+    fn plus(mut self, other: Self) -> Self {
+        self.lengths.extend(other.lengths);
         Self {
             runs: self.runs + other.runs,
             trusted: self.trusted + other.trusted,
@@ -81,7 +87,14 @@ impl Tally {
             held: self.held + other.held,
             ranged: self.ranged + other.ranged,
             held_trusted: self.held_trusted + other.held_trusted,
+            lengths: self.lengths,
         }
+    }
+
+    /// The length that half of the intervals of trusted ones do not exceed.
+    fn length(&mut self) -> f64 {
+        self.lengths.sort_by(f64::total_cmp);
+        self.lengths.get(self.lengths.len() / 2).copied().unwrap_or(f64::NAN)
     }
 }
 
@@ -106,20 +119,21 @@ fn part(of: u32, all: u32) -> f64 {
 fn what_is_trusted_is_right() {
     let runs: u64 = std::env::var("RUNS").map_or(6, |n| n.parse().expect("RUNS is a number"));
     println!(
-        "| kind | fault | trusted % | trusted, outside twice its interval % | intervals that hold, trusted % | all % | refused % |"
+        "| kind | fault | trusted % | trusted, outside twice its interval % | intervals that hold, trusted % | all % | their length | refused % |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     let (mut sound, mut every) = (Tally::default(), Tally::default());
-    for (kind, fault, t) in all(runs).into_values() {
+    for (kind, fault, mut t) in all(runs).into_values() {
         println!(
-            "| {kind:?} | {fault:?} | {:.0} | {:.1} | {:.1} | {:.1} | {:.0} |",
+            "| {kind:?} | {fault:?} | {:.0} | {:.1} | {:.1} | {:.1} | {:.3} | {:.0} |",
             part(t.trusted, t.runs),
             part(t.wrong, t.trusted),
             part(t.held_trusted, t.trusted),
             part(t.held, t.ranged),
+            t.length(),
             part(t.refused, t.runs)
         );
-        every = every.plus(t);
+        every = every.plus(t.clone());
         if matches!(fault, Fault::Sound | Fault::Stated) {
             sound = sound.plus(t);
         }

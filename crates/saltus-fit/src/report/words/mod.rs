@@ -1,6 +1,7 @@
 //! The one place where findings become sentences.
 //!
-//! A sentence begins with a small letter and has no full stop: it may stand after the name of its trial, or in a list.
+//! A sentence begins with a small letter and has no full stop: it may stand after the name of its
+//! trial, or in a list.
 
 mod models;
 mod names;
@@ -82,7 +83,7 @@ pub(super) fn widening(widening: &Widening) -> String {
         Widening::ImpactTime => "it takes in impacts that take time, and such that take none".to_owned(),
         Widening::EveryImpact => "it takes in the COR of every impact".to_owned(),
         Widening::Zero { zero_m, share } => format!(
-            "a zero of the heights off by {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
+            "a zero of the heights off by up to {} (where on the ball were they read?) may move the COR by {share:.3}: read the ball at rest on the floor, and \
              state what is left (--sigma-zero)",
             length(*zero_m)
         ),
