@@ -1,4 +1,4 @@
-//! Arrows between the files of a crate go one way: no ring of imports.
+//! The house: arrows between the files of a crate go one way, files are short, and so are the lines of comments.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -47,4 +47,49 @@ fn no_ring_of_imports() {
         }
         assert!(arrows.is_empty(), "{name} has a ring of imports among {arrows:?}");
     }
+}
+
+/// All files of Rust in the folders of the project.
+fn files(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && path.file_name().is_some_and(|name| name != "target") {
+            files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// A file is read at a sitting, and a comment without turning one's head: listings and tables in it may be wider.
+#[test]
+fn files_and_comments_are_short() {
+    const LINES: usize = 500;
+    const COLUMNS: usize = 100;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut found = Vec::new();
+    ["crates", "examples", "tests"].map(|folder| files(&root.join(folder), &mut found));
+    assert!(found.len() > 300);
+    let mut wrong = Vec::new();
+    for path in found {
+        let text = fs::read_to_string(&path).unwrap();
+        if text.lines().count() > LINES && path.components().any(|part| part.as_os_str() == "src") {
+            wrong.push(format!("{}: {} lines", path.display(), text.lines().count()));
+        }
+        let mut listing = false;
+        for (number, line) in text.lines().enumerate() {
+            let comment = line.trim_start();
+            let Some(words) = comment.strip_prefix("//").map(|rest| rest.trim_start_matches(['/', '!']).trim_start())
+            else {
+                listing = false;
+                continue;
+            };
+            listing ^= words.starts_with("```");
+            let one = words.split_whitespace().count() == 1;
+            if line.chars().count() > COLUMNS && !listing && !one && !words.starts_with(['|', '`']) {
+                wrong.push(format!("{}:{}: {line}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -125,7 +125,8 @@ fn tick(clock: &Clock, from: f64) -> Result<Option<f64>, String> {
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks for the stops about the present time, where the mode has any.
-    #[inline]
+    #[cold]
+    #[inline(never)]
     pub(super) fn smooth_from(&mut self, mode: A::Mode, now: Time, x: &A::State) -> Result<(), Error> {
         let stops = self.automaton.stops(mode);
         self.smooth = if stops.is_empty() { Smooth::ALWAYS } else { self.between(&stops, mode, now, x)? };
@@ -146,6 +147,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether the guard of `edge` switches from inside to outside in the stop behind which the
     /// state is: smooth in time on both sides of it, as the flow is, it falls there all the same.
+    #[cold]
+    #[inline(never)]
     pub(super) fn fell_at_stop(&mut self, edge: A::Edge, x: &A::State) -> bool {
         let Some(stop) = self.smooth.start().filter(|&stop| !self.memory.switched.has(stop, edge)) else {
             return false;
