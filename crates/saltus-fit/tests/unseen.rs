@@ -84,7 +84,9 @@ fn the_size_of_the_ball_bounds_the_zero() {
     };
     let two = apexes(0.7, 0.0, 2);
     assert!(wide(&two, 0.24) > 3.0 * wide(&two, 0.04));
-    assert!(wide(&read, 0.24) > wide(&read, 0.04) && wide(&read, 0.04) > wide(&read, 0.01));
+    // Four heights tell the zero to less than a ball of 4 cm, and a larger one adds nothing.
+    assert!((wide(&read, 0.24) / wide(&read, 0.04) - 1.0).abs() < 0.1, "{}", wide(&read, 0.24) / wide(&read, 0.04));
+    assert!(wide(&read, 0.04) > wide(&read, 0.002));
     let report =
         Fit::new().sigma_height(0.002).sigma_zero(1e-5).drag(0.0).run(&Table::from_heights(&read).unwrap()).unwrap();
     assert!(!report.to_string().contains("zero of the heights"), "{report}");

@@ -193,15 +193,43 @@ fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
     }
 }
 
+/// The chi-square over the zero is looked at in so many even steps from end to end, since it is no
+/// parabola where heights are low,
+const STEPS: u32 = 16;
+/// and the step in which it becomes too large is halved so often: to a thousandth of the ball.
+const HALVED: usize = 6;
+
 /// How much lower and higher the heights may be than they were read, m: by `most`, or by less where
 /// the chi-square rules it out.
 fn zero(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
     let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
-    let lower = most.min(lowered_at_most(fits.evidence));
-    let at = |by: f64| misfit(&Fits::of(fits.table, &raised(fits.evidence, by), &same, false).ok()?);
-    let (Some(down), Some((still, freedom)), Some(up)) = (at(-lower), at(0.0), at(most)) else { return [-lower, most] };
-    let unit = unit(fits, (still, freedom));
-    allowed([(-lower, (down.0 - still) / unit), (most, (up.0 - still) / unit)])
+    let low = -most.min(lowered_at_most(fits.evidence));
+    let few = telling(fits.evidence);
+    let at = |by: f64| misfit(&Fits::of(fits.table, &raised(&few, by), &same, false).ok()?);
+    let place = |n: u32| low + (most - low) * f64::from(n) / f64::from(STEPS);
+    let seen: Option<Vec<(f64, f64)>> = (0..=STEPS).map(|n| Some((place(n), at(place(n))?.0))).collect();
+    let (Some(seen), Some(still)) = (seen, at(0.0)) else { return [low, most] };
+    let least = seen.iter().map(|s| s.1).fold(still.0, f64::min);
+    let allowed = |chi_square: f64| chi_square <= least + unit(fits, still);
+    // From what is allowed to its neighbour, which is not.
+    let edge = |from: f64, to: f64| {
+        let halve = |(inside, outside): (f64, f64), _| {
+            let middle = f64::midpoint(inside, outside);
+            if at(middle).is_some_and(|found| allowed(found.0)) { (middle, outside) } else { (inside, middle) }
+        };
+        (0..HALVED).fold((from, to), halve).0
+    };
+    let inside = |s: &(f64, f64)| allowed(s.1);
+    let first = seen.iter().position(inside);
+    let last = seen.iter().rposition(inside);
+    let step = |n: usize| seen.get(n).map(|s| s.0);
+    let down = first.map_or(0.0, |n| n.checked_sub(1).and_then(step).map_or(low, |out| edge(seen[n].0, out)));
+    let up = last.map_or(0.0, |n| step(n + 1).map_or(most, |out| edge(seen[n].0, out)));
+    // Where every step is too far, what is allowed lies about none.
+    match (first, seen.windows(2).find(|pair| pair[0].0 <= 0.0 && pair[1].0 >= 0.0)) {
+        (None, Some(pair)) => [edge(0.0, pair[0].0), edge(0.0, pair[1].0)],
+        _ => [down.min(0.0), up.max(0.0)],
+    }
 }
 
 /// What a chi-square may be above its least, 95 %: more where the error of reading is that of the
