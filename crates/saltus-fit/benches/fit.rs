@@ -1,4 +1,5 @@
-//! What a fit costs, from the text of a table to its report: the study's table, launches that were only heard, a film, and a bootstrap.
+//! What a fit costs, from the text of a table to its report: the study's table, launches that were
+//! only heard, a film, and a bootstrap.
 //!
 //! `cargo bench -p saltus-fit --bench fit`
 

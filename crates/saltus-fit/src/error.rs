@@ -1,10 +1,12 @@
-//! What can go wrong before there is anything to report: a table that cannot be read, an option that makes no sense.
+//! What can go wrong before there is anything to report: a table that cannot be read, an option
+//! that makes no sense.
 
 use std::fmt;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// A table that could not be read: what is wrong, in which line and column, and what to do about it.
+/// A table that could not be read: what is wrong, in which line and column, and what to do about
+/// it.
 ///
 /// Its `Display` form shows the line itself with a caret below the cell:
 ///
@@ -113,20 +115,23 @@ impl TableError {
         format!("{}{place}: {}", self.name, self.message)
     }
 
-    /// The line the problem is in (the row, in a workbook), counted from 1; `None` when it is the file as a whole.
+    /// The line the problem is in (the row, in a workbook), counted from 1; `None` when it is the
+    /// file as a whole.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
         self.place.as_ref().map(|place| place.line)
     }
 
-    /// The column the problem starts at, in characters (in a workbook, cells) counted from 1; `None` when it is the file as a whole.
+    /// The column the problem starts at, in characters (in a workbook, cells) counted from 1;
+    /// `None` when it is the file as a whole.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         self.place.as_ref().map(|place| place.cell.as_ref().map_or(place.column, |(_, index)| index + 1))
     }
 }
 
-/// `kind` (`fault`, `question`, `nothing`), `message`, `file`, `line`, `column`, of a workbook `sheet` and `cell`, and `advice`; null where there is none.
+/// `kind` (`fault`, `question`, `nothing`), `message`, `file`, `line`, `column`, of a workbook
+/// `sheet` and `cell`, and `advice`; null where there is none.
 impl Serialize for TableError {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let cell = self.place.as_ref().and_then(|place| Some((place, place.cell.as_ref()?)));
@@ -182,7 +187,8 @@ impl std::error::Error for TableError {}
 
 /// A fit that could not be started: an option out of its range, or a solver that failed.
 ///
-/// A table that simply does not determine a COR is no error: it gives a report whose verdict is *refused*.
+/// A table that simply does not determine a COR is no error: it gives a report whose verdict is
+/// *refused*.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FitError {
@@ -193,7 +199,8 @@ pub enum FitError {
         /// The value given.
         value: f64,
     },
-    /// The least-squares solver gave no answer that passes its checks; this is a defect worth reporting.
+    /// The least-squares solver gave no answer that passes its checks; this is a defect worth
+    /// reporting.
     Solver {
         /// What was being fitted.
         what: String,

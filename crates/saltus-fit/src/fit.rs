@@ -50,13 +50,15 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// A fit with nothing stated: reading errors come from the table, its frame rate, the scatter, or are assumed (1 cm, 10 ms).
+    /// A fit with nothing stated: reading errors come from the table, its frame rate, the scatter,
+    /// or are assumed (1 cm, 10 ms).
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The standard error of a height reading, in metres. It yields to an error column of the table.
+    /// The standard error of a height reading, in metres. It yields to an error column of the
+    /// table.
     #[must_use]
     pub fn sigma_height(mut self, metres: f64) -> Self {
         self.sigma_height = Some(metres);
@@ -70,14 +72,16 @@ impl Fit {
         self
     }
 
-    /// Gravity, in m/s²; without it that of the table, else 9.81. It matters only where heights meet times.
+    /// Gravity, in m/s²; without it that of the table, else 9.81. It matters only where heights
+    /// meet times.
     #[must_use]
     pub fn gravity(mut self, metres_per_second_squared: f64) -> Self {
         self.gravity = Some(metres_per_second_squared);
         self
     }
 
-    /// The diameter of the ball, in metres: the zero of the height scale is supposed to be off by no more. Without it, that of a basketball.
+    /// The diameter of the ball, in metres: the zero of the height scale is supposed to be off by
+    /// no more. Without it, that of a basketball.
     #[must_use]
     pub fn ball(mut self, metres: f64) -> Self {
         self.ball = Some(metres);
@@ -98,9 +102,10 @@ impl Fit {
         self.ball(ball.diameter()).drag(ball.drag())
     }
 
-    /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball, 0.13 of a table-tennis ball. The motion is
-    /// fitted with it, and nothing is allowed for beside it. Without it any up to that of a
-    /// table-tennis ball is allowed for in the interval, as far as the readings do not rule it out.
+    /// The drag coefficient k of v' = −g ∓ k v², in 1/m: 0 in a vacuum, 0.016 of a squash ball,
+    /// 0.13 of a table-tennis ball. The motion is fitted with it, and nothing is allowed for beside
+    /// it. Without it any up to that of a table-tennis ball is allowed for in the interval, as far
+    /// as the readings do not rule it out.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -116,17 +121,19 @@ impl Fit {
         self
     }
 
-    /// By how far the zero of the height scale may be off, in metres (a standard error): 0 where heights are those of the bottom of the ball
-    /// above the floor, and that was checked with the ball at rest. Without it, it may be
-    /// off by a ball at most, up or down, as far as the chi-square of the readings allows.
+    /// By how far the zero of the height scale may be off, in metres (a standard error): 0 where
+    /// heights are those of the bottom of the ball above the floor, and that was checked with the
+    /// ball at rest. Without it, it may be off by a ball at most, up or down, as far as the
+    /// chi-square of the readings allows.
     #[must_use]
     pub fn sigma_zero(mut self, metres: f64) -> Self {
         self.sigma_zero = Some(metres);
         self
     }
 
-    /// Also gives the cost of each method as the COR is held at other values: see [`Report::profiles`]. It counts the reading errors alone, not how
-    /// much drops differ; a series has none.
+    /// Also gives the cost of each method as the COR is held at other values: see
+    /// [`Report::profiles`]. It counts the reading errors alone, not how much drops differ; a
+    /// series has none.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -150,16 +157,17 @@ impl Fit {
         self
     }
 
-    /// Whether contacts that were missed, counted twice or misread, and outliers, are found and mended before the fit: so it is by default.
-    /// Every repair is listed in the report.
+    /// Whether contacts that were missed, counted twice or misread, and outliers, are found and
+    /// mended before the fit: so it is by default. Every repair is listed in the report.
     #[must_use]
     pub fn repair(mut self, wanted: bool) -> Self {
         self.no_repair = !wanted;
         self
     }
 
-    /// Also gives the COR by these losses, without an error: of heights and of times as estimates whose names end in those of the losses, of the
-    /// models that are not out of the question as [`ModelChoice::losses`](crate::ModelChoice::losses).
+    /// Also gives the COR by these losses, without an error: of heights and of times as estimates
+    /// whose names end in those of the losses, of the models that are not out of the question as
+    /// [`ModelChoice::losses`](crate::ModelChoice::losses).
     ///
     /// ```
     /// use saltus_fit::{Fit, Loss, Table};
@@ -175,21 +183,24 @@ impl Fit {
         self
     }
 
-    /// Trusts every height to within this, in metres, and asks which CORs that allows: see [`Report::allowed`].
+    /// Trusts every height to within this, in metres, and asks which CORs that allows: see
+    /// [`Report::allowed`].
     #[must_use]
     pub fn tolerance_height(mut self, metres: f64) -> Self {
         self.tolerance_height = Some(metres);
         self
     }
 
-    /// Trusts every time to within this, in seconds, and asks which CORs that allows: see [`Report::allowed`].
+    /// Trusts every time to within this, in seconds, and asks which CORs that allows: see
+    /// [`Report::allowed`].
     #[must_use]
     pub fn tolerance_time(mut self, seconds: f64) -> Self {
         self.tolerance_time = Some(seconds);
         self
     }
 
-    /// Also draws whole trials anew so many times, from this seed, and refits: see [`Report::bootstrap`].
+    /// Also draws whole trials anew so many times, from this seed, and refits: see
+    /// [`Report::bootstrap`].
     #[must_use]
     pub fn bootstrap(mut self, rounds: usize, seed: u64) -> Self {
         self.bootstrap = Some((rounds, seed));
@@ -198,11 +209,12 @@ impl Fit {
 
     /// Fits the COR.
     ///
-    /// A table that does not determine a COR gives a report whose verdict is [`Verdict::Refused`](crate::Verdict::Refused).
+    /// A table that does not determine a COR gives a report whose verdict is
+    /// [`Verdict::Refused`](crate::Verdict::Refused).
     ///
     /// # Errors
-    /// [`FitError::Option`] for an option that is not positive and finite; [`FitError::Solver`] if a least-squares solution does
-    /// not pass its checks.
+    /// [`FitError::Option`] for an option that is not positive and finite; [`FitError::Solver`] if
+    /// a least-squares solution does not pass its checks.
     pub fn run(&self, table: &Table) -> Result<Report, FitError> {
         self.run_with(table, &mut |_| {})
     }
@@ -264,7 +276,8 @@ impl Fit {
         table.trials().iter().all(|trial| trial.ball == Some(ball)).then_some(ball)
     }
 
-    /// What is known before anything is fitted: gravity, and the errors of reading as far as somebody states them.
+    /// What is known before anything is fitted: gravity, and the errors of reading as far as
+    /// somebody states them.
     fn known(&self, table: &Table) -> Known {
         let gravity = sourced(self.gravity, table.metadata.gravity)
             .unwrap_or(Sourced { value: STANDARD_GRAVITY, source: Source::Assumed });
@@ -306,7 +319,8 @@ impl Fit {
         Wanted { losses: losses.map(|(loss, _)| loss).collect(), model: self.model, ball: self.ball }
     }
 
-    /// What is computed where it was asked for: the CORs that tolerances allow, profiles of the cost, a bootstrap.
+    /// What is computed where it was asked for: the CORs that tolerances allow, profiles of the
+    /// cost, a bootstrap.
     fn extras(&self, fits: &Fits<'_>, progress: &mut dyn FnMut(usize)) -> Result<Extras, FitError> {
         let mut extras = Extras::default();
         if let Some((kind, within)) = fits.heights.as_ref().zip(self.tolerance_height) {
@@ -368,7 +382,8 @@ fn sourced(stated: Option<f64>, table: Option<f64>) -> Option<Sourced> {
     stated.or(table.map(|value| Sourced { value, source: Source::Table }))
 }
 
-/// The root mean square of the errors that rows state; it stands for the error of a row that states none.
+/// The root mean square of the errors that rows state; it stands for the error of a row that states
+/// none.
 fn stated_by_rows(table: &Table, sigma: fn(&Reading) -> Option<f64>) -> Option<Sourced> {
     let stated = || table.trials().iter().flat_map(|t| t.readings()).filter_map(sigma);
     let count = stated().count();

@@ -1,8 +1,9 @@
-//! The coefficient of restitution (COR), with its uncertainty and an honest verdict, from recorded heights and times of a
-//! bouncing ball.
+//! The coefficient of restitution (COR), with its uncertainty and an honest verdict, from recorded
+//! heights and times of a bouncing ball.
 //!
-//! A [`Table`] is read from a file, or built from numbers in code; [`Fit`] turns it into a [`Report`]. The report says whether the
-//! COR may be trusted, what each method gives, how heights and times go together, and what to measure next where they do not.
+//! A [`Table`] is read from a file, or built from numbers in code; [`Fit`] turns it into a
+//! [`Report`]. The report says whether the COR may be trusted, what each method gives, how heights
+//! and times go together, and what to measure next where they do not.
 //!
 //! ```
 //! use saltus_fit::{Fit, Table, Verdict};

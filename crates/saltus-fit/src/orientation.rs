@@ -1,14 +1,17 @@
-//! Which way a series of heights counts: flights are round on the side that is up, and pointed at the floor.
+//! Which way a series of heights counts: flights are round on the side that is up, and pointed at
+//! the floor.
 
 use crate::statistics::median;
 
-/// Samples this far apart are compared; where noise hides the bends, twice as far, and so on up to one in so many of the series.
+/// Samples this far apart are compared; where noise hides the bends, twice as far, and so on up to
+/// one in so many of the series.
 const STRIDE: usize = 2;
 const FARTHEST: usize = 40;
 /// The part of the bends that must agree, and how many at least.
 const AGREE: f64 = 0.65;
 const FEWEST: usize = 3;
-/// A ball that moves by less than this part of the range, or this many times the noise, between two samples has no bend to tell.
+/// A ball that moves by less than this part of the range, or this many times the noise, between two
+/// samples has no bend to tell.
 const MOVES: f64 = 0.02;
 const NOISE: f64 = 4.0;
 
@@ -23,11 +26,13 @@ pub(crate) fn noise_by_thirds(times: &[f64], heights: &[f64]) -> f64 {
         .filter(|(t, _)| even(t))
         .map(|(_, h)| (h[3] - 3.0 * h[2] + 3.0 * h[1] - h[0]).abs())
         .collect();
-    // Var(third difference) = 20 σ²; 1.4826 turns a median of absolute values into a standard deviation.
+    // Var(third difference) = 20 σ²; 1.4826 turns a median of absolute values into a standard
+    // deviation.
     median(&mut thirds).map_or(0.0, |m| 1.4826 * m / 20f64.sqrt())
 }
 
-/// Whether the ball falls towards greater heights in these recordings, each its times and heights; `None` where they do not tell.
+/// Whether the ball falls towards greater heights in these recordings, each its times and heights;
+/// `None` where they do not tell.
 pub(crate) fn falls_upwards(recordings: &[(Vec<f64>, Vec<f64>)]) -> Option<bool> {
     let longest = recordings.iter().map(|r| r.0.len()).max().unwrap_or(0);
     // What lies still bends by its noise alone; but wild samples look like noise.
@@ -46,7 +51,8 @@ pub(crate) fn falls_upwards(recordings: &[(Vec<f64>, Vec<f64>)]) -> Option<bool>
     })
 }
 
-/// How often a series bends downwards, as flights do, and upwards; only where the ball moves by more than `least`.
+/// How often a series bends downwards, as flights do, and upwards; only where the ball moves by
+/// more than `least`.
 fn bends(times: &[f64], heights: &[f64], stride: usize, least: f64) -> (usize, usize) {
     let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &y| (l.min(y), h.max(y)));
     let moves = (MOVES * (high - low)).max(least);

@@ -1,6 +1,8 @@
-//! Measurements planned by the fit itself: readings without error are made, and fitted with the errors that they would have.
+//! Measurements planned by the fit itself: readings without error are made, and fitted with the
+//! errors that they would have.
 //!
-//! The readings of N drops have the information of one drop whose readings are √N times better, so one drop is fitted.
+//! The readings of N drops have the information of one drop whose readings are √N times better, so
+//! one drop is fitted.
 
 use crate::error::FitError;
 use crate::fit::Fit;
@@ -15,9 +17,11 @@ use crate::verdict::Verdict;
 const MOST_DROPS: usize = 200;
 /// Numbers of bounces that are tried: more tell hardly more.
 const BOUNCES: [usize; 7] = [1, 2, 3, 4, 6, 8, 10];
-/// A reading is planned where what it reads is so many standard errors large: a rebound lower, or a flight shorter, is hardly made out.
+/// A reading is planned where what it reads is so many standard errors large: a rebound lower, or a
+/// flight shorter, is hardly made out.
 const MADE_OUT: f64 = 5.0;
-/// A contact time is told from the next where they are this far apart, s: an echo, or the ringing of a floor, lasts so long.
+/// A contact time is told from the next where they are this far apart, s: an echo, or the ringing
+/// of a floor, lasts so long.
 const RINGS: f64 = 0.05;
 /// A next measurement is one of so many drops, which show their own spread.
 const NEXT: usize = REPLICATED;
@@ -46,7 +50,8 @@ impl Expected {
         ((0.05..=0.99).contains(&cor) && (0.01..=100.0).contains(&drop_m)).then_some(Self { cor, drop_m })
     }
 
-    /// What a report says of it: the drop by the highest reading, or by the longest time between contacts.
+    /// What a report says of it: the drop by the highest reading, or by the longest time between
+    /// contacts.
     #[must_use]
     pub fn of(table: &Table, report: &Report) -> Option<Self> {
         let cor = report.cor()?.value;
@@ -73,8 +78,9 @@ struct Trial {
 }
 
 impl Fit {
-    /// What it takes to know a COR to within `want`, the half-width of its 95 % interval: for each way to measure the drops, and the bounces of
-    /// each, with the fewest readings. What is stated of the ball and of the zero of heights is taken into account as in a fit.
+    /// What it takes to know a COR to within `want`, the half-width of its 95 % interval: for each
+    /// way to measure the drops, and the bounces of each, with the fewest readings. What is stated
+    /// of the ball and of the zero of heights is taken into account as in a fit.
     ///
     /// ```
     /// use saltus_fit::{Ball, Expected, Fit, Way};
@@ -96,7 +102,8 @@ impl Fit {
             let mut best: Option<Planned> = None;
             for bounces in expected.bounces(way) {
                 let Some(planned) = self.fewest(want, expected, (way, bounces))? else { continue };
-                // What is enough before what is not, then the fewest readings, or the shortest interval.
+                // What is enough before what is not, then the fewest readings, or the shortest
+                // interval.
                 let better = |b: &Planned| match (planned.enough, b.enough) {
                     (true, true) => planned.readings < b.readings,
                     (false, false) => planned.half_width < b.half_width,
@@ -111,9 +118,10 @@ impl Fit {
         Ok(Plan { want, cor: expected.cor, drop_m: expected.drop_m, ways })
     }
 
-    /// The cheapest next measurement for a report that is in doubt, or whose interval is longer than `want`: five drops by the simplest way that halves
-    /// the interval, or else the one that brings the shortest. Where an explanation fits whose fault is in one kind of reading, the other kind is
-    /// measured. `None` for what is trusted, or cannot be told.
+    /// The cheapest next measurement for a report that is in doubt, or whose interval is longer
+    /// than `want`: five drops by the simplest way that halves the interval, or else the one that
+    /// brings the shortest. Where an explanation fits whose fault is in one kind of reading, the
+    /// other kind is measured. `None` for what is trusted, or cannot be told.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -149,7 +157,8 @@ impl Fit {
         Ok(best.filter(|planned| planned.half_width < 2.0 * half))
     }
 
-    /// The report with what may be measured next: [`Fit::next`], and where a half-width is wanted, [`Fit::plan`] for the ball of the report.
+    /// The report with what may be measured next: [`Fit::next`], and where a half-width is wanted,
+    /// [`Fit::plan`] for the ball of the report.
     ///
     /// # Errors
     /// Those of both.

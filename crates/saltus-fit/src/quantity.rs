@@ -21,7 +21,8 @@ words! {
         Stated = "stated",
         /// The table states it.
         Table = "table",
-        /// One frame of the camera, 1/fps, over √12: the standard deviation of rounding to whole frames.
+        /// One frame of the camera, 1/fps, over √12: the standard deviation of rounding to whole
+        /// frames.
         FrameRate = "frame rate",
         /// The scatter of the readings about the fit.
         Scatter = "scatter",
@@ -53,7 +54,8 @@ words! {
 words! {
     /// What a fit makes small, of residuals divided by their standard errors.
     pub enum Loss {
-        /// Squares up to 1.345 standard errors, in proportion beyond: outliers count less (P. Huber, Ann. Math. Statist. 35 (1964) 73).
+        /// Squares up to 1.345 standard errors, in proportion beyond: outliers count less (P.
+        /// Huber, Ann. Math. Statist. 35 (1964) 73).
         Huber = "huber",
         /// The sum of absolute residuals.
         Absolute = "absolute",
@@ -150,7 +152,8 @@ words! {
         Constant = "constant",
         /// e = e₀ − k v.
         Linear = "linear",
-        /// A viscoelastic sphere: e = 1 − γ v^(1/5) + (3/5) γ² v^(2/5) ∓ …, as the Padé approximant of Müller and Pöschel (2011).
+        /// A viscoelastic sphere: e = 1 − γ v^(1/5) + (3/5) γ² v^(2/5) ∓ …, as the Padé approximant
+        /// of Müller and Pöschel (2011).
         Viscoelastic = "viscoelastic",
         /// A plastic impact: e = C v^(−1/4).
         Plastic = "plastic",
@@ -271,7 +274,8 @@ impl Ball {
         Self::Lacrosse,
     ];
 
-    /// The ball of a name such as `tennis`, `Golf ball` or `ping-pong`; `None` where a word of it is not understood.
+    /// The ball of a name such as `tennis`, `Golf ball` or `ping-pong`; `None` where a word of it
+    /// is not understood.
     ///
     /// ```
     /// use saltus_fit::Ball;

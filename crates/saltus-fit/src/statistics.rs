@@ -1,4 +1,5 @@
-//! Tail probabilities and quantiles, with `None` where they mean nothing; medians and straight lines.
+//! Tail probabilities and quantiles, with `None` where they mean nothing; medians and straight
+//! lines.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 
@@ -6,10 +7,12 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT}
 pub(crate) const REJECT: f64 = 0.01;
 /// From this many trials on, the spread between them sets the error.
 pub(crate) const REPLICATED: usize = 5;
-/// From this many degrees of freedom on, the scatter can stand for a reading error that nobody stated.
+/// From this many degrees of freedom on, the scatter can stand for a reading error that nobody
+/// stated.
 pub(crate) const SCATTER: usize = 4;
 
-/// A BIC, or a chi-square, this much less decides (Kass and Raftery, J. Am. Stat. Assoc. 90 (1995) 773: strong evidence).
+/// A BIC, or a chi-square, this much less decides (Kass and Raftery, J. Am. Stat. Assoc. 90 (1995)
+/// 773: strong evidence).
 pub(crate) const CLEAR: f64 = 6.0;
 
 /// The 97.5 % point of the normal distribution.
@@ -34,7 +37,8 @@ pub(crate) fn student(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom as f64).map_or(NORMAL, |t| t.inverse_cdf(0.975))
 }
 
-/// The probability of a ratio of variances at least this large by chance, on `above` over `below` degrees of freedom.
+/// The probability of a ratio of variances at least this large by chance, on `above` over `below`
+/// degrees of freedom.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn variance_ratio_p(ratio: f64, above: usize, below: usize) -> Option<f64> {
     if above == 0 || below == 0 || !ratio.is_finite() || ratio < 0.0 {
@@ -55,13 +59,14 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
 /// Frame rates of cameras, 1/s; colour television's are a thousandth slower.
 const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
 
-/// The standard deviation of the rounding that these numbers share: to a decimal, or to frames of a camera. A scatter that happens to be smaller claims
-/// too much.
+/// The standard deviation of the rounding that these numbers share: to a decimal, or to frames of a
+/// camera. A scatter that happens to be smaller claims too much.
 pub(crate) fn rounding(values: &[f64]) -> f64 {
     let whole = |step: f64, off: f64| values.iter().all(|v| (v / step - (v / step).round()).abs() <= off / step);
     let decimals = [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5];
     let Some(written) = decimals.into_iter().find(|step| whole(*step, 1e-6 * step)) else { return 0.0 };
-    // Numbers that were written to a decimal fall on frames by chance with the probability that the decimal leaves each.
+    // Numbers that were written to a decimal fall on frames by chance with the probability that the
+    // decimal leaves each.
     let by_chance =
         |frame: f64| (1.02 * written / frame).min(1.0).powi(i32::try_from(values.len()).unwrap_or(i32::MAX) - 1);
     let rates = RATES.into_iter().flat_map(|rate| [rate, rate / 1.001]);

@@ -86,7 +86,8 @@ fn options_out_of_range_are_errors_that_name_themselves() {
 
 #[test]
 fn a_profile_is_the_cost_with_the_cor_held() {
-    // Heights in logarithms, by hand: with e held, ln h0 is the weighted mean of ln h_n - 2 n ln e; errors this small make the logarithm exact enough.
+    // Heights in logarithms, by hand: with e held, ln h0 is the weighted mean of ln h_n - 2 n ln e;
+    // errors this small make the logarithm exact enough.
     let (sigma, heights) = (1e-4, [1.0, 0.6401, 0.4097, 0.2621]);
     let report = Fit::new().sigma_height(sigma).profiles(true).run(&Table::from_heights(&heights).unwrap()).unwrap();
     assert_eq!(report.profiles().len(), 1);

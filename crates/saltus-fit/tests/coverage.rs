@@ -14,7 +14,8 @@ fn coverage(truth: f64, mut run: impl FnMut(&mut Noise) -> (Fit, Table)) -> f64 
     let mut noise = Noise(20_240_607);
     let held = (0..RUNS).filter(|_| {
         let (fit, table) = run(&mut noise);
-        // In a vacuum and from the true zero: what is tested is what the interval makes of the readings.
+        // In a vacuum and from the true zero: what is tested is what the interval makes of the
+        // readings.
         let report = fit.drag(0.0).sigma_zero(0.0).run(&table).expect("a fit");
         let cor = *report.cor().expect("a COR");
         cor.low <= truth && truth <= cor.high
@@ -35,7 +36,8 @@ fn times(noise: &mut Noise, e: f64, sigma: f64, count: i32) -> Vec<f64> {
     (0..count).map(|n| 0.9 * (1.0 - e.powi(n)) / (1.0 - e) + noise.normal(sigma)).collect()
 }
 
-/// Rounding is not normal, and a few intervals do not tell whose errors they have: more may hold the truth.
+/// Rounding is not normal, and a few intervals do not tell whose errors they have: more may hold
+/// the truth.
 fn at_least(what: &str, coverage: f64) {
     println!("{what}: {:.1} % of the intervals hold the truth", 100.0 * coverage);
     assert!(coverage >= 0.93, "{what}: {coverage}");
@@ -118,7 +120,8 @@ fn of_heights_and_times_together() {
 
 #[test]
 fn of_trials_whose_cor_differs() {
-    // Ten launches, the COR of each 0.8 ± 0.01: the spread between launches, not the reading error, sets the interval.
+    // Ten launches, the COR of each 0.8 ± 0.01: the spread between launches, not the reading error,
+    // sets the interval.
     let held = coverage(0.8, |noise| {
         let mut text = "trial,bounce,height_m\n".to_owned();
         for trial in 0..10 {
@@ -134,7 +137,8 @@ fn of_trials_whose_cor_differs() {
 
 #[test]
 fn of_bounces_that_scatter() {
-    // Eight launches on a rough floor: every impact has a COR of its own, 0.9 ± 1 %, and the clock is good to 0.2 ms.
+    // Eight launches on a rough floor: every impact has a COR of its own, 0.9 ± 1 %, and the clock
+    // is good to 0.2 ms.
     let held = coverage(0.9, |noise| {
         let mut text = "trial,bounce,time_s\n".to_owned();
         for trial in 0..8 {

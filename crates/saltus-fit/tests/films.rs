@@ -1,4 +1,5 @@
-//! Films of balls whose impacts take time, as all do: what the program says of the COR, and how often its intervals hold the truth.
+//! Films of balls whose impacts take time, as all do: what the program says of the COR, and how
+//! often its intervals hold the truth.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -17,7 +18,8 @@ fn films() -> u32 {
     std::env::var("FILMS").map_or(40, |n| n.parse().expect("FILMS is a number"))
 }
 
-/// One film of many, drop height, rebounds, scatter and length chosen by its number; and the least and greatest COR of its first three impacts.
+/// One film of many, drop height, rebounds, scatter and length chosen by its number; and the least
+/// and greatest COR of its first three impacts.
 fn filmed(contact: Contact, rate: f64, n: u32) -> (Report, [f64; 2]) {
     let mut noise = Noise(u64::from(n) + 1000 * rate as u64);
     let ball = Ball {
@@ -79,7 +81,8 @@ fn intervals_of_impacts_that_take_no_time_hold_the_truth() {
     assert!(100 * held >= 91 * trusted, "{held} of {trusted}");
 }
 
-/// A squash ball or a football stays on the floor for about 10 ms: without that time the COR would come out up to 0.01 too high.
+/// A squash ball or a football stays on the floor for about 10 ms: without that time the COR would
+/// come out up to 0.01 too high.
 #[test]
 fn impacts_that_last_are_found() {
     let mut noise = Noise(31);
@@ -115,7 +118,8 @@ fn impacts_that_take_no_time_are_left_so() {
     }
 }
 
-/// One impact does not show how long it takes: the interval reaches down to what it would be if it took some milliseconds.
+/// One impact does not show how long it takes: the interval reaches down to what it would be if it
+/// took some milliseconds.
 #[test]
 fn a_single_impact_may_take_time() {
     let mut noise = Noise(34);

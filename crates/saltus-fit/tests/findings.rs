@@ -1,4 +1,5 @@
-//! Findings are data: every kind has words and a line in the documentation, and a report that was written is read back as it was.
+//! Findings are data: every kind has words and a line in the documentation, and a report that was
+//! written is read back as it was.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

@@ -1,6 +1,7 @@
 //! Whatever the bytes, reading ends, soon, with a table or with an error that says something.
 //!
-//! `HOSTILE=100000 cargo test --release -p saltus-fit --test hostile` is the long run: so many changed files of every kind.
+//! `HOSTILE=100000 cargo test --release -p saltus-fit --test hostile` is the long run: so many
+//! changed files of every kind.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! docs/fitting-inside.md lists every finding, and the constants that decide with the values that they have.
+//! docs/fitting-inside.md lists every finding, and the constants that decide with the values that
+//! they have.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

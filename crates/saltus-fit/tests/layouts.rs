@@ -1,4 +1,5 @@
-//! The same readings, whatever the layout, the unit, the delimiter, the decimal mark, the encoding and the order of rows.
+//! The same readings, whatever the layout, the unit, the delimiter, the decimal mark, the encoding
+//! and the order of rows.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

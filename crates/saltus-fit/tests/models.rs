@@ -130,7 +130,8 @@ fn laws_of_speed_under_other_losses() {
         assert!((slope(&run(&linear, CorModel::Linear, 0.0), loss) + 0.04).abs() < 1e-5, "{loss:?}");
         assert!((exponent(&run(&plastic, CorModel::Power, 0.0), loss) - 0.25).abs() < 1e-4, "{loss:?}");
     }
-    // One of 28 readings is wrong: the sum of absolute residuals passes by it, Huber's loss nearly does.
+    // One of 28 readings is wrong: the sum of absolute residuals passes by it, Huber's loss nearly
+    // does.
     let (straight, bent) = (run(&linear, CorModel::Linear, 0.1), run(&plastic, CorModel::Power, 0.1));
     let off = |loss| (slope(&straight, loss) + 0.04).abs();
     let squares = (model(&straight, "linear").slope.unwrap().value + 0.04).abs();
@@ -232,7 +233,8 @@ fn the_report_can_rest_on_another_model() {
 
 #[test]
 fn drops_that_differ_are_told_from_readings_that_do_not_fit() {
-    // Heights and times of ten drops, each exact in itself to 1 mm and 1 ms; the COR differs by 0.02 from drop to drop.
+    // Heights and times of ten drops, each exact in itself to 1 mm and 1 ms; the COR differs by
+    // 0.02 from drop to drop.
     let mut held = 0;
     for seed in 0..40 {
         let mut noise = Noise(seed);

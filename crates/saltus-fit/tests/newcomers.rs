@@ -108,7 +108,8 @@ fn two_balls_in_one_sheet_have_a_cor_each() {
             }
         }
     }
-    // One ruler, read at the bottom of the ball; without that, where on the ball it was read may differ from group to group.
+    // One ruler, read at the bottom of the ball; without that, where on the ball it was read may
+    // differ from group to group.
     let table = Table::parse("sheet.csv", text.as_bytes(), &ReadOptions::default()).unwrap();
     let report = Fit::new().sigma_zero(0.0).drag(0.0).run(&table).unwrap();
     let wide = &fit(&text).differences()[0].clone();

@@ -25,7 +25,8 @@ fn stream(records: &[Vec<u8>]) -> Vec<u8> {
     [begin(5), sheet, end.clone(), begin(16), records.concat(), end].concat()
 }
 
-/// The stream in its container, of sectors 0: the table, 1: the directory, 2 and so on: the stream; the changes are made to the table.
+/// The stream in its container, of sectors 0: the table, 1: the directory, 2 and so on: the stream;
+/// the changes are made to the table.
 fn file(mut stream: Vec<u8>, length: u32, changes: &[(usize, u32)]) -> Vec<u8> {
     stream.resize(stream.len().max(4096).next_multiple_of(512), 0);
     let sectors = stream.len() / 512;
@@ -81,7 +82,8 @@ fn cells_far_apart_are_refused() {
     refused(&file(stream(&[dimensions, number(0, 0, 1.0)]), 4096, &[]), "too far apart");
 }
 
-/// A stream that says it is four gigabytes long, and goes round until it is; and a directory that has no end.
+/// A stream that says it is four gigabytes long, and goes round until it is; and a directory that
+/// has no end.
 #[test]
 fn sectors_in_a_circle_are_refused() {
     refused(&file(stream(&[number(0, 0, 1.0)]), u32::MAX, &[(9, 2)]), "damaged");

@@ -7,7 +7,8 @@ mod noise;
 use noise::Noise;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
-/// The part of runs whose interval holds `truth`. A trusted COR must be near it, and nearly all must be.
+/// The part of runs whose interval holds `truth`. A trusted COR must be near it, and nearly all
+/// must be.
 fn held(what: &str, runs: usize, truth: f64, mut run: impl FnMut(&mut Noise) -> Report) -> f64 {
     let mut noise = Noise(77);
     let (mut held, mut near) = (0, 0);
@@ -74,7 +75,8 @@ fn times_with_double_triggers_and_missed_contacts() {
     assert!(part > 0.9, "{part}");
 }
 
-/// A film of two seconds at 120 frames a second, of which `misread` says what is seen instead of a height, frame by frame.
+/// A film of two seconds at 120 frames a second, of which `misread` says what is seen instead of a
+/// height, frame by frame.
 fn film(noise: &mut Noise, mut misread: impl FnMut(u32, &mut Noise) -> Option<f64>) -> Report {
     let mut text = "time_s,height_m\n".to_owned();
     let g = 9.81f64;
@@ -112,7 +114,8 @@ fn series_of_which_three_in_ten_are_wild() {
     assert!(part > 0.85, "{part}");
 }
 
-/// A tracker that takes something else far above for the ball, which lies still, for eight frames in every fifty.
+/// A tracker that takes something else far above for the ball, which lies still, for eight frames
+/// in every fifty.
 #[test]
 fn series_whose_tracker_jumps_elsewhere_and_back() {
     let part = held("jumps", 30, 0.8, |noise| {
@@ -139,7 +142,8 @@ fn two_balls(others: u32) -> Report {
 fn one_odd_drop_is_left_out_and_three_are_not() {
     let one = two_balls(1);
     assert!(!one.repairs().is_empty() && (one.cor().unwrap().value - 0.8).abs() < 0.003, "{one}");
-    // Three drops in ten that fall together are no misreadings: the drops differ, and the interval says so.
+    // Three drops in ten that fall together are no misreadings: the drops differ, and the interval
+    // says so.
     let three = two_balls(3);
     assert!(three.repairs().is_empty() && three.reason().contains("drops that differ"), "{three}");
     let cor = three.cor().unwrap();
@@ -149,8 +153,8 @@ fn one_odd_drop_is_left_out_and_three_are_not() {
 proptest::proptest! {
     #![proptest_config(proptest::test_runner::Config::with_cases(100))]
 
-    /// Trials that are equal to the last digit scatter by its rounding: no reading within a few roundings is left out, and two drops that differ are two
-    /// drops, whose COR is in the mean.
+    /// Trials that are equal to the last digit scatter by its rounding: no reading within a few
+    /// roundings is left out, and two drops that differ are two drops, whose COR is in the mean.
     #[test]
     fn equal_readings_are_as_good_as_their_rounding(e in 0.6f64..0.85, off in 0.02f64..0.06, equal in 6usize..10, two in 2usize..4) {
         let step = |h: f64| (100.0 * h).round();

@@ -1,4 +1,5 @@
-//! What no ball does is doubted, and what some balls do is not: each limit of the model is met from both sides.
+//! What no ball does is doubted, and what some balls do is not: each limit of the model is met from
+//! both sides.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! A plan holds what it promises: the planned experiment is made, many times, with the errors of its way, and fitted.
+//! A plan holds what it promises: the planned experiment is made, many times, with the errors of
+//! its way, and fitted.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -9,7 +10,8 @@ use saltus_fit::{Ball, Expected, Fit, Planned, ReadOptions, Readings, Table, Ver
 
 const G: f64 = 9.81;
 
-/// One planned experiment as a table: heights with an error, contacts at the frame in which they fall or with an error.
+/// One planned experiment as a table: heights with an error, contacts at the frame in which they
+/// fall or with an error.
 fn made(planned: &Planned, cor: f64, noise: &mut Noise) -> String {
     let heights = planned.way.readings() == Readings::Heights;
     let mut text = if heights { "trial,bounce,height_m\n" } else { "trial,bounce,time_s\n" }.to_owned();

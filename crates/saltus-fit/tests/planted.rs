@@ -1,4 +1,5 @@
-//! Planted faults are found and named: outliers, missed and doubled contacts, misread times; and what tolerances allow.
+//! Planted faults are found and named: outliers, missed and doubled contacts, misread times; and
+//! what tolerances allow.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -111,12 +112,14 @@ fn tolerances_allow_a_range_or_nothing() {
     let rounded: Vec<f64> = (0..5).map(|n| (100.0 * 0.8f64.powi(2 * n)).round() / 100.0).collect();
     let table = Table::from_heights(&rounded).unwrap();
     let allowed = |within: f64| Fit::new().tolerance_height(within).run(&table).unwrap().allowed()[0].clone();
-    // Rounding to a centimetre moves nothing by more than half of one, so the truth is among what that allows.
+    // Rounding to a centimetre moves nothing by more than half of one, so the truth is among what
+    // that allows.
     let half = allowed(0.005 + 1e-9);
     let (low, high) = half.range.expect("rounding allows the truth");
     assert!(low <= 0.8 && 0.8 <= high && high - low < 0.02, "{half:?}");
     assert!(half.smallest <= 0.005 && low <= half.cor && half.cor <= high, "{half:?}");
-    // By the definition of the range: with two heights, e² = h₁/h₀ at the corners of the tolerances.
+    // By the definition of the range: with two heights, e² = h₁/h₀ at the corners of the
+    // tolerances.
     let two = Fit::new().tolerance_height(0.01).run(&Table::from_heights(&[1.0, 0.64]).unwrap()).unwrap();
     let (low, high) = two.allowed()[0].range.unwrap();
     assert!(
@@ -171,7 +174,8 @@ fn a_bootstrap_repeats_itself_and_agrees_with_the_jackknife() {
     assert!(few.bootstrap().is_none() && few.warnings().iter().any(|n| n.contains("at least five")), "{few}");
 }
 
-/// Six drops of which only heights were read outvote the one whose times were read too, or are contradicted by it: it does not speak for all.
+/// Six drops of which only heights were read outvote the one whose times were read too, or are
+/// contradicted by it: it does not speak for all.
 #[test]
 fn one_drop_does_not_speak_for_seven() {
     let table = |e: f64| {

@@ -1,4 +1,5 @@
-//! Recordings as people make them, each with a truth that the plainest model misses: what is told, doubted, or found out.
+//! Recordings as people make them, each with a truth that the plainest model misses: what is told,
+//! doubted, or found out.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -21,7 +22,8 @@ fn holds(report: &Report, truth: f64) -> bool {
     report.cor().is_some_and(|cor| cor.low <= truth && truth <= cor.high)
 }
 
-/// The height of a ball at `t` that is let go from `drop` at `start` and keeps `e` of its speed, and the times of its contacts.
+/// The height of a ball at `t` that is let go from `drop` at `start` and keeps `e` of its speed,
+/// and the times of its contacts.
 fn height(t: f64, drop: f64, start: f64, e: f64) -> f64 {
     let fall = (2.0 * drop / G).sqrt();
     if t < start + fall {
@@ -140,7 +142,8 @@ fn a_rebound_that_is_not_in_the_table_is_named() {
     }
 }
 
-/// Reaction times of a hand on a stopwatch: most contacts are read wrongly, and those that go together do so by chance.
+/// Reaction times of a hand on a stopwatch: most contacts are read wrongly, and those that go
+/// together do so by chance.
 #[test]
 fn contacts_of_which_many_do_not_follow_are_doubted() {
     let text = "trial,t1 (s),t2 (s),t3 (s),t4 (s),t5 (s)\n0,0.70,1.26,1.74,1.92,2.18\n1,0.72,1.24,1.65,2.02,2.21\n\
@@ -209,7 +212,8 @@ fn a_great_number_of_a_bounce_takes_no_time() {
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
 }
 
-/// A film whose times are written to 10 ms or 1 ms: the frames come evenly, so each gets its own time back.
+/// A film whose times are written to 10 ms or 1 ms: the frames come evenly, so each gets its own
+/// time back.
 #[test]
 fn rounded_times_of_frames_are_restored() {
     let mut noise = Noise(41);
@@ -264,7 +268,8 @@ fn rounded_times_of_frames_are_restored() {
     assert!(report.repairs().iter().all(|line| !line.contains("frames a second")), "{report}");
 }
 
-/// Nobody states the error of reading, or somebody states it as large as the scatter about one COR: where that turns the verdict, both reports say so.
+/// Nobody states the error of reading, or somebody states it as large as the scatter about one COR:
+/// where that turns the verdict, both reports say so.
 #[test]
 fn where_the_error_of_reading_decides_it_is_said() {
     let mut noise = Noise(8);
@@ -276,7 +281,8 @@ fn where_the_error_of_reading_decides_it_is_said() {
             (t, lasts) = (t + lasts, lasts * (0.905 - 0.0035 * 0.5 * G * lasts));
         }
         let table = parse(&text);
-        // In air that is not stated, the drag of a light ball would explain it, and the interval allows for that.
+        // In air that is not stated, the drag of a light ball would explain it, and the interval
+        // allows for that.
         let alone = Fit::new().drag(0.0).run(&table).unwrap();
         let sigma = alone.sigma_time().unwrap().value;
         let stated = Fit::new().drag(0.0).sigma_time(sigma).run(&table).unwrap();

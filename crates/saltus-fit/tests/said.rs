@@ -1,4 +1,5 @@
-//! What people are told: what they state is obeyed, what looks wrong is named with its place, and what cannot be told apart is not told apart.
+//! What people are told: what they state is obeyed, what looks wrong is named with its place, and
+//! what cannot be told apart is not told apart.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -20,7 +21,8 @@ fn refuse(text: &str) -> String {
     Table::parse("film.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string()
 }
 
-/// A ball with a COR of 0.8, dropped from 1 m and filmed for 2.2 s, each height turned into what is written.
+/// A ball with a COR of 0.8, dropped from 1 m and filmed for 2.2 s, each height turned into what is
+/// written.
 fn film(column: &str, rate: u32, written: impl Fn(f64) -> f64) -> String {
     let (g, mut noise) = (9.81f64, Noise(5));
     let (fall, first) = ((2.0 / g).sqrt(), (2.0 * g).sqrt());

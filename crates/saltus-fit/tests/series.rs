@@ -1,4 +1,5 @@
-//! Series of heights in time: planted motions are found, and recordings made by other people give what an analyst found in them.
+//! Series of heights in time: planted motions are found, and recordings made by other people give
+//! what an analyst found in them.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -76,7 +77,8 @@ fn units_turning_clock_and_order_do_not_matter() {
     let film_as = |time: f64, scale: f64, zero: f64| -> Vec<(f64, f64)> {
         film.iter().map(|&(t, h)| (time * t, zero + scale * h)).collect()
     };
-    // Pixels with y down; a clock that believes in 24 frames a second; a sensor in millimetres that looks down from 1.5 m.
+    // Pixels with y down; a clock that believes in 24 frames a second; a sensor in millimetres that
+    // looks down from 1.5 m.
     for other in [film_as(1.0, -664.5, 1900.0), film_as(100.0 / 24.0, 1.0, 0.0), film_as(1.0, -1000.0, 1500.0)] {
         let (v, s) = cor(&other);
         assert!((v - value).abs() < 0.02 * error && (s / error - 1.0).abs() < 0.05, "{v} ± {s}, {value} ± {error}");
@@ -171,7 +173,8 @@ fn borrowed(name: &str) -> Option<String> {
     found
 }
 
-/// A table-tennis ball on a table, filmed from the side: `x;y;` in pixels, y down, 100 frames a second.
+/// A table-tennis ball on a table, filmed from the side: `x;y;` in pixels, y down, 100 frames a
+/// second.
 fn table_tennis(name: &str) -> Option<Vec<(f64, f64)>> {
     let text = borrowed(&format!("tabletennis_100fps/{name}.txt"))?;
     let row = |(n, line): (usize, &str)| (0.01 * n as f64, line.split(';').nth(1).unwrap().parse().unwrap());
@@ -235,7 +238,8 @@ fn a_drop_without_a_bounce_is_not_fitted() {
     assert!(report.reason().contains("no bounce"), "{}", report.reason());
 }
 
-/// Phones film at 24 to 240 frames a second, from before the release to long after the ball lies: every such film gives its COR.
+/// Phones film at 24 to 240 frames a second, from before the release to long after the ball lies:
+/// every such film gives its COR.
 #[test]
 fn films_of_every_rate_and_length() {
     let mut noise = Noise(9);
@@ -255,7 +259,8 @@ fn films_of_every_rate_and_length() {
     }
 }
 
-/// Drag that one of several films does not show is none there, and no reason to leave it out of all.
+/// Drag that one of several films does not show is none there, and no reason to leave it out of
+/// all.
 #[test]
 fn a_film_without_drag_beside_films_with_drag() {
     let mut noise = Noise(23);
@@ -271,7 +276,8 @@ fn a_film_without_drag_beside_films_with_drag() {
     assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
 }
 
-/// The last bounces before a ball lies still have two to four samples each: they are not used, and nothing is wrong with them.
+/// The last bounces before a ball lies still have two to four samples each: they are not used, and
+/// nothing is wrong with them.
 #[test]
 fn the_last_bounces_of_a_film_are_not_wild() {
     let mut noise = Noise(33);

@@ -1,4 +1,5 @@
-//! Sheets made at random, as people dress them: what is read is what was planted, or a question; never something else.
+//! Sheets made at random, as people dress them: what is read is what was planted, or a question;
+//! never something else.
 //!
 //! `SHEETS=100000 cargo test -p saltus-fit --test sheets` is the long run.
 

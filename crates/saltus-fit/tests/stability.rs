@@ -1,4 +1,5 @@
-//! The same COR whatever the unit, the size and the weights of a table: to 1e-9 that of the well-scaled one.
+//! The same COR whatever the unit, the size and the weights of a table: to 1e-9 that of the
+//! well-scaled one.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! The stages are folders whose arrows point downwards only, and no files import each other in a ring.
+//! The stages are folders whose arrows point downwards only, and no files import each other in a
+//! ring.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -6,7 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From what everything rests on to what rests on everything. A file uses its own stage and those before it.
+/// From what everything rests on to what rests on everything. A file uses its own stage and those
+/// before it.
 const STAGES: [&[&str]; 10] = [
     &["word", "statistics", "error", "quantity", "orientation", "finding"],
     &["read"],

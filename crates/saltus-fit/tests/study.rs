@@ -167,7 +167,8 @@ fn the_motion_is_that_of_the_joint_fit() {
     let labels: Vec<&str> = report.points().iter().map(|p| p.label.as_str()).collect();
     assert_eq!(labels, ["release", "contact 1", "apex 1", "contact 2", "apex 2", "contact 3"]);
     close(report.points()[2].time, 0.65, 1e-12);
-    // The release height was taken as set: five readings remain, and their squares are the chi-square.
+    // The release height was taken as set: five readings remain, and their squares are the
+    // chi-square.
     assert_eq!(report.residuals().len(), 5);
     let squares: f64 = report.residuals().iter().map(|r| r.z * r.z).sum();
     close(squares, 73.24, 0.01);

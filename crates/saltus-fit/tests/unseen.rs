@@ -1,4 +1,5 @@
-//! What no reading shows: the interval holds the truth whatever it is within what is supposed of it, and is short where it is stated.
+//! What no reading shows: the interval holds the truth whatever it is within what is supposed of
+//! it, and is short where it is stated.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -11,7 +12,8 @@ const ZERO: f64 = 0.067 / 3.464_101_6;
 /// The drag of a table-tennis ball, 1/m.
 const DRAG: f64 = 0.135;
 
-/// The apexes of a ball with a COR and drag k: v² = (g/k)(1 − e^(−2kh)) falling, h = ln(1 + k v²/g)/2k rising.
+/// The apexes of a ball with a COR and drag k: v² = (g/k)(1 − e^(−2kh)) falling, h = ln(1 + k
+/// v²/g)/2k rising.
 fn apexes(e: f64, k: f64, count: usize) -> Vec<f64> {
     std::iter::successors(Some(1.0f64), |h| {
         let square = if k == 0.0 { 2.0 * G * h } else { G / k * -(-2.0 * k * h).exp_m1() };
@@ -29,7 +31,8 @@ fn cor(heights: &[f64], fit: Fit) -> Cor {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Three heights, without any scatter: a zero off by up to 1.9 standard errors or drag up to the most, not seen, do not lead out of the interval.
+    /// Three heights, without any scatter: a zero off by up to 1.9 standard errors or drag up to
+    /// the most, not seen, do not lead out of the interval.
     #[test]
     fn the_interval_allows_for_what_no_reading_shows(
         e in 0.5f64..0.9, zero in -1.9f64..1.9, drag in 0.0f64..1.0, both in any::<bool>(),
@@ -56,7 +59,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Three heights with a rebound missing between: a trusted interval holds the COR, and without a gap nothing is added where the readings tell.
+    /// Three heights with a rebound missing between: a trusted interval holds the COR, and without
+    /// a gap nothing is added where the readings tell.
     #[test]
     fn a_rebound_may_be_missing(e in 0.3f64..0.9, place in 1usize..3) {
         let whole = apexes(e, 0.0, 4);
@@ -73,8 +77,8 @@ proptest! {
     }
 }
 
-/// A larger ball, a larger doubt of its zero, as far as the chi-square allows, which of two heights sees
-/// nothing; and one that is nearly nothing is not named.
+/// A larger ball, a larger doubt of its zero, as far as the chi-square allows, which of two heights
+/// sees nothing; and one that is nearly nothing is not named.
 #[test]
 fn the_size_of_the_ball_bounds_the_zero() {
     let read = apexes(0.7, 0.0, 4);
@@ -92,8 +96,8 @@ fn the_size_of_the_ball_bounds_the_zero() {
     assert!(!report.to_string().contains("zero of the heights"), "{report}");
 }
 
-/// A ball that the table names is allowed for, group by group: the COR is that of the readings, and the interval takes in that without the air; a name
-/// that is not understood is that of any ball.
+/// A ball that the table names is allowed for, group by group: the COR is that of the readings, and
+/// the interval takes in that without the air; a name that is not understood is that of any ball.
 #[test]
 fn a_ball_that_the_table_names_is_that_ball() {
     let rows = |ball: &str, rebounds: [f64; 4]| -> String {

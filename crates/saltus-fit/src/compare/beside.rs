@@ -20,7 +20,8 @@ pub(crate) struct Wanted {
 }
 
 impl Fits<'_> {
-    /// Whether drops differ for another cause than the height they fall from: then no model of the speed can be told from that cause.
+    /// Whether drops differ for another cause than the height they fall from: then no model of the
+    /// speed can be told from that cause.
     fn drops_differ(&self, cor: f64) -> bool {
         let of = |spread: Option<f64>, separate: &[(f64, f64)]| {
             let settings = differ(self.table.trials(), separate, cor).is_some_and(|d| d.p < REJECT);
@@ -50,7 +51,8 @@ impl Fits<'_> {
 /// Release heights that differ by less, as a part of them, are one.
 const SAME_HEIGHT: f64 = 0.05;
 
-/// Fits other models to the readings that one COR was fitted to; `cor` is none where they do not settle on one.
+/// Fits other models to the readings that one COR was fitted to; `cor` is none where they do not
+/// settle on one.
 pub(crate) fn models(fits: &Fits<'_>, cor: Option<f64>, wanted: &Wanted) -> Result<Compared, FitError> {
     let none = |untried: Untried| Ok(Compared { untried: Some(untried), ..Compared::default() });
     let Some(cor) = cor else { return none(Untried::Unsettled) };

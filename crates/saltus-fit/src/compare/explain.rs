@@ -11,8 +11,9 @@ use crate::solve::joint::{Joint, Suppose, run, slope};
 use crate::solve::successive::Fitted;
 use crate::statistics::{REJECT, chi_square_p};
 
-/// An explanation fits readings worth less than was stated where chance alone gives its chi-square this often: the usual level, above [`REJECT`],
-/// since larger errors let almost any explanation pass.
+/// An explanation fits readings worth less than was stated where chance alone gives its chi-square
+/// this often: the usual level, above [`REJECT`], since larger errors let almost any explanation
+/// pass.
 const GENEROUS: f64 = 0.05;
 
 /// How well heights and times go together under free flight with one COR.
@@ -31,9 +32,11 @@ pub struct Agreement {
     pub largest_conflict_s: Option<f64>,
     /// The same in frames of the camera, where the frame rate is known.
     pub largest_conflict_frames: Option<f64>,
-    /// A COR that ends at the measured time of the last contact all the same, and the rebounds it would mean.
+    /// A COR that ends at the measured time of the last contact all the same, and the rebounds it
+    /// would mean.
     pub total_time: Option<TotalTime>,
-    /// What gravity would have to be for each flight to reach the measured height in the measured time.
+    /// What gravity would have to be for each flight to reach the measured height in the measured
+    /// time.
     pub flights: Vec<ImpliedGravity>,
 }
 
@@ -60,7 +63,8 @@ pub struct Conflict {
     pub frames: Option<f64>,
 }
 
-/// The gravity that one flight's height and duration imply: 2h/t² for the fall, 8h/t² for a flight between contacts.
+/// The gravity that one flight's height and duration imply: 2h/t² for the fall, 8h/t² for a flight
+/// between contacts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ImpliedGravity {
@@ -72,7 +76,8 @@ pub struct ImpliedGravity {
     pub gravity: f64,
 }
 
-/// Why the agreement of a total time validates nothing: one COR always gives it, whatever the heights.
+/// Why the agreement of a total time validates nothing: one COR always gives it, whatever the
+/// heights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct TotalTime {
@@ -84,7 +89,8 @@ pub struct TotalTime {
     pub heights_m: Vec<f64>,
 }
 
-/// An explanation tried on a table whose heights and times disagree, and the measurement that would settle it.
+/// An explanation tried on a table whose heights and times disagree, and the measurement that would
+/// settle it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Hypothesis {
@@ -114,7 +120,8 @@ pub struct Hypothesis {
     pub generous: Option<Generous>,
     /// What to measure to find out.
     pub settle: String,
-    /// After which contact one was overlooked, where that is what it supposes; 0 is before the first one noted.
+    /// After which contact one was overlooked, where that is what it supposes; 0 is before the
+    /// first one noted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlooked_after: Option<usize>,
 }
@@ -147,7 +154,8 @@ impl Hypothesis {
     }
 }
 
-/// A fit repeated with larger reading errors: twice the heights', and a whole frame (else twice the times').
+/// A fit repeated with larger reading errors: twice the heights', and a whole frame (else twice the
+/// times').
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Generous {
@@ -239,7 +247,8 @@ fn of_joint(joint: &Joint, evidence: &Evidence, gravity: f64, frame_rate: Option
     }
 }
 
-/// The COR with which contact `last` comes at `time` after a fall of `fall` seconds from `height`: t = fall (1 + 2 (e + e² + …)).
+/// The COR with which contact `last` comes at `time` after a fall of `fall` seconds from `height`:
+/// t = fall (1 + 2 (e + e² + …)).
 fn total_time(time: f64, fall: f64, last: usize, height: f64) -> Option<TotalTime> {
     let last = last.min(1000);
     let flights = |e: f64| (1..last).fold((0.0, 1.0), |(sum, power), _| (sum + power * e, power * e)).0;
@@ -314,7 +323,8 @@ fn of_both(joint: &Joint, sigma_height: f64, sigma_time: f64, frame: Option<f64>
     Ok(found)
 }
 
-/// Whether the readings of a single trial would agree if one contact had been overlooked, and which.
+/// Whether the readings of a single trial would agree if one contact had been overlooked, and
+/// which.
 fn missed_contact(joint: &Joint) -> Result<Option<Hypothesis>, FitError> {
     let [trial] = joint.model.trials.as_slice() else { return Ok(None) };
     let bounces = joint.model.bounces();

@@ -1,7 +1,8 @@
-//! Other models of the same heights and times: a COR that depends on speed, one for every bounce, air drag, a wrong zero of the scale.
+//! Other models of the same heights and times: a COR that depends on speed, one for every bounce,
+//! air drag, a wrong zero of the scale.
 //!
-//! All are the motion of [`Flight`] with one thing more set free. They are compared by BIC and `AICc`, and by how they do on trials that
-//! they were not fitted to.
+//! All are the motion of [`Flight`] with one thing more set free. They are compared by BIC and
+//! `AICc`, and by how they do on trials that they were not fitted to.
 
 use rayon::iter::{IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
@@ -19,7 +20,8 @@ use crate::statistics::{CLEAR, chi_square_p};
 
 /// So many spare readings a model must leave to be worth comparing.
 const SPARE: usize = 3;
-/// Speeds must differ by this factor, over so many bounces, before a dependence on speed can be told from one COR.
+/// Speeds must differ by this factor, over so many bounces, before a dependence on speed can be
+/// told from one COR.
 const SPEEDS: f64 = 2.0;
 const IMPACTS: usize = 6;
 /// The same for drag, which has a law of its own.
@@ -71,14 +73,16 @@ pub(crate) struct Compared {
     pub(crate) untried: Option<Untried>,
 }
 
-/// The speeds of the impacts that the readings tell of, under a law: the slowest, the fastest, how many.
+/// The speeds of the impacts that the readings tell of, under a law: the slowest, the fastest, how
+/// many.
 fn impacts(base: &Flight, fitted: &Fitted) -> (f64, f64, usize) {
     let unknowns = &fitted.shared[..base.law.unknowns()];
     let (mut slowest, mut fastest, mut count) = (f64::INFINITY, 0.0f64, 0);
     for (block, trial) in base.trials.iter().enumerate() {
         let last_height = trial.heights.last().map_or(0, |h| h.0);
         let last_moment = trial.moments.last().map_or(0, |m| m.flights + usize::from(m.apex));
-        // Without the release nobody knows how fast the ball came to the first contact, and so not the COR there.
+        // Without the release nobody knows how fast the ball came to the first contact, and so not
+        // the COR there.
         let from = usize::from(trial.release.is_none());
         let to = last_height.max(last_moment);
         if to <= from {
@@ -123,7 +127,8 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     let heights = base.trials.iter().any(|t| !t.heights.is_empty());
     if heights && spans && factor >= OFFSET_SPEEDS && count >= OFFSET_IMPACTS {
         let lowest = base.trials.iter().flat_map(|t| &t.heights).map(|h| h.1).fold(f64::INFINITY, f64::min);
-        // No ball is higher than where it is let go; the lowest reading may well lie within the error of the zero.
+        // No ball is higher than where it is let go; the lowest reading may well lie within the
+        // error of the zero.
         let high = ball.unwrap_or(LARGEST_BALL).min(0.9 * base.tallest().max(lowest));
         let offset = Flight { offset: Some(Bounds { low: 0.0, high }), ..base.clone() };
         if base.trials.iter().all(|t| t.release.is_some()) {
@@ -132,7 +137,8 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
         }
         push(CorModel::Offset, offset);
     }
-    // Times alone do not tell how fast the ball came to the first contact, and so not the COR there.
+    // Times alone do not tell how fast the ball came to the first contact, and so not the COR
+    // there.
     let bounces = base.bounces();
     if heights && (2..=BOUNCES).contains(&bounces) {
         push(CorModel::Each, of(CorLaw::Each(bounces)));
@@ -141,7 +147,8 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     list
 }
 
-/// One COR if one rebound is not in the table: those after it count one more. The place that leaves least is one more unknown.
+/// One COR if one rebound is not in the table: those after it count one more. The place that leaves
+/// least is one more unknown.
 fn missed(base: &Flight) -> Option<Rival> {
     let rows: usize = base.trials.iter().map(|t| t.heights.len()).sum();
     if rows > FEW || base.trials.iter().any(|t| !t.moments.is_empty()) {
@@ -172,7 +179,8 @@ struct Rival {
     model: Flight,
 }
 
-/// Fits the models, that of one COR first, and returns them with the best first; empty where there is nothing to compare.
+/// Fits the models, that of one COR first, and returns them with the best first; empty where there
+/// is nothing to compare.
 pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitError> {
     let mut compared = Compared::default();
     let rows: usize = readings.trials.iter().map(|t| t.heights.len() + t.moments.len()).sum();
@@ -258,7 +266,8 @@ fn needs(wanted: CorModel, base: &Flight, (slowest, fastest, count): (f64, f64, 
 /// A model that was tried: what is said of it, and its fit.
 type Tried = (ModelChoice, Flight, Fitted);
 
-/// Fits a model from the fit of one COR, over the speeds of the impacts that one tells of; `None` where it cannot be compared.
+/// Fits a model from the fit of one COR, over the speeds of the impacts that one tells of; `None`
+/// where it cannot be compared.
 fn tried(
     Rival { name, missing, model }: Rival,
     readings: &Readings,
@@ -347,7 +356,8 @@ fn at(model: &Flight, fitted: &Fitted, speed: f64) -> Measured {
     Measured { value, standard_error: fitted.error_of(&by) }
 }
 
-/// Fits one model, from other own unknowns if they are given. One that cannot be fitted, or whose solution does not pass its checks, is no rival.
+/// Fits one model, from other own unknowns if they are given. One that cannot be fitted, or whose
+/// solution does not pass its checks, is no rival.
 fn run(model: &Flight, shared: &[f64], own: Option<&Vec<Vec<f64>>>) -> Option<Fitted> {
     let own = own.cloned().unwrap_or_else(|| model.start(shared[0]));
     fit(model, shared, own).ok()

@@ -1,20 +1,26 @@
-//! Contacts that were missed, heard twice or misread: all ways to read runs of contacts, and what each costs.
+//! Contacts that were missed, heard twice or misread: all ways to read runs of contacts, and what
+//! each costs.
 //!
-//! Under one COR every flight lasts e times the one before it. A way to read a run keeps some of its contacts and says how many flights lie
-//! between neighbours. It costs the chi-square of each interval beside the one before, and as much as strong evidence is worth for every contact
-//! that it supposes missed, extra or misread. The cheapest way under a COR is found contact by contact (Viterbi, IEEE Trans. Inf. Theory 13 (1967)
-//! 260), for CORs from one end of the possible to the other; those that cost about as little as the best are its rivals.
+//! Under one COR every flight lasts e times the one before it. A way to read a run keeps some of
+//! its contacts and says how many flights lie between neighbours. It costs the chi-square of each
+//! interval beside the one before, and as much as strong evidence is worth for every contact that
+//! it supposes missed, extra or misread. The cheapest way under a COR is found contact by contact
+//! (Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260), for CORs from one end of the possible to the
+//! other; those that cost about as little as the best are its rivals.
 
 use crate::statistics::{CLEAR, NORMAL, SCATTER, median};
 
-/// Between two contacts that are kept lie up to so many flights, and up to one less that are left out.
+/// Between two contacts that are kept lie up to so many flights, and up to one less that are left
+/// out.
 const APART: usize = 3;
-/// The COR of one ball on one floor scatters from bounce to bounce by this part of it, as a standard deviation: of rough marbles the most.
+/// The COR of one ball on one floor scatters from bounce to bounce by this part of it, as a
+/// standard deviation: of rough marbles the most.
 const BOUNCES: f64 = 0.05;
 /// The CORs that are tried, and how many: neighbours are nearer than [`BOUNCES`].
 const CORS: (f64, f64, u32) = (0.05, 1.25, 70);
-/// A second trigger follows its contact, and a contact at an end that follows from nothing is left without a cause: where two ways fit about alike, weak
-/// evidence speaks against one that leaves out the earlier of two, or an end.
+/// A second trigger follows its contact, and a contact at an end that follows from nothing is left
+/// without a cause: where two ways fit about alike, weak evidence speaks against one that leaves
+/// out the earlier of two, or an end.
 const WEAK: f64 = 2.0;
 /// Runs of more contacts tell no more of how to read them.
 const TELLING: usize = 400;
@@ -81,7 +87,8 @@ impl Prices {
         Interval { whole, last: whole * last }
     }
 
-    /// The deviation of an interval from what the one before it says, and its variances by the error of a time and by the bounces.
+    /// The deviation of an interval from what the one before it says, and its variances by the
+    /// error of a time and by the bounces.
     fn deviation(&self, before: Interval, gap: f64, flights: usize) -> (f64, f64, f64) {
         let due = before.last * self.flights(flights);
         let part = due / before.whole;
@@ -136,7 +143,8 @@ impl Prices {
         if count < 3 {
             return whole();
         }
-        // One node for each pair of contacts kept one after the other, and the flights between: what it costs so far, and the node before it.
+        // One node for each pair of contacts kept one after the other, and the flights between:
+        // what it costs so far, and the node before it.
         let place = |j: usize, back: usize, flights: usize| (j * APART + back - 1) * APART + flights - 1;
         let mut nodes: Vec<(f64, Option<usize>)> = vec![(f64::INFINITY, None); count * APART * APART];
         let mut best = (f64::INFINITY, None);
@@ -235,7 +243,8 @@ fn tried() -> impl Iterator<Item = f64> {
     (0..=count).map(move |n| low * (high / low).powf(f64::from(n) / f64::from(count)))
 }
 
-/// All ways that are the cheapest under some COR, each once, at its best COR and with the best first.
+/// All ways that are the cheapest under some COR, each once, at its best COR and with the best
+/// first.
 fn found(runs: &[Run], sigma: f64) -> Vec<(Way, f64)> {
     let mut ways: Vec<(Way, f64)> = Vec::new();
     for released in [false, true].into_iter().filter(|r| !r || runs.iter().any(|run| run.from_rest)) {
@@ -254,9 +263,11 @@ fn found(runs: &[Run], sigma: f64) -> Vec<(Way, f64)> {
     ways
 }
 
-/// The best way to read the runs, and those that cost less than two standard deviations more; empty where too little is there to compare.
+/// The best way to read the runs, and those that cost less than two standard deviations more; empty
+/// where too little is there to compare.
 ///
-/// `sigma` is the error of a time, and whether it is stated; else it is no more than what the readings scatter, and no less than `rounding`.
+/// `sigma` is the error of a time, and whether it is stated; else it is no more than what the
+/// readings scatter, and no less than `rounding`.
 pub(super) fn ways(runs: &[Run], (sigma, stated): (f64, bool), rounding: f64) -> Vec<Way> {
     let few: Vec<Run> = runs
         .iter()
@@ -389,7 +400,8 @@ mod tests {
         assert!(ways(&[], (0.01, false), 0.0).is_empty());
     }
 
-    /// Three intervals of which the last is two flights, or all are flights with errors: neither is out of reach.
+    /// Three intervals of which the last is two flights, or all are flights with errors: neither is
+    /// out of reach.
     #[test]
     fn readings_that_fit_alike_are_all_found() {
         let run = Run { times: vec![1.3704, 1.9513, 2.2589, 2.4919], from_rest: false };
@@ -398,7 +410,8 @@ mod tests {
         assert!(any(&[(0, 0), (1, 1), (2, 1), (3, 1)]) && any(&[(0, 0), (1, 1), (2, 1), (3, 2)]), "{ways:?}");
     }
 
-    /// The fall before the first contact is half a flight: a run that begins with a release is known by that, and no other.
+    /// The fall before the first contact is half a flight: a run that begins with a release is
+    /// known by that, and no other.
     #[test]
     fn a_release_is_told_from_a_contact() {
         let times: Vec<f64> = [0.0].into_iter().chain(ideal(6).iter().map(|t| t + 0.625)).collect();

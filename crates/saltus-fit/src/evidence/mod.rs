@@ -12,7 +12,8 @@ use crate::statistics::rounding;
 /// A height: after how many contacts, how high (m), its standard error (m).
 pub(crate) type Height = (usize, f64, f64);
 
-/// A time: after how many flights, whether at the apex of the next one, when (s), its standard error (s).
+/// A time: after how many flights, whether at the apex of the next one, when (s), its standard
+/// error (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
     pub(crate) flights: usize,
@@ -27,7 +28,8 @@ pub(crate) const ASSUMED_TIME: f64 = 0.01;
 /// So many other ways to read the contacts are fitted.
 const RIVALS: usize = 6;
 
-/// At least so many pairs of contacts show that each was heard twice: within each they are no further apart than this, s,
+/// At least so many pairs of contacts show that each was heard twice: within each they are no
+/// further apart than this, s,
 const PAIRS: usize = 3;
 const ECHO: f64 = 0.05;
 /// and all flights between pairs are so many times longer.
@@ -63,8 +65,8 @@ pub(crate) struct Evidence {
 }
 
 impl Evidence {
-    /// Sorts the readings of a table into heights and moments, and mends the contacts if that is wanted; `sigma_time` is the error stated
-    /// for times, if any.
+    /// Sorts the readings of a table into heights and moments, and mends the contacts if that is
+    /// wanted; `sigma_time` is the error stated for times, if any.
     pub(crate) fn of(table: &Table, sigma_time: Option<f64>, repair: bool) -> Self {
         let mut evidence = Self::default();
         for (trial, source) in table.trials().iter().enumerate() {
@@ -131,7 +133,8 @@ impl Evidence {
         }
     }
 
-    /// Finds contacts that were missed, heard twice or misread, and releases that stand among contacts.
+    /// Finds contacts that were missed, heard twice or misread, and releases that stand among
+    /// contacts.
     fn mend(&mut self, table: &Table, sigma_time: Option<f64>) {
         let places: Vec<usize> = (0..self.trials.len()).filter(|&n| self.trials[n].plain()).collect();
         let runs: Vec<Run> = places.iter().map(|&n| self.trials[n].run()).collect();
@@ -226,8 +229,9 @@ impl Repair {
 }
 
 impl TrialEvidence {
-    /// Whether its contacts are one run that nothing else numbers: gaps that the table itself numbers, and apexes between contacts, are what they
-    /// are, and heights are counted by the number of the contact before them.
+    /// Whether its contacts are one run that nothing else numbers: gaps that the table itself
+    /// numbers, and apexes between contacts, are what they are, and heights are counted by the
+    /// number of the contact before them.
     fn plain(&self) -> bool {
         let one_by_one = self.moments.windows(2).all(|w| w[1].0 == w[0].0 + 1);
         one_by_one && self.moments.iter().all(|m| !m.1) && self.heights.iter().all(|h| h.0 == 0)
@@ -275,13 +279,15 @@ impl TrialEvidence {
         self.moment(number.checked_sub(1)?, false).map(|m| m.2)
     }
 
-    /// The flights between neighbouring contacts: the number of the contact before, the time it takes.
+    /// The flights between neighbouring contacts: the number of the contact before, the time it
+    /// takes.
     pub(crate) fn intervals(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let contacts = || self.moments.iter().filter(|m| !m.1);
         contacts().zip(contacts().skip(1)).filter(|(a, b)| b.0 == a.0 + 1).map(|(a, b)| (b.0, b.2 - a.2))
     }
 
-    /// Neighbouring intervals: the number of flights up to the contact between, both intervals, their ratio.
+    /// Neighbouring intervals: the number of flights up to the contact between, both intervals,
+    /// their ratio.
     pub(crate) fn ratios(&self) -> impl Iterator<Item = (usize, f64, f64, f64)> + '_ {
         self.intervals()
             .zip(self.intervals().skip(1))

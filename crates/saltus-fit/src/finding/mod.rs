@@ -1,4 +1,5 @@
-//! What the stages find beside the COR, as data: pushed where it is computed, worded in `report/words.rs` alone.
+//! What the stages find beside the COR, as data: pushed where it is computed, worded in
+//! `report/words.rs` alone.
 
 mod detail;
 mod kind;

@@ -1,4 +1,5 @@
-//! Contact times: t = a + τ (1 + e + … + eⁿ⁻¹), with a clock and a first flight per trial. Gravity and scale drop out.
+//! Contact times: t = a + τ (1 + e + … + eⁿ⁻¹), with a clock and a first flight per trial. Gravity
+//! and scale drop out.
 
 use nalgebra::DMatrix;
 
@@ -7,22 +8,25 @@ use crate::evidence::Moment;
 
 /// Times of contacts (and apexes). Shared: e, and on request a trend. Own: a, τ.
 ///
-/// The times themselves are fitted, not the intervals: neighbouring intervals share a contact, so their errors are correlated. Where each interval
-/// was read by itself, it is the times that share their errors, and the intervals are fitted.
+/// The times themselves are fitted, not the intervals: neighbouring intervals share a contact, so
+/// their errors are correlated. Where each interval was read by itself, it is the times that share
+/// their errors, and the intervals are fitted.
 #[derive(Clone, Debug)]
 pub(crate) struct Contacts {
     /// In ascending order of flights.
     pub(crate) trials: Vec<Vec<Moment>>,
     /// The upper bound of e.
     pub(crate) high: f64,
-    /// Adds an unknown m: flight k lasts τ eᵏ (1 + m k (k − 1)/2), a COR that changes from bounce to bounce. Derivatives are at m = 0.
+    /// Adds an unknown m: flight k lasts τ eᵏ (1 + m k (k − 1)/2), a COR that changes from bounce
+    /// to bounce. Derivatives are at m = 0.
     pub(crate) trend: bool,
     /// The errors are those of the intervals, which add up along the times.
     pub(crate) added_up: bool,
 }
 
 impl Contacts {
-    /// A start for the own unknowns: the first contact and flight, extrapolated to the first row where need be.
+    /// A start for the own unknowns: the first contact and flight, extrapolated to the first row
+    /// where need be.
     pub(crate) fn start(&self, e: f64) -> Vec<Vec<f64>> {
         let start = |moments: &Vec<Moment>| match (moments.first(), moments.last()) {
             (Some(first), Some(last)) if moments.len() > 1 => {

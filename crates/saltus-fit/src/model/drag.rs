@@ -1,9 +1,10 @@
 //! One vertical flight in closed form, with quadratic drag or without, and its derivatives.
 //!
-//! Upwards v' = −G − k v², downwards v' = −G + k v². With ω = √(G k) and τ the time since the apex, the ball is below its apex by
-//! −ln cos(ωτ)/k before it and ln cosh(ωτ)/k after it (any text on vertical motion with drag proportional to v²).
-//! As k → 0 both become ½ G τ². A ball that leaves the floor at v, with u = v √(k/G), rises ln(1 + u²)/(2k) in atan(u)/ω, falls in
-//! asinh(u)/ω, and arrives at v/√(1 + u²).
+//! Upwards v' = −G − k v², downwards v' = −G + k v². With ω = √(G k) and τ the time since the apex,
+//! the ball is below its apex by −ln cos(ωτ)/k before it and ln cosh(ωτ)/k after it (any text on
+//! vertical motion with drag proportional to v²). As k → 0 both become ½ G τ². A ball that leaves
+//! the floor at v, with u = v √(k/G), rises ln(1 + u²)/(2k) in atan(u)/ω, falls in asinh(u)/ω, and
+//! arrives at v/√(1 + u²).
 
 /// Gravity and drag: G (length/time²) and k (1/length); k = 0 is a parabola.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +34,8 @@ pub(crate) struct Hop {
 }
 
 impl Air {
-    /// How far below its apex the ball is at time τ after (or, negative, before) it; derivatives by τ, G, k.
+    /// How far below its apex the ball is at time τ after (or, negative, before) it; derivatives by
+    /// τ, G, k.
     pub(crate) fn drop(self, tau: f64) -> Sloped {
         let Self { gravity: g, drag: k } = self;
         if k <= 0.0 {
@@ -96,7 +98,8 @@ impl Air {
         }
     }
 
-    /// The apex from which a ball that arrives at `speed` has fallen: time since, height above; derivatives by speed, G, k.
+    /// The apex from which a ball that arrives at `speed` has fallen: time since, height above;
+    /// derivatives by speed, G, k.
     ///
     /// Not a number where the speed is beyond the terminal one.
     pub(crate) fn fallen(self, speed: f64) -> (Sloped, Sloped) {

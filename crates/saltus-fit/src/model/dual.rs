@@ -52,7 +52,8 @@ impl Dual {
         Self { value, by }
     }
 
-    /// `outer`, a function of this value, G and k, where G and k are the unknowns named (if they are unknown).
+    /// `outer`, a function of this value, G and k, where G and k are the unknowns named (if they
+    /// are unknown).
     pub(crate) fn through(&self, outer: &Sloped, gravity: Option<usize>, drag: Option<usize>) -> Self {
         let mut dual = self.mapped(outer.value, outer.by[0]);
         for (place, slope) in [(gravity, outer.by[1]), (drag, outer.by[2])] {

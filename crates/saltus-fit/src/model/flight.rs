@@ -29,7 +29,8 @@ pub(crate) struct FlightTrial {
 }
 
 impl FlightTrial {
-    /// Trials with at least one rebound height and times that fix a clock, with their places in the table; every error is filled in.
+    /// Trials with at least one rebound height and times that fix a clock, with their places in the
+    /// table; every error is filled in.
     pub(crate) fn of_both(evidence: &Evidence, sigma_height: f64, sigma_time: f64) -> Vec<(usize, Self)> {
         let rebounds = |t: &TrialEvidence| t.heights.iter().any(|h| h.0 > 0);
         let timed = |t: &TrialEvidence| t.moments.len() + usize::from(t.release_time.is_some()) >= 2;
@@ -64,12 +65,14 @@ impl FlightTrial {
     }
 }
 
-/// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball comes back after leaving at e vₙ; heights
-/// are read from a zero δ. In still air hₙ = δ + (e v)²/2g and a flight lasts 2 e v/g; with drag both are those of [`Air::hop`].
+/// Flight between contacts: v₁ is the speed at the first contact, vₙ₊₁ that with which the ball
+/// comes back after leaving at e vₙ; heights are read from a zero δ. In still air hₙ = δ + (e
+/// v)²/2g and a flight lasts 2 e v/g; with drag both are those of [`Air::hop`].
 ///
-/// Shared: the unknowns of the law of the COR, then on request the zero δ of the height scale (of all heights, or of the rebounds only), a lag of
-/// the clock, drag k, and the time that a contact takes: between two of them a flight and one contact pass.
-/// Own: v₁ unless the height of release is set, a unless the time of release is known (then a is that time plus the fall, plus the lag).
+/// Shared: the unknowns of the law of the COR, then on request the zero δ of the height scale (of
+/// all heights, or of the rebounds only), a lag of the clock, drag k, and the time that a contact
+/// takes: between two of them a flight and one contact pass. Own: v₁ unless the height of release
+/// is set, a unless the time of release is known (then a is that time plus the fall, plus the lag).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flight {
     pub(crate) trials: Vec<FlightTrial>,
@@ -118,7 +121,8 @@ impl Flight {
         }
     }
 
-    /// The own unknowns of a trial for a given COR: the speed from release or first height, the clock from the first moment.
+    /// The own unknowns of a trial for a given COR: the speed from release or first height, the
+    /// clock from the first moment.
     pub(crate) fn start(&self, e: f64) -> Vec<Vec<f64>> {
         let one = |trial: &FlightTrial| {
             let first = trial.heights.first();
@@ -212,7 +216,8 @@ impl Flight {
     }
 }
 
-/// What the motion of a trial begins with: the air, the zero of the scale, the first contact and the height fallen from.
+/// What the motion of a trial begins with: the air, the zero of the scale, the first contact and
+/// the height fallen from.
 struct Beginning {
     air: Air,
     drag: Option<usize>,

@@ -1,14 +1,17 @@
-//! Rebound heights: ln h = a + 2 n L, with an intercept per trial; then h = exp(a + 2 n L) itself, where errors are additive.
+//! Rebound heights: ln h = a + 2 n L, with an intercept per trial; then h = exp(a + 2 n L) itself,
+//! where errors are additive.
 
 use nalgebra::DMatrix;
 
 use super::problem::{Bounds, Model};
 use crate::evidence::Height;
 
-/// Heights against the number of contacts. Shared: L = ln e, and on request a trend. Own: a = ln h₀.
+/// Heights against the number of contacts. Shared: L = ln e, and on request a trend. Own: a = ln
+/// h₀.
 ///
-/// In logarithms, weighted by h/σ, the problem is linear. It is biased by about (σ/h)², since a reading that came out high gets more
-/// weight; the heights themselves, with errors that are additive, are fitted from there.
+/// In logarithms, weighted by h/σ, the problem is linear. It is biased by about (σ/h)², since a
+/// reading that came out high gets more weight; the heights themselves, with errors that are
+/// additive, are fitted from there.
 #[derive(Clone, Debug)]
 pub(crate) struct Heights {
     pub(crate) trials: Vec<Vec<Height>>,
@@ -41,7 +44,8 @@ impl Model for Heights {
             if self.trend {
                 predicted += n * n * shared[1];
             }
-            // Of the logarithm or of the height, the derivative with respect to `predicted` and the residual.
+            // Of the logarithm or of the height, the derivative with respect to `predicted` and the
+            // residual.
             let (weight, residual) = if self.logarithms {
                 (height / sigma, height / sigma * (height.ln() - predicted))
             } else {

@@ -1,9 +1,11 @@
 //! Contacts that take time.
 //!
-//! A ball that comes at v stays on the floor for T (v/v₁)^(−s). On a linear spring s = 0, for a solid ball (Hertz) s = 1/5. Its weight presses it
-//! deeper the slower it comes, so that of a COR e without weight e − κ (1 − e²) w/(1 + w) is left, where w is G times the time of the contact over v:
-//! κ is about 0.1 for a spring with a damper, 0.4 where the force is less by a factor on the way up. How a ball is made is not known, and a film hardly
-//! shows it: so s is 0.1 ± 0.1 and κ 0.15 ± 0.2 before anything is seen, each as one row more.
+//! A ball that comes at v stays on the floor for T (v/v₁)^(−s). On a linear spring s = 0, for a
+//! solid ball (Hertz) s = 1/5. Its weight presses it deeper the slower it comes, so that of a COR e
+//! without weight e − κ (1 − e²) w/(1 + w) is left, where w is G times the time of the contact over
+//! v: κ is about 0.1 for a spring with a damper, 0.4 where the force is less by a factor on the way
+//! up. How a ball is made is not known, and a film hardly shows it: so s is 0.1 ± 0.1 and κ 0.15 ±
+//! 0.2 before anything is seen, each as one row more.
 
 use std::f64::consts::PI;
 
@@ -57,7 +59,8 @@ impl Lasting {
         if left.value > 1e-3 { left } else { left.mapped(1e-3, 0.0) }
     }
 
-    /// One row for each unknown of which something is known before; samples, of weight one, have the standard error `error`.
+    /// One row for each unknown of which something is known before; samples, of weight one, have
+    /// the standard error `error`.
     pub(super) fn fill(self, values: &[f64], error: f64, from: usize, rows: &mut DMatrix<f64>) {
         for (k, (usual, reach)) in BEFORE.into_iter().enumerate() {
             let j = self.place + 1 + k;
@@ -67,7 +70,8 @@ impl Lasting {
     }
 }
 
-/// How far a ball is below the floor at a time within a contact that lasts `lasts`: at its part x about (v T/π) eˣ sin πx, as on a spring with a damper.
+/// How far a ball is below the floor at a time within a contact that lasts `lasts`: at its part x
+/// about (v T/π) eˣ sin πx, as on a spring with a damper.
 pub(super) fn depth([began, lasts, arrival, cor]: [&Dual; 4], time: f64) -> Dual {
     let e = cor.value.max(1e-9);
     let x = (time - began.value) / lasts.value;

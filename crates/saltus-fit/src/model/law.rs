@@ -3,7 +3,8 @@
 use super::dual::{Dual, Slopes};
 use super::problem::Bounds;
 
-/// A law for the COR. Speeds are in m/s; beyond the range of speeds it was made for, a law is continued.
+/// A law for the COR. Speeds are in m/s; beyond the range of speeds it was made for, a law is
+/// continued.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum CorLaw {
     /// One COR.
@@ -13,20 +14,23 @@ pub(crate) enum CorLaw {
     Each(usize),
     /// A straight line; unknown are its values at these two speeds.
     Linear { low: f64, high: f64 },
-    /// A viscoelastic sphere; unknown is √(β v^(1/5)) at this speed, from which all coefficients of the series follow.
+    /// A viscoelastic sphere; unknown is √(β v^(1/5)) at this speed, from which all coefficients of
+    /// the series follow.
     Viscoelastic { high: f64 },
     /// e = C (v/v₀)^(−1/4), at most 1; unknown is C.
     Plastic { middle: f64 },
     /// e = C (v/v₀)^(−p), at most 1; unknown are C and p.
     Power { middle: f64 },
-    /// Straight lines between these ascending speeds, never rising; unknown are the COR at the first, and at each of the others the part of
-    /// the one before that is left. So every bound is one of a single unknown.
+    /// Straight lines between these ascending speeds, never rising; unknown are the COR at the
+    /// first, and at each of the others the part of the one before that is left. So every bound is
+    /// one of a single unknown.
     Knots(Vec<f64>),
 }
 
 /// The COR is kept above this: at zero there would be no next flight.
 const LEAST: f64 = 1e-6;
-/// The Padé approximant of Müller and Pöschel (Phys. Rev. E 84, 021302, 2011), whose series has γ₂ = (3/5) γ₁².
+/// The Padé approximant of Müller and Pöschel (Phys. Rev. E 84, 021302, 2011), whose series has
+/// γ₂ = (3/5) γ₁².
 const PADE: [f64; 4] = [0.501_086, 1.153_45, 0.577_977, 0.532_178];
 /// With more the Padé approximant is below 0.02.
 const SOFTEST: f64 = 4.0;
@@ -68,7 +72,8 @@ impl CorLaw {
         }
     }
 
-    /// The COR of bounce `n` (from 0) at a speed: its value, its derivative by the speed, those by the unknowns.
+    /// The COR of bounce `n` (from 0) at a speed: its value, its derivative by the speed, those by
+    /// the unknowns.
     pub(crate) fn at(&self, n: usize, speed: f64, unknowns: &[f64]) -> (f64, f64, Slopes) {
         let mut by = Slopes::from_elem(0.0, unknowns.len());
         let (value, slope) = match self {
@@ -109,7 +114,8 @@ impl CorLaw {
         }
     }
 
-    /// The COR of bounce `n` with derivatives by all unknowns of a fit; those of the law begin at `first`.
+    /// The COR of bounce `n` with derivatives by all unknowns of a fit; those of the law begin at
+    /// `first`.
     pub(crate) fn through(&self, n: usize, speed: &Dual, unknowns: &[f64], first: usize) -> Dual {
         let (value, slope, own) = self.at(n, speed.value, unknowns);
         let mut cor = speed.mapped(value, slope);

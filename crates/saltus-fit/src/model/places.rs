@@ -1,4 +1,5 @@
-//! Where the unknowns of a recording stand: time and speed of the first impact, the floor, gravity, then drag if there is any.
+//! Where the unknowns of a recording stand: time and speed of the first impact, the floor, gravity,
+//! then drag if there is any.
 
 pub(crate) const TIME: usize = 0;
 pub(crate) const SPEED: usize = 1;

@@ -15,6 +15,7 @@ pub(crate) trait Model {
     fn ranges(&self) -> Vec<(Bounds, f64)>;
     /// The numbers of rows and of own unknowns of a block.
     fn size(&self, block: usize) -> (usize, usize);
-    /// Fills (∂/∂own | ∂/∂shared | observed − predicted), each row divided by its standard error; `rows` comes zeroed.
+    /// Fills (∂/∂own | ∂/∂shared | observed − predicted), each row divided by its standard error;
+    /// `rows` comes zeroed.
     fn fill(&self, block: usize, shared: &[f64], own: &[f64], rows: &mut DMatrix<f64>);
 }

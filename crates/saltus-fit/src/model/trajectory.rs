@@ -1,7 +1,8 @@
 //! The whole motion of a tracked ball: fall, impacts and flights as one curve through every sample.
 //!
-//! Between contacts the flight is known in closed form ([`Air`]), and so are the times of the contacts; their derivatives carry the
-//! shift of every later flight, so nothing needs adding for the jumps.
+//! Between contacts the flight is known in closed form ([`Air`]), and so are the times of the
+//! contacts; their derivatives carry the shift of every later flight, so nothing needs adding for
+//! the jumps.
 //!
 //! A contact takes no time, or some ([`Lasting`]).
 
@@ -13,7 +14,8 @@ use super::lasting::{self, Lasting};
 use super::places::{DRAG, FLOOR, GRAVITY, SPEED, TIME};
 use super::problem::{Bounds, Model};
 
-/// One sample of a series: when, how high, and the square root of its weight over its standard error.
+/// One sample of a series: when, how high, and the square root of its weight over its standard
+/// error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) time: f64,
@@ -32,8 +34,9 @@ pub(crate) enum Law {
     Each,
 }
 
-/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the speed of the floor if it drifts, those of
-/// contacts if they take time, then those of the COR. Seen from a floor that drifts evenly the motion is the same.
+/// Unknowns, all shared: time and speed of the first impact, floor, G, then k if there is drag, the
+/// speed of the floor if it drifts, those of contacts if they take time, then those of the COR.
+/// Seen from a floor that drifts evenly the motion is the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Trajectory<'a> {
     pub(crate) samples: &'a [Sample],
@@ -56,7 +59,8 @@ pub(crate) struct Trajectory<'a> {
 /// The least k times the range of heights: below it drag cannot be told from none.
 pub(crate) const LEAST_DRAG: f64 = 1e-7;
 
-/// An impact as the model has it: time of arrival, its speed, COR, each with derivatives by all unknowns.
+/// An impact as the model has it: time of arrival, its speed, COR, each with derivatives by all
+/// unknowns.
 #[derive(Clone, Debug)]
 pub(crate) struct Impact {
     pub(crate) time: Dual,

@@ -8,9 +8,11 @@ use super::{Event, Reading, Table, Trial, grid};
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
 
-/// How much drops of the same ball from the same height differ at the least, as a part of the reading.
+/// How much drops of the same ball from the same height differ at the least, as a part of the
+/// reading.
 const DIFFER: f64 = 0.02;
-/// Trials that agree in every reading are copies if that would happen by chance less often than once in so many powers of ten; else they repeat each other.
+/// Trials that agree in every reading are copies if that would happen by chance less often than
+/// once in so many powers of ten; else they repeat each other.
 const CHANCE: f64 = 6.0;
 
 /// Takes out what must not be counted, notes what has no logarithm, and says so.

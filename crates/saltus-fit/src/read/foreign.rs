@@ -1,4 +1,5 @@
-//! Files that hold no table as they are: pages of the web, whose tables are taken out, and other programs' own files.
+//! Files that hold no table as they are: pages of the web, whose tables are taken out, and other
+//! programs' own files.
 
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -6,7 +7,8 @@ use quick_xml::events::Event;
 use super::workbook::{Content, Part};
 use crate::error::TableError;
 
-/// Endings of files that other programs write for themselves, what they are, and which export to make there.
+/// Endings of files that other programs write for themselves, what they are, and which export to
+/// make there.
 const KINDS: [(&[&str], &str, &str); 13] = [
     (
         &["trk", "trz"],

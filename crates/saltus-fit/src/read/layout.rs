@@ -164,7 +164,8 @@ pub(super) fn layout(
     {
         return Err(error);
     }
-    // One height of release for several rows is that of a drop of several bounces; else each row is a drop.
+    // One height of release for several rows is that of a drop of several bounces; else each row is
+    // a drop.
     let constant = numbered && (!sure || released) && one_release(region, rows, tracks);
     if numbered && rowed && (!released || constant) {
         return Ok(Layout::Numbered);
@@ -195,7 +196,8 @@ pub(super) fn layout(
     }
 }
 
-/// Numbers whose name is not understood, beside readings that nothing counts: they may be the heights of release, or other readings.
+/// Numbers whose name is not understood, beside readings that nothing counts: they may be the
+/// heights of release, or other readings.
 fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let (_, reading, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
     let dimension = |column: &Column| column.heading.unit.map(|unit| unit.dimension);
@@ -217,7 +219,8 @@ fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableE
     )
 }
 
-/// A list may be of something else than bounces where numbers stand beside it that are not used: a film, or balls that differ.
+/// A list may be of something else than bounces where numbers stand beside it that are not used: a
+/// film, or balls that differ.
 fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let (index, column, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
     let keyed = columns.one(&Kind::Trial).is_some() || columns.columns.iter().any(|c| c.kind == Kind::Setting);
@@ -240,7 +243,8 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
     )
 }
 
-/// Whether bounces are counted up beside one height of release, and the count is of bounces rather than of drops: their heights fall.
+/// Whether bounces are counted up beside one height of release, and the count is of bounces rather
+/// than of drops: their heights fall.
 fn one_release(region: &Region<'_>, rows: &Rows, tracks: &[Track]) -> bool {
     tracks.iter().all(|track| {
         if !track.released() {
@@ -270,9 +274,11 @@ fn falling_throughout(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
     heights.windows(2).all(|pair| pair[1] <= pair[0])
 }
 
-/// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and those of several drops do not.
+/// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and
+/// those of several drops do not.
 fn falling(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
-    /// A ball that keeps more of its height at every bounce is not told from one that is dropped again and again.
+    /// A ball that keeps more of its height at every bounce is not told from one that is dropped
+    /// again and again.
     const LEVEL: f64 = 0.95;
     let Some(column) = track.height.or(track.interval) else { return true };
     let number = |row: usize| match region.view.read(row, column) {

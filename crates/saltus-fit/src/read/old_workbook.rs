@@ -1,5 +1,5 @@
-//! Whether an old workbook (`.xls`) may be given to its reader, which trusts what it reads: sectors that are chained in a circle, and two cells
-//! far apart, would have it fill the memory.
+//! Whether an old workbook (`.xls`) may be given to its reader, which trusts what it reads: sectors
+//! that are chained in a circle, and two cells far apart, would have it fill the memory.
 //!
 //! The container is that of \[MS-CFB\], the records in it are those of \[MS-XLS\].
 
@@ -54,7 +54,8 @@ impl<'a> Container<'a> {
         let (head, sectors) = bytes.split_at_checked(size)?;
         let mut file = Self { sectors, head, size, next: Vec::new() };
         let count = sectors.len().div_ceil(size);
-        // The first 109 parts of the table are listed in the head, more in sectors that name the next of their kind at the end.
+        // The first 109 parts of the table are listed in the head, more in sectors that name the
+        // next of their kind at the end.
         let mut parts: Vec<u32> = longs(&head[76..512]).collect();
         let mut more = long(head, 68)?;
         for _ in 0..=count {
@@ -78,7 +79,8 @@ impl<'a> Container<'a> {
         self.sectors.chunks(self.size).nth(id as usize)
     }
 
-    /// The sectors of a stream from `start`, at most `bytes` of them; `None` if it goes round in circles.
+    /// The sectors of a stream from `start`, at most `bytes` of them; `None` if it goes round in
+    /// circles.
     fn read(&self, start: u32, bytes: u64) -> Option<Vec<u8>> {
         chained(self.sectors, self.size, &self.next, start, bytes)
     }

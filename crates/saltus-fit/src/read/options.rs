@@ -27,7 +27,8 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// The unit of heights (`m`, `cm`, `mm`, `in`, `px`, ...), used for columns whose header names none.
+    /// The unit of heights (`m`, `cm`, `mm`, `in`, `px`, ...), used for columns whose header names
+    /// none.
     #[must_use]
     pub fn height_unit(mut self, unit: &str) -> Self {
         self.height_unit = Some(unit.to_owned());
@@ -41,22 +42,24 @@ impl ReadOptions {
         self
     }
 
-    /// The column, or the track, to take where several hold readings of the same thing; without it the first column, and of
-    /// several tracks those that move.
+    /// The column, or the track, to take where several hold readings of the same thing; without it
+    /// the first column, and of several tracks those that move.
     #[must_use]
     pub fn column(mut self, name: &str) -> Self {
         self.column = Some(name.to_owned());
         self
     }
 
-    /// Keeps only the rows whose cell in the column `name` reads `value`; may be given several times.
+    /// Keeps only the rows whose cell in the column `name` reads `value`; may be given several
+    /// times.
     #[must_use]
     pub fn filter(mut self, name: &str, value: &str) -> Self {
         self.filters.push((name.to_owned(), value.to_owned()));
         self
     }
 
-    /// Names for the columns, in place of those in the file, or where it has none; a column named `-` is left aside.
+    /// Names for the columns, in place of those in the file, or where it has none; a column named
+    /// `-` is left aside.
     ///
     /// ```
     /// use saltus_fit::{ReadOptions, Table};
@@ -72,8 +75,8 @@ impl ReadOptions {
         self
     }
 
-    /// A column whose cells tell balls or surfaces apart, or a column of readings of one of them; each then has a COR of its own. `-` for none,
-    /// where a column's words are not understood.
+    /// A column whose cells tell balls or surfaces apart, or a column of readings of one of them;
+    /// each then has a COR of its own. `-` for none, where a column's words are not understood.
     ///
     /// ```
     /// use saltus_fit::{ReadOptions, Table};
@@ -89,7 +92,8 @@ impl ReadOptions {
         self
     }
 
-    /// The sheet of a workbook, or the file of an archive, to read; without it every one that holds a table.
+    /// The sheet of a workbook, or the file of an archive, to read; without it every one that holds
+    /// a table.
     #[must_use]
     pub fn sheet(mut self, name: &str) -> Self {
         self.sheet = Some(name.to_owned());
@@ -126,14 +130,16 @@ impl ReadOptions {
         self
     }
 
-    /// What the height scale reads at the floor, in its own unit; heights are then counted from there.
+    /// What the height scale reads at the floor, in its own unit; heights are then counted from
+    /// there.
     #[must_use]
     pub fn zero(mut self, reading: f64) -> Self {
         self.zero = Some(reading);
         self
     }
 
-    /// Whether the height scale counts downwards, as pictures do. Without it a series of heights tells by the way it falls.
+    /// Whether the height scale counts downwards, as pictures do. Without it a series of heights
+    /// tells by the way it falls.
     #[must_use]
     pub fn y_down(mut self, down: bool) -> Self {
         self.down = Some(down);

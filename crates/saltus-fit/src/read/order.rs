@@ -1,10 +1,12 @@
-//! The order of readings: trials told apart by restarting numbers, clocks that ascend, intervals summed to times.
+//! The order of readings: trials told apart by restarting numbers, clocks that ascend, intervals
+//! summed to times.
 
 use super::region::Region;
 use super::{Event, Reading, Trial};
 use crate::error::TableError;
 
-/// Trials whose numbers restart are split; a reading given twice alike is counted once; contacts count from 1.
+/// Trials whose numbers restart are split; a reading given twice alike is counted once; contacts
+/// count from 1.
 pub(super) fn renumbered(
     region: &Region<'_>,
     trials: Vec<Trial>,

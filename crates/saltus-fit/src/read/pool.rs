@@ -6,7 +6,8 @@ use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
 use crate::quantity::Ball;
 
-/// Tells files apart whose names are of different balls or surfaces, and recordings from readings of bounces: they are no one experiment.
+/// Tells files apart whose names are of different balls or surfaces, and recordings from readings
+/// of bounces: they are no one experiment.
 pub(super) fn apart(parts: &mut [(String, Table)]) {
     let named =
         |name: &str| Heading::parse(name.rsplit_once('.').map_or(name, |(stem, _)| stem)).labels().to_lowercase();

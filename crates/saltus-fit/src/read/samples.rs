@@ -5,7 +5,8 @@ use super::{ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 use crate::orientation::falls_upwards;
 
-/// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the other.
+/// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the
+/// other.
 const RECORDING: usize = 5;
 /// Rows this far apart are compared to tell how fast the ball falls.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
@@ -39,7 +40,8 @@ pub(super) fn series(
     Ok(())
 }
 
-/// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says so too.
+/// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says
+/// so too.
 fn falls(table: &mut Table) {
     let gravity = table.metadata.gravity.unwrap_or(9.81);
     let agreed = |stride: &usize| {
@@ -65,7 +67,8 @@ fn falls(table: &mut Table) {
     ));
 }
 
-/// By how much a recording runs too slowly or too fast, and at which rates it would have been filmed and played.
+/// By how much a recording runs too slowly or too fast, and at which rates it would have been
+/// filmed and played.
 fn pace(table: &Table, rate: f64) -> String {
     let steps = table.trials.iter().flat_map(|t| t.readings.windows(2)).filter_map(|w| Some(w[1].time? - w[0].time?));
     let played = crate::statistics::median(&mut steps.collect::<Vec<f64>>()).map_or(0.0, |step| 1.0 / step);
@@ -172,7 +175,8 @@ fn orient(unscaled: bool, options: &ReadOptions, table: &mut Table) {
         table.notes.push(format!("heights count downwards: {why} (--y-up if not)"));
         each_height(table, |h| -h);
     }
-    // Where nobody says what the scale reads at the floor, pictures and scales upside down are counted from the lowest reading.
+    // Where nobody says what the scale reads at the floor, pictures and scales upside down are
+    // counted from the lowest reading.
     let floor = table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height).fold(f64::INFINITY, f64::min);
     if options.zero.is_none() && (turned || options.down == Some(true) || unscaled) && floor.is_finite() {
         each_height(table, |h| h - floor);

@@ -1,4 +1,5 @@
-//! Single heights in another unit than the others: a metre among centimetres makes a ball that rises again, or one fall unlike all others.
+//! Single heights in another unit than the others: a metre among centimetres makes a ball that
+//! rises again, or one fall unlike all others.
 
 use std::collections::HashMap;
 
@@ -9,7 +10,8 @@ use super::region::Region;
 use super::{Event, Trial};
 use crate::statistics::median;
 
-/// What mixed units differ by, cm and m, mm and m, and mm and cm; and a decimal point that has slipped.
+/// What mixed units differ by, cm and m, mm and m, and mm and cm; and a decimal point that has
+/// slipped.
 const FACTORS: [f64; 6] = [100.0, 0.01, 1000.0, 0.001, 10.0, 0.1];
 /// Falls from bounce to bounce that differ by so much ask for a reason,
 const UNLIKE: f64 = 30.0;
@@ -29,7 +31,8 @@ struct Stray {
     factor: f64,
 }
 
-/// Warns of single heights that are ten, a hundred or a thousand times too small or too large beside the others of their trial.
+/// Warns of single heights that are ten, a hundred or a thousand times too small or too large
+/// beside the others of their trial.
 pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], warnings: &mut Vec<String>) {
     let found = strays(trials);
     for stray in found.iter().take(NAMED) {
@@ -72,7 +75,8 @@ fn written(number: f64) -> f64 {
 
 fn strays(trials: &[Trial]) -> Vec<Stray> {
     let heights: Vec<Vec<(usize, usize, f64)>> = trials.iter().map(of_bounces).collect();
-    // What trials of the same setting have in common: the usual fall, where there are a few others, and the usual height.
+    // What trials of the same setting have in common: the usual fall, where there are a few others,
+    // and the usual height.
     let mut alike: HashMap<&str, (Vec<f64>, Vec<f64>)> = HashMap::new();
     for (trial, own) in trials.iter().zip(&heights) {
         let (all, sizes) = alike.entry(&trial.setting).or_default();
@@ -93,7 +97,8 @@ fn strays(trials: &[Trial]) -> Vec<Stray> {
     heights.iter().enumerate().filter_map(one).collect()
 }
 
-/// The heights of a trial that have a logarithm: the place of the reading, the number of the bounce, the logarithm.
+/// The heights of a trial that have a logarithm: the place of the reading, the number of the
+/// bounce, the logarithm.
 fn of_bounces(trial: &Trial) -> Vec<(usize, usize, f64)> {
     let all = trial.readings.iter().enumerate();
     let heights = all.filter(|(_, r)| r.event != Event::Sample);
@@ -112,7 +117,8 @@ fn range(heights: &[(usize, usize, f64)], usual: Option<f64>) -> (f64, f64) {
     falls(heights).chain(usual).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), fall| (l.min(fall), h.max(fall)))
 }
 
-/// The reading of a trial that is in another unit, as its place, and the factor that is missing; of two the one that comes to the usual size.
+/// The reading of a trial that is in another unit, as its place, and the factor that is missing; of
+/// two the one that comes to the usual size.
 fn in_trial(heights: &[(usize, usize, f64)], usual: Option<f64>, size: f64) -> Option<(usize, f64)> {
     let (least, most) = range(heights, usual);
     if most - least < UNLIKE.ln() {

@@ -110,7 +110,8 @@ pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
     all.get(word).map(Vec::as_slice)
 }
 
-/// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three letters.
+/// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three
+/// letters.
 pub(super) fn nearest(word: &str) -> Option<&'static str> {
     let most = word.chars().count().min(LONGEST) / 3;
     let known = entries().map(|(known, _)| (distance(word, known), known));

@@ -1,7 +1,9 @@
-//! Files of several tables: workbooks (`.xlsx`, `.xls`) and zip archives of CSV, each as text, one line a row.
+//! Files of several tables: workbooks (`.xlsx`, `.xls`) and zip archives of CSV, each as text, one
+//! line a row.
 //!
-//! A few kilobytes of a hostile archive can stand for gigabytes. Every entry of an archive is therefore measured before it is
-//! trusted, cells are read one by one, and what they add up to is bounded.
+//! A few kilobytes of a hostile archive can stand for gigabytes. Every entry of an archive is
+//! therefore measured before it is trusted, cells are read one by one, and what they add up to is
+//! bounded.
 
 use std::io::{Cursor, Read, copy, sink};
 use std::panic::{UnwindSafe, catch_unwind};
@@ -169,7 +171,8 @@ fn shown(value: &Data) -> String {
         Data::Float(number) => number.to_string(),
         Data::Int(number) => number.to_string(),
         Data::String(text) => text.clone(),
-        // A moment is a number of days to a spreadsheet, and a stopwatch's reading is one to its user.
+        // A moment is a number of days to a spreadsheet, and a stopwatch's reading is one to its
+        // user.
         Data::DateTime(moment) => (moment.as_f64() * 86_400.0).to_string(),
         Data::Empty => String::new(),
         // '#N/A' at the start of a line would be a comment.

@@ -1,4 +1,5 @@
-//! A report is built once, from what the stages hand on; here findings become its lists of sentences.
+//! A report is built once, from what the stages hand on; here findings become its lists of
+//! sentences.
 
 use super::contract::Report;
 use super::motion::{Motion, beside, of_fits};
@@ -18,7 +19,8 @@ use crate::solve::series::Series;
 use crate::solve::tolerance::Allowed;
 use crate::verdict::{Judgement, Verdict};
 
-/// The number of the JSON contract: it grows when a field changes its meaning or goes, not when one is added.
+/// The number of the JSON contract: it grows when a field changes its meaning or goes, not when one
+/// is added.
 const SCHEMA: u32 = 1;
 /// More lines of repairs than this are counted, not listed.
 const LISTED: usize = 20;

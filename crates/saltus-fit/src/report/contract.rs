@@ -20,7 +20,8 @@ use crate::solve::series::Track;
 use crate::solve::tolerance::Allowed;
 use crate::verdict::{Cor, Verdict};
 
-/// What a fit found: see [`Fit::run`](crate::Fit::run). `Display` writes it for people, serde for programs, which can read it back.
+/// What a fit found: see [`Fit::run`](crate::Fit::run). `Display` writes it for people, serde for
+/// programs, which can read it back.
 ///
 /// ```
 /// use saltus_fit::{Fit, Table, Verdict};
@@ -125,13 +126,15 @@ pub struct Difference {
 }
 
 impl Report {
-    /// The cheapest next measurement, where [`Fit::advised`](crate::Fit::advised) was asked and the COR is in doubt.
+    /// The cheapest next measurement, where [`Fit::advised`](crate::Fit::advised) was asked and the
+    /// COR is in doubt.
     #[must_use]
     pub const fn next(&self) -> Option<&Planned> {
         self.next.as_ref()
     }
 
-    /// What it takes to know the COR as well as was wanted of [`Fit::advised`](crate::Fit::advised).
+    /// What it takes to know the COR as well as was wanted of
+    /// [`Fit::advised`](crate::Fit::advised).
     #[must_use]
     pub const fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref()
@@ -154,7 +157,8 @@ impl Report {
         &self.table
     }
 
-    /// What the table is about, after its name: `squash-on-cement.csv` is about "Squash on cement". Up to three files are listed, more are counted.
+    /// What the table is about, after its name: `squash-on-cement.csv` is about "Squash on cement".
+    /// Up to three files are listed, more are counted.
     #[must_use]
     pub fn title(&self) -> String {
         let words = |name: &str| {
@@ -257,7 +261,8 @@ impl Report {
         &self.profiles
     }
 
-    /// The error by drawing whole trials anew, where that was asked for and there are five trials or more.
+    /// The error by drawing whole trials anew, where that was asked for and there are five trials
+    /// or more.
     #[must_use]
     pub fn bootstrap(&self) -> Option<&Bootstrap> {
         self.bootstrap.as_ref()
@@ -269,7 +274,8 @@ impl Report {
         &self.series
     }
 
-    /// What was found beside the COR, as data: what the verdict rests on first, then what speaks against the COR, then the rest.
+    /// What was found beside the COR, as data: what the verdict rests on first, then what speaks
+    /// against the COR, then the rest.
     ///
     /// ```
     /// use saltus_fit::{Fit, FindingKind, Severity, Table};

@@ -1,4 +1,5 @@
-//! The fitted motion of a recording for a picture: short parabolas along the flights, which with drag are none.
+//! The fitted motion of a recording for a picture: short parabolas along the flights, which with
+//! drag are none.
 
 use super::motion::{Arc, Motion};
 use super::residual::{Mark, Measure, Point, Residual};
@@ -31,7 +32,8 @@ impl Course {
         if span > 0.0 { (0..pieces).map(piece).collect() } else { Vec::new() }
     }
 
-    /// A contact after the piece before it, drawn as a parabola that begins at the speed of arrival.
+    /// A contact after the piece before it, drawn as a parabola that begins at the speed of
+    /// arrival.
     fn contact(before: &Arc, lasts: f64) -> Arc {
         let [_, v, bend] = before.height;
         let arrival = -(v + 2.0 * bend * before.span);

@@ -1,4 +1,5 @@
-//! Several balls or surfaces in one table: the report of each, how far their CORs are apart, and what is said of all.
+//! Several balls or surfaces in one table: the report of each, how far their CORs are apart, and
+//! what is said of all.
 
 use std::fmt::{self, Formatter};
 
@@ -19,8 +20,8 @@ impl Group {
 impl Difference {
     /// The difference of two CORs; `None` if one of them is missing.
     ///
-    /// The interval adds the distances from each value to the ends of its interval in squares (Zou and Donner 2008), and so keeps their lopsidedness
-    /// and their few degrees of freedom.
+    /// The interval adds the distances from each value to the ends of its interval in squares (Zou
+    /// and Donner 2008), and so keeps their lopsidedness and their few degrees of freedom.
     fn between(a: &Group, b: &Group) -> Option<Self> {
         let (mut one, mut other) = ((a, *a.report.cor()?), (b, *b.report.cor()?));
         if one.1.value < other.1.value {
@@ -39,7 +40,8 @@ impl Difference {
     }
 }
 
-/// Up to so many groups every one is compared with every other; more with the one that has the least COR.
+/// Up to so many groups every one is compared with every other; more with the one that has the
+/// least COR.
 const PAIRWISE: usize = 6;
 
 fn differences(groups: &[Group]) -> Vec<Difference> {
@@ -53,7 +55,8 @@ fn differences(groups: &[Group]) -> Vec<Difference> {
 }
 
 impl Report {
-    /// The report of several groups: `like` is that of one of them, whose gravity and rates hold for all.
+    /// The report of several groups: `like` is that of one of them, whose gravity and rates hold
+    /// for all.
     pub(crate) fn of_groups(table: &Table, groups: Vec<Group>, like: &Self) -> Self {
         let of = |verdict: Verdict| groups.iter().filter(|g| g.report.verdict() == verdict).count();
         let (count, trusted, refused) = (groups.len(), of(Verdict::Trusted), of(Verdict::Refused));
@@ -80,7 +83,8 @@ impl Report {
         }
     }
 
-    /// The groups of the table, where it has several: each has a COR of its own, and the report as a whole has none.
+    /// The groups of the table, where it has several: each has a COR of its own, and the report as
+    /// a whole has none.
     #[must_use]
     pub fn groups(&self) -> &[Group] {
         &self.groups

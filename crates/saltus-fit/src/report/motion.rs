@@ -44,7 +44,8 @@ pub struct Arc {
 }
 
 impl Motion {
-    /// Builds the motion from its durations: those of the flights between contacts, and the fall before.
+    /// Builds the motion from its durations: those of the flights between contacts, and the fall
+    /// before.
     fn of(trial: usize, [gravity, cor]: [f64; 2], release: Option<f64>, first: f64, durations: &[f64]) -> Self {
         let mut motion = Self {
             trial,
@@ -129,7 +130,8 @@ fn of_heights(kind: &Kind<Heights>, evidence: &Evidence, gravity: f64) -> Vec<Mo
     evidence.trials.iter().zip(&kind.fitted.own).filter_map(one).collect()
 }
 
-/// The motion of each trial, by the fit that the report rests on; and whether the height of release is one of the readings fitted.
+/// The motion of each trial, by the fit that the report rests on; and whether the height of release
+/// is one of the readings fitted.
 pub(super) fn of_fits(fits: &Fits<'_>) -> (Vec<Motion>, bool) {
     let gravity = fits.gravity.value;
     match (&fits.joint, &fits.times, &fits.heights) {
@@ -140,7 +142,8 @@ pub(super) fn of_fits(fits: &Fits<'_>) -> (Vec<Motion>, bool) {
     }
 }
 
-/// The points and residuals of every trial that has a motion. Clocks are shifted so that all first contacts coincide.
+/// The points and residuals of every trial that has a motion. Clocks are shifted so that all first
+/// contacts coincide.
 ///
 /// A release height that the fit took as set has no residual.
 pub(super) fn beside(motions: &[Motion], fits: &Fits<'_>, release_is_fitted: bool) -> (Vec<Point>, Vec<Residual>) {

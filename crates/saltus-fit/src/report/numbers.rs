@@ -1,6 +1,7 @@
 //! Numbers for people: as many digits as their error leaves them, and units of a handy size.
 
-/// Decimals that show an error to two digits if it begins with a one, else to one; from three to nine.
+/// Decimals that show an error to two digits if it begins with a one, else to one; from three to
+/// nine.
 pub(super) fn digits(error: f64) -> usize {
     decimals(3, error)
 }

@@ -40,7 +40,8 @@ impl Way {
         }
     }
 
-    /// The standard error of one reading: metres, or seconds. On a film a time is that of a frame, off by its duration over √12.
+    /// The standard error of one reading: metres, or seconds. On a film a time is that of a frame,
+    /// off by its duration over √12.
     #[must_use]
     pub fn sigma(self) -> f64 {
         let frame = |rate: f64| 1.0 / rate / 12f64.sqrt();
@@ -66,7 +67,8 @@ pub struct Plan {
     pub cor: f64,
     /// The height of the drop, m.
     pub drop_m: f64,
-    /// What each way needs, in the order of [`Way::ALL`]; a way that shows no bounce of this ball is not there.
+    /// What each way needs, in the order of [`Way::ALL`]; a way that shows no bounce of this ball
+    /// is not there.
     pub ways: Vec<Planned>,
 }
 
@@ -84,7 +86,8 @@ pub struct Planned {
     pub readings: usize,
     /// The half-width of the 95 % interval that it brings, by the longer side.
     pub half_width: f64,
-    /// Whether that is what was wanted; if not, more drops hardly help, and this is what stands in the way.
+    /// Whether that is what was wanted; if not, more drops hardly help, and this is what stands in
+    /// the way.
     pub enough: bool,
     /// What the interval takes in that no number of drops removes.
     pub takes_in: Vec<Widening>,

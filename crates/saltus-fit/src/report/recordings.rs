@@ -1,4 +1,5 @@
-//! The part of the report for people that shows recordings impact by impact, and the models tried on them.
+//! The part of the report for people that shows recordings impact by impact, and the models tried
+//! on them.
 
 use std::fmt::{self, Formatter};
 

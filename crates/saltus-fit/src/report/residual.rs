@@ -18,7 +18,8 @@ words! {
     }
 }
 
-/// Which reading of a trial: its kind, and its number; an apex bears the number of the contact before it.
+/// Which reading of a trial: its kind, and its number; an apex bears the number of the contact
+/// before it.
 pub(super) type Which = (Mark, usize);
 
 fn label((mark, number): Which) -> String {
@@ -81,7 +82,8 @@ pub struct Point {
     pub number: usize,
     /// Both, for people, such as `release`, `apex 1` or `contact 2`.
     pub label: String,
-    /// On the time axis of the fitted motion, in seconds. An apex whose time was not read stands midway between its contacts.
+    /// On the time axis of the fitted motion, in seconds. An apex whose time was not read stands
+    /// midway between its contacts.
     pub time: f64,
     /// The height in metres: zero for a contact.
     pub height: f64,

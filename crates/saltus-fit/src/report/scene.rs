@@ -16,12 +16,14 @@ const KNOTS: usize = 16;
 const LOSSLESS: f64 = 0.999;
 
 impl Report {
-    /// The fitted motion of the first trial as the text of a scene file (TOML): gravity, the COR or its law of speed, drag if the readings need it,
-    /// and the height and velocity at the start. `None` if the verdict is refused.
+    /// The fitted motion of the first trial as the text of a scene file (TOML): gravity, the COR or
+    /// its law of speed, drag if the readings need it, and the height and velocity at the start.
+    /// `None` if the verdict is refused.
     ///
-    /// The motion is the one of [`Report::motion`]: it starts with the fall if there is one, else at the first contact. A recording whose gravity
-    /// is off by more than a fifth was not in metres; its lengths are scaled so that gravity is [`Report::gravity`], and the scene says so. A law
-    /// of speed is given by at most 16 points, straight between them and constant beyond.
+    /// The motion is the one of [`Report::motion`]: it starts with the fall if there is one, else
+    /// at the first contact. A recording whose gravity is off by more than a fifth was not in
+    /// metres; its lengths are scaled so that gravity is [`Report::gravity`], and the scene says
+    /// so. A law of speed is given by at most 16 points, straight between them and constant beyond.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};
@@ -84,7 +86,8 @@ impl Report {
         Some(scene)
     }
 
-    /// The height and the velocity at the start: of the motion, which has one COR; where the COR has a law and there is no film, as they were read.
+    /// The height and the velocity at the start: of the motion, which has one COR; where the COR
+    /// has a law and there is no film, as they were read.
     fn start(&self, motion: &Motion, law: bool) -> Option<[f64; 2]> {
         let [height, velocity, _] = motion.flights.first()?.height;
         let read = self.start.filter(|_| law && self.series.is_empty());

@@ -1,4 +1,5 @@
-//! The report for people: the verdict first, the COR next, then what it rests on, what contradicts it, what to measure.
+//! The report for people: the verdict first, the COR next, then what it rests on, what contradicts
+//! it, what to measure.
 
 use std::fmt::{self, Formatter};
 

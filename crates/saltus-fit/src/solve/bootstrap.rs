@@ -1,4 +1,5 @@
-//! The error of the COR by drawing whole trials anew: it needs no assumption on how readings scatter within a trial.
+//! The error of the COR by drawing whole trials anew: it needs no assumption on how readings
+//! scatter within a trial.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -28,9 +29,11 @@ pub struct Bootstrap {
     pub high: f64,
 }
 
-/// Draws as many trials as there are, with replacement, fits, and repeats; `None` with fewer than five trials.
+/// Draws as many trials as there are, with replacement, fits, and repeats; `None` with fewer than
+/// five trials.
 ///
-/// `progress` is told how many rounds are done. Rounds whose draw determines no COR are drawn again, up to twice the number wanted.
+/// `progress` is told how many rounds are done. Rounds whose draw determines no COR are drawn
+/// again, up to twice the number wanted.
 pub(crate) fn run(
     fits: &Fits<'_>,
     (rounds, seed): (usize, u64),

@@ -10,7 +10,8 @@ use crate::statistics::{NORMAL, REPLICATED};
 /// Bounces beyond this number are not listed one by one.
 const LISTED: usize = 24;
 
-/// The COR at one bounce, from the heights before and after it, and from the flights before and after it.
+/// The COR at one bounce, from the heights before and after it, and from the flights before and
+/// after it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct BounceCor {
@@ -18,7 +19,8 @@ pub struct BounceCor {
     pub bounce: usize,
     /// √(hₙ/hₙ₋₁).
     pub heights: Option<Measured>,
-    /// The ratio of the flights after and before; at bounce 1 the fall √(2h₀/g) counts as half a flight, so h₀ and g enter.
+    /// The ratio of the flights after and before; at bounce 1 the fall √(2h₀/g) counts as half a
+    /// flight, so h₀ and g enter.
     pub times: Option<Measured>,
 }
 
@@ -57,7 +59,8 @@ impl Setting {
     }
 }
 
-/// The weighted mean of logarithms as a value with its error: from the spread where there are enough of them.
+/// The weighted mean of logarithms as a value with its error: from the spread where there are
+/// enough of them.
 #[allow(clippy::cast_precision_loss)]
 fn mean(logs: &[Log]) -> Option<Measured> {
     let weight: f64 = logs.iter().map(|l| 1.0 / l.1).sum();
@@ -91,7 +94,8 @@ pub(crate) fn list(evidence: &Evidence, setting: &Setting) -> Vec<BounceCor> {
         .collect()
 }
 
-/// `heights-mean`, `first-flight` and `times-mean`: every bounce weighing alike, the last flight compared with the first.
+/// `heights-mean`, `first-flight` and `times-mean`: every bounce weighing alike, the last flight
+/// compared with the first.
 pub(crate) fn means(evidence: &Evidence, setting: &Setting) -> Vec<Estimate> {
     let mut found = Vec::new();
     let mut push = |method: Method, logs: &[Log]| {

@@ -18,7 +18,8 @@ pub struct ModelChoice {
     /// Which rebound is missing, where the model is that one is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<Missing>,
-    /// The COR it gives; if it has several, their mean; if it depends on speed, that at the middle of the speeds.
+    /// The COR it gives; if it has several, their mean; if it depends on speed, that at the middle
+    /// of the speeds.
     pub cor: Measured,
     /// How the COR changes with speed, per m/s, where it does so along a straight line.
     pub slope: Option<Measured>,
@@ -32,18 +33,22 @@ pub struct ModelChoice {
     pub offset_m: Option<Measured>,
     /// The time that a contact takes, in seconds, where it takes any.
     pub contact_s: Option<Measured>,
-    /// What is known of the offset or the drag where it came out at the end of its range: a limit, and no error.
+    /// What is known of the offset or the drag where it came out at the end of its range: a limit,
+    /// and no error.
     pub limit: Option<Limit>,
-    /// The probability of a chi-square as large as it leaves by chance; none for a series, and where the errors are those of the scatter.
+    /// The probability of a chi-square as large as it leaves by chance; none for a series, and
+    /// where the errors are those of the scatter.
     pub p: Option<f64>,
     /// Its Bayesian information criterion less that of the chosen model.
     pub bic: f64,
     /// The same with Akaike's, corrected for few readings; none where there are too few.
     pub aicc: Option<f64>,
-    /// The chi-square per reading that it leaves in trials it was not fitted to; none with fewer than two trials.
+    /// The chi-square per reading that it leaves in trials it was not fitted to; none with fewer
+    /// than two trials.
     pub left_out: Option<f64>,
-    /// What it gives under other losses, where those were asked for, and the model itself was or its BIC is less than six above the least. One COR from
-    /// heights alone or times alone is an [`Estimate`](crate::Estimate) then.
+    /// What it gives under other losses, where those were asked for, and the model itself was or
+    /// its BIC is less than six above the least. One COR from heights alone or times alone is an
+    /// [`Estimate`](crate::Estimate) then.
     pub losses: Vec<UnderLoss>,
     /// Whether the reported COR is its.
     pub chosen: bool,
@@ -73,7 +78,8 @@ impl Misfit {
         self.chi_square / (times * times) + self.unknowns * self.readings.ln()
     }
 
-    /// The probability that a model with more unknowns leaves so much less than `fewer` does by chance; none where it has no more.
+    /// The probability that a model with more unknowns leaves so much less than `fewer` does by
+    /// chance; none where it has no more.
     pub(crate) fn by_chance(self, fewer: Self) -> Option<f64> {
         let (gain, more) = (fewer.chi_square - self.chi_square, self.unknowns - fewer.unknowns);
         let free = self.readings - self.unknowns;
@@ -121,7 +127,8 @@ pub struct SpeedCor {
     pub standard_error: f64,
 }
 
-/// How far an unknown may be from the end of its range: 95 %, one-sided, where the chi-square has grown by 2.71.
+/// How far an unknown may be from the end of its range: 95 %, one-sided, where the chi-square has
+/// grown by 2.71.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Limit {

@@ -1,8 +1,9 @@
 //! Linear and quadratic programs by the conic solver, each answer certified before it is believed.
 //!
-//! min ½ xᵀ diag(p) x + qᵀ x subject to A x ≤ b, where the first rows may be equalities. The certificate is computed here from the problem itself, not taken from the solver:
-//! feasibility, stationarity p∘x + q + Aᵀz = 0, signs and complementary slackness; or, for an infeasible program, Farkas' z ≥ 0 with
-//! Aᵀz = 0 and bᵀz < 0. Callers hand over numbers of the order of one.
+//! min ½ xᵀ diag(p) x + qᵀ x subject to A x ≤ b, where the first rows may be equalities. The
+//! certificate is computed here from the problem itself, not taken from the solver: feasibility,
+//! stationarity p∘x + q + Aᵀz = 0, signs and complementary slackness; or, for an infeasible
+//! program, Farkas' z ≥ 0 with Aᵀz = 0 and bᵀz < 0. Callers hand over numbers of the order of one.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};

@@ -22,7 +22,8 @@ pub struct Estimate {
     pub low: Option<f64>,
     /// The upper end of its 95 % interval.
     pub high: Option<f64>,
-    /// The sum of squared residuals, each divided by its standard error; none if that error was taken from the scatter itself.
+    /// The sum of squared residuals, each divided by its standard error; none if that error was
+    /// taken from the scatter itself.
     pub chi_square: Option<f64>,
     /// The number of readings less the number of unknowns.
     pub degrees_of_freedom: Option<usize>,

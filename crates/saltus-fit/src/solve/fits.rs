@@ -45,7 +45,8 @@ pub(crate) struct Fits<'a> {
 }
 
 impl<'a> Fits<'a> {
-    /// Fits one COR to heights, to times and to both; by neighbouring heights too where a rebound was read as zero, or if `ratio` is wanted.
+    /// Fits one COR to heights, to times and to both; by neighbouring heights too where a rebound
+    /// was read as zero, or if `ratio` is wanted.
     pub(crate) fn of(table: &'a Table, evidence: &'a Evidence, known: &Known, ratio: bool) -> Result<Self, FitError> {
         let heights: Option<Kind<Heights>> = one_kind(evidence, known.sigma_height)?;
         let times: Option<Kind<Contacts>> = kind::times(evidence, known.sigma_time)?;
@@ -83,7 +84,8 @@ impl<'a> Fits<'a> {
         self.heights.is_some() || self.times.is_some()
     }
 
-    /// The COR that other models are compared with: that of both together, or of the one kind of reading there is.
+    /// The COR that other models are compared with: that of both together, or of the one kind of
+    /// reading there is.
     pub(crate) fn cor(&self) -> Option<f64> {
         fn of<M>(kind: &Kind<M>) -> Option<f64> {
             let estimate = kind.unbounded.as_ref().unwrap_or(&kind.estimate);

@@ -23,7 +23,8 @@ pub(crate) struct Joint {
     pub(crate) fitted: Fitted,
     /// For each block the trial's place in the table.
     pub(crate) trials: Vec<usize>,
-    /// The standard deviation of the COR from drop to drop, where heights and times agree in every drop, but not on one COR for all.
+    /// The standard deviation of the COR from drop to drop, where heights and times agree in every
+    /// drop, but not on one COR for all.
     pub(crate) spread: Option<f64>,
 }
 

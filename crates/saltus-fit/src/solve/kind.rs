@@ -1,4 +1,5 @@
-//! The estimators: each gives a COR with its standard error, and how well its model describes the readings.
+//! The estimators: each gives a COR with its standard error, and how well its model describes the
+//! readings.
 
 use std::marker::PhantomData;
 
@@ -31,9 +32,11 @@ pub(crate) struct Kind<M> {
     pub(crate) replicated: bool,
     /// For each trial of the table its information on the COR, and its own COR less that of all.
     pub(crate) separate: Vec<(f64, f64)>,
-    /// How much the COR scatters from bounce to bounce, relative to it, where the estimate allows for that.
+    /// How much the COR scatters from bounce to bounce, relative to it, where the estimate allows
+    /// for that.
     pub(crate) scatter: Option<f64>,
-    /// The standard deviation of the COR from drop to drop, where the drops differ by more than the reading errors.
+    /// The standard deviation of the COR from drop to drop, where the drops differ by more than the
+    /// reading errors.
     pub(crate) spread: Option<f64>,
     /// The models of ratios beside one COR, where the bounces scatter.
     pub(crate) models: Vec<ModelChoice>,
@@ -51,7 +54,8 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
     if known.is_none() && fitted.freedom >= SCATTER && !fitted.active[0] {
         #[allow(clippy::cast_precision_loss)]
         let factor = (fitted.chi_square / fitted.freedom as f64).sqrt().max(rounding(&M::read(evidence)) / M::ASSUMED);
-        // Readings without any scatter at all leave the usual error in place: zero would claim too much.
+        // Readings without any scatter at all leave the usual error in place: zero would claim too
+        // much.
         if factor * M::ASSUMED > 1e-9 {
             sigma = Sourced { value: factor * M::ASSUMED, source: Source::Scatter };
             model = M::with_sigma(evidence, sigma.value);
@@ -64,7 +68,8 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
     let (mut estimate, mut replicated) = describe::<M>(&fitted, sigma, Method::of(M::READINGS));
     let pooled = estimate.value;
     let mut spread = None;
-    // Above all where each drop by itself is explained by the reading errors, and only all together are not.
+    // Above all where each drop by itself is explained by the reading errors, and only all together
+    // are not.
     if !fitted.active[0]
         && known.is_some()
         && estimate.p.is_some_and(|p| p < REJECT)
@@ -107,10 +112,12 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
     }))
 }
 
-/// Whether the errors of times between contacts are to be taken as adding up along the times, as where each was read or rounded by itself.
+/// Whether the errors of times between contacts are to be taken as adding up along the times, as
+/// where each was read or rounded by itself.
 ///
-/// A few intervals do not tell whether the contacts were timed, or each interval: what leaves the larger error is taken, unless the stated error of
-/// reading rules that out. Of many trials the spread tells.
+/// A few intervals do not tell whether the contacts were timed, or each interval: what leaves the
+/// larger error is taken, unless the stated error of reading rules that out. Of many trials the
+/// spread tells.
 pub(crate) fn add_up(evidence: &Evidence, known: Option<Sourced>) -> Result<bool, FitError> {
     let contacts = Contacts::with_sigma(evidence, known.map_or(Contacts::ASSUMED, |s| s.value));
     let usable = contacts.trials.iter().filter(|t| t.len() > 2).count();
@@ -132,7 +139,8 @@ pub(crate) fn times(evidence: &Evidence, known: Option<Sourced>) -> Result<Optio
         && kind.spread.is_none()
         && kind.unbounded.is_none()
         && let Some(found) = scattering(evidence, kind.sigma)
-        // Ratios that follow the number of the bounce do not scatter: their cause is looked for among the models.
+        // Ratios that follow the number of the bounce do not scatter: their cause is looked for
+        // among the models.
         && found.followed < 0.5
     {
         let Estimate { chi_square, p, .. } = kind.estimate;
@@ -147,7 +155,8 @@ pub(crate) fn times(evidence: &Evidence, known: Option<Sourced>) -> Result<Optio
     Ok(Some(kind))
 }
 
-/// Information and shifts of another unknown as those of the COR, whose derivative by it is `slope`.
+/// Information and shifts of another unknown as those of the COR, whose derivative by it is
+/// `slope`.
 fn in_cor(separate: &[(f64, f64)], slope: f64) -> Vec<(f64, f64)> {
     separate.iter().map(|(weight, shift)| (weight / (slope * slope), shift * slope)).collect()
 }
@@ -163,7 +172,8 @@ fn describe<M: OneKind>(fitted: &Fitted, sigma: Sourced, method: Method) -> (Est
     if contributing >= REPLICATED && !fitted.active[0] {
         let spread = slope * jackknife(&fitted.influence, contributing);
         replicated = true;
-        // A stated reading error is a floor under the spread: readings that repeat exactly were rounded, not perfect.
+        // A stated reading error is a floor under the spread: readings that repeat exactly were
+        // rounded, not perfect.
         if scattered || spread > error {
             (error, quantile) = (spread, student(contributing - 1));
         }
@@ -206,7 +216,8 @@ fn jackknife(influence: &[f64], contributing: usize) -> f64 {
     ((n - 1.0) / n * shifts().map(|d| (d - mean).powi(2)).sum::<f64>()).sqrt()
 }
 
-/// The probability that chance alone improves the fit as much as a COR that changes from bounce to bounce does.
+/// The probability that chance alone improves the fit as much as a COR that changes from bounce to
+/// bounce does.
 fn trend<M: OneKind>(model: &M, fitted: &Fitted, sigma: Sourced) -> Option<f64> {
     if fitted.freedom < 2 || fitted.active[0] {
         return None;

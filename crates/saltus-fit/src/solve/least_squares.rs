@@ -1,13 +1,17 @@
-//! Linear least squares with bounds: the one place that speaks to the conic solver, and that trusts it only after checking.
+//! Linear least squares with bounds: the one place that speaks to the conic solver, and that trusts
+//! it only after checking.
 //!
-//! The problem is ½ ‖X x − y‖² → min, low ≤ x ≤ high, with whitened rows (each divided by its standard error). It is handed
-//! to Clarabel in residual form: unknowns (x, r), P = diag(0, I), X x + r = y as equalities, the bounds as inequalities.
+//! The problem is ½ ‖X x − y‖² → min, low ≤ x ≤ high, with whitened rows (each divided by its
+//! standard error). It is handed to Clarabel in residual form: unknowns (x, r), P = diag(0, I), X
+//! x + r = y as equalities, the bounds as inequalities.
 //!
-//! What the solver does not say by itself is settled here: numbers are checked to be finite before and after; columns and
-//! right-hand side are scaled to norm one, since the solver's absolute gap accepts wrong answers to small problems; the rank is
-//! tested by singular values, since a rank-deficient problem is called solved too; only an accepted status, or optimality
-//! conditions that hold, complementarity included, count as solved; and the answer is compared with, and replaced by, that of a direct factorisation on the
-//! unknowns that are not at a bound, so its accuracy is that of the factorisation.
+//! What the solver does not say by itself is settled here: numbers are checked to be finite before
+//! and after; columns and right-hand side are scaled to norm one, since the solver's absolute gap
+//! accepts wrong answers to small problems; the rank is tested by singular values, since a
+//! rank-deficient problem is called solved too; only an accepted status, or optimality conditions
+//! that hold, complementarity included, count as solved; and the answer is compared with, and
+//! replaced by, that of a direct factorisation on the unknowns that are not at a bound, so its
+//! accuracy is that of the factorisation.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -19,10 +23,11 @@ use crate::model::Bounds;
 
 /// A whitened problem whose columns are worse conditioned than this determines nothing.
 const CONDITION: f64 = 1e8;
-/// How far the sums of squares of solver and factorisation may differ, that of the right-hand side being one, before neither is
-/// believed.
+/// How far the sums of squares of solver and factorisation may differ, that of the right-hand side
+/// being one, before neither is believed.
 const AGREE: f64 = 1e-7;
-/// A bound this many times further than the free minimum, in scaled units, is left out at first: it would only spoil the scale.
+/// A bound this many times further than the free minimum, in scaled units, is left out at first: it
+/// would only spoil the scale.
 const FAR: f64 = 10.0;
 
 /// The minimum and what it is worth.
@@ -51,7 +56,8 @@ pub(crate) fn solve(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Re
     minimum(x, y, bounds, true)
 }
 
-/// The same for a step on the way to a minimum: where the free minimum lies within the bounds it is the answer, and no solver is asked.
+/// The same for a step on the way to a minimum: where the free minimum lies within the bounds it is
+/// the answer, and no solver is asked.
 pub(crate) fn step(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<DVector<f64>, Failure> {
     minimum(x, y, bounds, false).map(|solution| solution.x)
 }
@@ -115,7 +121,8 @@ struct Scaled {
 }
 
 impl Scaled {
-    /// The minimum with some unknowns held at a bound, by singular values; `None` where the rest is not determined.
+    /// The minimum with some unknowns held at a bound, by singular values; `None` where the rest is
+    /// not determined.
     fn direct(&self, held: &[Option<Side>]) -> Option<DVector<f64>> {
         let n = self.x.ncols();
         let mut z = DVector::from_fn(n, |j, _| match held[j] {
@@ -163,11 +170,13 @@ impl Scaled {
         (0..z.len()).all(|j| z[j] >= self.low[j] - slack && z[j] <= self.high[j] + slack)
     }
 
-    /// The minimum within the bounds: the solver tells which bounds hold, the factorisation gives the number.
+    /// The minimum within the bounds: the solver tells which bounds hold, the factorisation gives
+    /// the number.
     ///
-    /// Where unknowns are nearly dependent the solver's own accuracy leaves the choice of bounds open; it is then mended bound by bound
-    /// until the conditions of a minimum hold, which for a convex problem make it the only one. The two are compared by what they
-    /// minimise, which is sharp where the unknowns are not.
+    /// Where unknowns are nearly dependent the solver's own accuracy leaves the choice of bounds
+    /// open; it is then mended bound by bound until the conditions of a minimum hold, which for a
+    /// convex problem make it the only one. The two are compared by what they minimise, which is
+    /// sharp where the unknowns are not.
     fn bounded(&self, free: &DVector<f64>) -> Result<(DVector<f64>, Vec<Option<Side>>), Failure> {
         let reach = FAR * (1.0 + free.amax());
         let n = free.len();
@@ -198,7 +207,8 @@ impl Scaled {
         (&self.x * z - &self.y).norm_squared()
     }
 
-    /// The worst breach of the conditions of a minimum, as the unknown and what to do with it: hold it at a bound, or let it go.
+    /// The worst breach of the conditions of a minimum, as the unknown and what to do with it: hold
+    /// it at a bound, or let it go.
     fn violation(&self, z: &DVector<f64>, active: &[Option<Side>]) -> Option<(usize, Option<Side>)> {
         let gradient = self.x.transpose() * (&self.x * z - &self.y);
         let outside = |j: usize| {
@@ -224,7 +234,8 @@ impl Scaled {
         found.map(|(_, j, side)| (j, side))
     }
 
-    /// Solves by Clarabel with the bounds nearer than `reach`; gives the scaled unknowns and the bounds that hold.
+    /// Solves by Clarabel with the bounds nearer than `reach`; gives the scaled unknowns and the
+    /// bounds that hold.
     fn conic(&self, reach: f64) -> Result<(DVector<f64>, Vec<Option<Side>>), Failure> {
         let (m, n) = self.x.shape();
         let mut entries = Triplets::default();
@@ -275,7 +286,8 @@ impl Scaled {
         match solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {}
             SolverStatus::InsufficientProgress | SolverStatus::MaxIterations | SolverStatus::NumericalError => {
-                // The gradient must vanish up to the multipliers of the bounds, and these where there is slack.
+                // The gradient must vanish up to the multipliers of the bounds, and these where
+                // there is slack.
                 let mut gradient = self.x.transpose() * (&self.x * &z - &self.y);
                 for (&(j, side), multiplier) in limits.iter().zip(multipliers) {
                     gradient[j] += if side == Side::High { *multiplier } else { -multiplier };

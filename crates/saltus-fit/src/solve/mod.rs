@@ -1,4 +1,5 @@
-//! The estimators: least squares and its relatives, one COR by each kind of reading, by both together, and by recordings.
+//! The estimators: least squares and its relatives, one COR by each kind of reading, by both
+//! together, and by recordings.
 
 pub(crate) mod bootstrap;
 pub(crate) mod bounces;

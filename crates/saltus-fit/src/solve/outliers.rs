@@ -1,4 +1,5 @@
-//! Readings that are no readings of the ball: found by the sum of absolute residuals, which a third of them hardly moves.
+//! Readings that are no readings of the ball: found by the sum of absolute residuals, which a third
+//! of them hardly moves.
 
 use super::one::{OneKind, identified};
 use super::robust;
@@ -11,18 +12,21 @@ use crate::statistics::{REJECT, chi_square_p, median, rounding};
 const FAR: f64 = 5.0;
 /// The same where the standard error is only the scatter of the others.
 const FAR_BY_SCATTER: f64 = 8.0;
-/// With fewer readings to spare nobody can tell which are wrong; without a stated error, it takes twice as many.
+/// With fewer readings to spare nobody can tell which are wrong; without a stated error, it takes
+/// twice as many.
 const SPARE: usize = 4;
 /// More than this part cannot be outliers: then it is the model that is wrong.
 const MOST: f64 = 0.4;
 /// More than this part of the trials cannot be outliers for the most part: then the trials differ.
 const MOST_TRIALS: f64 = 0.25;
-/// The scatter, in assumed errors, below which numbers are exact to their own rounding: 10 nm of heights, 10 ns of times.
+/// The scatter, in assumed errors, below which numbers are exact to their own rounding: 10 nm of
+/// heights, 10 ns of times.
 const LEAST_SCATTER: f64 = 1e-6;
 /// Where many are wild a second look finds those that the first ones hid.
 const ROUNDS: usize = 3;
 
-/// The evidence without the readings that do not belong to the model: `drop` takes them out by trial and place.
+/// The evidence without the readings that do not belong to the model: `drop` takes them out by
+/// trial and place.
 pub(crate) fn without<M: OneKind>(
     evidence: Evidence,
     known: Option<Sourced>,
@@ -47,8 +51,9 @@ pub(crate) fn without<M: OneKind>(
 
 /// For each trial the places of readings that do not belong to the model; empty where all do.
 ///
-/// Beside them the number of readings that were looked at. `read` holds all that were read. `stated` says whether the errors are known: then a
-/// reading must be far off by them, and not only by the scatter of the others.
+/// Beside them the number of readings that were looked at. `read` holds all that were read.
+/// `stated` says whether the errors are known: then a reading must be far off by them, and not only
+/// by the scatter of the others.
 fn find<M: OneKind>(
     evidence: &Evidence,
     read: &Evidence,
@@ -63,7 +68,8 @@ fn find<M: OneKind>(
     if start.freedom < if stated { SPARE } else { 2 * SPARE } {
         return none;
     }
-    // A clean table needs no second look: nothing is far off by the scatter that least squares finds.
+    // A clean table needs no second look: nothing is far off by the scatter that least squares
+    // finds.
     let scatter = (start.chi_square / start.freedom as f64).sqrt();
     if stated && scatter < 1.5 {
         return none;
@@ -87,14 +93,16 @@ fn find<M: OneKind>(
         .enumerate()
         .flat_map(|(trial, left)| left.iter().enumerate().filter(|(_, r)| far(r)).map(move |(n, _)| (trial, n)))
         .collect();
-    // Where most of a trial is far off it is not its readings that are wrong: the trial is another one.
+    // Where most of a trial is far off it is not its readings that are wrong: the trial is another
+    // one.
     let far_in = |trial: usize| wrong.iter().filter(|(of, _)| *of == trial).count();
     let others = found.left.iter().enumerate().filter(|(trial, left)| 2 * far_in(*trial) > left.len()).count();
     if others as f64 > MOST_TRIALS * found.left.len() as f64 {
         return none;
     }
-    // Where most trials with far readings follow a COR of their own, nothing is misread: drops differ. One alone may be of another ball, and of many
-    // with misread readings a few may look so by chance.
+    // Where most trials with far readings follow a COR of their own, nothing is misread: drops
+    // differ. One alone may be of another ball, and of many with misread readings a few may look so
+    // by chance.
     let odd: Vec<usize> = (0..found.left.len()).filter(|trial| far_in(*trial) > 0).collect();
     let another = |trial: &&usize| follows_its_own::<M>(read, **trial, sigma * scale);
     let own: Vec<usize> = odd.iter().filter(another).copied().collect();
@@ -105,7 +113,8 @@ fn find<M: OneKind>(
     Ok((if few { wrong } else { Vec::new() }, count))
 }
 
-/// Whether the readings of a trial follow one COR by themselves, within this error; two always do, which says nothing.
+/// Whether the readings of a trial follow one COR by themselves, within this error; two always do,
+/// which says nothing.
 fn follows_its_own<M: OneKind>(evidence: &Evidence, trial: usize, sigma: f64) -> bool {
     let Some(own) = evidence.trials.get(trial) else { return false };
     let model = M::with_sigma(&Evidence { trials: vec![own.clone()], ..Evidence::default() }, sigma);

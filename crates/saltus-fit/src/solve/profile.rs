@@ -1,4 +1,5 @@
-//! The cost as one unknown is held at other values: its shape over the COR, and limits, where a bound holds an unknown and no covariance speaks for it.
+//! The cost as one unknown is held at other values: its shape over the COR, and limits, where a
+//! bound holds an unknown and no covariance speaks for it.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -42,8 +43,8 @@ const REACH: f64 = 6.0;
 const LEAST_REACH: f64 = 0.01;
 
 impl Profile {
-    /// Around the best COR and its standard error, of a model whose first shared unknown is what `of` makes of the COR. What cannot be fitted is
-    /// left out.
+    /// Around the best COR and its standard error, of a model whose first shared unknown is what
+    /// `of` makes of the COR. What cannot be fitted is left out.
     pub(crate) fn of<M: Model>(
         method: Method,
         model: &M,
@@ -102,9 +103,11 @@ pub(crate) fn held<M: Model>(model: &M, at: &Fitted, place: usize, value: f64) -
     fit(&Held { model, place, value }, &others, at.own.clone())
 }
 
-/// How far a shared unknown may be from the bound that holds it until the cost has grown by 2.71; the other end of its range, if it never does.
+/// How far a shared unknown may be from the bound that holds it until the cost has grown by 2.71;
+/// the other end of its range, if it never does.
 ///
-/// The cost grows by about a s + b s² over a distance s: two costs on the way give a and b, and they the next distance to try.
+/// The cost grows by about a s + b s² over a distance s: two costs on the way give a and b, and
+/// they the next distance to try.
 pub(crate) fn limit<M: Model>(model: &M, at: &Fitted, place: usize) -> Result<f64, Failure> {
     let (bounds, reach) = model.ranges()[place];
     let here = at.shared[place];
@@ -158,7 +161,8 @@ pub(crate) fn limit<M: Model>(model: &M, at: &Fitted, place: usize) -> Result<f6
     Ok(here + sign * inside[0])
 }
 
-/// Where a s + b s² through two distances and their growths is 2.71; the middle between them where that is nowhere.
+/// Where a s + b s² through two distances and their growths is 2.71; the middle between them where
+/// that is nowhere.
 fn between(inside: [f64; 2], outside: [f64; 2]) -> f64 {
     let slope = |[s, grown]: [f64; 2]| grown / s;
     let (a, b) = if inside[0] > 0.0 {

@@ -1,4 +1,5 @@
-//! The COR from neighbouring heights as they are, hₙ₊₁ = κ hₙ with κ = e²: a rebound of zero height may be one of them.
+//! The COR from neighbouring heights as they are, hₙ₊₁ = κ hₙ with κ = e²: a rebound of zero height
+//! may be one of them.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -42,7 +43,8 @@ fn cost(pairs: &[Pair], kappa: f64) -> f64 {
 
 /// Least squares within 0 ≤ κ ≤ 1, reweighted; `None` where there is no pair.
 ///
-/// Noise in the height before makes κ too small, by about (σ/h)². At a bound the estimate has a one-sided limit, no standard error.
+/// Noise in the height before makes κ too small, by about (σ/h)². At a bound the estimate has a
+/// one-sided limit, no standard error.
 pub(crate) fn estimate(evidence: &Evidence, sigma: f64) -> Option<Estimate> {
     let pairs = pairs(evidence, sigma);
     let (mut kappa, mut active) = (0.5, false);
@@ -82,7 +84,8 @@ pub(crate) fn estimate(evidence: &Evidence, sigma: f64) -> Option<Estimate> {
     Some(estimate)
 }
 
-/// The standard error of κ. A height is the second of one pair and the first of the next, so its error counts in both.
+/// The standard error of κ. A height is the second of one pair and the first of the next, so its
+/// error counts in both.
 fn error(pairs: &[Pair], kappa: f64) -> f64 {
     let weight = |p: &Pair| 1.0 / (p.after.1 + kappa * kappa * p.before.1);
     let total: f64 = pairs.iter().map(|p| weight(p) * p.before.0.powi(2)).sum();

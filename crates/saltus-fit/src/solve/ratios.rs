@@ -1,9 +1,11 @@
-//! Times again, where the bounces themselves scatter: every impact has a COR of its own around the mean.
+//! Times again, where the bounces themselves scatter: every impact has a COR of its own around the
+//! mean.
 //!
-//! A rough floor makes the COR a random quantity (Montaine, Heckel, Kruelle, Schwager and Pöschel 2011, arXiv:1104.0049). Its
-//! scatter adds up along the times, which then are no longer a curve with independent errors; but the logarithms of the ratios of
-//! neighbouring intervals stay independent but for the reading errors that they share:
-//! yₖ = ln(Δₖ₊₁/Δₖ) = L + ηₖ + B δt, with covariance s² I + σ² B Bᵀ.
+//! A rough floor makes the COR a random quantity (Montaine, Heckel, Kruelle, Schwager and Pöschel
+//! 2011, arXiv:1104.0049). Its scatter adds up along the times, which then are no longer a curve
+//! with independent errors; but the logarithms of the ratios of neighbouring intervals stay
+//! independent but for the reading errors that they share: yₖ = ln(Δₖ₊₁/Δₖ) = L + ηₖ + B δt, with
+//! covariance s² I + σ² B Bᵀ.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +16,8 @@ use crate::model::LONGEST_CONTACT;
 use crate::quantity::{CorModel, Measured, Method, Source, Sourced};
 use crate::statistics::{REPLICATED, SCATTER, student, variance_ratio_p};
 
-/// A trial with more ratios than this is left to the fit of the times: its covariance would be too large a matrix.
+/// A trial with more ratios than this is left to the fit of the times: its covariance would be too
+/// large a matrix.
 const LARGEST: usize = 400;
 
 /// A table with more ratios than this is left to the fit of the times too.
@@ -36,7 +39,8 @@ struct Solved {
     variance: f64,
     /// Σ rᵀC⁻¹r.
     square: f64,
-    /// Twice the negative restricted log-likelihood, with a common factor of the covariance profiled out.
+    /// Twice the negative restricted log-likelihood, with a common factor of the covariance
+    /// profiled out.
     deviance: f64,
     /// For each trial 1ᵀC⁻¹1 and 1ᵀC⁻¹y.
     parts: Vec<(f64, f64)>,
@@ -115,10 +119,12 @@ fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
     good.then_some(Solved { mean, variance: 1.0 / weight, square, deviance, parts })
 }
 
-/// The COR from ratios, where the readings favour bounces that scatter over times that are read badly; else `None`.
+/// The COR from ratios, where the readings favour bounces that scatter over times that are read
+/// badly; else `None`.
 ///
-/// With a known reading error the scatter of the bounces is what is left over (the estimate of Paule and Mandel, J. Res. NBS 87,
-/// 377, 1982); without one, the two explanations are compared by their restricted likelihood, and the better is taken.
+/// With a known reading error the scatter of the bounces is what is left over (the estimate of
+/// Paule and Mandel, J. Res. NBS 87, 377, 1982); without one, the two explanations are compared by
+/// their restricted likelihood, and the better is taken.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRatios> {
     let trials: Vec<Ratios> = evidence.trials.iter().filter_map(collect).collect();
@@ -184,8 +190,9 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
 /// A model, x, and the sign that c must have; 0 where either will do.
 type Follows = (CorModel, fn(f64) -> f64, f64);
 
-/// What scattering ratios Δₖ₊₁/Δₖ may follow, to first order in ln(Δₖ₊₁/Δₖ) = ln e + c x(Δₖ): a COR linear in speed, x = Δ; drag, x = Δ², the height
-/// of the flight; contacts that take time, x = 1/Δ. Drag makes the first ratios smaller, and so do contacts that take time.
+/// What scattering ratios Δₖ₊₁/Δₖ may follow, to first order in ln(Δₖ₊₁/Δₖ) = ln e + c x(Δₖ): a COR
+/// linear in speed, x = Δ; drag, x = Δ², the height of the flight; contacts that take time, x =
+/// 1/Δ. Drag makes the first ratios smaller, and so do contacts that take time.
 const FOLLOWS: [Follows; 3] = [
     (CorModel::Linear, |flight| flight, 0.0),
     (CorModel::Drag, |flight| flight * flight, -1.0),
@@ -276,7 +283,8 @@ fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, read
     })
 }
 
-/// The probability that chance alone makes the ratios follow the number of the bounce as closely as they do, and how much of their squares that is.
+/// The probability that chance alone makes the ratios follow the number of the bounce as closely as
+/// they do, and how much of their squares that is.
 #[allow(clippy::cast_precision_loss)]
 fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<(Option<f64>, f64)> {
     let first = |trial: &Ratios| evidence.trials.get(trial.trial).and_then(|t| t.moments.first()).map_or(0, |m| m.0);

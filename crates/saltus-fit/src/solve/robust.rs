@@ -1,7 +1,9 @@
-//! The same models under other losses: Huber's, the sum of absolute residuals, and the largest residual.
+//! The same models under other losses: Huber's, the sum of absolute residuals, and the largest
+//! residual.
 //!
-//! Each step linearises the whole model and solves a conic program within a trust region: for the largest residual as it stands, for the other
-//! two its dual, which is smaller. A step that does not lower the loss is tried shorter.
+//! Each step linearises the whole model and solves a conic program within a trust region: for the
+//! largest residual as it stands, for the other two its dual, which is smaller. A step that does
+//! not lower the loss is tried shorter.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -17,7 +19,8 @@ pub(crate) const ROWS: usize = 3000;
 const STEPS: usize = 25;
 /// A loss that differs by less, relatively, is the same.
 const SAME: f64 = 1e-9;
-/// A loss that comes out as near as this to what the linear model foresaw has no more to lose: what is left is of higher order still.
+/// A loss that comes out as near as this to what the linear model foresaw has no more to lose: what
+/// is left is of higher order still.
 const LINEAR: f64 = 1e-6;
 
 /// A fit under one of the losses.
@@ -43,7 +46,8 @@ impl Loss {
         }
     }
 
-    /// One step: the shift of all unknowns within their limits that makes the loss of the linear model least.
+    /// One step: the shift of all unknowns within their limits that makes the loss of the linear
+    /// model least.
     fn step(self, x: &DMatrix<f64>, left: &DVector<f64>, limits: &[(f64, f64)]) -> Result<Vec<f64>, Failure> {
         let scale = left.amax().max(1e-12);
         let norms: Vec<f64> = x.column_iter().map(|c| c.amax().max(1e-300)).collect();
@@ -92,9 +96,10 @@ fn largest(
     Program { squares: vec![0.0; n + 1], cost, rows, equal: 0 }
 }
 
-/// The dual of min Σ ρ(r − X d), d within its limits, where ρ has the slope λ = w/δ up to |w| = δ and ±1 beyond; ρ is |w| for δ = 0. It has one
-/// unknown for each row and side of a limit, and each row of X once:
-/// min ½ δ λᵀλ − rᵀλ + Σ hⱼ μⱼ − Σ lⱼ νⱼ with Xᵀλ = μ − ν, |λ| ≤ 1, μ, ν ≥ 0. Its first multipliers, those of the equalities, are d.
+/// The dual of min Σ ρ(r − X d), d within its limits, where ρ has the slope λ = w/δ up to |w| = δ
+/// and ±1 beyond; ρ is |w| for δ = 0. It has one unknown for each row and side of a limit, and each
+/// row of X once: min ½ δ λᵀλ − rᵀλ + Σ hⱼ μⱼ − Σ lⱼ νⱼ with Xᵀλ = μ − ν, |λ| ≤ 1, μ, ν ≥ 0. Its
+/// first multipliers, those of the equalities, are d.
 fn dual(
     (m, n): (usize, usize),
     x: impl Fn(usize, usize) -> f64,
@@ -144,7 +149,8 @@ fn whole(
     (x, left)
 }
 
-/// Minimises the loss from a start, such as the least-squares fit, or over the own unknowns only; `None` for a table with too many rows.
+/// Minimises the loss from a start, such as the least-squares fit, or over the own unknowns only;
+/// `None` for a table with too many rows.
 pub(crate) fn fit(
     model: &impl Model,
     loss: Loss,
@@ -208,7 +214,8 @@ pub(crate) fn fit(
             }
             fraction *= 0.5;
         }
-        // Another step would change nothing: this one did not, or it did what the linear model had foreseen, within the trust region.
+        // Another step would change nothing: this one did not, or it did what the linear model had
+        // foreseen, within the trust region.
         let there = loss.cost(&left);
         let free = fraction == 1.0 && (0..shared.len()).all(|j| step[owned + j].abs() < 0.5 * trust * ranges[j].1);
         if !accepted || here - there <= SAME * (SAME + here) || free && (there - foreseen).abs() <= LINEAR {

@@ -16,8 +16,8 @@ pub(crate) struct Across {
     pub(crate) spread: f64,
 }
 
-/// The mean of `DerSimonian` and Laird (1986), its error from the values' own scatter (Hartung and Knapp 2001) but never below what their
-/// errors allow.
+/// The mean of `DerSimonian` and Laird (1986), its error from the values' own scatter (Hartung and
+/// Knapp 2001) but never below what their errors allow.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn across(values: &[Measured]) -> Option<Across> {
     let first = values.first()?;
@@ -43,7 +43,8 @@ pub(crate) fn across(values: &[Measured]) -> Option<Across> {
     value.is_finite().then_some(Across { mean, quantile: student(freedom), spread: extra.sqrt() })
 }
 
-/// What trials fitted one by one leave: the sum of their chi-squares, its degrees of freedom, and each trial's COR.
+/// What trials fitted one by one leave: the sum of their chi-squares, its degrees of freedom, and
+/// each trial's COR.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Apart {
     pub(crate) chi_square: f64,
@@ -52,7 +53,8 @@ pub(crate) struct Apart {
 }
 
 impl Apart {
-    /// Whether one COR for all is ruled out and one for each trial is not; `whole` is the chi-square of one COR for all.
+    /// Whether one COR for all is ruled out and one for each trial is not; `whole` is the
+    /// chi-square of one COR for all.
     #[allow(clippy::cast_precision_loss)]
     pub(crate) fn explains(&self, whole: f64, sigma: Source, reject: f64) -> bool {
         let Some(above) = self.cors.len().checked_sub(1).filter(|n| *n > 0) else { return false };

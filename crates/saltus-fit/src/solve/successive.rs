@@ -1,9 +1,11 @@
-//! Nonlinear least squares by successive bounded linear problems, for unknowns shared by all trials and unknowns of one trial.
+//! Nonlinear least squares by successive bounded linear problems, for unknowns shared by all trials
+//! and unknowns of one trial.
 //!
-//! Each trial is a block of rows with a few unknowns of its own (an intercept, a clock, a speed). Reflections reduce the block to a
-//! triangle; its first rows give the own unknowns once the shared ones are known, the others are rows in the shared unknowns alone.
-//! Those of all blocks are reduced to one small triangle, which is solved within bounds and a trust region. This is exact, and a
-//! million rows cost one pass each step.
+//! Each trial is a block of rows with a few unknowns of its own (an intercept, a clock, a speed).
+//! Reflections reduce the block to a triangle; its first rows give the own unknowns once the shared
+//! ones are known, the others are rows in the shared unknowns alone. Those of all blocks are
+//! reduced to one small triangle, which is solved within bounds and a trust region. This is exact,
+//! and a million rows cost one pass each step.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,16 +15,19 @@ use crate::quantity::Measured;
 
 /// So many rows at a time are reflected, which a processor keeps close by.
 const PANEL: usize = 256;
-/// A column of rows this small beside the triangle's diagonal says nothing, nor one this small a part of the least diagonal that counts.
+/// A column of rows this small beside the triangle's diagonal says nothing, nor one this small a
+/// part of the least diagonal that counts.
 const NOTHING: f64 = 1e-20;
 const LEAST: f64 = 1e-120;
 const STEPS: usize = 60;
 /// A step this small, relative to the unknown, is the last.
 const FINE: f64 = 1e-12;
-/// A step that lowers the sum of squares by less than this part, and moves the unknowns by less than its root, is the last.
+/// A step that lowers the sum of squares by less than this part, and moves the unknowns by less
+/// than its root, is the last.
 const IDLE: f64 = 1e-13;
 
-/// Block by block, information on the first shared unknown and the shift the block alone would give it.
+/// Block by block, information on the first shared unknown and the shift the block alone would give
+/// it.
 pub(crate) type Separate = Vec<(f64, f64)>;
 
 /// The minimum of the sum of squares.
@@ -36,10 +41,11 @@ pub(crate) struct Fitted {
     pub(crate) chi_square: f64,
     /// Rows less unknowns, over the blocks that have more rows than own unknowns.
     pub(crate) freedom: usize,
-    /// For each block, by how much the first shared unknown moves when the block is left out (to first order).
+    /// For each block, by how much the first shared unknown moves when the block is left out (to
+    /// first order).
     pub(crate) influence: Vec<f64>,
-    /// For each block, with one shared unknown: its information (1/variance) on that unknown, and where the block alone would have it,
-    /// less where all have it.
+    /// For each block, with one shared unknown: its information (1/variance) on that unknown, and
+    /// where the block alone would have it, less where all have it.
     pub(crate) separate: Separate,
 }
 
@@ -49,7 +55,8 @@ impl Fitted {
         Measured { value: self.shared[n], standard_error: self.covariance[(n, n)].sqrt() }
     }
 
-    /// The error of a number from its derivatives by the shared unknowns, the first of which they are.
+    /// The error of a number from its derivatives by the shared unknowns, the first of which they
+    /// are.
     pub(crate) fn error_of(&self, by: &[f64]) -> f64 {
         let each = |i: usize| (0..by.len()).map(move |j| (i, j));
         let variance: f64 = (0..by.len()).flat_map(each).map(|(i, j)| by[i] * by[j] * self.covariance[(i, j)]).sum();
@@ -80,7 +87,8 @@ impl Triangle {
                 if below.sqrt() <= NOTHING * here[j].max(LEAST) {
                     continue;
                 }
-                // The reflection of (here | rows) about (1, pivot): the triangle's diagonal stays positive, and nothing cancels.
+                // The reflection of (here | rows) about (1, pivot): the triangle's diagonal stays
+                // positive, and nothing cancels.
                 let length = here[j].hypot(below.sqrt());
                 let head = -below / (here[j] + length);
                 let scale = -head / length;
@@ -105,7 +113,8 @@ impl Triangle {
 struct Linear {
     x: DMatrix<f64>,
     y: DVector<f64>,
-    /// Block after block, q rows of (own | shared | residual); zeros for a block that has too few rows.
+    /// Block after block, q rows of (own | shared | residual); zeros for a block that has too few
+    /// rows.
     tops: Vec<f64>,
     cost: f64,
     rows: usize,
@@ -134,7 +143,8 @@ pub(crate) fn fit(model: &impl Model, shared: &[f64], own: Vec<Vec<f64>>) -> Res
         if gain <= IDLE * here.cost && small(IDLE.sqrt()) {
             break;
         }
-        // Unknowns of one trial may still move where there is no shared one, or it stands at a bound.
+        // Unknowns of one trial may still move where there is no shared one, or it stands at a
+        // bound.
         let last = small(FINE) && own.iter().zip(&own_step).all(|(x, d)| d.abs() <= FINE * (1.0 + x.abs()));
         let mut fraction = 1.0;
         let mut accepted = None;
@@ -168,7 +178,8 @@ fn predicted_gain(here: &Linear, step: &DVector<f64>, sizes: &[usize]) -> f64 {
     let mut gain = here.y.norm_squared() - (&here.y - &here.x * step).norm_squared();
     let mut tops = here.tops.as_slice();
     for &q in sizes {
-        // The last entries of the top rows are the parts of the residuals that the own unknowns can take away.
+        // The last entries of the top rows are the parts of the residuals that the own unknowns can
+        // take away.
         let width = q + step.len() + 1;
         let (top, rest) = tops.split_at(q * width);
         gain += top.chunks_exact(width).map(|row| row[width - 1].powi(2)).sum::<f64>();
@@ -177,7 +188,8 @@ fn predicted_gain(here: &Linear, step: &DVector<f64>, sizes: &[usize]) -> f64 {
     gain
 }
 
-/// By how much a step in the linear model at a point lowers the sum of squares: a test of one more shared unknown.
+/// By how much a step in the linear model at a point lowers the sum of squares: a test of one more
+/// shared unknown.
 pub(crate) fn score_gain(model: &impl Model, shared: &[f64], own: &[Vec<f64>]) -> Result<(f64, f64), Failure> {
     let sizes: Vec<usize> = own.iter().map(Vec::len).collect();
     let here = linearise(model, shared, &own.concat(), &sizes)?;
@@ -199,7 +211,8 @@ fn finish(
     let within: Vec<Bounds> =
         whole.iter().zip(&shared).map(|(b, x)| Bounds { low: b.low - x, high: b.high - x }).collect();
     let last = solve(&here.x, &here.y, &within)?;
-    // On a bound counts, even where the free minimum is there too: no covariance speaks for both sides.
+    // On a bound counts, even where the free minimum is there too: no covariance speaks for both
+    // sides.
     let active: Vec<bool> =
         (0..shared.len()).map(|j| shared[j] <= whole[j].low || shared[j] >= whole[j].high).collect();
     let (influence, separate) = influence(model, &shared, own, sizes)?;
@@ -210,7 +223,8 @@ fn finish(
     Ok(Fitted { covariance: last.covariance, active, chi_square: here.cost, freedom, influence, separate, shared, own })
 }
 
-/// Reduces every block to a triangle and hands it on: the number of rows, of own unknowns, the triangle, the sum of squares.
+/// Reduces every block to a triangle and hands it on: the number of rows, of own unknowns, the
+/// triangle, the sum of squares.
 ///
 /// A block with too few rows to say anything is handed on with a zero triangle and no rows.
 fn each_block(
@@ -297,7 +311,8 @@ fn own_steps(here: &Linear, step: &[f64], sizes: &[usize]) -> Result<Vec<f64>, F
     Ok(steps)
 }
 
-/// The shift of the first shared unknown when a block is left out, in the linear model at the minimum.
+/// The shift of the first shared unknown when a block is left out, in the linear model at the
+/// minimum.
 fn influence(
     model: &impl Model,
     shared: &[f64],

@@ -1,4 +1,5 @@
-//! The COR by other losses, and the CORs that readings allow if each is only trusted to a tolerance.
+//! The COR by other losses, and the CORs that readings allow if each is only trusted to a
+//! tolerance.
 
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,8 @@ pub struct Allowed {
     pub smallest: f64,
     /// The COR that needs only that.
     pub cor: f64,
-    /// The lowest and highest COR that the tolerance allows; none if no single COR explains the readings at this precision.
+    /// The lowest and highest COR that the tolerance allows; none if no single COR explains the
+    /// readings at this precision.
     pub range: Option<(f64, f64)>,
 }
 
@@ -51,7 +53,8 @@ pub(crate) fn losses<M: OneKind + Sync>(
     Ok(found?.into_iter().flatten().collect())
 }
 
-/// The CORs under which all readings of a kind lie within the tolerance of their values; `None` where the table is too large.
+/// The CORs under which all readings of a kind lie within the tolerance of their values; `None`
+/// where the table is too large.
 pub(crate) fn allowed<M: OneKind>(
     evidence: &Evidence,
     kind: &Kind<M>,

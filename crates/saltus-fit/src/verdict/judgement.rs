@@ -13,7 +13,8 @@ words! {
     pub enum Verdict {
         /// The readings determine the COR, fit the model, and the methods agree.
         Trusted = "trusted",
-        /// A number can be given, but something speaks against it; the reason and the warnings say what.
+        /// A number can be given, but something speaks against it; the reason and the warnings say
+        /// what.
         Doubtful = "doubtful",
         /// The readings do not determine a COR.
         Refused = "refused",
@@ -26,7 +27,8 @@ words! {
 pub struct Cor {
     /// The COR, without unit.
     pub value: f64,
-    /// Its standard error by what the readings show; none where only a limit is known. What they cannot show is in the interval alone.
+    /// Its standard error by what the readings show; none where only a limit is known. What they
+    /// cannot show is in the interval alone.
     pub standard_error: Option<f64>,
     /// The lower end of the 95 % interval.
     pub low: f64,
@@ -47,7 +49,8 @@ impl Cor {
     }
 }
 
-/// A share of less than this part of the interval is not named: without it the interval would be shorter by half a per cent.
+/// A share of less than this part of the interval is not named: without it the interval would be
+/// shorter by half a per cent.
 pub(crate) const NAMED: f64 = 0.1;
 
 /// Two CORs that differ by less are the same for any purpose.
@@ -75,7 +78,8 @@ impl Judgement {
         self.findings.push(Finding::refusal(kind));
     }
 
-    /// The interval reaches out to `low` and `high`, for a reason; nothing is done where it holds both already.
+    /// The interval reaches out to `low` and `high`, for a reason; nothing is done where it holds
+    /// both already.
     pub(crate) fn reach(&mut self, low: f64, high: f64, why: Widening) {
         let Some(cor) = &mut self.cor else { return };
         if low < cor.low || high > cor.high {
@@ -84,8 +88,8 @@ impl Judgement {
         }
     }
 
-    /// Whether a rival answers so far outside the interval that reaching out to it would more than double it: then the interval was that of
-    /// another question.
+    /// Whether a rival answers so far outside the interval that reaching out to it would more than
+    /// double it: then the interval was that of another question.
     pub(crate) fn outside(&self, rival: f64) -> bool {
         self.cor.is_some_and(|cor| {
             let twice = 2.0 * cor.low - cor.value..=2.0 * cor.high - cor.value;
@@ -126,7 +130,8 @@ impl Judgement {
         }
     }
 
-    /// The place of the finding that the verdict rests on: the first of the gravest, or what a trusted COR rests on.
+    /// The place of the finding that the verdict rests on: the first of the gravest, or what a
+    /// trusted COR rests on.
     pub(crate) fn leading(&self) -> Option<usize> {
         let gravest = self.gravest();
         let leads = |f: &Finding| match gravest {

@@ -32,7 +32,8 @@ fn begun(fits: &Fits<'_>) -> Judgement {
     Judgement { findings: findings.chain(fits.evidence.repairs.iter().cloned()).collect(), ..Judgement::default() }
 }
 
-/// Judges heights and times, and the models beside one COR; `wanted` is the model that was asked for.
+/// Judges heights and times, and the models beside one COR; `wanted` is the model that was asked
+/// for.
 pub(crate) fn of_readings(
     fits: &Fits<'_>,
     comparison: &mut Comparison,
@@ -73,7 +74,8 @@ pub(crate) fn of_readings(
 /// A COR that the writer of a table worked out differs by so much only if it is of other numbers.
 const WORKED_OUT: f64 = 0.03;
 
-/// Doubts a COR that is neither that which the table itself works out from the same rows, nor its root, for who forgot it.
+/// Doubts a COR that is neither that which the table itself works out from the same rows, nor its
+/// root, for who forgot it.
 fn stated_differs(judgement: &mut Judgement, fits: &Fits<'_>) {
     let mut all: Vec<f64> = fits.table.trials().iter().flat_map(|trial| trial.stated.iter().copied()).collect();
     let Some((cor, stated)) = judgement.cor.zip(median(&mut all)) else { return };

@@ -14,7 +14,8 @@ use crate::statistics::{CLEAR, NORMAL};
 const LASTS: f64 = 0.01;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
-/// Gravity that differs from film to film by this factor is that of another scale or clock: a camera that stands still keeps it to a hundredth or two.
+/// Gravity that differs from film to film by this factor is that of another scale or clock: a
+/// camera that stands still keeps it to a hundredth or two.
 const MOVED: f64 = 1.05;
 /// Two numbers further apart than so many standard errors differ: one chance in a hundred.
 const DIFFER: f64 = 2.576;
@@ -91,7 +92,8 @@ fn differs(a: Measured, b: Measured) -> bool {
     apart > 2.0 * a.standard_error.hypot(b.standard_error) && apart > SAME
 }
 
-/// The models beside the chosen one: where one fits as well with another COR, the interval takes in both.
+/// The models beside the chosen one: where one fits as well with another COR, the interval takes in
+/// both.
 fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
     let name = |choice: Choice| of_recording(choice.0, choice.1);
     let mut models = Vec::new();
@@ -141,7 +143,8 @@ fn impact_time(
     judgement.reach(allowed.low, allowed.high, Widening::ImpactTime);
 }
 
-/// One impact does not show how long it lasts, and a ball that stayed on the floor would look as if its COR were higher.
+/// One impact does not show how long it lasts, and a ball that stayed on the floor would look as if
+/// its COR were higher.
 fn single_impact(judgement: &mut Judgement, series: &Series, pooled: &Pooled) {
     let Some(cor) = judgement.cor.filter(|_| series.tracks.iter().all(|track| track.impacts.len() == 1)) else {
         return;
@@ -168,7 +171,8 @@ fn cause_is_open(pooled: &Pooled) -> bool {
     one_of_two(pooled.choice) && pooled.rivals.iter().any(other)
 }
 
-/// The interval of recordings under one model: the error of the COR, what the samples do not show of air and lens, and a pattern in what is left.
+/// The interval of recordings under one model: the error of the COR, what the samples do not show
+/// of air and lens, and a pattern in what is left.
 struct Allowed {
     low: f64,
     high: f64,
@@ -217,7 +221,8 @@ fn allow(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
     }
 }
 
-/// Whether the COR differs from impact to impact by more than errors and a hundredth; then the interval takes that in.
+/// Whether the COR differs from impact to impact by more than errors and a hundredth; then the
+/// interval takes that in.
 fn varying(judgement: &mut Judgement, pooled: &Pooled) {
     if pooled.choice.0 == Law::Constant {
         return;
@@ -251,7 +256,8 @@ fn roughness(judgement: &mut Judgement, series: &Series) {
     }
 }
 
-/// A motion whose gravity may be anything is none. (Of a ball that falls upwards the way that heights count is to blame.)
+/// A motion whose gravity may be anything is none. (Of a ball that falls upwards the way that
+/// heights count is to blame.)
 fn determined(judgement: &mut Judgement, tracks: &[Track]) {
     if tracks.iter().any(|t| NORMAL * t.gravity.standard_error > t.gravity.value) {
         judgement.refuse(FindingKind::GravityUndetermined);

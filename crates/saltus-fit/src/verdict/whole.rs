@@ -11,11 +11,13 @@ use crate::solve::fits::Fits;
 
 /// A rebound so many standard errors high is not read as zero.
 const TOO_HIGH: f64 = 5.0;
-/// Times that do not follow from the others are a doubt if there is one for fewer than so many that do.
+/// Times that do not follow from the others are a doubt if there is one for fewer than so many that
+/// do.
 const ADRIFT: usize = 3;
 /// Two CORs further apart than so many standard errors differ: one chance in a hundred.
 const DIFFER: f64 = 2.576;
-/// The COR of the first flight, which needs gravity and the height of release, is shown where it is so many standard errors away.
+/// The COR of the first flight, which needs gravity and the height of release, is shown where it is
+/// so many standard errors away.
 const FAR: f64 = 3.0;
 
 /// Judges the fits of heights and times: the COR, and what speaks against it.
@@ -51,7 +53,8 @@ pub(crate) fn judge(judgement: &mut Judgement, fits: &Fits<'_>, agreement: Optio
     }
 }
 
-/// The COR by the sharpest of the methods that agree; none where no method applies, and none within where one that applies has no range.
+/// The COR by the sharpest of the methods that agree; none where no method applies, and none within
+/// where one that applies has no range.
 fn methods(judgement: &mut Judgement, fits: &Fits<'_>, alone: bool) -> Option<Option<Cor>> {
     let table = (fits.table.trials(), fits.evidence);
     let joint = fits.joint.as_ref();
@@ -121,7 +124,8 @@ fn spanning(fits: &Fits<'_>) -> Option<Cor> {
     Some(Cor::within(middle.clamp(low, high), low, high))
 }
 
-/// Whether fewer than half of the times belong to the bounces that were found: among so many, some agree by chance.
+/// Whether fewer than half of the times belong to the bounces that were found: among so many, some
+/// agree by chance.
 fn mostly_left_out(judgement: &mut Judgement, fits: &Fits<'_>) {
     if fits.times.is_none() {
         return;

@@ -1,4 +1,5 @@
-//! Films of balls whose COR is known: flights and contacts integrated in small steps, with nothing of the crate's own formulas.
+//! Films of balls whose COR is known: flights and contacts integrated in small steps, with nothing
+//! of the crate's own formulas.
 
 use std::f64::consts::PI;
 
@@ -13,7 +14,8 @@ pub(crate) enum Contact {
     Instant,
     /// A linear spring with a damper, on which a ball without weight stays so long.
     Spring(f64),
-    /// Hertz's force, less by e² on the way up: a ball without weight that comes at 4 m/s would stay so long, were e one.
+    /// Hertz's force, less by e² on the way up: a ball without weight that comes at 4 m/s would
+    /// stay so long, were e one.
     Solid(f64),
 }
 
@@ -37,7 +39,8 @@ impl Ball {
                 -(turns * turns + damps * damps) * h - 2.0 * damps * v
             }
             Contact::Solid(lasts) => {
-                // Of a ball that comes at v the depth is v T/2.94, and then v²/2 = (2/5) K depth^(5/2).
+                // Of a ball that comes at v the depth is v T/2.94, and then v²/2 = (2/5) K
+                // depth^(5/2).
                 let stiffness = 20.0 / (4.0 * lasts / 2.94).powf(2.5);
                 stiffness * (-h).powf(1.5) * if v < 0.0 { 1.0 } else { e * e }
             }
@@ -49,7 +52,8 @@ impl Ball {
         self.watched(rate, seconds).0
     }
 
-    /// The same, and the COR of every impact: the ratio of the speeds at which the ball leaves and comes.
+    /// The same, and the COR of every impact: the ratio of the speeds at which the ball leaves and
+    /// comes.
     pub(crate) fn watched(&self, rate: f64, seconds: f64) -> (Vec<(f64, f64)>, Vec<f64>) {
         let dt = 2e-6;
         let (mut t, mut h, mut v) = (self.release, self.drop, 0.0f64);

@@ -1,4 +1,5 @@
-//! The motion of a dropped ball with quadratic drag, from textbook formulas, with nothing of the crate's own.
+//! The motion of a dropped ball with quadratic drag, from textbook formulas, with nothing of the
+//! crate's own.
 
 /// Standard gravity of the bench, m/s².
 pub(crate) const G: f64 = 9.81;
@@ -14,7 +15,8 @@ pub(crate) struct Ball {
     pub(crate) drag: f64,
 }
 
-/// A flight: when it starts, at which speed upwards (0 and a height for the fall), when and how high its apex is, when it ends.
+/// A flight: when it starts, at which speed upwards (0 and a height for the fall), when and how
+/// high its apex is, when it ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight {
     pub(crate) start: f64,

@@ -62,7 +62,8 @@ impl Kind {
 pub(crate) enum Fault {
     /// Nothing.
     Sound,
-    /// Nothing, and all is stated: the errors of reading, that the zero is right, that there is no air.
+    /// Nothing, and all is stated: the errors of reading, that the zero is right, that there is no
+    /// air.
     Stated,
     /// Readings scatter three to six times more.
     Noisy,
@@ -163,7 +164,8 @@ impl Ruler {
 fn heights(ball: Ball, fault: Fault, noise: &mut Noise) -> Planted {
     let ruler = Ruler::of(fault, noise);
     let trials = if noise.uniform() < 0.4 { 3 } else { 1 };
-    // Of two heights nothing tells that one between them is missing: a table that can show it has three.
+    // Of two heights nothing tells that one between them is missing: a table that can show it has
+    // three.
     let bounces = if fault == Fault::Lost { 3 } else { 2 } + (5.0 * noise.uniform()) as usize;
     let flights = ball.flights(0.0, bounces);
     let mut text = "trial,bounce,height_cm\n".to_owned();

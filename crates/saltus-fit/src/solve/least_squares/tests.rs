@@ -143,7 +143,8 @@ fn solver_and_factorisation_agree_on_many_problems() {
 
 #[test]
 fn nearly_dependent_unknowns_keep_to_their_bounds() {
-    // Two columns that differ by 1e-5: the free minimum lies far outside, and the solver alone leaves open which bounds hold.
+    // Two columns that differ by 1e-5: the free minimum lies far outside, and the solver alone
+    // leaves open which bounds hold.
     for tilt in [1e-2, 1e-4, 1e-6] {
         for height in [-1.0, -0.1, 0.1, 1.0] {
             let x = DMatrix::from_fn(6, 2, |i, j| 1.0 + if j == 0 { 0.0 } else { tilt * (i * i) as f64 });
@@ -163,8 +164,9 @@ fn nearly_dependent_unknowns_keep_to_their_bounds() {
 
 #[test]
 fn a_step_of_almost_nothing_between_distant_bounds() {
-    // The right-hand side is orthogonal to the columns but for 1e-8, and the bounds are hundreds away: here the solver alone runs out of
-    // iterations far from the minimum, with vanishing residuals of feasibility.
+    // The right-hand side is orthogonal to the columns but for 1e-8, and the bounds are hundreds
+    // away: here the solver alone runs out of iterations far from the minimum, with vanishing
+    // residuals of feasibility.
     let x = DMatrix::from_row_slice(3, 2, &[1.0, 0.999, 0.0, 0.0447, 0.0, 0.0]);
     let y = DVector::from_vec(vec![-2.581e-8, 4.856e-8, 1.0]);
     let limits = [bounds(-690.26, 1e5), bounds(-442.8, 406.5)];

@@ -1,11 +1,14 @@
-//! Where a series of heights falls into flights: the contacts, which samples belong to which flight, which to none.
+//! Where a series of heights falls into flights: the contacts, which samples belong to which
+//! flight, which to none.
 //!
-//! A flight has one maximum and no minimum, so every minimum that rises and falls by more than noise on both sides is a contact.
+//! A flight has one maximum and no minimum, so every minimum that rises and falls by more than
+//! noise on both sides is a contact.
 
 use crate::orientation::noise_by_thirds;
 use crate::statistics::median;
 
-/// A sample that is smaller than this part of the whole range, or this many times the noise, makes no extreme.
+/// A sample that is smaller than this part of the whole range, or this many times the noise, makes
+/// no extreme.
 const PROMINENT: f64 = 0.01;
 const ABOVE_NOISE: f64 = 8.0;
 /// A minimum further above the floor than this part of the range is no contact with it.
@@ -44,7 +47,8 @@ fn smoothed(heights: &[f64]) -> Vec<f64> {
     smooth
 }
 
-/// Minima (true) and maxima (false), alternating, each followed by a rise or a fall of at least `least`.
+/// Minima (true) and maxima (false), alternating, each followed by a rise or a fall of at least
+/// `least`.
 fn extremes(heights: &[f64], least: f64) -> Vec<(usize, bool)> {
     let mut found = Vec::new();
     let (mut low, mut high) = (0, 0);
@@ -88,12 +92,14 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
         return Err(if single { NoFlights::TooFew } else { NoFlights::NoBounce });
     };
     let sampling = |i: usize| {
-        // Between two frames a ball may be this far from the floor at the lower of them; the median of three has taken the lowest of both sides away.
+        // Between two frames a ball may be this far from the floor at the lower of them; the median
+        // of three has taken the lowest of both sides away.
         let near = [i.checked_sub(2), Some(i + 2)].into_iter().flatten().filter_map(|j| smooth.get(j));
         near.map(|h| (h - smooth[i]).abs()).fold(0.0, f64::max)
     };
     let high = |i: usize| smooth[i] - floor > (FLOOR * (top - bottom)).max(sampling(i));
-    // A hand's first movements are no bounces; after the first minimum up in the air something else than the floor was met.
+    // A hand's first movements are no bounces; after the first minimum up in the air something else
+    // than the floor was met.
     let leading = minima.iter().take_while(|&&i| high(i)).count();
     minima.drain(..leading);
     if let Some(n) = minima.iter().position(|&i| high(i)) {
@@ -115,7 +121,8 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
     }
     let ended = if contacts < minima.len() { minima[contacts] } else { times.len() };
     let mut end = end(&smooth, starts[contacts], ended, floor, least);
-    // The last flight may be cut short; if hardly any of it is seen, the series ends at its contact.
+    // The last flight may be cut short; if hardly any of it is seen, the series ends at its
+    // contact.
     if end < starts[contacts] + FEWEST {
         end = starts.pop().unwrap_or(end);
     }
@@ -143,13 +150,15 @@ fn begin(times: &[f64], heights: &[f64], contact: usize, noise: f64) -> usize {
     let fall = heights[top] - heights[contact];
     let below = |part: f64| heights[top] - (part * fall).max(4.0 * noise);
     let falling = (0..contact).rev().find(|&i| heights[i] >= below(0.05)).unwrap_or(top);
-    // From rest the first twentieth of a fall takes 0.29 of the time of the rest; longer means held.
+    // From rest the first twentieth of a fall takes 0.29 of the time of the rest; longer means
+    // held.
     let near = (0..=top).find(|&i| heights[i] >= below(0.05)).unwrap_or(top);
     let held = times[falling] - times[near] > 0.4 * (times[contact] - times[falling]);
     if held { falling + 1 } else { top }
 }
 
-/// One past the last sample of the last flight: where it nears the floor again, is caught, or the series ends.
+/// One past the last sample of the last flight: where it nears the floor again, is caught, or the
+/// series ends.
 fn end(heights: &[f64], contact: usize, ended: usize, floor: f64, least: f64) -> usize {
     let mut top = contact;
     for i in contact..ended {

@@ -1,4 +1,5 @@
-//! The times of frames that were written down rounded: 0.03, 0.07, 0.10, 0.13 s of a film with 30 frames a second.
+//! The times of frames that were written down rounded: 0.03, 0.07, 0.10, 0.13 s of a film with 30
+//! frames a second.
 
 use crate::statistics::{Line, median};
 
@@ -6,7 +7,8 @@ use crate::statistics::{Line, median};
 const STEPS: [f64; 4] = [0.1, 0.01, 0.001, 1e-4];
 /// Rounding that moves no time by more than this part of a frame does not matter.
 const SLIGHT: f64 = 0.005;
-/// Rounded times are no further than half a step from an even row, and from the line fitted to them a little further.
+/// Rounded times are no further than half a step from an even row, and from the line fitted to them
+/// a little further.
 const ROUNDED: f64 = 0.75;
 /// So few times are in a row by chance.
 const FEW: usize = 8;
@@ -20,7 +22,8 @@ pub(super) struct Frames {
     pub(super) rounded: f64,
 }
 
-/// The frames whose rounded times these are, ascending; `None` if they are not those of an even row, with or without gaps, or were hardly rounded.
+/// The frames whose rounded times these are, ascending; `None` if they are not those of an even
+/// row, with or without gaps, or were hardly rounded.
 pub(super) fn of(times: &[f64]) -> Option<Frames> {
     // Of times with so many significant digits the last are the coarsest.
     let last = &times[3 * times.len() / 4..];

@@ -1,8 +1,9 @@
 //! Series of heights in time: a tracked ball, frame by frame.
 //!
-//! The series is cut into flights, parabolas give a first sketch, and the whole motion is fitted through every sample, with drag and
-//! without, with one COR, one that depends on speed, and one for every impact; and again with impacts that last. What the samples prefer decides.
-//! Neither gravity nor the scale nor the unit of time enters the COR, so they are fitted too, and reported.
+//! The series is cut into flights, parabolas give a first sketch, and the whole motion is fitted
+//! through every sample, with drag and without, with one COR, one that depends on speed, and one
+//! for every impact; and again with impacts that last. What the samples prefer decides. Neither
+//! gravity nor the scale nor the unit of time enters the COR, so they are fitted too, and reported.
 
 mod flights;
 mod frames;
@@ -31,7 +32,8 @@ use super::one::identified;
 pub(crate) struct Series {
     pub(crate) tracks: Vec<Track>,
     pub(crate) pooled: Option<Pooled>,
-    /// The same with contacts that take no time where these do, and the other way round; and by how much its BIC is worse.
+    /// The same with contacts that take no time where these do, and the other way round; and by how
+    /// much its BIC is worse.
     pub(crate) otherwise: Option<(Pooled, Vec<Track>, f64)>,
     /// Trials whose series show no bounce that can be fitted, and why.
     pub(crate) refused: Vec<Finding>,
@@ -41,7 +43,8 @@ pub(crate) struct Series {
     pub(crate) falls_upwards: Option<String>,
 }
 
-/// Fits every series of the table, with wild samples left out if `repair`, drag held at `drag` (1/m) where that is stated; `None` if it has none.
+/// Fits every series of the table, with wild samples left out if `repair`, drag held at `drag`
+/// (1/m) where that is stated; `None` if it has none.
 pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Option<Series>, FitError> {
     let mut series = Series { falls_upwards: table.metadata.falls_upwards.map(str::to_owned), ..Series::default() };
     let mut seen = false;

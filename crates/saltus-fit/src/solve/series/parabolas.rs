@@ -1,7 +1,8 @@
-//! Parabolas of one curvature through the flights, each by itself: the convex fit from which the whole motion starts.
+//! Parabolas of one curvature through the flights, each by itself: the convex fit from which the
+//! whole motion starts.
 //!
-//! Rows aₖ + bₖ (t − cₖ) − ½ G (t − cₖ)², with aₖ, bₖ the flight's own and G shared. Because G is shared, neighbours meet where a
-//! straight line is zero, and that is the contact.
+//! Rows aₖ + bₖ (t − cₖ) − ½ G (t − cₖ)², with aₖ, bₖ the flight's own and G shared. Because G is
+//! shared, neighbours meet where a straight line is zero, and that is the contact.
 
 use nalgebra::DMatrix;
 

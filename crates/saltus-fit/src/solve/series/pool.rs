@@ -1,4 +1,5 @@
-//! One COR from several recordings: each counts as a whole, since one drop differs from the next by more than its own fit's error.
+//! One COR from several recordings: each counts as a whole, since one drop differs from the next by
+//! more than its own fit's error.
 
 use super::recording::{Track, Variant};
 use super::track::{CHOICES, Choice};
@@ -14,7 +15,8 @@ pub(crate) struct Pooled {
     pub(crate) cor: Measured,
     /// The factor from standard error to 95 % interval.
     pub(crate) quantile: f64,
-    /// Every model that could be fitted to all recordings: the COR it gives, and by how much its BIC is worse.
+    /// Every model that could be fitted to all recordings: the COR it gives, and by how much its
+    /// BIC is worse.
     pub(crate) rivals: Vec<(Choice, Measured, f64)>,
     /// The COR of each impact over all recordings.
     pub(crate) impacts: Vec<Measured>,
@@ -46,7 +48,8 @@ pub(crate) fn pool(tracks: &[Track], choice: Choice) -> Option<Pooled> {
     Some(Pooled { choice, cor, quantile, rivals, impacts: impacts.collect() })
 }
 
-/// The model as a recording has it: one with few impacts has one law only, and drag that was not found is none.
+/// The model as a recording has it: one with few impacts has one law only, and drag that was not
+/// found is none.
 fn variant(track: &Track, (law, drag): Choice) -> Option<&Variant> {
     let of = |law: Law, drag: bool| track.models.iter().find(|m| m.law == of_recording(law, false) && m.drag == drag);
     of(law, drag).or_else(|| of(Law::Constant, drag)).or_else(|| of(law, false)).or_else(|| of(Law::Constant, false))

@@ -7,7 +7,8 @@ use crate::quantity::{CorModel, Measured};
 
 /// A recording of one drop, as a motion fitted through its samples.
 ///
-/// Lengths are in the unit of the table's heights (metres, unless the scale is wrong), times in seconds.
+/// Lengths are in the unit of the table's heights (metres, unless the scale is wrong), times in
+/// seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Track {
@@ -15,19 +16,24 @@ pub struct Track {
     pub trial: usize,
     /// How many samples the motion was fitted to.
     pub samples: usize,
-    /// How many were left out before the fall and after the last flight, and how many as outliers between.
+    /// How many were left out before the fall and after the last flight, and how many as outliers
+    /// between.
     pub left_out: [usize; 3],
     /// The impacts, each with its own COR.
     pub impacts: Vec<Impact>,
     /// The gravity of the recording: that of the place, if scale and clock are right.
     pub gravity: Measured,
-    /// The drag coefficient k of v' = −g ∓ k v², per unit of length; none where the motion has no drag.
+    /// The drag coefficient k of v' = −g ∓ k v², per unit of length; none where the motion has no
+    /// drag.
     pub drag: Option<Measured>,
-    /// The speed at which the floor moves on the table's scale, as where the camera turns; none where it stands still.
+    /// The speed at which the floor moves on the table's scale, as where the camera turns; none
+    /// where it stands still.
     pub drift: Option<Measured>,
-    /// The time that the ball stays on the floor at the speed of about the first impact, in seconds; none where that is too short to be seen.
+    /// The time that the ball stays on the floor at the speed of about the first impact, in
+    /// seconds; none where that is too short to be seen.
     pub contact: Option<Measured>,
-    /// The height of the ball in contact with the floor, on the table's scale; where that drifts, at the first impact.
+    /// The height of the ball in contact with the floor, on the table's scale; where that drifts,
+    /// at the first impact.
     pub floor: Measured,
     /// The root mean square of what is left between motion and samples.
     pub rms: f64,
@@ -48,7 +54,8 @@ pub struct Track {
     pub(crate) course: Course,
 }
 
-/// By how much the COR is off by what the samples do not show: by all of it, by the air, by the lens; each a mean and a standard deviation.
+/// By how much the COR is off by what the samples do not show: by all of it, by the air, by the
+/// lens; each a mean and a standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unseen {
     pub(crate) shift: Measured,
@@ -65,7 +72,8 @@ impl Track {
         At { trial: Some(self.trial), name: format!("trial {}", self.trial + 1), ..At::default() }
     }
 
-    /// Whether lengths are in metres and times in seconds, going by the recording's gravity where `gravity` is expected, m/s².
+    /// Whether lengths are in metres and times in seconds, going by the recording's gravity where
+    /// `gravity` is expected, m/s².
     #[must_use]
     pub fn in_metres(&self, gravity: f64) -> bool {
         in_metres(self.gravity.value, gravity)

@@ -1,4 +1,5 @@
-//! The samples of one recording in order: each time once, frames at their own times, heights upwards.
+//! The samples of one recording in order: each time once, frames at their own times, heights
+//! upwards.
 
 use super::frames;
 use crate::finding::FindingKind;
@@ -17,8 +18,8 @@ pub(crate) struct Samples {
     pub(crate) turned: bool,
 }
 
-/// The series of a trial, put in order and the right way up unless that was stated, with the times of its frames if `repair`, and what had to be done
-/// for it; `None` if it has none.
+/// The series of a trial, put in order and the right way up unless that was stated, with the times
+/// of its frames if `repair`, and what had to be done for it; `None` if it has none.
 pub(super) fn samples(trial: &Trial, oriented: bool, repair: bool) -> Option<(Samples, Vec<FindingKind>)> {
     let mut rows: Vec<(f64, f64, u64)> = trial
         .readings()

@@ -1,14 +1,17 @@
 //! Wild samples of a series: those that no flight through their neighbours passes by.
 //!
-//! All flights bend alike, so two samples of one give its whole parabola. A sample belongs to the motion if a parabola through it and another
-//! one nearby passes most samples around them, on either side of it or on both. What passes so few is wild, wherever it lies, and also where
-//! neighbours are wild too. What was tracked for a while in another place passes this, but cannot be reached from the ball and back.
+//! All flights bend alike, so two samples of one give its whole parabola. A sample belongs to the
+//! motion if a parabola through it and another one nearby passes most samples around them, on
+//! either side of it or on both. What passes so few is wild, wherever it lies, and also where
+//! neighbours are wild too. What was tracked for a while in another place passes this, but cannot
+//! be reached from the ball and back.
 
 use crate::statistics::median;
 
 /// Fewer samples than this do not show what is wild.
 const DENSE: usize = 60;
-/// In how many neighbouring samples a parabola is looked for, and how many of them it has to pass: flights may be short.
+/// In how many neighbouring samples a parabola is looked for, and how many of them it has to pass:
+/// flights may be short.
 const WINDOWS: [(usize, usize); 3] = [(13, 8), (9, 6), (6, 5)];
 /// Samples that together tell how flights bend and scatter.
 const BENT: usize = 11;
@@ -29,7 +32,8 @@ const STILL: f64 = 0.02;
 /// So many samples at an end tell where that is.
 const ENDS: usize = 9;
 
-/// Which samples are wild; heights upwards, times ascending. None is where the ball is held before it falls, or lies when all is over.
+/// Which samples are wild; heights upwards, times ascending. None is where the ball is held before
+/// it falls, or lies when all is over.
 pub(super) fn wild(times: &[f64], heights: &[f64]) -> Vec<bool> {
     let mut all = vec![false; times.len()];
     let moving = moving(heights);
@@ -77,7 +81,8 @@ fn of_moving(times: &[f64], heights: &[f64]) -> Vec<bool> {
     if part > MOST { none } else { wild }
 }
 
-/// Whether a parabola of this curvature through sample `i` passes most samples of a window around it.
+/// Whether a parabola of this curvature through sample `i` passes most samples of a window around
+/// it.
 fn belongs(times: &[f64], heights: &[f64], i: usize, curvature: f64, near: f64) -> bool {
     WINDOWS.iter().any(|&(wide, most)| {
         [0, wide / 2, wide - 1].into_iter().any(|before| {
@@ -95,7 +100,8 @@ fn belongs(times: &[f64], heights: &[f64], i: usize, curvature: f64, near: f64) 
     })
 }
 
-/// Marks the samples of something else that was tracked for a while: all but the longest chain of runs from each of which the next can be reached.
+/// Marks the samples of something else that was tracked for a while: all but the longest chain of
+/// runs from each of which the next can be reached.
 fn elsewhere(times: &[f64], heights: &[f64], near: f64, wild: &mut [bool]) {
     let kept: Vec<usize> = (0..times.len()).filter(|&i| !wild[i]).collect();
     let mut speeds: Vec<f64> =
@@ -108,7 +114,8 @@ fn elsewhere(times: &[f64], heights: &[f64], near: f64, wild: &mut [bool]) {
     if runs.len() > MOST_RUNS {
         return;
     }
-    // For each run how many samples the best chain that ends with it has, and the run before it there.
+    // For each run how many samples the best chain that ends with it has, and the run before it
+    // there.
     let mut chains: Vec<(usize, Option<usize>)> = Vec::with_capacity(runs.len());
     for (n, run) in runs.iter().enumerate() {
         let before = (0..n).filter(|&m| reached(&runs[m][runs[m].len() - 1], &run[0])).max_by_key(|&m| chains[m].0);
@@ -125,8 +132,9 @@ fn elsewhere(times: &[f64], heights: &[f64], near: f64, wild: &mut [bool]) {
     }
 }
 
-/// The curvature of flights, and how far samples scatter about them: by the parabola through three samples of each window that leaves the least
-/// median, and the median over windows (P. Rousseeuw, J. Am. Stat. Assoc. 79 (1984) 871).
+/// The curvature of flights, and how far samples scatter about them: by the parabola through three
+/// samples of each window that leaves the least median, and the median over windows (P. Rousseeuw,
+/// J. Am. Stat. Assoc. 79 (1984) 871).
 fn bend(times: &[f64], heights: &[f64]) -> (f64, f64) {
     let (mut curvatures, mut scatters) = (Vec::new(), Vec::new());
     let apart = (times.len() / WINDOWS_BENT).max(3);

@@ -1,4 +1,5 @@
-//! The derivatives are those of the residuals, the elimination is exact, and two ways to the same COR meet.
+//! The derivatives are those of the residuals, the elimination is exact, and two ways to the same
+//! COR meet.
 
 use super::*;
 use crate::evidence::Moment;
@@ -78,7 +79,8 @@ fn derivatives_are_those_of_the_residuals() {
                     (CorLaw::Knots(vec![0.7, 1.3, 2.5, 4.2]), vec![0.8, 0.95, 0.9, 0.85], false),
                 ] {
                     let (trials, zero) = (vec![trial.clone()], offset.then_some(Bounds { low: 0.0, high: 0.2 }));
-                    // What is unknown beside the law does not depend on it: half of the cases are of contacts that last, and of rebounds read higher.
+                    // What is unknown beside the law does not depend on it: half of the cases are
+                    // of contacts that last, and of rebounds read higher.
                     let (lasting, rebounds) = (drag.then_some(0.04), drag);
                     let of = Flight { trials, gravity: 9.8, law, offset: zero, lag, drag, ..Flight::default() };
                     let model = Flight { lasting, rebounds, ..of };
@@ -100,7 +102,8 @@ fn derivatives_are_those_of_the_residuals() {
 
 #[test]
 fn elimination_agrees_with_the_whole_problem() {
-    // Three trials of one line each with a common slope: against the normal equations of all unknowns at once.
+    // Three trials of one line each with a common slope: against the normal equations of all
+    // unknowns at once.
     let trials = vec![
         vec![(0, 1.0, 0.01), (1, 0.62, 0.01), (2, 0.42, 0.02)],
         vec![(0, 0.8, 0.01), (1, 0.53, 0.01)],
@@ -133,8 +136,8 @@ fn elimination_agrees_with_the_whole_problem() {
     }
 }
 
-/// The other way to the COR: logarithms of intervals, whitened by the Cholesky factor of their covariance
-/// diag(1/Δ) tridiag(−1, 2, −1) diag(1/Δ) σ².
+/// The other way to the COR: logarithms of intervals, whitened by the Cholesky factor of their
+/// covariance diag(1/Δ) tridiag(−1, 2, −1) diag(1/Δ) σ².
 fn whitened_intervals(times: &[f64], sigma: f64) -> (f64, f64, f64) {
     let d: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
     let m = d.len();

@@ -1,11 +1,13 @@
-//! What the samples cannot show: the little drag of a heavy ball, the bend of a lens, and what a misfit may hide.
+//! What the samples cannot show: the little drag of a heavy ball, the bend of a lens, and what a
+//! misfit may hide.
 
 use super::{Candidates, Found};
 use crate::model::{BEND, Dual, GRAVITY, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
 use crate::quantity::Measured;
 use crate::solve::series::recording::Unseen;
 
-/// The likelihood over drag and bend is summed at so many values of each: the integrand is a parabola's exponential over a few of its widths.
+/// The likelihood over drag and bend is summed at so many values of each: the integrand is a
+/// parabola's exponential over a few of its widths.
 const POINTS: u32 = 32;
 /// The sum goes out to so many standard deviations.
 const BENDS: f64 = 3.0;
@@ -15,7 +17,8 @@ fn middle(n: u32) -> f64 {
     (f64::from(n) + 0.5) / f64::from(POINTS)
 }
 
-/// A height as it is without a bend that moves the ends of the path by `bend` of half of it; the path goes from 0 to 1.
+/// A height as it is without a bend that moves the ends of the path by `bend` of half of it; the
+/// path goes from 0 to 1.
 fn straight(height: f64, bend: f64) -> f64 {
     height - 0.5 * bend * (2.0 * height - 1.0).powi(3)
 }
@@ -36,22 +39,26 @@ impl Candidates {
         Some(Measured { value: drag.value * per_metre, standard_error: drag.standard_error * per_metre })
     }
 
-    /// Drag in scaled units where gravity is one: k v²/g has no unit, so neither scale nor pixels matter.
+    /// Drag in scaled units where gravity is one: k v²/g has no unit, so neither scale nor pixels
+    /// matter.
     fn scaled(&self, per_metre: f64) -> f64 {
         per_metre * STANDARD_GRAVITY * self.scale.unit.powi(2)
     }
 
-    /// By how much the air and the lens may shift the COR, as far as the samples allow it; what is stated or fitted is left out.
+    /// By how much the air and the lens may shift the COR, as far as the samples allow it; what is
+    /// stated or fitted is left out.
     ///
-    /// Any drag from none to [`ORDINARY_DRAG`] is as probable before, and a bend of [`BEND`] at the ends of the path as one standard deviation. The
-    /// samples weigh them together: the loss is a parabola in both, and the COR a plane, through the fits with each held in turn. `None` where
+    /// Any drag from none to [`ORDINARY_DRAG`] is as probable before, and a bend of [`BEND`] at the
+    /// ends of the path as one standard deviation. The samples weigh them together: the loss is a
+    /// parabola in both, and the COR a plane, through the fits with each held in turn. `None` where
     /// those are not determined.
     pub(super) fn unseen(&self, chosen: &Found) -> Option<Unseen> {
         let free = chosen.choice.1 || self.stated;
         let most = if free { 0.0 } else { self.scaled(ORDINARY_DRAG) / chosen.fitted.shared[GRAVITY] };
         let loss = |of: &Self, found: &Found| of.loss(found, chosen.sigma) / self.dependence.powi(2);
         let none = loss(self, chosen);
-        // The loss and the COR with a part of the most drag, and so many bends, beside what they are without.
+        // The loss and the COR with a part of the most drag, and so many bends, beside what they
+        // are without.
         let with = |part: f64, bends: f64| {
             let held = if free { self.held } else { part * most };
             let samples = self.samples.iter().map(|s| Sample { height: straight(s.height, bends * BEND), ..*s });
@@ -90,10 +97,13 @@ impl Candidates {
         (unseen.shift.value.is_finite() && unseen.shift.standard_error.is_finite()).then_some(unseen)
     }
 
-    /// What a pattern as large as what the motion leaves beyond the noise of the samples may do to the COR.
+    /// What a pattern as large as what the motion leaves beyond the noise of the samples may do to
+    /// the COR.
     ///
-    /// A bend of size a over a flight of height H changes the speed at its end by the part a/H (a parabola of height H ± a), so the ratio of two
-    /// speeds by both parts together, e √((a/H₀)² + (a/H₁)²). It is taken at the worst of the impacts' flights, divided by the root of their number.
+    /// A bend of size a over a flight of height H changes the speed at its end by the part a/H (a
+    /// parabola of height H ± a), so the ratio of two speeds by both parts together, e √((a/H₀)² +
+    /// (a/H₁)²). It is taken at the worst of the impacts' flights, divided by the root of their
+    /// number.
     pub(super) fn misfit(&self, chosen: &Found, left: &[f64]) -> f64 {
         let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
         let bend = (rms * rms - self.noise * self.noise).max(0.0).sqrt();

@@ -17,7 +17,8 @@ use crate::statistics::median;
 
 /// A sample this many standard deviations away is no sample of the ball.
 const WILD: f64 = 6.0;
-/// Huber's weights are found so often at most; half as often for very many samples, where only a model that does not fit has need of more.
+/// Huber's weights are found so often at most; half as often for very many samples, where only a
+/// model that does not fit has need of more.
 const ROUNDS: usize = 12;
 /// Weights are settled where an unknown moves by less than this part of its error.
 const STAYS: f64 = 1e-3;
@@ -49,7 +50,8 @@ pub(super) const CHOICES: [Choice; 6] = [
     (Law::Each, true),
 ];
 
-/// How the recording was scaled: height = floor + range · y, time = first contact + unit · t, so that G is about one.
+/// How the recording was scaled: height = floor + range · y, time = first contact + unit · t, so
+/// that G is about one.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
     origin: (f64, f64),
@@ -82,7 +84,8 @@ impl Recording {
         let mut rough = Candidates::cut(trial, series, repair)?;
         rough.hold(drag);
         let instant = rough.clone().fitted(repair)?;
-        // After a single impact the height of the floor does the same; where one COR has no use for such a time, it would only follow noise.
+        // After a single impact the height of the floor does the same; where one COR has no use for
+        // such a time, it would only follow noise.
         let lasting = (instant.impacts() > 1).then(|| Candidates { contact: true, ..rough }.fitted(repair).ok());
         let usable = |all: &Candidates| {
             all.found.iter().any(|found| found.choice == (Law::Constant, false))
@@ -100,7 +103,8 @@ impl Recording {
         self.lasting.as_ref().map(|lasting| lasting.1)
     }
 
-    /// All models with contacts that take time if `lasting` (and that can be told), or such that take none.
+    /// All models with contacts that take time if `lasting` (and that can be told), or such that
+    /// take none.
     pub(crate) fn under(&self, lasting: bool) -> &Candidates {
         self.lasting.as_ref().filter(|_| lasting).map_or(&self.instant, |lasting| &lasting.0)
     }
@@ -124,7 +128,8 @@ pub(crate) struct Candidates {
     drift: bool,
     /// Contacts take time.
     contact: bool,
-    /// The drag of models that leave it no unknown, in scaled units; and whether it was stated, so that no model leaves it unknown.
+    /// The drag of models that leave it no unknown, in scaled units; and whether it was stated, so
+    /// that no model leaves it unknown.
     held: f64,
     stated: bool,
     /// By how much the errors grow because neighbouring residuals are alike.
@@ -170,7 +175,8 @@ impl Candidates {
             })
             .collect();
         let Flights { noise, left_out, .. } = flights;
-        // What no flight passes before the fall or after the last flight is not wild: the last bounces have too few samples each.
+        // What no flight passes before the fall or after the last flight is not wild: the last
+        // bounces have too few samples each.
         let (begin, end) = (kept_times[from], kept_times[to - 1]);
         let misfits = || series.times.iter().zip(&wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
         let (early, late) = (misfits().filter(|t| *t < begin).count(), misfits().filter(|t| *t > end).count());
@@ -237,7 +243,8 @@ impl Candidates {
         }
     }
 
-    /// Fits all models, each COR for itself first: the others start from there, or from the sketch where so many are not determined.
+    /// Fits all models, each COR for itself first: the others start from there, or from the sketch
+    /// where so many are not determined.
     fn fit_all(&mut self) -> Result<(), Failure> {
         self.found.clear();
         for drag in [false, true].into_iter().filter(|drag| !(*drag && self.stated)) {
@@ -297,7 +304,8 @@ impl Candidates {
         cors
     }
 
-    /// The best fit of a model from several starts; `None` where it is not determined, or has a drag or a time of contact that is none.
+    /// The best fit of a model from several starts; `None` where it is not determined, or has a
+    /// drag or a time of contact that is none.
     fn best(&self, choice: Choice, starts: &[Vec<f64>]) -> Result<Option<Found>, Failure> {
         let place = self.model(&self.samples, choice).contact_place();
         let some = |found: &Found| {
@@ -308,7 +316,8 @@ impl Candidates {
         Ok(self.least_of(choice, starts)?.filter(some))
     }
 
-    /// The best fit of a model from several starts, robust against wild samples; `None` where it is not determined.
+    /// The best fit of a model from several starts, robust against wild samples; `None` where it is
+    /// not determined.
     fn least_of(&self, choice: Choice, starts: &[Vec<f64>]) -> Result<Option<Found>, Failure> {
         let every = self.samples.len().div_ceil(COARSE);
         let coarse: Vec<Sample> = self.samples.iter().step_by(every).copied().collect();
@@ -360,7 +369,8 @@ impl Candidates {
         rows.column(values.len()).iter().zip(trust).map(|(r, trust)| r * trust).collect()
     }
 
-    /// What each sample weighs beside one in flight, since where a ball is within a contact is hardly known.
+    /// What each sample weighs beside one in flight, since where a ball is within a contact is
+    /// hardly known.
     fn trust(&self, values: &[f64], choice: Choice) -> Vec<f64> {
         let noise = self.noise.max(LEAST_NOISE);
         let depths = self.model(&self.samples, choice).depths(values);
@@ -373,7 +383,8 @@ impl Candidates {
         (1.4826 * median(&mut sizes).unwrap_or(0.0)).max(1e-9)
     }
 
-    /// Takes out samples that are not of the ball in flight: at both ends where it was held or caught, and, if `repair`, wild ones between.
+    /// Takes out samples that are not of the ball in flight: at both ends where it was held or
+    /// caught, and, if `repair`, wild ones between.
     fn trim(&mut self, repair: bool) -> bool {
         let Some(best) = self.found.iter().min_by(|a, b| a.sigma.total_cmp(&b.sigma)) else { return false };
         let left = self.left(&best.fitted.shared, best.choice);
@@ -398,7 +409,8 @@ impl Candidates {
         self.samples.len() < was
     }
 
-    /// How many samples before the top of the fall follow a ball that is held there better than one that was thrown up.
+    /// How many samples before the top of the fall follow a ball that is held there better than one
+    /// that was thrown up.
     fn held(&self, best: &Found, left: &[f64]) -> usize {
         let model = self.model(&self.samples, best.choice);
         let (air, apexes) = (model.air(&best.fitted.shared), model.apexes(&best.fitted.shared));

@@ -6,9 +6,11 @@ use crate::quantity::Measured;
 use crate::solve::robust::HUBER;
 use crate::statistics::CLEAR;
 
-/// More than so many times the noise from sample to sample is left for something else to explain, such as a drift of the camera.
+/// More than so many times the noise from sample to sample is left for something else to explain,
+/// such as a drift of the camera.
 const UNEXPLAINED: f64 = 1.2;
-/// A floor that moves by less than this part of the range, from the first sample to the last, stands still.
+/// A floor that moves by less than this part of the range, from the first sample to the last,
+/// stands still.
 const MOVED: f64 = 0.01;
 
 impl Candidates {
@@ -21,7 +23,8 @@ impl Candidates {
         self.least() > UNEXPLAINED * self.noise
     }
 
-    /// By how much the BIC of `other` is worse, both on the samples that are left to this one; a drift has to be clearly better.
+    /// By how much the BIC of `other` is worse, both on the samples that are left to this one; a
+    /// drift has to be clearly better.
     pub(super) fn gain(&self, other: &Self) -> f64 {
         let mut other = other.clone();
         if !self.samples.iter().map(|s| s.time).eq(other.samples.iter().map(|s| s.time)) {
@@ -52,7 +55,8 @@ impl Candidates {
         gain > CLEAR && self.found.iter().all(moves) && 10 * self.samples.len() > 9 * other.samples.len()
     }
 
-    /// BIC and the error of the COR for each model; residuals of neighbours are alike, which counts as fewer samples.
+    /// BIC and the error of the COR for each model; residuals of neighbours are alike, which counts
+    /// as fewer samples.
     pub(super) fn weigh(&mut self) {
         let sigma = self.least();
         let losses: Vec<f64> = self.found.iter().map(|f| self.loss(f, sigma)).collect();
@@ -107,8 +111,8 @@ impl Candidates {
     }
 }
 
-/// The model with the least BIC over all recordings together; of films of one bounce each one whose drag is no unknown, since a loss in the air
-/// and one at the floor look alike there.
+/// The model with the least BIC over all recordings together; of films of one bounce each one whose
+/// drag is no unknown, since a loss in the air and one at the floor look alike there.
 pub(crate) fn choose(candidates: &[&Candidates]) -> Choice {
     let total = |choice: &Choice| {
         let one = |c: &&Candidates| {
