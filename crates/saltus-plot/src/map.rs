@@ -70,8 +70,8 @@ impl Map {
         if self.values.iter().all(Option::is_none) { Err(PlotError::Empty) } else { Ok(()) }
     }
 
-    /// The edges of the cells, across or up: half way between the middles, by factors where the axis
-    /// goes by powers of ten.
+    /// The edges of the cells, across or up: half way between the middles, by factors where the
+    /// axis goes by powers of ten.
     pub(crate) fn edges(&self, axis: usize, logarithmic: bool) -> Vec<f64> {
         let middles = &self.middles[axis];
         let [there, back]: [fn(f64) -> f64; 2] = if logarithmic { [f64::ln, f64::exp] } else { [|v| v, |v| v] };

@@ -17,7 +17,8 @@ use saltus_scene::vary::Variation;
 
 use crate::{Background, Chart, Map, Measure, PlotError, Stroke};
 
-/// With more values than this of its second key a sweep is drawn as a map, and not as so many lines.
+/// With more values than this of its second key a sweep is drawn as a map, and not as so many
+/// lines.
 const MOST_LINES: u64 = 6;
 
 /// The results that are drawn unless one is chosen: the first that any run has.

@@ -97,7 +97,8 @@ impl<M: Copy, S: State> Sampler<M, S> {
         self
     }
 
-    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times `t (h)`.
+    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times
+    /// `t (h)`.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};

@@ -67,7 +67,8 @@ impl<M, E, S> JumpTable<M, E, S> {
         self
     }
 
-    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times `t (h)`.
+    /// Names the unit of time, for a model whose rates are not per second: `h` heads its times
+    /// `t (h)`.
     ///
     /// ```
     /// use saltus::JumpTable;

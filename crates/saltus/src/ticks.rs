@@ -21,8 +21,8 @@ pub(crate) struct Ticks<M> {
 
 /// A tick at a `time`, of the clock at a `place` in the list of a `mode`.
 ///
-/// The time is written bit by bit: it is compared with what the clock says, and a format that rounds
-/// numbers must not make it another.
+/// The time is written bit by bit: it is compared with what the clock says, and a format that
+/// rounds numbers must not make it another.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Tick<M> {

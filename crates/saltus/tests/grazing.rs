@@ -100,7 +100,8 @@ fn a_motion_below_the_absolute_tolerance_is_doubted() {
 }
 
 proptest! {
-    /// A slide is left tangentially, from zero: that start is no least value in doubt, at any tolerance.
+    /// A slide is left tangentially, from zero: that start is no least value in doubt, at any
+    /// tolerance.
     #[test]
     fn a_slide_is_left_without_a_doubt(strength in 1.05..4.0_f64, phase in 0.0..TAU, decades in 6..13_i32, method in 0..3_u32) {
         let push = move |t: f64| strength * (t + phase).sin();

@@ -369,8 +369,8 @@ fn pulses_of_a_guard_on_exact_arcs() {
 }
 
 proptest! {
-    /// What a tick reads of an input that switches at the same instant is the value behind the switch, however both
-    /// times are rounded.
+    /// What a tick reads of an input that switches at the same instant is the value behind the
+    /// switch, however both times are rounded.
     #[test]
     fn ticks_read_what_is_behind_a_knot(tenths in 1..23_i32, phase in 0..5_i32, knot in 1..60_i32) {
         let decimal = |tenths: i32| format!("{}.{}", tenths / 10, tenths % 10).parse::<f64>().unwrap();

@@ -19,8 +19,8 @@ const SURELY: f64 = 64.0;
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
 
-/// The longest time over which a guard's slope is looked at, as a part of the last arc's duration, or
-/// in s where there was none.
+/// The longest time over which a guard's slope is looked at, as a part of the last arc's duration,
+/// or in s where there was none.
 const GLANCE: f64 = 1e-6;
 /// The shortest, in spacings of time, of a guard that moves.
 const TICKS: f64 = 1024.0;

@@ -91,8 +91,8 @@ impl<E: Copy + PartialEq> Switched<E> {
     }
 }
 
-/// The first stop at the same instant as `time` and not before it, or `time` itself: what a clock's tick reads of an input
-/// that switches there is the value behind.
+/// The first stop at the same instant as `time` and not before it, or `time` itself: what a clock's
+/// tick reads of an input that switches there is the value behind.
 #[inline]
 pub(crate) fn later_stop(stops: &[Clock], time: Time) -> Time {
     if stops.is_empty() { time } else { later(stops, time) }

@@ -153,8 +153,8 @@ impl<T: TwoSided + ?Sized> TwoSided for &T {
     }
 }
 
-/// So many roundings of its terms h may be off zero where a state is on the surface: what is left of
-/// a curved surface, of a state that was worked out elsewhere.
+/// So many roundings of its terms h may be off zero where a state is on the surface: what is left
+/// of a curved surface, of a state that was worked out elsewhere.
 const OFF: f64 = (1_u64 << 20) as f64;
 
 /// How far ahead two flows that agree are looked at once more, as a part of the time, in s at zero:
@@ -295,7 +295,8 @@ impl<T: TwoSided> Filippov<T> {
         gap - f64::MIN_POSITIVE - 4.0 * f64::EPSILON * (size + 2.0 * rate.abs())
     }
 
-    /// Whether both flows are one from here on, and not only at this point: a brake that is released.
+    /// Whether both flows are one from here on, and not only at this point: a brake that is
+    /// released.
     fn are_one(&self, t: f64, x: &T::State, above: &T::State, below: &T::State) -> bool {
         if !agree(above, below) {
             return false;
@@ -336,7 +337,8 @@ impl<T: TwoSided> Filippov<T> {
         if y.is_finite() { y } else { *x }
     }
 
-    /// The surface where it leaps in a stop at the same instant as `t`: when that is, and h behind it.
+    /// The surface where it leaps in a stop at the same instant as `t`: when that is, and h behind
+    /// it.
     fn leap(&self, t: f64, x: &T::State) -> Option<(f64, f64)> {
         let stops = self.system.stops();
         if stops.is_empty() {

@@ -292,8 +292,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self
     }
 
-    /// [`stops`](Self::stops) of every mode, those that are declared later as well: for an input that
-    /// all of them read.
+    /// [`stops`](Self::stops) of every mode, those that are declared later as well: for an input
+    /// that all of them read.
     ///
     /// ```
     /// use saltus::{Hybrid, Signal, Simulation};
