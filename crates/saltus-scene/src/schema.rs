@@ -66,7 +66,9 @@ mod tests {
     fn it_is_that_of_the_types() {
         let root =
             SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<File>().to_value();
+        // A line's end in a comment is no line's end in an editor; an empty line is.
         let schema = serde_json::to_string_pretty(&root).unwrap() + "\n";
+        let schema = schema.split(r"\n\n").map(|part| part.replace(r"\n", " ")).collect::<Vec<_>>().join(r"\n\n");
         if std::env::var_os("SALTUS_BLESS").is_some() {
             let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/scene.schema.json");
             std::fs::write(path, &schema).unwrap();

@@ -366,10 +366,10 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
         } else if !(longest_step > 0.0 && first_step.is_none_or(|h| h > 0.0 && h.is_finite())) {
             (ErrorKind::StepLimit, None)
-        } else if !state.is_finite() {
-            (ErrorKind::InitialState, None)
         } else if let Err(flaw) = self.automaton.validate(mode, span.start, state) {
             (ErrorKind::Model, Some(flaw))
+        } else if !state.is_finite() {
+            (ErrorKind::InitialState, None)
         } else {
             return Ok(());
         };

@@ -417,7 +417,7 @@ impl<T: TwoSided> Automaton for Filippov<T> {
 
     fn validate(&self, mode: Side, t: f64, x: &T::State) -> Result<(), String> {
         let h = self.system.surface(t, x);
-        if mode != Side::Sliding || h.abs() <= OFF * self.rounding(t, x) {
+        if mode != Side::Sliding || h.is_nan() || h.abs() <= OFF * self.rounding(t, x) {
             return Ok(());
         }
         let side = if h > 0.0 { Side::Above } else { Side::Below };
