@@ -274,8 +274,10 @@ fn a_function_that_stands_still() {
 
 #[test]
 fn a_period_below_the_spacing_of_time() {
-    let model = Clocked::new(vec![Clock::every(1e-9)]);
-    let error = Simulation::of(&model).run(false, 0.0, 1e9..1e9 + 1.0).unwrap_err().error;
-    assert_eq!(error.kind(), ErrorKind::Clock);
-    assert!(error.to_string().contains("too short beside the spacing of time"), "{error}");
+    for clock in [Clock::every(1e-9), Clock::at([0.0, 0.5e-9]).repeated(1e-9)] {
+        let model = Clocked::new(vec![clock]);
+        let error = Simulation::of(&model).run(false, 0.0, 1e9..1e9 + 1.0).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::Clock);
+        assert!(error.to_string().contains("too short beside the spacing of time"), "{error}");
+    }
 }

@@ -434,3 +434,22 @@ fn a_slide_off_its_surface() {
     assert_eq!(error.kind(), ErrorKind::Model);
     assert!(error.to_string().contains("h = 0.5 here: start in Above"), "{error}");
 }
+
+/// Of several inputs that switch at the instant of a tick it reads each behind its knot, in any
+/// order of theirs.
+#[test]
+fn a_tick_beside_several_knots() {
+    let tick = 3.0 * 0.3; // less than 0.9
+    let knots = [0.9, 0.9_f64.next_up()];
+    assert!(tick < knots[0]);
+    for [first, second] in [knots, [knots[1], knots[0]]] {
+        let [a, b] = [first, second].map(|knot| Signal::held([(0.0, 0.0), (knot, 1.0)]).unwrap());
+        let model = Hybrid::new()
+            .stops_everywhere(a.stops())
+            .stops_everywhere(b.stops())
+            .mode("run", |_t, _x: &[f64; 2]| [0.0; 2])
+            .clock("run", "run", Clock::at([tick]), |t, _x| [a.at(t), b.at(t)]);
+        let run = Simulation::of(&model).run("run", [0.0; 2], 0.0..1.0).unwrap();
+        assert_eq!(run.end.state, [1.0, 1.0]);
+    }
+}

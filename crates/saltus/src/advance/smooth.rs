@@ -24,7 +24,7 @@ impl Smooth {
     pub(crate) const ALWAYS: Self = Self { from: f64::NEG_INFINITY, until: f64::INFINITY, stop: f64::INFINITY };
 
     /// The stretch that begins at `t`, or at a stop at the same instant.
-    pub(crate) fn beginning(stops: &[Clock], t: f64) -> Result<Self, String> {
+    fn beginning(stops: &[Clock], t: f64) -> Result<Self, String> {
         let instant = grace(t);
         let (mut from, mut stop) = (f64::NEG_INFINITY, f64::INFINITY);
         for clock in stops {
@@ -44,8 +44,13 @@ impl Smooth {
     }
 
     /// The stop in which it begins, if it begins in one.
-    pub(crate) fn start(&self) -> Option<f64> {
+    fn start(&self) -> Option<f64> {
         (self.from > f64::NEG_INFINITY).then(|| self.from.next_down())
+    }
+
+    /// The stop at the same instant as `t`, if there is one.
+    pub(crate) fn stop_at(stops: &[Clock], t: f64) -> Option<f64> {
+        if stops.is_empty() { None } else { Self::beginning(stops, t).ok()?.start() }
     }
 
     /// How long it lasts from `now` on.
@@ -102,7 +107,9 @@ pub(crate) fn later_stop(stops: &[Clock], time: Time) -> Time {
 fn later(stops: &[Clock], time: Time) -> Time {
     let t = time.seconds();
     let ticks = stops.iter().filter_map(|clock| tick(clock, t.next_up()).ok().flatten());
-    ticks.filter(|&stop| stop <= t + grace(t)).map(Time::new).next().unwrap_or(time)
+    // The last of several: all of them are of this instant.
+    let last = ticks.filter(|&stop| stop <= t + grace(t)).max_by(f64::total_cmp);
+    last.map_or(time, Time::new)
 }
 
 /// The first tick at `from` or later.

@@ -210,11 +210,14 @@ impl Clock {
         Self { times, from_start: false, backwards: false, flaw: flaw.map(Into::into) }
     }
 
-    /// How far a tick is from the next in its list, and the largest size of a time in that list.
+    /// The period of one that has a period, and the largest size of what it adds to its multiples.
     pub(crate) fn period(&self) -> Option<(f64, f64)> {
         match &self.times {
             Times::Every { period, phase } => Some((*period, phase.map_or(0.0, f64::abs))),
-            Times::Cycle { .. } | Times::At(_) | Times::Function(_) => None,
+            Times::Cycle { period, times } => {
+                Some((*period, times.iter().fold(0.0, |most, time| time.abs().max(most))))
+            }
+            Times::At(_) | Times::Function(_) => None,
         }
     }
 

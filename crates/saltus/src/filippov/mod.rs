@@ -153,6 +153,9 @@ impl<T: TwoSided + ?Sized> TwoSided for &T {
     }
 }
 
+/// By this part of its terms' sizes rounding may leave h, or a difference of flows, off zero.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// So many roundings of its terms h may be off zero where a state is on the surface: what is left
 /// of a curved surface, of a state that was worked out elsewhere.
 const OFF: f64 = (1_u64 << 20) as f64;
@@ -163,7 +166,7 @@ const AHEAD: f64 = 1.0 / (1_u64 << 26) as f64;
 
 /// Whether two flows agree but for rounding.
 fn agree<S: State>(f: &S, g: &S) -> bool {
-    let apart = |i: usize| (f.get(i) - g.get(i)).abs() > 4.0 * f64::EPSILON * (f.get(i).abs() + g.get(i).abs());
+    let apart = |i: usize| (f.get(i) - g.get(i)).abs() > ROUNDED * (f.get(i).abs() + g.get(i).abs());
     !(0..f.len()).any(apart)
 }
 
@@ -277,7 +280,7 @@ impl<T: TwoSided> Filippov<T> {
     fn rounding(&self, t: f64, x: &T::State) -> f64 {
         let n = self.system.normal(t, x);
         let size: f64 = (0..x.len()).map(|i| (n.get(i) * x.get(i)).abs()).sum();
-        4.0 * f64::EPSILON * (size + (self.system.surface_rate(t, x) * t).abs())
+        ROUNDED * (size + (self.system.surface_rate(t, x) * t).abs())
     }
 
     /// How far L₋ - L₊, by which the flows push the state against the surface, is above what
@@ -292,7 +295,7 @@ impl<T: TwoSided> Filippov<T> {
         let (n, rate) = (self.system.normal(t, x), self.system.surface_rate(t, x));
         let size: f64 = (0..x.len()).map(|i| n.get(i).abs() * (above.get(i).abs() + below.get(i).abs())).sum();
         let gap: f64 = (0..x.len()).map(|i| n.get(i) * (below.get(i) - above.get(i))).sum();
-        gap - f64::MIN_POSITIVE - 4.0 * f64::EPSILON * (size + 2.0 * rate.abs())
+        gap - f64::MIN_POSITIVE - ROUNDED * (size + 2.0 * rate.abs())
     }
 
     /// Whether both flows are one from here on, and not only at this point: a brake that is
@@ -340,13 +343,15 @@ impl<T: TwoSided> Filippov<T> {
     /// The surface where it leaps in a stop at the same instant as `t`: when that is, and h behind
     /// it.
     fn leap(&self, t: f64, x: &T::State) -> Option<(f64, f64)> {
-        let stops = self.system.stops();
-        if stops.is_empty() {
-            return None;
-        }
-        let stop = Smooth::beginning(stops, t).ok()?.start()?;
+        let stop = Smooth::stop_at(self.system.stops(), t)?;
         let [before, behind] = [stop.next_down(), stop.next_up()].map(|t| self.system.surface(t, x));
         ((behind - before).abs() > self.rounding(stop, x)).then_some((stop, behind))
+    }
+
+    /// The margin of a slide from which the surface has leapt just before `t`, so that the state is
+    /// `above` it (1), or below (-1): how far that is, and negative.
+    fn leapt(&self, above: f64, t: f64, x: &T::State) -> Option<f64> {
+        self.leap(t, x).filter(|&(stop, h)| t > stop && above * h > 0.0).map(|(_, h)| -h.abs())
     }
 
     /// On the surface: two of Newton's steps.
@@ -384,14 +389,8 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         match edge {
             Passage::FromAbove => self.system.surface(t, x),
             Passage::FromBelow => -self.system.surface(t, x),
-            Passage::LeaveAbove => match self.leap(t, x) {
-                Some((stop, h)) if t > stop && h > 0.0 => -h,
-                _ => self.system.hold_above(t, x),
-            },
-            Passage::LeaveBelow => match self.leap(t, x) {
-                Some((stop, h)) if t > stop && h < 0.0 => h,
-                _ => self.system.hold_below(t, x),
-            },
+            Passage::LeaveAbove => self.leapt(1.0, t, x).unwrap_or_else(|| self.system.hold_above(t, x)),
+            Passage::LeaveBelow => self.leapt(-1.0, t, x).unwrap_or_else(|| self.system.hold_below(t, x)),
             Passage::Undecided | Passage::Unpushed => self.push(t, x),
         }
     }

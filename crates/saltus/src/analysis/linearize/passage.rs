@@ -172,8 +172,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
 
     /// Whether the guard switches from inside to outside in a stop.
     fn switches(&self) -> bool {
-        let stops = self.automaton.stops(self.mode);
-        let stop = Smooth::beginning(&stops, self.t).ok().and_then(|smooth| smooth.start());
+        let stop = Smooth::stop_at(&self.automaton.stops(self.mode), self.t);
         let guard = |t: f64| self.automaton.guard(self.edge, t, self.x);
         stop.is_some_and(|stop| guard(stop.next_down()) >= 0.0 && guard(stop.next_up()) < 0.0)
     }
