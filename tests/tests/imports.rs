@@ -12,10 +12,13 @@ const CRATES: [&str; 5] = ["saltus", "saltus-scene", "saltus-fit", "saltus-motio
 
 /// The text of a module: its file, or all files of its folder.
 fn text(path: &Path) -> String {
+    let mut found = Vec::new();
     if path.is_file() {
-        return fs::read_to_string(path).unwrap();
+        found.push(path.to_owned());
+    } else {
+        files(path, &mut found);
     }
-    fs::read_dir(path).unwrap().map(|entry| text(&entry.unwrap().path())).collect()
+    found.iter().map(|file| fs::read_to_string(file).unwrap()).collect()
 }
 
 /// Which modules of the root each module names.

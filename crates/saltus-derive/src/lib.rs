@@ -55,8 +55,7 @@ fn lifted(input: DeriveInput) -> Result<TokenStream, Error> {
     };
     let (number, other) = (arguments(quote!(f64)), arguments(quote!(Lifted)));
     let picked = members.iter().map(|member| quote!(::saltus::Lift::pick(&self.#member, &over.#member, i - first)));
-    let lens = members.iter().map(|member| quote!(::saltus::State::len(&self.#member)));
-    let pick = asked(lens, picked, quote!(<Lifted as ::core::convert::From<f64>>::from(f64::NAN)));
+    let pick = asked(&members, picked, quote!(<Lifted as ::core::convert::From<f64>>::from(f64::NAN)));
     let made: Vec<_> = (0..types.len()).map(|place| format_ident!("part_{place}")).collect();
     generics.params = generics.params.into_iter().filter(|p| !matches!(p, GenericParam::Type(_))).collect();
     let (impls, _, clause) = generics.split_for_impl();
@@ -118,10 +117,9 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
     let units = data.fields.iter().zip(members.iter().zip(&types)).map(unit).collect::<Result<Vec<_>, _>>()?;
     let values =
         members.iter().zip(&types).map(|(member, ty)| quote!(<#ty as ::saltus::State>::get(&self.#member, i - first)));
-    let lens = || members.iter().zip(&types).map(|(member, ty)| quote!(<#ty as ::saltus::State>::len(&self.#member)));
-    let get = asked(lens(), values, quote!(f64::NAN));
-    let name = asked(lens(), names, quote!(::std::format!("x{i}").into()));
-    let unit = asked(lens(), units, quote!(""));
+    let get = asked(&members, values, quote!(f64::NAN));
+    let name = asked(&members, names, quote!(::std::format!("x{i}").into()));
+    let unit = asked(&members, units, quote!(""));
     let made: Vec<_> = (0..members.len()).map(|place| format_ident!("part_{place}")).collect();
     let (impls, uses, clause) = generics.split_for_impl();
     Ok(quote! {
@@ -161,16 +159,12 @@ fn implemented(input: DeriveInput) -> Result<TokenStream, Error> {
 
 /// The answer about coordinate `i` of the field in which it lies, whose first coordinate is
 /// `first`; else `none`.
-fn asked(
-    lens: impl Iterator<Item = TokenStream>,
-    answers: impl IntoIterator<Item = TokenStream>,
-    none: TokenStream,
-) -> TokenStream {
+fn asked(members: &[Member], answers: impl IntoIterator<Item = TokenStream>, none: TokenStream) -> TokenStream {
     let answers = answers.into_iter();
     quote! {
         let mut first = 0;
         #({
-            let len = #lens;
+            let len = ::saltus::State::len(&self.#members);
             if i < first + len {
                 return #answers;
             }

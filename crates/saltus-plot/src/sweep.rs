@@ -35,38 +35,26 @@ pub fn svg(sweep: &Sweep<'_>, rows: &[Row], show: Option<&str>) -> Result<String
     check(sweep, show)?;
     let column = column(sweep, rows, show)?;
     let name = &sweep.headers()[column];
-    let value = |row: &Row| row.numbers.get(column).copied().flatten();
     let (what, measure) = measured(name);
     let vary = sweep.vary();
-    let number = |row: &Row, key: usize| row.numbers.get(key + 1).copied().flatten();
     let chart = match (&vary.variations[..], vary.random) {
-        ([key], None) => {
-            let points = rows.iter().filter_map(|row| Some([number(row, 0)?, value(row)?])).collect();
-            start(sweep, key, (&what, measure))?.line("", joined(rows, &value, 0)?).dotted(few(points))
-        }
-        ([key], Some(_)) => {
-            let points: Vec<_> = rows.iter().filter_map(|row| Some([number(row, 0)?, value(row)?])).collect();
-            start(sweep, key, (&what, measure))?.marks(points)
-        }
+        ([key], None) => drawn(start(sweep, key, (&what, measure))?, "", points(rows, 0, column)),
+        ([key], Some(_)) => start(sweep, key, (&what, measure))?.marks(points(rows, 0, column).into_iter().flatten()),
         ([first, second], None) => {
             let counts = [first, second].map(|key| key.count().unwrap_or(0));
-            // The key with fewer values, or with words, makes the lines.
-            let lines = usize::from(counts[1] <= counts[0] || second.is_words());
-            let lines = if first.is_words() { 0 } else { lines };
-            let across = [first, second][1 - lines];
-            if counts[lines] > MOST_LINES && ![first, second][lines].is_words() {
-                map(sweep, rows, &value, (&what, measure))?
+            // The key with words, or else with fewer values, makes the lines.
+            let lines = usize::from(!first.is_words() && (second.is_words() || counts[1] <= counts[0]));
+            let (key, across) = if lines == 0 { (first, second) } else { (second, first) };
+            if counts[lines] > MOST_LINES && !key.is_words() {
+                map(sweep, rows, column, (&what, measure))?
             } else {
                 let mut chart = start(sweep, across, (&what, measure))?;
                 for n in 0..counts[lines] {
                     let own = |run: u64| [run / counts[1], run % counts[1]][lines] == n;
-                    let rows: Vec<Row> =
-                        (0_u64..).zip(rows).filter(|(run, _)| own(*run)).map(|(_, row)| row.clone()).collect();
-                    let key = [first, second][lines];
+                    let rows = (0_u64..).zip(rows).filter(|(run, _)| own(*run)).map(|(_, row)| row);
                     let unit = key.unit().map_or(String::new(), |unit| format!(" {unit}"));
                     let label = format!("{} = {}{unit}", key.key, key.value(n).cell);
-                    let points = rows.iter().filter_map(|row| Some([number(row, 1 - lines)?, value(row)?])).collect();
-                    chart = chart.line(&label, joined(&rows, &value, 1 - lines)?).dotted(few(points));
+                    chart = drawn(chart, &label, points(rows, 1 - lines, column));
                 }
                 chart
             }
@@ -100,7 +88,7 @@ pub fn check(sweep: &Sweep<'_>, show: Option<&str>) -> Result<(), PlotError> {
 fn column(sweep: &Sweep<'_>, rows: &[Row], show: Option<&str>) -> Result<usize, PlotError> {
     let keys = sweep.vary().variations.len();
     let results = || sweep.headers().iter().enumerate().skip(1 + keys);
-    let has = |column: usize| rows.iter().any(|row| row.numbers.get(column).is_some_and(Option::is_some));
+    let has = |column: usize| rows.iter().any(|row| number(row, column).is_some());
     let found = match show {
         Some(show) => results().find(|(column, name)| *name == show && has(*column)),
         None => TELLING.iter().find_map(|telling| results().find(|(column, name)| name == telling && has(*column))),
@@ -153,28 +141,30 @@ fn others(sweep: &Sweep<'_>) -> String {
     if name.is_empty() { format!("{runs} runs") } else { format!("{name}: {runs} runs") }
 }
 
-/// Dots where they can be told apart; a run without neighbours is a dot only.
-fn few(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    const DOTS: usize = 60;
-    if points.len() > DOTS { Vec::new() } else { points }
+/// The result of each run at the value of a key, in the order of the values; none where it came to
+/// nothing.
+fn points<'a>(rows: impl IntoIterator<Item = &'a Row>, key: usize, column: usize) -> Vec<Option<[f64; 2]>> {
+    let at = |row: &Row| number(row, key + 1).map(|x| (x, number(row, column)));
+    let mut points: Vec<_> = rows.into_iter().filter_map(at).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.into_iter().map(|(x, y)| Some([x, y?])).collect()
 }
 
-/// A line through the results, broken where there is none.
-fn joined(rows: &[Row], value: &impl Fn(&Row) -> Option<f64>, key: usize) -> Result<Vec<Stroke>, PlotError> {
-    let at = |row: &Row| Some([row.numbers.get(key + 1).copied().flatten()?, value(row)?]);
-    let mut rows: Vec<_> = rows.iter().collect();
-    let place = |row: &Row| row.numbers.get(key + 1).copied().flatten().unwrap_or(f64::NAN);
-    rows.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    Ok(rows.windows(2).filter_map(|pair| Some(Stroke::between(at(pair[0])?, at(pair[1])?))).collect())
+fn number(row: &Row, column: usize) -> Option<f64> {
+    row.numbers.get(column).copied().flatten()
+}
+
+/// A line through points, broken where there is none, with dots where they can be distinguished: a
+/// run without neighbours is a dot only.
+fn drawn(chart: Chart, label: &str, points: Vec<Option<[f64; 2]>>) -> Chart {
+    const DOTS: usize = 60;
+    let line = chart.line(label, points.windows(2).filter_map(|pair| Some(Stroke::between(pair[0]?, pair[1]?))));
+    let count = points.iter().flatten().count();
+    line.dotted(points.into_iter().flatten().filter(|_| count <= DOTS))
 }
 
 /// The result in tones over both keys.
-fn map(
-    sweep: &Sweep<'_>,
-    rows: &[Row],
-    value: &impl Fn(&Row) -> Option<f64>,
-    (what, measure): (&str, Measure),
-) -> Result<Chart, PlotError> {
+fn map(sweep: &Sweep<'_>, rows: &[Row], column: usize, (what, measure): (&str, Measure)) -> Result<Chart, PlotError> {
     let [across, up] = &sweep.vary().variations[..] else { return Err(PlotError::Empty) };
     let [columns, lines] = [across, up].map(|key| key.count().unwrap_or(0));
     let places = |key: &Variation, count: u64| -> Vec<(f64, u64)> {
@@ -184,7 +174,7 @@ fn map(
         places
     };
     let (xs, ys) = (places(across, columns), places(up, lines));
-    let of = |i: u64, j: u64| rows.get(usize::try_from(i * lines + j).ok()?).and_then(value);
+    let of = |i: u64, j: u64| number(rows.get(usize::try_from(i * lines + j).ok()?)?, column);
     let values = ys.iter().flat_map(|(_, j)| xs.iter().map(move |(_, i)| of(*i, *j))).collect();
     let middles = |places: Vec<(f64, u64)>| places.into_iter().map(|(value, _)| value).collect::<Vec<_>>();
     let chart = Chart::new(&title(sweep, what), axis(across)?, axis(up)?).caption(&others(sweep));
