@@ -52,7 +52,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             if self.is_entered(mode, edge, t, x, g, &mut zero)? {
-                return Ok(Some(self.first_of(mode, t, x, zero, edge)));
+                let first = self.first_of(mode, t, x, zero, edge);
+                self.note_switch(first, x);
+                return Ok(Some(first));
             }
         }
         Ok(None)
@@ -101,7 +103,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         match self.automaton.about(edge).entry {
             // What fell as the run starts was before it, as a tick there is.
-            _ if self.memory.last.is_some() && self.fell_at_stop(edge, x) => Ok(true),
+            _ if self.memory.last.is_some() && self.fell_at_stop(edge, x).is_some() => Ok(true),
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {

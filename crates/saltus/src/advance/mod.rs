@@ -294,7 +294,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.longest_duration = duration;
             }
         }
-        self.memory.switched.take(edge);
         self.memory.spent = Some(Spent { edge, slack: self.memory.slack });
         self.memory.last = Some(edge);
     }

@@ -24,8 +24,7 @@ impl<S: State> Hybrid<'_, S> {
         }
     }
 
-    /// Looks for the very name first, which is what a run mostly has: to compare letters takes
-    /// longer than many a guard. What keeps every run from starting.
+    /// What keeps every run from starting.
     pub(super) fn find_flaw(&self) -> Option<String> {
         if let Some((method, name)) = self.twice {
             return Some(format!(
