@@ -114,6 +114,9 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
             if first.as_ref().is_none_or(|first| time < first.tick.time - instant) {
                 let tick = Tick { mode, place, time };
                 first = Some(Due { edge, time: Time::new(time), tick });
+                if time <= now {
+                    break; // none is earlier by more than an instant
+                }
             }
         }
         let grace = grace(end, start);
