@@ -2,6 +2,7 @@
 //! mode on the surface.
 
 mod sides;
+mod slopes;
 
 pub use sides::Sides;
 
@@ -230,6 +231,11 @@ pub enum Passage {
 /// Runge-Kutta methods conserve linear invariants; for a curved or moving one α is chosen such that
 /// h' = -κ h instead of h' = 0 (see [`TwoSided::pull`]), which stays within the same convex set.
 ///
+/// **The derivatives of the surface** are compared with its differences wherever a state comes to
+/// it: a gradient or a rate that they contradict (a surface that moves without
+/// [`surface_rate`](TwoSided::surface_rate), a normal of another length) is an error of the model.
+/// At a kink, and where rounding hides the differences, they are believed.
+///
 /// Limits: one surface. Where two meet, Filippov's solution need not be unique.
 ///
 /// ```
@@ -416,7 +422,13 @@ impl<T: TwoSided> Automaton for Filippov<T> {
 
     fn validate(&self, mode: Side, t: f64, x: &T::State) -> Result<(), String> {
         let h = self.system.surface(t, x);
-        if mode != Side::Sliding || h.is_nan() || h.abs() <= OFF * self.rounding(t, x) {
+        let on_surface = h.is_nan() || h.abs() <= OFF * self.rounding(t, x);
+        if let Some(untrue) =
+            (on_surface || mode == Side::Sliding).then(|| slopes::untrue(&self.system, t, x)).flatten()
+        {
+            return Err(untrue.to_string());
+        }
+        if on_surface || mode != Side::Sliding {
             return Ok(());
         }
         let side = if h > 0.0 { Side::Above } else { Side::Below };

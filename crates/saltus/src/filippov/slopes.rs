@@ -1,0 +1,87 @@
+//! Whether the derivatives that a model gives of its surface are those that differences show.
+
+use std::fmt;
+
+use super::TwoSided;
+use crate::state::State;
+
+/// A difference quotient and a derivative are one if they differ by no more than this part: far
+/// more than a difference over a small step is off, and less than a mistake makes.
+const ALIKE: f64 = 1e-3;
+
+/// The middle one of the steps over which differences are taken, as a part of a coordinate or of
+/// the time; in its unit where that is zero.
+const MIDDLE: f64 = 1.0 / (1_u64 << 26) as f64;
+
+/// So many steps, each four times the one before, are tried about the middle one.
+const STEPS: i32 = 25;
+
+/// A derivative of h that its differences contradict.
+pub(super) struct Untrue {
+    /// The coordinate by which it is; none for the time.
+    by: Option<String>,
+    told: f64,
+    shown: f64,
+}
+
+impl fmt::Display for Untrue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { by, told, shown } = self;
+        match by {
+            None => write!(
+                f,
+                "∂h/∂t is {told} by TwoSided::surface_rate, and differences of the surface show {shown:.6}: a surface that moves says how fast (Sides::moving)"
+            ),
+            Some(name) => write!(
+                f,
+                "∂h/∂{name} is {told} by TwoSided::normal, and differences of the surface show {shown:.6}: give the gradient of the surface itself"
+            ),
+        }
+    }
+}
+
+/// The first derivative of the surface at (t, x) that its differences contradict.
+///
+/// Only what is sure counts: differences to both sides agree with each other over three steps in a
+/// row, and with the derivative over no two. A kink, a leap or a rounding hides what they show, and is
+/// believed.
+pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> Option<Untrue> {
+    let moved = |i: usize, by: f64| x.with(|j| if j == i { x.get(j) + by } else { x.get(j) });
+    let rate = system.surface_rate(t, x);
+    if let Some(shown) = contradicted(|by| system.surface(t + by, x), t, rate) {
+        return Some(Untrue { by: None, told: rate, shown });
+    }
+    let normal = system.normal(t, x);
+    (0..x.len()).find_map(|i| {
+        let shown = contradicted(|by| system.surface(t, &moved(i, by)), x.get(i), normal.get(i))?;
+        Some(Untrue { by: Some(x.name(i).into_owned()), told: normal.get(i), shown })
+    })
+}
+
+/// The slope of `h` that its differences show about zero, where that is not the one `told`.
+fn contradicted(h: impl Fn(f64) -> f64, size: f64, told: f64) -> Option<f64> {
+    let here = h(0.0);
+    let middle = if size == 0.0 { MIDDLE } else { size.abs() * MIDDLE };
+    let slopes = |k: i32| {
+        let step = middle * 4_f64.powi(k);
+        [(h(step) - here) / step, (here - h(-step)) / step]
+    };
+    let agrees = |slopes: &[f64; 2]| slopes.iter().any(|&slope| alike(slope, told));
+    if agrees(&slopes(0)) {
+        return None;
+    }
+    let slopes: Vec<_> = (-STEPS / 2..=STEPS / 2).map(slopes).collect();
+    // Over one small step rounding may show anything, and nothing over several.
+    if told != 0.0 && slopes.windows(2).any(|two| two.iter().all(agrees)) {
+        return None;
+    }
+    let stable = |window: &&[[f64; 2]]| {
+        let first = window[0][0];
+        first != 0.0 && window.iter().flatten().all(|&slope| alike(slope, first))
+    };
+    slopes.windows(3).find(stable).map(|window| window[1][0])
+}
+
+fn alike(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= ALIKE * a.abs().max(b.abs())
+}

@@ -1,0 +1,97 @@
+//! A model of a surface gives its derivatives: one that is not the surface's own is refused, and
+//! none that is.
+
+use proptest::prelude::*;
+use saltus::nalgebra::{self, Vector2, vector};
+use saltus::{ErrorKind, Filippov, Side, Sides, Simulation};
+
+/// h = s (v - w(t)) with a belt of speed w(t) = A sin(ω t + φ) + c: scale, amplitude, frequency,
+/// offset.
+#[derive(Clone, Copy, Debug)]
+struct Belt {
+    scale: f64,
+    amplitude: f64,
+    frequency: f64,
+    offset: f64,
+}
+
+impl Belt {
+    fn speed(self, t: f64) -> f64 {
+        self.amplitude * (self.frequency * t).sin() + self.offset
+    }
+    fn acceleration(self, t: f64) -> f64 {
+        self.amplitude * self.frequency * (self.frequency * t).cos()
+    }
+
+    /// The refusal of a slide that starts at `t`, where the rate is so many times the right one and
+    /// the normal too.
+    fn refusal(self, t: f64, rate: f64, normal: f64) -> Option<String> {
+        let push = 2.0 * self.amplitude * self.frequency;
+        let sides = Sides::new(
+            move |_, x: &Vector2<f64>| vector![x[1], -push],
+            move |_, x| vector![x[1], push],
+            move |t, x| self.scale * (x[1] - self.speed(t)),
+            move |_, _| vector![0.0, normal * self.scale],
+        )
+        .moving(move |t, _| -rate * self.scale * self.acceleration(t));
+        let model = Filippov::of(sides);
+        let start = vector![0.0, self.speed(t)];
+        let run = Simulation::of(&model).run(Side::Sliding, start, t..t + 1e-3 / self.frequency);
+        run.err().map(|failed| {
+            assert_eq!(failed.error.kind(), ErrorKind::Model);
+            failed.error.to_string()
+        })
+    }
+}
+
+fn belt() -> impl Strategy<Value = Belt> {
+    let power = |range: std::ops::Range<f64>| range.prop_map(|power| 10_f64.powf(power));
+    (power(-6.0..6.0), power(-4.0..4.0), power(-4.0..6.0), prop_oneof![Just(0.0), -3.0..3.0_f64]).prop_map(
+        |(scale, amplitude, frequency, offset)| Belt { scale, amplitude, frequency, offset: offset * amplitude },
+    )
+}
+
+proptest! {
+    /// Turns of the belt until the slide starts, away from where it stands for a moment.
+    #[test]
+    fn a_rate_is_believed_where_differences_show_no_other(belt in belt(), turns in 0_u32..1000, phase in -1.2..1.2_f64) {
+        let t = (f64::from(turns) * std::f64::consts::TAU + phase) / belt.frequency;
+        prop_assert_eq!(belt.refusal(t, 1.0, 1.0), None);
+        for rate in [0.0, -1.0, 0.9, 2.0] {
+            let refusal = belt.refusal(t, rate, 1.0);
+            prop_assert!(refusal.as_ref().is_some_and(|why| why.contains("∂h/∂t")), "{rate} {refusal:?}");
+        }
+        for normal in [-1.0, 0.5, 1.1] {
+            let refusal = belt.refusal(t, 1.0, normal);
+            prop_assert!(refusal.as_ref().is_some_and(|why| why.contains("∂h/∂x1")), "{normal} {refusal:?}");
+        }
+    }
+
+    /// A circle of any size, met from outside; its gradient is 2 x, and x alone is refused.
+    #[test]
+    fn a_gradient_is_that_of_the_surface_itself(power in -9.0..9.0_f64, angle in 0.0..std::f64::consts::TAU, right in any::<bool>()) {
+        let radius = 10_f64.powf(power);
+        let by = if right { 2.0 } else { 1.0 };
+        let rim = Filippov::of(Sides::new(
+            |_, x: &Vector2<f64>| vector![-x[1] - x[0], x[0] - x[1]],
+            |_, x| vector![-x[1] + x[0], x[0] + x[1]],
+            move |_, x| x.norm_squared() - radius * radius,
+            move |_, x| by * x,
+        ));
+        let start = vector![angle.cos(), angle.sin()] * (1.5 * radius);
+        let run = Simulation::of(&rim).run(Side::Above, start, 0.0..2.0);
+        prop_assert_eq!(run.is_ok(), right, "{:?}", run.err());
+    }
+
+    /// What a kink, a leap or a table hides is believed: a floor whose speed changes at the very
+    /// start, with either of its speeds.
+    #[test]
+    fn either_slope_of_a_kink_is_believed(before in -3.0..3.0_f64, behind in -3.0..3.0_f64, late in any::<bool>(), t in prop_oneof![Just(0.0), -1e3..1e3_f64]) {
+        let floor = move |at: f64| if at < t { before * (at - t) } else { behind * (at - t) };
+        let rate = if late { behind } else { before };
+        let sides = Sides::new(|_, _: &f64| -9.0, |_, _| 9.0, move |at, x| x - floor(at), |_, _| 1.0)
+            .moving(move |at, _| if at == t { -rate } else if at < t { -before } else { -behind });
+        let run = Simulation::of(&Filippov::of(sides)).run(Side::Sliding, 0.0, t..t + 1.0).map(|run| run.end.state);
+        prop_assert!(run.as_ref().is_ok_and(|x| (x - behind).abs() < 1e-6), "{run:?}");
+    }
+}
