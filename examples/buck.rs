@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let converter = Hybrid::new()
         .mode("closed", flow(SOURCE))
         .mode("open", flow(0.0))
-        .edge("closed", "open", |_t, x| x.duty * PERIOD - x.ramp, |_t, x| *x)
+        .switch("closed", "open", |_t, x| x.duty * PERIOD - x.ramp)
         .affine()
         .clock("open", "closed", Clock::every(PERIOD), sample)
         .stops("closed", Clock::at([STEP]))

@@ -12,13 +12,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let fall = move |_t: f64, x: &[f64; 2]| [*x, [x[1], -g], [-0.5 * g, 0.0]].into();
     let hopper = Hybrid::new()
         .exact("fall", fall)
-        .edge("fall", "stance", move |_t, x| x[0] - leg, |_t, x| *x)
+        .switch("fall", "stance", move |_t, x| x[0] - leg)
         .affine()
         .mode("stance", move |_t, x| [x[1], stiffness / mass * (leg - x[0]) - g])
-        .edge("stance", "rise", move |_t, x| leg - x[0], |_t, x| *x)
+        .switch("stance", "rise", move |_t, x| leg - x[0])
         .affine()
         .exact("rise", fall)
-        .edge("rise", "fall", |_t, x| x[1], |_t, x| *x)
+        .switch("rise", "fall", |_t, x| x[1])
         .affine();
     let run = Simulation::of(&hopper).tolerance(1e-13).run("fall", [start, 0.0], 0.0..650.0)?;
 

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mass, spring, belt, holds, drags) = (1.0, 4.0, 0.25, 1.0, 0.6);
     let block = Hybrid::new()
         .mode("stick", move |_t, _x: &Vector2<f64>| vector![belt, 0.0])
-        .edge("stick", "slip", move |_t, x| holds - spring * x[0], |_t, x| *x)
+        .switch("stick", "slip", move |_t, x| holds - spring * x[0])
         .affine()
         .mode("slip", move |_t, x| vector![x[1], (drags - spring * x[0]) / mass])
         .edge("slip", "stick", move |_t, x| belt - x[1], move |_t, x| vector![x[0], belt])

@@ -13,9 +13,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tanks = Hybrid::new()
         .exact("first", move |_t, x: &[f64; 2]| [*x, [inflow - leaks[0], -leaks[1]]].into())
         .exact("second", move |_t, x| [*x, [-leaks[0], inflow - leaks[1]]].into())
-        .edge("first", "second", |_t, x| x[1], |_t, x| *x)
+        .switch("first", "second", |_t, x| x[1])
         .affine()
-        .edge("second", "first", |_t, x| x[0], |_t, x| *x)
+        .switch("second", "first", |_t, x| x[0])
         .affine();
     let run = Simulation::of(&tanks).run("first", [1.0, 1.0], 0.0..8.0)?;
 

@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let room = Hybrid::new()
         .mode("heats", move |_t, x: &f64| heater - loss * (x - outside))
         .mode("waits", move |_t, x| -loss * (x - outside))
-        .edge("heats", "waits", move |_t, x| high - x, |_t, x| *x)
+        .switch("heats", "waits", move |_t, x| high - x)
         .affine()
-        .edge("waits", "heats", move |_t, x| x - low, |_t, x| *x)
+        .switch("waits", "heats", move |_t, x| x - low)
         .affine();
     let run = Simulation::of(&room).tolerance(1e-13).run("heats", 20.0, 0.0..1.26e5)?;
 

@@ -115,10 +115,10 @@ pub(crate) fn hopper() -> Answer {
     let hopper = || {
         Hybrid::new()
             .exact("flight", fall)
-            .edge("flight", "stance", move |_t, x: &Vector2<f64>| x[0] - leg, |_t, x| *x)
+            .switch("flight", "stance", move |_t, x: &Vector2<f64>| x[0] - leg)
             .affine()
             .mode("stance", move |_t, x| vector![x[1], stiffness / mass * (leg - x[0]) - g])
-            .edge("stance", "flight", move |_t, x| leg - x[0], |_t, x| *x)
+            .switch("stance", "flight", move |_t, x| leg - x[0])
             .affine()
     };
     let stepped = hopper();

@@ -98,7 +98,7 @@ fn a_named_state_runs_like_an_array() {
     assert!(run.trajectory.jumps().len() > 10);
     assert_eq!([run.end.state.current, run.end.state.voltage], same.end.state);
     assert_eq!(run.end.stats, same.end.stats);
-    let table = run.trajectory.sampled(1e-3).to_string();
+    let table = run.trajectory.sampled(1e-3).unwrap().to_string();
     assert!(table.starts_with("t (s),j,mode,current (A),voltage (V)\n0.0,0,on,0.0,0.0\n"), "{table}");
     let mut course = Simulation::of(&named).start("on", Buck { current: 0.0, voltage: 0.0 }, 0.0..0.01).unwrap();
     course.advance(&mut ()).unwrap();
@@ -242,7 +242,7 @@ fn a_named_state_has_derivatives() {
     let difference = (voltage(0.4 + 1e-4) - voltage(0.4 - 1e-4)) / 2e-4;
     let by = run.end.state.columns[0].voltage;
     assert!((by / difference - 1.0).abs() < 1e-6, "{by}, {difference}");
-    let headings = run.trajectory.sampled(1e-3).to_string();
+    let headings = run.trajectory.sampled(1e-3).unwrap().to_string();
     assert!(
         headings.starts_with("t (s),j,mode,current (A),voltage (V),closed,current by q1,voltage by q1,closed by q1\n"),
         "{headings}"

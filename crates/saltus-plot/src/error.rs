@@ -59,6 +59,20 @@ pub enum PlotError {
         /// The headings of those that are numbers.
         names: Vec<String>,
     },
+    /// The part of a run that is to be drawn has no length.
+    Window {
+        /// From when to when it is to be.
+        part: (f64, f64),
+        /// From when to when the run is.
+        run: (f64, f64),
+    },
+    /// More names than there are coordinates.
+    Names {
+        /// The first that is left over.
+        name: String,
+        /// How many coordinates there are.
+        coordinates: usize,
+    },
     /// The drawing library could not place an element.
     Drawing(String),
 }
@@ -68,7 +82,7 @@ impl fmt::Display for PlotError {
         match self {
             Self::Empty => write!(
                 f,
-                "there is nothing to draw: give the picture at least one motion, measurement, contact or residual"
+                "there is nothing to draw: give the picture something to show (a motion, a measurement, a contact, a residual, a coordinate)"
             ),
             Self::NotFinite { what, value } => {
                 write!(f, "{what} is {value}, which has no place on an axis: leave it out or correct it")
@@ -86,6 +100,13 @@ impl fmt::Display for PlotError {
                 write!(f, "the drawing library could not place an element ({reason}): try a larger size")
             }
             Self::Missing(says) => f.write_str(says),
+            Self::Window { part: (from, to), run: (start, end) } => write!(
+                f,
+                "the part from {from} to {to} has no length within the run, which is from {start} to {end}: draw one between these, its start first"
+            ),
+            Self::Names { name, coordinates } => {
+                write!(f, "there is no coordinate for the name {name:?}: the state has {coordinates}, name no more")
+            }
             Self::Column { asked, names } if names.is_empty() => {
                 let which = asked.as_deref().unwrap_or("result");
                 write!(f, "no run of the sweep came to a number, so that there is no {which} to draw")

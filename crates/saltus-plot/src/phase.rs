@@ -124,7 +124,7 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Phase<'a, M, E, S> {
     /// # Errors
     /// As [`Panels::svg`](crate::Panels::svg).
     pub fn svg(&self) -> Result<String, PlotError> {
-        let labels = labels(self.trajectory, &self.named);
+        let labels = labels(self.trajectory, &self.named)?;
         let [across, up] = &self.axes;
         let places = [place(across, &labels)?, place(up, &labels)?];
         let traced = Traced::of(self.trajectory, self.over.as_ref(), &places)?;

@@ -57,12 +57,18 @@ pub(crate) struct Leap {
 
 /// The names and units of the coordinates, of the mode that has most of them; `named` go before
 /// those of the state.
-pub(crate) fn labels<M: Copy, E, S: State>(trajectory: &Trajectory<M, E, S>, named: &[String]) -> Vec<Label> {
+pub(crate) fn labels<M: Copy, E, S: State>(
+    trajectory: &Trajectory<M, E, S>,
+    named: &[String],
+) -> Result<Vec<Label>, PlotError> {
     let Some(widest) = trajectory.arcs().iter().map(saltus::Arc::state).max_by_key(|state| state.len()) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
+    if let Some(name) = named.get(widest.len()) {
+        return Err(PlotError::Names { name: name.clone(), coordinates: widest.len() });
+    }
     let own = |i: usize| Label { name: widest.name(i).into_owned(), unit: widest.unit(i).to_owned() };
-    (0..widest.len()).map(|i| named.get(i).map_or_else(|| own(i), |words| Label::read(words))).collect()
+    Ok((0..widest.len()).map(|i| named.get(i).map_or_else(|| own(i), |words| Label::read(words))).collect())
 }
 
 impl Traced {
@@ -156,7 +162,8 @@ fn window<M: Copy, E, S: State>(
     if from < to {
         Ok((from, to))
     } else {
-        Err(PlotError::Missing("the run takes no time there: draw a part between its start and its end"))
+        let [from, to] = over.map_or([start, end], |over| [over.start, over.end]);
+        Err(PlotError::Window { part: (from, to), run: (start, end) })
     }
 }
 

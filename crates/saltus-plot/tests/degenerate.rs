@@ -17,7 +17,7 @@ fn fault(picture: &HeightTime) -> String {
 fn nothing_at_all_says_what_to_give() {
     let empty = HeightTime::new("Empty");
     assert_eq!(empty.svg(), Err(PlotError::Empty));
-    assert!(fault(&empty).contains("give the picture at least one"));
+    assert!(fault(&empty).contains("give the picture something to show"));
     assert_eq!(empty.motion("no arcs", []).svg(), Err(PlotError::Empty));
 }
 

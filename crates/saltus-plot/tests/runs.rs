@@ -245,9 +245,11 @@ fn what_cannot_be_drawn_is_named() {
     assert!(message.contains("no coordinate \"hight\", only height, speed"), "{message}");
     assert!(fails(Phase::of(&run.trajectory, 0, 2).svg()).contains("no coordinate 2, only x0, x1"));
     for part in [5.0..5.0, 9.0..8.0, -3.0..-2.0] {
-        assert!(fails(Panels::of(&run.trajectory).over(part).svg()).contains("takes no time"));
+        assert!(fails(Panels::of(&run.trajectory).over(part).svg()).contains("has no length within the run"));
     }
     assert!(fails(Panels::of(&run.trajectory).over(0.0..f64::NAN).svg()).contains("NaN"));
+    let message = fails(Phase::of(&run.trajectory, 0, 1).named(["a", "b", "c"]).svg());
+    assert!(message.contains("no coordinate for the name \"c\": the state has 2"), "{message}");
     let nothing: [usize; 0] = [];
     assert_eq!(Panels::of(&run.trajectory).panel(nothing).svg(), Err(PlotError::Empty));
     let run =

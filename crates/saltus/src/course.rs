@@ -241,7 +241,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// See [`Error`]; the observer has had everything before it, and the course stays
     /// where it was.
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
-        let stop = match self.at.stop {
+        let stop = match self.stopped() {
             Some(stop) => stop,
             None => {
                 let mut stand = self.stand();
@@ -263,10 +263,17 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// See [`Error`].
     #[inline]
     pub fn advance(&mut self, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+        self.at.stop = self.stopped();
         if self.at.stop.is_none() {
             self.at.stop = self.step(&mut self.stand(), observer)?;
         }
         Ok(self.at.stop)
+    }
+
+    /// Why it goes no further, before another arc.
+    fn stopped(&self) -> Option<Stop<A::Edge>> {
+        let most = self.options.most_jumps;
+        self.at.stop.or((self.at.jumps >= most).then_some(Stop::Jumps { most }))
     }
 
     #[inline]

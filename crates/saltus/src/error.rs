@@ -107,6 +107,8 @@ pub enum ErrorKind {
     Flow,
     /// The guard is not a number.
     Guard,
+    /// A guard is promised affine, and is not: see [`About::affine`](crate::About::affine).
+    Promise,
     /// The reset gave a state that is not finite.
     Reset,
     /// The reset refused, with a reason: see [`Refusal`].
@@ -197,10 +199,11 @@ fn asked(f: &mut fmt::Formatter<'_>, kind: ErrorKind, given: &str) -> fmt::Resul
         ),
         ErrorKind::Tolerance => write!(
             f,
-            "the tolerances ({given}) cannot be kept: relative must be finite and at least 1e-15, absolute finite and above zero"
+            "the tolerances ({given}) cannot be kept: relative must be at least 1e-15 and below 1, absolute finite and above zero"
         ),
-        _ => f.write_str(
-            "a step cannot have this size: give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out",
+        _ => write!(
+            f,
+            "a step cannot have this size ({given}): give Simulation::first_step and Simulation::longest_step durations above zero, or leave them out"
         ),
     }
 }
@@ -246,6 +249,10 @@ fn of_edge(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, edge
         ErrorKind::Guard => {
             write!(f, "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before")
         }
+        ErrorKind::Promise => write!(
+            f,
+            "the guard of edge {by} is promised affine and {given}: it must be a sum of coordinates times constants, and a constant; leave the promise out (affine, About::affine)"
+        ),
         ErrorKind::Reset => {
             let by = edge.map_or("Automaton::beyond".to_owned(), |edge| format!("the reset of edge {edge}"));
             write!(

@@ -87,7 +87,7 @@ pub use inspection::{Inspection, InspectionOf};
 pub use jump::{Cause, Jump, JumpOf};
 pub use observe::Observer;
 pub use piece::Piece;
-pub use samples::{Sample, Sampler, SamplerOf};
+pub use samples::{Sample, Sampler, SamplerOf, SamplingError};
 pub use series::{Jet, Series};
 pub use signal::{Signal, SignalError};
 pub use simulation::Simulation;

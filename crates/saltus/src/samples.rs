@@ -35,6 +35,7 @@ pub struct Sample<M, S> {
 /// never ends has its first row and its last. More than 10⁷ rows end the run, with
 /// [`Stop::Observer`](crate::Stop::Observer). Written with `{}` it is a table as CSV, with the
 /// names and units of the state's coordinates ([`State::name`], [`State::unit`]) as headings.
+/// [`without_jumps`](Self::without_jumps) leaves the regular times alone.
 ///
 /// ```
 /// use saltus::{Hybrid, Sampler, Simulation};
@@ -104,12 +105,42 @@ impl<M: Copy, S: State> Sampler<M, S> {
     /// use saltus::{Hybrid, Simulation};
     /// let room = Hybrid::new().mode("cools", |_t, x: &f64| -0.1 * x);
     /// let run = Simulation::of(&room).run("cools", 20.0, 0.0..24.0)?;
-    /// assert!(run.trajectory.sampled(1.0).time("h").to_string().starts_with("t (h),j,mode,x0\n"));
-    /// # Ok::<(), saltus::Error>(())
+    /// assert!(run.trajectory.sampled(1.0)?.time("h").to_string().starts_with("t (h),j,mode,x0\n"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
     pub fn time(mut self, unit: impl Into<Cow<'static, str>>) -> Self {
         self.time = unit.into();
+        self
+    }
+
+    /// Leaves only the rows at t₀ + k·dt; of several at one time the last, x⁺.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let tank = Hybrid::new()
+    ///     .mode("fill", |_t, _x: &f64| 1.0)
+    ///     .edge("fill", "fill", |_t, x| 1.25 - x, |_t, _x| 0.0)
+    ///     .affine();
+    /// let run = Simulation::of(&tank).run("fill", 0.0, 0.0..2.6)?;
+    /// let table = run.trajectory.sampled(0.625)?.without_jumps();
+    /// let times: Vec<f64> = table.rows().map(|row| row.t).collect();
+    /// assert_eq!(times, [0.0, 0.625, 1.25, 1.875, 2.5]);
+    /// assert_eq!(table.rows().nth(2).unwrap().state, 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn without_jumps(mut self) -> Self {
+        let rows: Vec<_> = self.rows().collect();
+        let start = self.start.unwrap_or_default();
+        let largest = rows.last().map_or(0.0, |last| last.t.abs().max(start.abs()));
+        let instant = grace(if largest.is_finite() { largest } else { start.abs() });
+        let tick = |row: &Sample<M, S>| ((row.t - start) / self.dt).round();
+        let is_regular = |row: &Sample<M, S>| (tick(row).mul_add(self.dt, start) - row.t).abs() <= instant;
+        let is_last = |k: usize| rows.get(k + 1).is_none_or(|next| tick(next) > tick(&rows[k]) || !is_regular(next));
+        let regular = (0..rows.len()).filter(|&k| is_regular(&rows[k]) && is_last(k)).map(|k| rows[k]);
+        self.rows = regular.map(|row| Sample { t: tick(&row).mul_add(self.dt, start), ..row }).collect();
+        self.end = None;
         self
     }
 
@@ -194,20 +225,57 @@ impl<M: Copy + fmt::Debug, S: State> fmt::Display for Sampler<M, S> {
     }
 }
 
+/// Why a trajectory is not sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SamplingError {
+    /// The time from row to row is not above zero and finite.
+    Interval {
+        /// What it is, in seconds.
+        dt: f64,
+    },
+    /// There would be more than 10⁷ rows.
+    Rows {
+        /// The time from row to row, in seconds.
+        dt: f64,
+    },
+}
+
+impl fmt::Display for SamplingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Interval { dt } => {
+                write!(f, "rows every {dt} s are none: give a finite time above zero, or take Trajectory::jump_table")
+            }
+            Self::Rows { dt } => write!(
+                f,
+                "rows every {dt} s are more than {MOST_ROWS}: take fewer, or observe the run in parts with Sampler::every"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for SamplingError {}
+
 impl<M: Copy, E, S: State> Trajectory<M, E, S> {
     /// The trajectory every `dt` seconds, with both limits at each jump: see [`Sampler`].
+    ///
+    /// # Errors
+    /// [`SamplingError`] for a dt that is not above zero and finite, and for more than 10⁷ rows.
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation};
     /// let decay = Hybrid::new().mode("decay", |_t, x: &f64| -x);
     /// let run = Simulation::of(&decay).run("decay", 1.0, 0.0..1.0)?;
-    /// let table = run.trajectory.sampled(0.25);
+    /// let table = run.trajectory.sampled(0.25)?;
     /// assert_eq!(table.rows().count(), 5);
     /// assert!(table.rows().all(|row| (row.state - (-row.t).exp()).abs() < 1e-8));
-    /// # Ok::<(), saltus::Error>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
-    pub fn sampled(&self, dt: f64) -> Sampler<M, S> {
+    pub fn sampled(&self, dt: f64) -> Result<Sampler<M, S>, SamplingError> {
+        if !(dt > 0.0 && dt < f64::INFINITY) {
+            return Err(SamplingError::Interval { dt });
+        }
         let mut table = Sampler::every(dt);
         for (index, arc) in self.arcs().iter().enumerate() {
             if index == 0 {
@@ -215,15 +283,15 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
             }
             for piece in self.pieces(index) {
                 if table.take_piece(arc.mode(), &piece).is_break() {
-                    return table;
+                    return Err(SamplingError::Rows { dt });
                 }
             }
             if let Some(jump) = self.jumps().get(index)
                 && table.take_jump(jump.t(), [(jump.from, jump.before), (jump.to, jump.after)]).is_break()
             {
-                return table;
+                return Err(SamplingError::Rows { dt });
             }
         }
-        table
+        Ok(table)
     }
 }

@@ -136,8 +136,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         Simulation { automaton: self.automaton, stepper, options: self.options }
     }
 
-    /// The local error allowed per step, relative to each coordinate, at least 1e-15; the absolute
-    /// tolerance becomes a thousandth of it.
+    /// The local error allowed per step, relative to each coordinate, at least 1e-15 and below 1;
+    /// the absolute tolerance becomes a thousandth of it.
     #[must_use]
     pub const fn tolerance(mut self, relative: f64) -> Self {
         self.options.tolerance = Tolerance { relative, absolute: relative * 1e-3 };
@@ -362,10 +362,14 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         let Options { tolerance: Tolerance { relative, absolute }, first_step, longest_step, .. } = self.options;
         let (kind, note) = if !(span.start.abs() <= LAST && span.start <= span.end) {
             (ErrorKind::Span, Some(format!("{}..{}", span.start, span.end)))
-        } else if !(relative >= 1e-15 && absolute > 0.0 && relative.is_finite() && absolute.is_finite()) {
+        } else if !((1e-15..1.0).contains(&relative) && absolute > 0.0 && absolute.is_finite()) {
             (ErrorKind::Tolerance, Some(format!("relative {relative:e}, absolute {absolute:e}")))
         } else if !(longest_step > 0.0 && first_step.is_none_or(|h| h > 0.0 && h.is_finite())) {
-            (ErrorKind::StepLimit, None)
+            let first = first_step.map(|h| format!("first_step {h}"));
+            (
+                ErrorKind::StepLimit,
+                first.filter(|_| longest_step > 0.0).or(Some(format!("longest_step {longest_step}"))),
+            )
         } else if let Err(flaw) = self.automaton.validate(mode, span.start, state) {
             (ErrorKind::Model, Some(flaw))
         } else if !state.is_finite() {

@@ -54,9 +54,9 @@ pub(crate) struct Due<M, E> {
     tick: Tick<M>,
 }
 
-/// How long an instant about the time `t` lasts, in a run that began at `start`.
-fn grace(t: f64, start: f64) -> f64 {
-    time::grace(t.abs().max(start.abs()))
+/// How long an instant about the time `t` lasts, in a run whose times are counted since another.
+fn grace(t: f64, since: f64) -> f64 {
+    time::grace(t.abs().max(since.abs()))
 }
 
 impl<M: Copy + PartialEq + Debug> Ticks<M> {
@@ -95,7 +95,9 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
         span: &Span,
     ) -> Result<Option<Due<M, A::Edge>>, Error> {
         let (now, start, end) = (span.now.seconds(), span.start.seconds(), span.end.seconds());
-        let instant = grace(now, start);
+        let behind = (0..clocks.len()).filter_map(|place| Some(clocks.get(place)?.0.behind()));
+        let since = behind.fold(start.abs(), f64::max);
+        let instant = grace(now, since);
         // A tick of the last instant is no later than its end, and looked for from one instant
         // before now.
         self.taken.retain(|tick| tick.time >= now - 2.0 * instant);
@@ -107,11 +109,11 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
                 let place = Place::new(now, mode, Some(edge), x);
                 Err(Error::new(ErrorKind::Clock, place).noting(Some(why)))
             };
-            let look = Look { automaton, clocks, mode, place, source, start, instant };
+            let look = Look { automaton, clocks, mode, place, source, start, since, instant };
             let Some(time) = look.next(self, now).or_else(failed)? else { continue };
             // Of those within one instant the one listed first; so an earlier one must be earlier
             // by more.
-            if first.as_ref().is_none_or(|first| time < first.tick.time - instant) {
+            if first.as_ref().is_none_or(|first| time < first.tick.time - grace(first.tick.time, since)) {
                 let tick = Tick { mode, place, time };
                 first = Some(Due { edge, time: Time::new(time), tick });
                 if time <= now {
@@ -119,7 +121,7 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
                 }
             }
         }
-        let grace = grace(end, start);
+        let grace = grace(end, since);
         let Some(due) = first.filter(|due| due.tick.time <= end + grace) else { return Ok(None) };
         // At an instant at which one was taken already, time stands.
         let at_once = due.tick.time <= now || self.instant == Some(now) && due.tick.time <= now + instant;
@@ -136,6 +138,7 @@ struct Look<'a, A: Automaton> {
     place: usize,
     source: Source<'a>,
     start: f64,
+    since: f64,
     instant: f64,
 }
 
@@ -147,7 +150,7 @@ impl<A: Automaton> Look<'_, A> {
         }
         let mut from = now - self.instant;
         if !self.source.starts() {
-            from = from.max((self.start + grace(self.start, self.start)).next_up());
+            from = from.max((self.start + grace(self.start, self.since)).next_up());
         }
         let earlier = if ticks.taken.is_empty() { 0 } else { self.equal_before() };
         loop {
@@ -186,7 +189,7 @@ impl<A: Automaton> Look<'_, A> {
         let Source::Clock(clock) = self.source else { return Ok(time) };
         let Some((period, phase)) = clock.period() else { return Ok(time) };
         let largest = from.abs().max(phase);
-        if period > 2.0 * grace(largest, self.start) {
+        if period > 2.0 * grace(largest, self.since) {
             return Ok(time);
         }
         let spacing = resolution(largest);

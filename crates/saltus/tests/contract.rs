@@ -3,7 +3,8 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use saltus::{About, Automaton, Edges, ErrorKind, Hybrid, Limit, Refusal, Simulation, Solution, Stop};
+use proptest::prelude::*;
+use saltus::{About, Automaton, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Signal, Simulation, Solution, Stop};
 
 /// A rising line with a mark at each integer, watched by as many edges, listed in one of three
 /// ways.
@@ -364,5 +365,63 @@ fn names_made_as_a_program_runs() {
         // A name written down is the same one.
         assert_eq!(Simulation::of(&ring).run("room 0", 0.0, 0.0..40.5).unwrap().end.mode, run.end.mode);
         assert_eq!(ring.name("room 99"), None);
+    }
+}
+
+/// A guard that is promised affine and reads the time, or bends, is an error that names it; one
+/// whose constants are of any size is believed.
+#[test]
+fn a_promise_that_does_not_hold() {
+    let keep = |_t: f64, x: &[f64; 2]| *x;
+    let room = |flow: f64| move |_t: f64, x: &[f64; 2]| [flow - 0.1 * x[0], 0.0];
+    let thermostat = Hybrid::new()
+        .mode("off", room(0.0))
+        .mode("on", room(5.0))
+        .edge("off", "on", |t, x| x[0] - 19.0 - (0.5 * t).sin(), keep)
+        .affine()
+        .edge("on", "off", |_t, x| 21.0 - x[0], keep)
+        .affine();
+    let error = Simulation::of(&thermostat).run("off", [21.0, 0.0], 0.0..48.0).unwrap_err().error;
+    assert_eq!(error.kind(), ErrorKind::Promise);
+    assert!(error.to_string().starts_with(
+        "the guard of edge off -> on (edge 0) is promised affine and changes with time while the state stands still"
+    ));
+    for guard in [|x: f64| 0.9 - (20.0 * x).sin(), |x: f64| 5.0 - x * x, |x: f64| 4.0 - x.abs().sqrt()] {
+        let model = Hybrid::new()
+            .mode("on", |_t, _x: &[f64; 2]| [1.0, 0.0])
+            .edge("on", "on", move |_t, x| guard(x[0]), keep)
+            .affine()
+            .entry(Entry::Wait);
+        let error = Simulation::of(&model).run("on", [0.0, 0.0], 0.0..1.0).unwrap_err().error;
+        assert_eq!(error.kind(), ErrorKind::Promise);
+    }
+    // Held between stops, a threshold is a constant there.
+    let limit = Signal::held([(0.0, 2.0), (1.0, 1.5), (2.0, 0.75)]).unwrap();
+    let held = Hybrid::new()
+        .stops_everywhere(limit.stops())
+        .mode("on", |_t, _x: &[f64; 2]| [0.4, 0.0])
+        .mode("off", |_t, _x| [0.0, 0.0])
+        .edge("on", "off", |t, x| limit.at(t) - x[0], keep)
+        .affine();
+    let run = Simulation::of(&held).run("on", [0.0, 0.0], 0.0..3.0).unwrap();
+    assert_eq!(run.trajectory.jumps()[0].t(), 2.0);
+}
+
+proptest! {
+    #[test]
+    fn an_affine_guard_is_believed(
+        (a, b) in ([-1e6..1e6_f64, -1e3..1e3], -1e9..1e9_f64),
+        x in [-1e4..1e4_f64, -1e4..1e4],
+        v in [-1e3..1e3_f64, -1e3..1e3],
+        powers in [-9..9_i32, -9..9],
+    ) {
+        let scale = powers.map(|power| 10_f64.powi(power));
+        let model = Hybrid::new()
+            .mode("on", move |_t, _x: &[f64; 2]| [v[0] * scale[0], v[1] * scale[1]])
+            .edge("on", "on", move |_t, x| a[0] / scale[0] * x[0] + a[1] / scale[1] * x[1] + b, |_t, x| *x)
+            .affine()
+            .entry(Entry::Wait);
+        let run = Simulation::of(&model).run("on", [x[0] * scale[0], x[1] * scale[1]], 0.0..10.0);
+        prop_assert!(run.is_ok(), "{:?}", run.err());
     }
 }

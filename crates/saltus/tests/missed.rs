@@ -1,11 +1,11 @@
-//! A crossing that a false promise of the model hides leaves a doubt: a guard is below zero where
-//! an arc ends.
+//! A crossing that a false promise of the model hides is an error, or leaves a doubt: a guard is
+//! below zero where an arc ends.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
 use saltus::cross::Doubt;
-use saltus::{About, Automaton, Edges, Entry, Error, Fall, Polynomial, Refusal, Simulation, Solution, Stop};
+use saltus::{About, Automaton, Edges, Entry, Error, ErrorKind, Fall, Polynomial, Refusal, Simulation, Solution, Stop};
 
 /// A point that moves at speed 1 towards a wall and, before it, through a line.
 struct Runner {
@@ -97,7 +97,12 @@ proptest! {
         let exact = exact || promise == Promise::Never;
         let wall = if ends { -10.0 } else { 0.5 * line } * unit;
         let runner = Runner { line: line * unit, wall, entry, exact, promise };
-        let (edge, doubts) = run(&runner, unit, (1.0 - 0.25 * line) * unit).unwrap();
+        let outcome = run(&runner, unit, (1.0 - 0.25 * line) * unit);
+        if promise == Promise::Affine {
+            prop_assert_eq!(outcome.unwrap_err().kind(), ErrorKind::Promise);
+            return Ok(());
+        }
+        let (edge, doubts) = outcome.unwrap();
         prop_assert_eq!(edge, if ends { None } else { Some(To::Wall) });
         let missed: Vec<_> = doubts.iter().filter(|it| it.1 == Doubt::Missed).collect();
         prop_assert!(missed.len() == 1 && missed[0].0 == To::Line, "{:?}", doubts);

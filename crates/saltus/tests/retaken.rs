@@ -112,3 +112,35 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    /// An edge that changes nothing and goes on falling is refused, wherever the span ends, unless
+    /// it waits; then each passage counts.
+    #[test]
+    fn a_guard_that_falls_on_is_refused_wherever_the_span_ends(
+        phase in -1.4..1.4_f64, turns in 0.3..20.0_f64, digits in 5.5..13.0_f64, power in -6..6_i32, affine: bool, waits: bool,
+        method in 0..3_usize,
+    ) {
+        let rate = 10_f64.powi(power);
+        let model = Hybrid::new()
+            .mode("swing", move |_t, x: &[f64; 2]| [x[1] * rate, -x[0] * rate])
+            .edge("swing", "swing", |_t, x| x[0], |_t, x| *x);
+        let model = if affine { model.affine() } else { model };
+        let model = if waits { model.entry(Entry::Wait) } else { model };
+        let (start, end) = ([phase.cos(), -phase.sin()], turns * std::f64::consts::TAU / rate);
+        let simulation = Simulation::of(&model).tolerance(10_f64.powf(-digits));
+        let run = match method {
+            0 => simulation.run("swing", start, 0.0..end).map(|run| run.end.jumps),
+            1 => simulation.stepper(Rodas5P).run("swing", start, 0.0..end).map(|run| run.end.jumps),
+            _ => simulation.stepper(Tsit5).run("swing", start, 0.0..end).map(|run| run.end.jumps),
+        };
+        // At angles of 1/4, 5/4, 9/4 turns; away from where the span ends at one.
+        let passed = turns - (std::f64::consts::FRAC_PI_2 - phase) / std::f64::consts::TAU;
+        prop_assume!((passed - passed.round()).abs() > 1e-2);
+        if passed < 0.0 || waits {
+            prop_assert_eq!(run.unwrap(), passed.floor().max(-1.0) as usize + usize::from(passed > 0.0));
+        } else {
+            prop_assert_eq!(run.unwrap_err().error.kind(), ErrorKind::Entry);
+        }
+    }
+}

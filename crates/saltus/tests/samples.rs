@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, Simulation};
+use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, SamplingError, Simulation};
 
 type Rows = Vec<Sample<&'static str, f64>>;
 
@@ -27,13 +27,16 @@ proptest! {
         let mut sampler = Sampler::every(dt);
         Simulation::of(&model).drive("rise", 0.0, from..end, &mut sampler).unwrap();
         let rows: Rows = sampler.rows().collect();
-        prop_assert_eq!(&rows, &run.trajectory.sampled(dt).rows().collect::<Rows>());
+        prop_assert_eq!(&rows, &run.trajectory.sampled(dt).unwrap().rows().collect::<Rows>());
         prop_assert!(rows.windows(2).all(|pair| (pair[0].t, pair[0].j) < (pair[1].t, pair[1].j)));
         for row in &rows {
             let limits = [run.trajectory.at(row.t).unwrap(), run.trajectory.before(row.t).unwrap()];
             let among = run.trajectory.jumps().iter().filter(|jump| jump.t() == row.t).flat_map(|jump| [jump.before, jump.after]);
             prop_assert!(limits.into_iter().chain(among).any(|x| (x - row.state).abs() < 1e-12), "{:?}", row);
         }
+        let regular: Vec<f64> = run.trajectory.sampled(dt).unwrap().without_jumps().rows().map(|row| row.t).collect();
+        let ticks = (0..).map(|k| f64::from(k).mul_add(dt, from)).take_while(|&t| t <= end);
+        prop_assert!(regular.iter().copied().eq(ticks), "{:?}", regular);
         for k in 0.. {
             let t = f64::from(k).mul_add(dt, from);
             if t > end {
@@ -109,15 +112,27 @@ fn jumps_of_modes_that_differ() {
 fn tables_of_odd_runs() {
     let model = saw(1.0, 0.75);
     let rows = |dt: f64, span: std::ops::Range<f64>| -> usize {
-        Simulation::of(&model).most_jumps(10).run("rise", 0.0, span).unwrap().trajectory.sampled(dt).rows().count()
+        Simulation::of(&model)
+            .most_jumps(10)
+            .run("rise", 0.0, span)
+            .unwrap()
+            .trajectory
+            .sampled(dt)
+            .unwrap()
+            .rows()
+            .count()
     };
     assert_eq!(rows(0.1, 2.0..2.0), 1);
+    assert_eq!(rows(1e300, 0.1..0.7), 2);
+    let run = Simulation::of(&model).run("rise", 0.0, 0.1..0.7).unwrap();
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(rows(dt, 0.1..0.7), 2);
+        assert!(matches!(run.trajectory.sampled(dt), Err(SamplingError::Interval { .. })));
     }
+    // More rows than a table keeps are not cut off.
+    assert_eq!(run.trajectory.sampled(1e-8).unwrap_err(), SamplingError::Rows { dt: 1e-8 });
     let rest = Hybrid::new().mode("rest", |_t, _x: &f64| 0.0);
     let run = Simulation::of(&rest).run("rest", 1.0, 0.0..f64::INFINITY).unwrap();
-    assert!(run.trajectory.sampled(0.5).rows().count() < 10_000_100);
+    assert_eq!(run.trajectory.sampled(0.5).unwrap_err(), SamplingError::Rows { dt: 0.5 });
 }
 
 /// Headings and cells with commas and quotes are quoted.
@@ -125,10 +140,10 @@ fn tables_of_odd_runs() {
 fn a_table_is_csv() {
     let model = Hybrid::new().mode("a, \"b\"", |_t, _x: &[f64; 2]| [1.0, 0.0]);
     let run = Simulation::of(&model).run("a, \"b\"", [0.0, 1e-300], 0.0..1.0).unwrap();
-    let text = run.trajectory.sampled(1.0).to_string();
+    let text = run.trajectory.sampled(1.0).unwrap().to_string();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "t (s),j,mode,x0,x1");
     assert_eq!(lines[1], "0.0,0,\"a, \"\"b\"\"\",0.0,1e-300");
-    let named = run.trajectory.sampled(1.0).named(["a, b (m)"]).to_string();
+    let named = run.trajectory.sampled(1.0).unwrap().named(["a, b (m)"]).to_string();
     assert!(named.starts_with("t (s),j,mode,\"a, b (m)\",x1\n"), "{named}");
 }

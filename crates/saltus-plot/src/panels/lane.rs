@@ -19,6 +19,8 @@ const MOST_MODES: usize = 12;
 const LETTERS: usize = 16;
 /// Stays nearer to each other than this, in px, are drawn as one.
 const ONE: f64 = 0.3;
+/// A stay is drawn at least as long as this, in px: however short, it is seen.
+const LEAST: f64 = 1.0;
 
 /// The rows, before they are drawn.
 #[derive(Debug)]
@@ -80,6 +82,8 @@ impl<'a> Lane<'a> {
             let half = 0.16 * b / rows;
             let at = 1.0 - (row as f64 + 0.5) / self.modes.len() as f64;
             let bar = |(from, to): (f64, f64)| {
+                let more = 0.5 * (LEAST / x.scale.abs() - (to - from)).max(0.0);
+                let (from, to) = (from - more, to + more);
                 let corners = [(from / frame.second, at - half), (to / frame.second, at + half)];
                 Rectangle::new(corners, Ink::Text.wash(0.7))
             };

@@ -86,7 +86,7 @@ impl Pen {
         if lines > NAMES {
             return Self { ink: Ink::Series(0), dash: Dash::Solid, width: ty.hairline(), alpha: 0.6 };
         }
-        Self { ink: Ink::series(line), dash: Dash::series(line), width: ty.line(), alpha: 1.0 }
+        Self { ink: Ink::series(line), dash: Dash::steep(line), width: ty.line(), alpha: 1.0 }
     }
 }
 

@@ -79,6 +79,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, mut evidence, turn } =
                 searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
+            if start == Start::Spent && fall.is_none() {
+                self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
+            }
             if let Some(observer) = &mut observer {
                 let grazing = match (fall, turn.or(turn_of_powers)) {
                     (Some(crossing), _) => {

@@ -7,6 +7,7 @@ mod enter;
 mod exact;
 mod grazing;
 mod noise;
+mod promises;
 mod series;
 mod smooth;
 mod solved;
@@ -124,6 +125,8 @@ pub(crate) struct Memory<E, S> {
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard
     /// spoils their duration.
     hidden: u32,
+    /// How many arcs there were.
+    arcs: u64,
     /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
     /// step.
     resolved: bool,
@@ -154,6 +157,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
+            arcs: 0,
             resolved: false,
             switched: Switched::none(),
             spurious: false,
@@ -365,6 +369,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         let end = end?;
         self.stayed_inside(mode, x, now, &end, observer)?;
+        self.promises(mode, x, now, &end)?;
         match end {
             ArcEnd::Stop { stop: Stop::Time, state, .. } => {
                 Ok(ArcEnd::Stop { stop: Stop::Time, time: clock.end, state })
@@ -413,15 +418,33 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.clear_of_zero(edge, time, state) == 0.0 {
             return Ok(());
         }
+        self.stays_in(mode, edge, (began, x), (time, state))?;
         let entry = self.automaton.about(edge).entry;
-        if self.memory.just_took(edge) && entry == Entry::Refuse {
-            let place = Place::new(began.seconds(), mode, Some(edge), x);
-            return Err(Error::new(ErrorKind::Entry, place).noting(Some(FELL_ON.to_owned())));
-        }
         if entry != Entry::Wait || self.clear_of_zero(edge, began, x) > 0.0 {
             let span = time.since(began);
             let evidence = Evidence::doubtful(Doubt::Missed, 0.0, span);
             observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
+        }
+        Ok(())
+    }
+
+    /// Whether an edge just taken, on an arc from `x` on which it has not fallen again up to
+    /// `state`, is inside there: if not it went on falling, which is a negative guard at entry.
+    #[cold]
+    #[inline(never)]
+    fn stays_in(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        (began, x): (Time, &A::State),
+        (time, state): (Time, &A::State),
+    ) -> Result<(), Error> {
+        if self.memory.just_took(edge) && self.automaton.about(edge).entry == Entry::Refuse {
+            self.memory.stats.guards += 1;
+            if self.clear_of_zero(edge, time, state) < 0.0 {
+                let place = Place::new(began.seconds(), mode, Some(edge), x);
+                return Err(Error::new(ErrorKind::Entry, place).noting(Some(FELL_ON.to_owned())));
+            }
         }
         Ok(())
     }

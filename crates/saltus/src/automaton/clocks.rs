@@ -221,6 +221,12 @@ impl Clock {
         }
     }
 
+    /// How long before the time zero it began to count: its ticks soon after that have the rounding
+    /// of this.
+    pub(crate) fn behind(&self) -> f64 {
+        if let Times::Every { phase: Some(phase), .. } = self.times { (-phase).max(0.0) } else { 0.0 }
+    }
+
     /// The first tick at `from` or later, where that follows without asking; or whom to ask.
     fn next(&self, from: f64) -> Result<Option<f64>, &Function> {
         match &self.times {
@@ -431,6 +437,11 @@ impl Source<'_> {
             (Self::Asked(a), Source::Asked(b)) => std::ptr::addr_eq(*a, *b),
             _ => false,
         }
+    }
+
+    /// See [`Clock::behind`].
+    pub(crate) fn behind(&self) -> f64 {
+        if let Self::Clock(clock) = self { clock.behind() } else { 0.0 }
     }
 
     /// Whether it ticks at the very start of a run.

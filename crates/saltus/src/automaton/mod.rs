@@ -192,11 +192,14 @@ impl About {
         Self { entry, ..self }
     }
 
-    /// Promises that the guard is g(t, x) = a·x + b with constants a and b.
+    /// Promises that the guard is g(t, x) = a·x + b with constants a and b: it does not read the
+    /// time.
     ///
     /// The guard along a step is then a polynomial without error, and a crossing costs next to
-    /// nothing to exclude. A promise that does not hold breaks the guarantee that no crossing is
-    /// missed.
+    /// nothing to exclude. A promise that does not hold is an error
+    /// ([`ErrorKind::Promise`](crate::ErrorKind::Promise)) where the ends of an arc show it, which
+    /// are looked at on the first eight arcs and ever more seldom later; where they do not show it,
+    /// crossings may be missed.
     #[must_use]
     #[inline]
     pub const fn affine(self) -> Self {

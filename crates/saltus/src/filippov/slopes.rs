@@ -43,8 +43,8 @@ impl fmt::Display for Untrue {
 /// The first derivative of the surface at (t, x) that its differences contradict.
 ///
 /// Only what is sure counts: differences to both sides agree with each other over three steps in a
-/// row, and with the derivative over no two. A kink, a leap or a rounding hides what they show, and is
-/// believed.
+/// row, and with the derivative over no two. A kink, a leap or a rounding hides what they show, and
+/// is believed.
 pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> Option<Untrue> {
     let moved = |i: usize, by: f64| x.with(|j| if j == i { x.get(j) + by } else { x.get(j) });
     let rate = system.surface_rate(t, x);

@@ -78,7 +78,8 @@ impl<'a, S: State> Edge<'a, S> {
         self
     }
 
-    /// Promises that the guard is affine in the state; see [`About::affine`].
+    /// Promises that the guard is a·x + b with constants a and b, and does not read the time; see
+    /// [`About::affine`].
     #[must_use]
     pub fn affine(mut self) -> Self {
         self.about = self.about.affine();

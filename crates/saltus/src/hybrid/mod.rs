@@ -1,10 +1,12 @@
 //! An automaton put together from closures.
 
 mod edge;
+mod link;
 mod model;
 mod names;
 
 pub use edge::Edge;
+pub use link::Link;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -68,8 +70,9 @@ pub struct Hybrid<'a, S> {
     everywhere: Vec<Clock>,
     /// The mode of the edge declared last.
     last: Option<&'static str>,
-    /// The first method that was to say something of the last edge before there was one.
-    early: Option<&'static str>,
+    /// The first method that was to say something of an edge declared last that has no guard, or
+    /// before there was one.
+    misplaced: Option<&'static str>,
     /// The method that was called twice for a mode, and the mode.
     twice: Option<(&'static str, &'static str)>,
     /// What is wrong with it as a whole, once it was asked.
@@ -90,48 +93,6 @@ struct Mode<'a, S> {
     stops: Vec<Clock>,
 }
 
-/// Names an edge of a [`Hybrid`]: the modes it joins, and which of the edges out of the first it
-/// is.
-///
-/// ```
-/// use saltus::Link;
-/// let link = Link { from: "flight", to: "rest", place: 1 };
-/// assert_eq!(format!("{link:?}"), "flight -> rest (edge 1)");
-/// ```
-///
-/// With the feature `serde` it is read from text that lasts as long as the program: see
-/// [`Checkpoint`](crate::Checkpoint).
-#[derive(Clone, Copy, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Link {
-    /// The mode it leaves.
-    pub from: &'static str,
-    /// The mode it leads to.
-    pub to: &'static str,
-    /// Its place among the edges out of `from`, in the order in which they were declared.
-    pub place: usize,
-}
-
-impl PartialEq for Link {
-    #[inline]
-    fn eq(&self, other: &Self) -> bool {
-        self.place == other.place && same(self.from, other.from) && same(self.to, other.to)
-    }
-}
-
-/// Whether two names are one; mostly they lie in one place, and to compare letters takes longer
-/// than many a guard.
-#[inline]
-fn same(name: &str, other: &str) -> bool {
-    std::ptr::eq(name, other) || name == other
-}
-
-impl fmt::Debug for Link {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} -> {} (edge {})", self.from, self.to, self.place)
-    }
-}
-
 impl<S> Default for Hybrid<'_, S> {
     fn default() -> Self {
         Self {
@@ -139,7 +100,7 @@ impl<S> Default for Hybrid<'_, S> {
             stopped: false,
             everywhere: Vec::new(),
             last: None,
-            early: None,
+            misplaced: None,
             twice: None,
             flaw: OnceLock::new(),
         }
@@ -242,6 +203,29 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.edge_with(from, to, Edge::new(guard, reset))
     }
 
+    /// Declares an [`edge`](Self::edge) that keeps the state: only the mode changes.
+    ///
+    /// ```
+    /// use saltus::{Hybrid, Simulation};
+    /// let thermostat = Hybrid::new()
+    ///     .mode("heating", |_t, x: &f64| 30.0 - x)
+    ///     .mode("cooling", |_t, x| 10.0 - x)
+    ///     .switch("heating", "cooling", |_t, x| 22.0 - x)
+    ///     .switch("cooling", "heating", |_t, x| x - 20.0);
+    /// let run = Simulation::of(&thermostat).run("heating", 20.0, 0.0..2.0)?;
+    /// assert!((run.trajectory.jumps()[0].after - 22.0).abs() < 1e-12);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn switch(
+        self,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
+        guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
+    ) -> Self {
+        self.edge(from, to, guard, |_t, x| *x)
+    }
+
     /// Declares an edge that was put together before, or whose reset may fail: see [`Edge`].
     #[must_use]
     pub fn edge_with(
@@ -284,6 +268,26 @@ impl<'a, S: State> Hybrid<'a, S> {
         mode.clocks.push((clock, Link { from, to, place }));
         self.last = Some(from);
         self
+    }
+
+    /// Declares an edge that a [`clock`](Self::clock) takes and that keeps the state: only the mode
+    /// changes.
+    ///
+    /// ```
+    /// use saltus::{Clock, Hybrid, Simulation};
+    /// // On for 0.3 of each second.
+    /// let lamp = Hybrid::new()
+    ///     .mode("on", |_t, _x: &f64| 1.0)
+    ///     .mode("off", |_t, _x| 0.0)
+    ///     .switch_at("off", "on", Clock::every(1.0))
+    ///     .switch_at("on", "off", Clock::every(1.0).after(0.3));
+    /// let run = Simulation::of(&lamp).run("on", 0.0, 0.0..10.0)?;
+    /// assert!((run.end.state - 3.0).abs() < 1e-12);
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    pub fn switch_at(self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>, clock: Clock) -> Self {
+        self.clock(from, to, clock, |_t, x| *x)
     }
 
     /// Says when the flow of a mode is not smooth in time: a step ends at each of these times, and
@@ -432,12 +436,12 @@ impl<'a, S: State> Hybrid<'a, S> {
         &mut self.modes[index]
     }
 
-    /// What a `method` says of the edge declared last.
+    /// What a `method` says of the guard, or of the inverse, of the edge declared last.
     fn of_last(mut self, method: &'static str, about: impl FnOnce(Edge<'a, S>) -> Edge<'a, S>) -> Self {
         let last = self.last.and_then(|name| self.modes.iter_mut().find(|mode| mode.name == name));
-        match last.and_then(|mode| mode.edges.pop().map(|edge| (mode, edge))) {
+        match last.and_then(|mode| mode.edges.pop_if(|(_, edge)| edge.guard.is_some()).map(|edge| (mode, edge))) {
             Some((mode, (to, edge))) => mode.edges.push((to, about(edge))),
-            None => self.early = self.early.or(Some(method)),
+            None => self.misplaced = self.misplaced.or(Some(method)),
         }
         self
     }
@@ -448,7 +452,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         mode.edges.iter().enumerate().map(move |(place, (to, edge))| (Link { from, to, place }, edge))
     }
 
-    /// Looks for the very name first, which is what a run mostly has; see [`same`].
+    /// Looks for the very name first, which is what a run mostly has, as a link's names do.
     #[inline]
     fn find(&self, name: &str) -> Option<&Mode<'a, S>> {
         let same = self.modes.iter().find(|mode| std::ptr::eq(mode.name, name));

@@ -17,7 +17,9 @@ impl<S: State> Hybrid<'_, S> {
     pub(super) fn declare(&self, name: &str) -> String {
         let declared = self.modes.iter().map(|mode| mode.name).filter(|name| self.declares(name));
         let near = declared.map(|other| (distance(name, other), other)).min_by_key(|near| near.0);
-        let most = (name.chars().count() / 3).max(1);
+        let letters = name.chars().count();
+        // Of a name of one letter nothing would be left that is alike.
+        let most = (letters / 3).max(1).min(letters.saturating_sub(1));
         match near.filter(|near| near.0 <= most) {
             Some((_, other)) => format!("did you mean {other:?}? If not, declare it with Hybrid::mode"),
             None => "declare it with Hybrid::mode".into(),
@@ -54,9 +56,9 @@ impl<S: State> Hybrid<'_, S> {
                 return Some(format!("the clock of the stops in {name:?} {flaw}"));
             }
         }
-        let method = self.early?;
+        let method = self.misplaced?;
         Some(format!(
-            "Hybrid::{method} is about the edge declared last, and there is none yet: write it after its edge"
+            "Hybrid::{method} is about the edge declared last, and there is none with a guard: write it at once after its edge"
         ))
     }
 }

@@ -47,7 +47,8 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 ///
 #[cfg_attr(feature = "derive", doc = "```")]
 #[cfg_attr(not(feature = "derive"), doc = "```ignore")]
-/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Refusal, Sensitive, Simulation, State, Wrt};
+/// use saltus::{Automaton, Edges, Lift, Linearize, Number, Refusal};
+/// use saltus::{Sensitive, Simulation, State, Wrt};
 ///
 /// #[derive(Clone, Copy, Debug, State, Lift)]
 /// struct Swing<D = f64> {
@@ -95,11 +96,12 @@ impl<D: DualNum<Primitive = f64> + Copy> Number for D {}
 /// let by_damping = Sensitive::of(&clapper, [Wrt::Parameter(0)]);
 /// let start = by_damping.start(0.0, Swing { angle: 0.5, rate: 0.0 });
 /// let run = Simulation::of(&by_damping).run((), start, 0.0..10.0)?;
-/// let at = |damping| {
+/// let angle = |damping| {
 ///     let clapper = Clapper(Given { damping });
-///     Ok::<_, saltus::Error>(Simulation::of(&clapper).run((), start.x, 0.0..10.0)?.end.state.angle)
+///     let run = Simulation::of(&clapper).run((), start.x, 0.0..10.0)?;
+///     Ok::<_, saltus::Error>(run.end.state.angle)
 /// };
-/// let difference = (at(0.1001)? - at(0.0999)?) / 0.0002;
+/// let difference = (angle(0.1001)? - angle(0.0999)?) / 0.0002;
 /// assert!((run.end.state.columns[0].angle - difference).abs() < 1e-6);
 /// # Ok::<(), saltus::Error>(())
 /// ```

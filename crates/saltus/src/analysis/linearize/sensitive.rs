@@ -318,6 +318,11 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         if let Some(p) = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
             return Err(format!("there is no parameter {p}: the model has {count}, counted from 0"));
         }
+        let coordinates = x.x.len();
+        let initial = self.wrt.iter().filter_map(|wrt| if let Wrt::Initial(i) = wrt { Some(*i) } else { None });
+        if let Some(i) = initial.max().filter(|&i| i >= coordinates && !x.is_finite()) {
+            return Err(format!("there is no initial coordinate {i}: the state has {coordinates}, counted from 0"));
+        }
         let by_parameter = (0..K).any(|k| self.parameter(k).is_some());
         if by_parameter && !self.automaton.stops(mode).is_empty() && !self.automaton.stops_stand(mode) {
             return Err(format!(

@@ -1,0 +1,70 @@
+//! Whether guards that are promised affine are.
+
+use crate::automaton::Automaton;
+use crate::error::{Error, ErrorKind, Place};
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+
+use super::noise::ROUNDINGS;
+use super::{Advance, ArcEnd};
+
+/// The first arcs of a run are all looked at: as many as modes follow each other in a cycle of most
+/// models. Later ones at ever longer intervals.
+const FIRST: u64 = 8;
+
+/// The parts of the states at both ends of an arc whose sum is looked at: neither on the line
+/// through the ends nor on that through zero.
+const PARTS: [f64; 2] = [0.37, 0.41];
+
+/// A sum of the guard's values may be off by this part of them: more than the digits that guards
+/// lose to cancellation, less than what bends.
+const OFF: f64 = 1e-6;
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// Looks, now and then, at the promises of the guards of `mode` on the arc from `x` to its
+    /// `end`. No part of the search, and so not counted.
+    #[inline]
+    pub(super) fn promises(&mut self, mode: A::Mode, x: &A::State, began: Time, end: &ArcEnd<A>) -> Result<(), Error> {
+        self.memory.arcs += 1;
+        if self.memory.arcs > FIRST && !self.memory.arcs.is_power_of_two() {
+            return Ok(());
+        }
+        let (ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. }) = end;
+        self.hold(mode, [began, *time].map(Time::seconds), [x, y])
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hold(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
+        for edge in self.automaton.edges(mode).iter() {
+            if !self.automaton.about(edge).affine {
+                continue;
+            }
+            if let Some(flaw) = self.broken(edge, times, ends) {
+                let place = Place::new(times[0], mode, Some(edge), ends[0]);
+                return Err(Error::new(ErrorKind::Promise, place).noting(Some(flaw.to_owned())));
+            }
+        }
+        Ok(())
+    }
+
+    /// Why the guard is not a·x + b, if it is not at combinations of two states and at two times.
+    fn broken(&mut self, edge: A::Edge, times: [f64; 2], [x, y]: [&A::State; 2]) -> Option<&'static str> {
+        let g = |time: f64, x: &A::State| self.guard(edge, time, x);
+        let [before, time] = times;
+        let zero = g(time, &y.with(|_| 0.0));
+        let [here, there] = [x, y].map(|x| g(time, x));
+        if (g(before, x) - here).abs() > 0.0 {
+            return Some("changes with time while the state stands still");
+        }
+        let [a, b] = PARTS;
+        let sum = zero + a * (here - zero) + b * (there - zero);
+        let off = g(time, &y.with(|i| a * x.get(i) + b * y.get(i))) - sum;
+        if off.abs() <= OFF * (zero.abs() + here.abs() + there.abs()) {
+            return None;
+        }
+        let rounding = self.guard_rounding(edge, time, x, here, x) + self.guard_rounding(edge, time, y, there, y);
+        (off.abs() > ROUNDINGS * rounding).then_some("bends")
+    }
+}
