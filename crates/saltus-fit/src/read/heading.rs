@@ -5,7 +5,7 @@ mod inside;
 
 use super::aside::Why;
 use super::units::{Dimension, Unit};
-use super::vocabulary::Atom;
+use super::vocabulary::{Atom, folded, narrow};
 use super::words::{Kind, Numbers, Word, numbers, split};
 pub(super) use inside::{DropHeight, release, released};
 
@@ -124,9 +124,10 @@ pub(super) struct Heading {
 impl Heading {
     /// Takes a heading apart.
     pub(super) fn parse(text: &str) -> Self {
-        let text = text.trim();
+        let (name, plain) = (text.trim(), narrow(text));
+        let text = plain.trim();
         let mut heading = Self {
-            text: text.to_owned(),
+            text: name.to_owned(),
             unit: None,
             spread: None,
             meaning: Meaning::Empty,
@@ -242,7 +243,12 @@ impl Heading {
             } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
             } else if !(argument && matches!(inside, "t" | "x")) {
-                left.push_str(inside);
+                // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
+                left.push_str(match inside {
+                    "h" | "H" if !left.trim().is_empty() => "height",
+                    "v" | "V" if !left.trim().is_empty() => "speed",
+                    inside => inside,
+                });
                 left.push(' ');
             }
         }
@@ -307,7 +313,10 @@ impl Heading {
             return Meaning::Aside(Why::Goal);
         }
         let intervals = has(Derived) && words.iter().any(|w| w.text == "delta") && has(Atom::Time);
-        if has(Derived) && !intervals {
+        // Of two bodies that meet: the speed of one as the other sees it, and no ratio.
+        let met = (has(Atom::Before) || has(Atom::After)) && has(Atom::Speed);
+        let relative = met && words.iter().all(|w| !w.is(Derived) || folded(&w.text).starts_with("relativ"));
+        if has(Derived) && !intervals && !relative {
             return Meaning::Aside(Why::Derived);
         }
         let setting = has(Group)

@@ -141,18 +141,52 @@ fn entries() -> impl Iterator<Item = (&'static str, std::str::Split<'static, cha
     lines.filter_map(|line| line.split_once('\t')).map(|(word, names)| (word, names.split(' ')))
 }
 
+/// The longest word that a text begins with, of a script that parts none by blanks.
+pub(super) fn first_word(text: &str) -> Option<&str> {
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8());
+    ends.filter(|&end| meanings(&text[..end]).is_some()).last().map(|end| &text[..end])
+}
+
+/// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are the
+/// plain ones.
+pub(super) fn narrow(text: &str) -> String {
+    let plain = |c: char| match c {
+        '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - u32::from('！') + u32::from('!')).unwrap_or(c),
+        '\u{3000}' => ' ',
+        '【' => '[',
+        '】' => ']',
+        c => c,
+    };
+    text.chars().map(plain).collect()
+}
+
+/// Whether a letter is of a script that parts no words by blanks.
+pub(super) fn unparted(c: char) -> bool {
+    matches!(c, '\u{3040}'..='\u{30ff}' | '\u{3400}'..='\u{9fff}')
+}
+
 /// A text in lower case, its accents and the marks of subscripts taken off: `Höhe h₁` is `hohe h1`.
 pub(super) fn folded(text: &str) -> String {
     let mut found = String::with_capacity(text.len());
     for c in text.chars().flat_map(char::to_lowercase) {
         match c {
-            'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' => found.push('a'),
-            'ç' => found.push('c'),
-            'è' | 'é' | 'ê' | 'ë' => found.push('e'),
-            'ì' | 'í' | 'î' | 'ï' => found.push('i'),
-            'ñ' => found.push('n'),
-            'ò' | 'ó' | 'ô' | 'õ' | 'ö' => found.push('o'),
-            'ù' | 'ú' | 'û' | 'ü' => found.push('u'),
+            'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' | 'ą' | 'ă' => found.push('a'),
+            'ç' | 'ć' | 'č' => found.push('c'),
+            'ď' => found.push('d'),
+            'è' | 'é' | 'ê' | 'ë' | 'ę' | 'ě' => found.push('e'),
+            'ğ' => found.push('g'),
+            'ì' | 'í' | 'î' | 'ï' | 'ı' => found.push('i'),
+            'ł' => found.push('l'),
+            'ñ' | 'ń' | 'ň' => found.push('n'),
+            'ò' | 'ó' | 'ô' | 'õ' | 'ö' | 'ø' | 'ő' => found.push('o'),
+            'ř' => found.push('r'),
+            'ś' | 'ş' | 'š' | 'ș' => found.push('s'),
+            'ť' | 'ţ' | 'ț' => found.push('t'),
+            'ù' | 'ú' | 'û' | 'ü' | 'ů' | 'ű' => found.push('u'),
+            'ý' => found.push('y'),
+            'ź' | 'ż' | 'ž' => found.push('z'),
+            'ё' => found.push('е'),
+            'æ' => found.push_str("ae"),
             'œ' => found.push_str("oe"),
             'ß' => found.push_str("ss"),
             // Accents by themselves, as some programs write them.

@@ -1,6 +1,6 @@
 //! The words of a heading, its letters and digits apart, and the numbers among them.
 
-use super::vocabulary::{Atom, folded, meanings};
+use super::vocabulary::{Atom, first_word, folded, meanings, unparted};
 
 /// A word of a heading.
 pub(super) struct Word {
@@ -99,13 +99,18 @@ pub(super) fn lettered(words: &mut [Word]) {
 /// The runs of letters and digits of a text, its signs as words.
 pub(super) fn pieces(text: &str) -> Vec<String> {
     let mut spelt = String::with_capacity(text.len());
-    for c in text.chars() {
+    let mut letters = text.chars().peekable();
+    while let Some(c) = letters.next() {
         match c {
             '√' => spelt.push_str(" root "),
             '²' | '³' => spelt.push_str(" squared "),
             'Δ' | '∆' => spelt.push_str(" delta "),
             'σ' | '±' => spelt.push_str(" error "),
-            'Ø' | 'ø' => spelt.push_str(" mean "),
+            'Ø' | 'ø'
+                if !spelt.ends_with(char::is_alphabetic) && !letters.peek().is_some_and(|c| c.is_alphabetic()) =>
+            {
+                spelt.push_str(" mean ");
+            }
             '#' | '№' => spelt.push_str(" number "),
             '%' => spelt.push_str(" percent "),
             '{' | '}' | '\u{a0}' => spelt.push(' '),
@@ -122,12 +127,26 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     let mut found: Vec<String> = spelt
         .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
         .filter(|piece| !piece.is_empty())
-        .map(str::to_owned)
+        .flat_map(parted)
         .collect();
     if parts > 1 {
         found.push("ratio".to_owned());
     }
     found
+}
+
+/// The words of a piece: of a script that parts none by blanks the longest that are known, and what
+/// is left of it.
+fn parted(piece: &str) -> Vec<String> {
+    let (mut words, mut rest) = (Vec::new(), piece);
+    while rest.contains(unparted) {
+        let plain = rest.find(unparted).filter(|&at| at > 0);
+        let end = plain.or(first_word(rest).map(str::len)).unwrap_or(rest.len());
+        words.push(rest[..end].to_owned());
+        rest = &rest[end..];
+    }
+    words.extend(Some(rest.to_owned()).filter(|rest| !rest.is_empty()));
+    words
 }
 
 /// `h1` as `h` and `1`.

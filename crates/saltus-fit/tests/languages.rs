@@ -1,0 +1,102 @@
+//! A table says the same in every language in which its headings are understood, with whatever
+//! commas its numbers are written.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+use proptest::prelude::*;
+use saltus_fit::{Fit, ReadOptions, Table};
+
+/// How the heights of release and of the rebound are called.
+const DROPS: [[&str; 2]; 20] = [
+    ["drop height", "bounce height"],
+    ["Fallhöhe", "Rücksprunghöhe"],
+    ["hauteur de chute", "hauteur du rebond"],
+    ["altura de caída", "altura de rebote"],
+    ["altura inicial", "altura do quique"],
+    ["altezza di caduta", "altezza di rimbalzo"],
+    ["valhoogte", "stuiterhoogte"],
+    ["fallhöjd", "studshöjd"],
+    ["faldhøjde", "tilbagespringshøjde"],
+    ["fallhøyde", "spretthøyde"],
+    ["pudotuskorkeus", "pomppukorkeus"],
+    ["wysokość upuszczenia", "wysokość odbicia"],
+    ["výška pádu", "výška odrazu"],
+    ["ejtési magasság", "visszapattanási magasság"],
+    ["düşme yüksekliği", "sıçrama yüksekliği"],
+    ["высота падения", "высота отскока"],
+    ["висота падіння", "висота відскоку"],
+    ["下落高度", "反弹高度"],
+    ["落下高さ", "はね返り高さ"],
+    ["drop [H]", "rebound [h]"],
+];
+
+/// How the number of a bounce and its height, or its time, are called.
+const SERIES: [[&str; 3]; 11] = [
+    ["bounce", "height", "time"],
+    ["Aufprall", "Höhe", "Zeit"],
+    ["rebond", "hauteur", "temps"],
+    ["bote", "altura", "tiempo"],
+    ["studs", "höjd", "tid"],
+    ["hop", "højde", "tid"],
+    ["odbicie", "wysokość", "czas"],
+    ["отскок", "высота", "время"],
+    ["удар", "высота", "время"],
+    ["次数", "高度", "时间"],
+    ["バウンド", "高さ", "時間"],
+];
+
+fn cor(text: &str) -> f64 {
+    let table = Table::parse("table.csv", text.as_bytes(), &ReadOptions::default())
+        .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let report = Fit::new().run(&table).unwrap();
+    report.cor().unwrap_or_else(|| panic!("{report}\n{text}")).value
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn drops_are_drops_in_every_language(
+        language in 0..DROPS.len(),
+        e in 0.4..0.92_f64,
+        highest in 80.0..200.0_f64,
+        rows in 3..7_usize,
+        wide in any::<bool>(),
+    ) {
+        let [drop, rebound] = DROPS[language];
+        let unit = if wide { "（ｃｍ）" } else { " (cm)" };
+        let mut text = format!("{drop}{unit};{rebound}{unit}\n");
+        for row in 0..rows {
+            let height = highest * (1.0 - 0.1 * row as f64);
+            text += &format!("{height:.1};{:.1}\n", height * e * e).replace('.', ",");
+        }
+        prop_assert!((cor(&text) - e).abs() < 4e-3, "{}", text);
+    }
+
+    #[test]
+    fn a_series_is_one_in_every_language(language in 0..SERIES.len(), e in 0.5..0.9_f64, timed in any::<bool>()) {
+        let [bounce, height, time] = SERIES[language];
+        let (mut h, mut t) = (1.5_f64, (2.0_f64 * 1.5 / 9.81).sqrt());
+        let mut text = if timed { format!("{bounce},{time} (s)\n") } else { format!("{bounce},{height} (cm)\n0,{:.1}\n", 100.0 * h) };
+        for k in 1..6 {
+            h *= e * e;
+            text += &if timed { format!("{k},{t:.4}\n") } else { format!("{k},{:.1}\n", 100.0 * h) };
+            t += 2.0 * (2.0 * h / 9.81).sqrt();
+        }
+        prop_assert!((cor(&text) - e).abs() < 1e-2, "{}", text);
+    }
+
+    /// Thousands parted by commas, in a table that separates cells by commas.
+    #[test]
+    fn commas_that_part_thousands(e in 0.5..0.8_f64, highest in 1600..3000_u32) {
+        let heights: Vec<u32> = (0..5).map(|k| (f64::from(highest) * e.powi(2 * k)).round() as u32).filter(|&h| h >= 100).collect();
+        prop_assume!(heights.iter().any(|&h| h < 1000));
+        let plain = |h: u32| h.to_string();
+        let parted = |h: u32| if h < 1000 { h.to_string() } else { format!("\"{},{:03}\"", h / 1000, h % 1000) };
+        let table = |write: &dyn Fn(u32) -> String| {
+            let rows = heights.iter().enumerate().map(|(k, &h)| format!("{k},{}\n", write(h)));
+            format!("bounce,height (mm)\n{}", rows.collect::<String>())
+        };
+        prop_assert_eq!(cor(&table(&plain)), cor(&table(&parted)));
+    }
+}
