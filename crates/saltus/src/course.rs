@@ -374,6 +374,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         }
         arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
+        arc.landed(edge, &before, (to, now, &after));
         at.recent.push(edge);
         at.contraction.push(if at_once { 0.0 } else { duration }, &after);
         let elapsed = time.since(at.span.start);
@@ -397,7 +398,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         // model's to say.
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
         if at.jumps >= options.most_jumps {
-            Next::Stop(Stop::Jumps { most: at.jumps })
+            Next::Stop(Stop::Jumps { most: options.most_jumps })
         } else if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
             Next::Limit { remaining: 0.0, certified: true }
         } else if at.cascade.jumps() >= options.longest_cascade {
@@ -418,7 +419,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         certified: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<Stop<A::Edge>>, Error> {
-        let Self { automaton, at, .. } = self;
+        let Self { automaton, options, at, .. } = self;
+        if at.jumps >= options.most_jumps {
+            return Ok(Some(Stop::Jumps { most: options.most_jumps }));
+        }
         let (mode, x) = (at.mode, at.state);
         if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
             return Ok(Some(Stop::Observer));
@@ -440,7 +444,11 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), Cascade::NONE);
         at.memory.beyond();
-        Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
+        Ok(if observer.jump(&jump).is_break() {
+            Some(Stop::Observer)
+        } else {
+            (at.jumps >= options.most_jumps).then_some(Stop::Jumps { most: options.most_jumps })
+        })
     }
 }
 

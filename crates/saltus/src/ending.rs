@@ -15,6 +15,8 @@ use crate::trajectory::Trajectory;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
     pub(crate) tolerance: Tolerance,
+    /// Whether the absolute one was given.
+    pub(crate) absolute: bool,
     pub(crate) first_step: Option<f64>,
     pub(crate) longest_step: f64,
     pub(crate) most_steps: u64,

@@ -101,7 +101,8 @@ pub enum ErrorKind {
     ClockDerivative,
     /// The flow has not as many coordinates as the state.
     Dimension,
-    /// The series of the flow is that of another one: it does not start with the flow's slope.
+    /// The series or exact solution is that of another flow: it does not start from the state with
+    /// the flow's slope.
     Series,
     /// The flow is not finite, however short the step.
     Flow,
@@ -218,7 +219,7 @@ fn on_the_way(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, c
             note.unwrap_or("?")
         ),
         ErrorKind::Series => f.write_str(
-            "the series does not start with the slope that the flow gives: write the same flow in Solution::Series and Automaton::flow",
+            "the series or exact solution does not start from the state with the slope that the flow gives: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid",
         ),
         ErrorKind::Flow => {
             let which = note.map_or(String::new(), |which| format!(" ({which})"));

@@ -9,7 +9,7 @@ use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::state::State;
-use crate::table::{MOST_ROWS, cell, heading, named, numbers};
+use crate::table::{MOST_ROWS, cell, clock_heading, heading, named, numbers};
 use crate::time::{Time, grace};
 use crate::trajectory::Trajectory;
 
@@ -63,6 +63,8 @@ pub struct Sampler<M, S> {
     /// The number of the next tick.
     next: u64,
     rows: Vec<Sample<M, S>>,
+    /// Whether an arc begins, whose first row is there already.
+    begun: bool,
     /// The end of the last piece, which may be that of its arc.
     end: Option<Sample<M, S>>,
     j: usize,
@@ -83,6 +85,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
             start: None,
             next: 1,
             rows: Vec::new(),
+            begun: false,
             end: None,
             j: 0,
             names: Vec::new(),
@@ -161,6 +164,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
     fn begin(&mut self, t: f64, mode: M, state: S) -> f64 {
         *self.start.get_or_insert_with(|| {
             self.rows.push(Sample { t, j: 0, mode, state });
+            self.begun = true;
             t
         })
     }
@@ -171,9 +175,10 @@ impl<M: Copy, S: State> Sampler<M, S> {
         let start = self.begin(from.seconds(), mode, piece.at(0.0));
         if self.dt > 0.0 && to.is_finite() {
             let instant = grace(to.abs().max(start.abs()));
-            while self.tick(start) <= from.seconds() + instant {
+            while self.begun && self.tick(start) <= from.seconds() + instant {
                 self.next += 1;
             }
+            self.begun = false;
             while self.tick(start) < to - instant && self.full().is_continue() {
                 let t = self.tick(start);
                 let state = piece.at(Time::new(t).since(from).clamp(0.0, piece.span()));
@@ -193,6 +198,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
         }
         self.j += 1;
         self.rows.push(Sample { t, j: self.j, mode: to.0, state: to.1 });
+        self.begun = true;
         self.full()
     }
 }
@@ -209,7 +215,7 @@ impl<A: Automaton> Observer<A> for SamplerOf<A> {
 impl<M: Copy + fmt::Debug, S: State> fmt::Display for Sampler<M, S> {
     /// As CSV. Of modes that differ in dimension a row has as many numbers as its state.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{},j,mode", cell(&format!("t ({})", self.time)))?;
+        write!(f, "{},j,mode", clock_heading(&self.time))?;
         if let Some(widest) = self.rows().max_by_key(|row| row.state.len()) {
             for i in 0..widest.state.len() {
                 write!(f, ",{}", cell(&heading(&self.names, &widest.state, i, "")))?;

@@ -114,6 +114,7 @@ impl<'a, A: Automaton> Simulation<'a, A> {
     pub const fn of(automaton: &'a A) -> Self {
         let options = Options {
             tolerance: Tolerance { relative: 1e-9, absolute: 1e-12 },
+            absolute: false,
             first_step: None,
             longest_step: f64::INFINITY,
             most_steps: 100_000_000,
@@ -137,10 +138,11 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     }
 
     /// The local error allowed per step, relative to each coordinate, at least 1e-15 and below 1;
-    /// the absolute tolerance becomes a thousandth of it.
+    /// the absolute tolerance becomes a thousandth of it, unless it is given.
     #[must_use]
     pub const fn tolerance(mut self, relative: f64) -> Self {
-        self.options.tolerance = Tolerance { relative, absolute: relative * 1e-3 };
+        let absolute = if self.options.absolute { self.options.tolerance.absolute } else { relative * 1e-3 };
+        self.options.tolerance = Tolerance { relative, absolute };
         self
     }
 
@@ -148,6 +150,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     #[must_use]
     pub const fn absolute_tolerance(mut self, absolute: f64) -> Self {
         self.options.tolerance.absolute = absolute;
+        self.options.absolute = true;
         self
     }
 

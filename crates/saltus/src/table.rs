@@ -109,7 +109,7 @@ impl<M: fmt::Debug, E: fmt::Debug, S: State> fmt::Display for JumpTable<M, E, S>
     /// empty.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widest = [0, 1].map(|side| self.jumps.iter().map(|jump| limits(jump)[side]).max_by_key(|x| x.len()));
-        write!(f, "{},j,edge,from,to", cell(&format!("t ({})", self.time)))?;
+        write!(f, "{},j,edge,from,to", clock_heading(&self.time))?;
         for (state, side) in widest.iter().zip(["before", "after"]) {
             let Some(state) = state else { continue };
             for i in 0..state.len() {
@@ -160,6 +160,11 @@ impl<M: Copy, E: Copy, S: State> Trajectory<M, E, S> {
     pub fn jump_table(&self) -> JumpTable<M, E, S> {
         JumpTable { jumps: self.jumps().to_vec(), ..JumpTable::new() }
     }
+}
+
+/// The heading of times in this unit, which may be none.
+pub(crate) fn clock_heading(unit: &str) -> String {
+    if unit.is_empty() { "t".to_owned() } else { cell(&format!("t ({unit})")) }
 }
 
 /// The heading of coordinate `i`: as it is named, else by the state, with its unit in brackets;

@@ -425,3 +425,20 @@ proptest! {
         prop_assert!(run.is_ok(), "{:?}", run.err());
     }
 }
+
+/// An exact solution that starts elsewhere, or not with the flow, is refused.
+#[test]
+fn an_exact_solution_of_another_flow_is_refused() {
+    let fall = |wrong: usize| {
+        Hybrid::new().mode("flight", |_t, x: &[f64; 2]| [x[1], -9.81]).exact("flight", move |_t, x| match wrong {
+            0 => [*x, [x[1], -9.81], [-4.905, 0.0]].into(),
+            1 => [[0.0, x[1]], [x[1], -9.81], [-4.905, 0.0]].into(),
+            _ => [*x, [x[1], -19.62], [-9.81, 0.0]].into(),
+        })
+    };
+    let run = |wrong| Simulation::of(&fall(wrong)).run("flight", [1.0, 1.0], 0.0..1.0).map(|run| run.end.state);
+    assert!((run(0).unwrap()[0] + 2.905).abs() < 1e-12);
+    for wrong in [1, 2] {
+        assert_eq!(run(wrong).unwrap_err().error.kind(), ErrorKind::Series);
+    }
+}

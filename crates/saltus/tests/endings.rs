@@ -376,3 +376,20 @@ fn a_deadline_stops_every_run() {
         assert!(second.time > first.time && second.stop == Stop::Deadline { after });
     }
 }
+
+/// The limit on jumps holds where jumps accumulate, too: the jump beyond them is one.
+#[test]
+fn no_run_jumps_more_often_than_it_may() {
+    let ball = Hybrid::new()
+        .exact("flight", |_t, x: &[f64; 2]| [*x, [x[1], -9.81], [-4.905, 0.0]].into())
+        .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.5 * x[1]])
+        .affine()
+        .mode("rest", |_t, _x| [0.0, 0.0])
+        .beyond("flight", "rest", |_t, _x| [0.0, 0.0])
+        .clock("rest", "flight", Clock::every(10.0), |_t, _x| [0.0, 3.0]);
+    let all = Simulation::of(&ball).run("flight", [1.0, 0.0], 0.0..35.0).unwrap().end.jumps;
+    for most in 0..all {
+        let end = Simulation::of(&ball).most_jumps(most).run("flight", [1.0, 0.0], 0.0..35.0).unwrap().end;
+        assert_eq!((end.stop, end.jumps), (Stop::Jumps { most }, most));
+    }
+}

@@ -144,3 +144,24 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    /// A guard that leaps has no root that could be spent: it is taken again where it leaps again.
+    #[test]
+    fn a_guard_that_leaps_is_taken_each_time(
+        back in 0.1..3.0_f64, inside in -3..3_i32, outside in -3..3_i32, waits: bool, method in 0..3_usize,
+    ) {
+        let (inside, outside) = (10_f64.powi(inside), -(10_f64.powi(outside)));
+        let model = Hybrid::new()
+            .mode("rise", |_t, _x: &f64| 1.0)
+            .edge("rise", "rise", move |_t, x| if *x < 2.0 { inside } else { outside }, move |_t, _x| 2.0 - back);
+        let model = if waits { model.entry(Entry::Wait) } else { model };
+        let simulation = Simulation::of(&model);
+        let run = match method {
+            0 => simulation.run("rise", 2.0 - back, 0.0..9.5 * back),
+            1 => simulation.stepper(Rodas5P).run("rise", 2.0 - back, 0.0..9.5 * back),
+            _ => simulation.stepper(Tsit5).run("rise", 2.0 - back, 0.0..9.5 * back),
+        };
+        prop_assert_eq!(run.map(|run| run.end.jumps).map_err(|failed| failed.to_string()), Ok(9));
+    }
+}

@@ -147,3 +147,29 @@ fn a_table_is_csv() {
     let named = run.trajectory.sampled(1.0).unwrap().named(["a, b (m)"]).to_string();
     assert!(named.starts_with("t (s),j,mode,\"a, b (m)\",x1\n"), "{named}");
 }
+
+proptest! {
+    /// Where steps and stops end within an arc no row is lost.
+    #[test]
+    fn rows_at_the_ends_of_steps(
+        ticks in 1..40_u32, stops in 1..40_u32, step in prop::option::of(1..40_u32), unit in prop::sample::select(vec![0.1, 0.25, 1.0, 1e-3]),
+    ) {
+        let (dt, end) = (f64::from(ticks) * unit, 40.0 * unit);
+        let model = Hybrid::new()
+            .mode("decay", move |_t, x: &f64| -x / unit)
+            .stops("decay", Clock::every(f64::from(stops) * unit));
+        let simulation = Simulation::of(&model);
+        let simulation = step.map_or(simulation, |step| {
+            let step = f64::from(step) * unit;
+            simulation.longest_step(step).first_step(step)
+        });
+        let run = simulation.run("decay", 1.0, 0.0..end).unwrap();
+        let rows: Rows = run.trajectory.sampled(dt).unwrap().without_jumps().rows().collect();
+        let expected = (0..=40 / ticks).map(|k| f64::from(k) * dt);
+        prop_assert!(rows.iter().map(|row| row.t).eq(expected), "{:?}", rows);
+        prop_assert!(rows.iter().all(|row| (row.state - (-row.t / unit).exp()).abs() < 1e-6));
+        let mut sampler = Sampler::every(dt);
+        simulation.drive("decay", 1.0, 0.0..end, &mut sampler).unwrap();
+        prop_assert!(sampler.without_jumps().rows().eq(rows));
+    }
+}

@@ -113,6 +113,33 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
+    /// After the jump by `edge` from `before` to `after` in mode `to`: a guard that leapt there has
+    /// no root to be spent, unless the state has stayed where it leaps.
+    #[inline]
+    pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
+        if self.memory.slack > SMALL * size(before) {
+            self.has_leapt(edge, before, (to, t, after));
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn has_leapt(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
+        // A guard that is promised affine leaps nowhere.
+        if self.automaton.about(edge).affine || !self.has(to, edge) || !is_moved(before, after) {
+            return;
+        }
+        self.memory.stats.guards += 1;
+        let g = self.guard(edge, t, after);
+        if g > 0.0 {
+            let still = self.still(edge, t, after, g);
+            let slope = self.guard_slope(to, edge, t, after, g, still);
+            if g > SURELY * (slope.abs() * resolution(t) + still) {
+                self.memory.unspend(edge);
+            }
+        }
+    }
+
     /// Whether a guard that went on falling from its spent root, by no more than the rounding of
     /// what it falls by now, was driven on by a jump since: a ball that is squeezed between others
     /// and the floor until its rebounds are rounding, and struck again.
@@ -177,6 +204,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
     }
+}
+
+/// Whether a coordinate differs by more than roundings.
+fn is_moved<S: State>(x: &S, y: &S) -> bool {
+    x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > SMALL * x.get(i).abs())
 }
 
 /// The sum of a state's coordinates, all taken as positive.

@@ -1,12 +1,14 @@
-//! Whether guards that are promised affine are.
+//! Whether guards that are promised affine are, and exact solutions those of their flows.
 
 use crate::automaton::Automaton;
+use crate::automaton::solution::Solution;
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
 use super::noise::ROUNDINGS;
+use super::series::OTHER;
 use super::{Advance, ArcEnd};
 
 /// The first arcs of a run are all looked at: as many as modes follow each other in a cycle of most
@@ -31,7 +33,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(());
         }
         let (ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. }) = end;
+        if !self.options.stepped && !self.solves(mode, began.seconds(), x) {
+            return Err(Error::new(ErrorKind::Series, Place::new(began.seconds(), mode, None::<A::Edge>, x)));
+        }
         self.hold(mode, [began, *time].map(Time::seconds), [x, y])
+    }
+
+    /// Whether the exact solution from `x` starts there, and with the slope of the flow.
+    #[cold]
+    #[inline(never)]
+    fn solves(&self, mode: A::Mode, t: f64, x: &A::State) -> bool {
+        let flow = self.automaton.flow(mode, self.smooth.within(t), x);
+        let is = |one: &A::State, other: &A::State| {
+            let most = (0..other.len()).map(|i| other.get(i).abs()).fold(0.0, f64::max);
+            !other.is_finite() || (0..other.len()).all(|i| (one.get(i) - other.get(i)).abs() <= OTHER * most)
+        };
+        match self.automaton.solution(mode, t, x) {
+            Solution::Polynomial(solution) => {
+                let c = solution.coefficients();
+                is(&c[0], x) && c.get(1).map_or(is(&flow, &x.with(|_| 0.0)), |slope| is(slope, &flow))
+            }
+            Solution::Formula(formula) => is(&formula(self.automaton, mode, t, x, 0.0), x),
+            _ => true,
+        }
     }
 
     #[cold]

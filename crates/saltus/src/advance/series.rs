@@ -36,7 +36,7 @@ const SHORTER: f64 = 0.5;
 const MOST_HALVINGS: usize = 4;
 /// How much of a slope may be missing at the start of a series before it is taken for that of
 /// another flow.
-const OTHER: f64 = 1e-6;
+pub(super) const OTHER: f64 = 1e-6;
 /// How many of its natural times a step takes whose series ends.
 const LONGEST: f64 = 16.0;
 

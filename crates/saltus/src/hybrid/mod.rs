@@ -271,7 +271,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     }
 
     /// Declares an edge that a [`clock`](Self::clock) takes and that keeps the state: only the mode
-    /// changes.
+    /// changes. Clocks that tick together all take their edges: two modes that each leave for the
+    /// other at one instant are left and entered again.
     ///
     /// ```
     /// use saltus::{Clock, Hybrid, Simulation};
@@ -311,7 +312,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     }
 
     /// [`stops`](Self::stops) of every mode, those that are declared later as well: for an input
-    /// that all of them read.
+    /// that all of them read. Those of several inputs add up.
     ///
     /// ```
     /// use saltus::{Hybrid, Signal, Simulation};
