@@ -117,8 +117,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// no root to be spent, unless the state has stayed where it leaps.
     #[inline]
     pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
-        if self.memory.slack > SMALL * size(before) {
-            self.has_leapt(edge, before, (to, t, after));
+        if self.memory.slack > 0.0 && self.memory.slack > SMALL * size(before) {
+            let (before, after) = (*before, *after); // else both would be kept in memory
+            self.has_leapt(edge, &before, (to, t, &after));
         }
     }
 

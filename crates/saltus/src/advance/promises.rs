@@ -32,16 +32,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.arcs > FIRST && !self.memory.arcs.is_power_of_two() {
             return Ok(());
         }
-        let (ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. }) = end;
-        if !self.options.stepped && !self.solves(mode, began.seconds(), x) {
-            return Err(Error::new(ErrorKind::Series, Place::new(began.seconds(), mode, None::<A::Edge>, x)));
+        // Copies: what others refer to is kept in memory, and waited for.
+        let (x, &(ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. })) = (*x, end);
+        self.promised(mode, [began, time].map(Time::seconds), [&x, &y])
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn promised(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
+        let ([began, _], [x, _]) = (times, ends);
+        if !self.options.stepped && !self.solves(mode, began, x) {
+            return Err(Error::new(ErrorKind::Series, Place::new(began, mode, None::<A::Edge>, x)));
         }
-        self.hold(mode, [began, *time].map(Time::seconds), [x, y])
+        self.hold(mode, times, ends)
     }
 
     /// Whether the exact solution from `x` starts there, and with the slope of the flow.
-    #[cold]
-    #[inline(never)]
     fn solves(&self, mode: A::Mode, t: f64, x: &A::State) -> bool {
         let flow = self.automaton.flow(mode, self.smooth.within(t), x);
         let is = |one: &A::State, other: &A::State| {
@@ -58,8 +64,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    #[cold]
-    #[inline(never)]
     fn hold(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
         for edge in self.automaton.edges(mode).iter() {
             if !self.automaton.about(edge).affine {
