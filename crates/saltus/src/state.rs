@@ -17,6 +17,9 @@ use nalgebra::SVector;
 /// let x = [1.0, 2.0];
 /// assert_eq!(x.with(|i| 10.0 * x.get(i)), [10.0, 20.0]);
 /// ```
+#[diagnostic::on_unimplemented(
+    note = "with the feature `derive` of saltus, a struct of numbers is a state by `#[derive(State)]`"
+)]
 pub trait State: Copy + Debug {
     /// How many coordinates there are.
     fn len(&self) -> usize;

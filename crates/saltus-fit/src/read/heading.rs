@@ -7,7 +7,7 @@ use super::aside::Why;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded, narrow};
 use super::words::{Kind, Numbers, Word, numbers, split};
-pub(super) use inside::{DropHeight, release, released};
+pub(super) use inside::{DropHeight, Of, release, released};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -113,6 +113,8 @@ pub(super) struct Heading {
     pub(super) place: Option<i8>,
     /// It names the COR, worked out from other columns.
     pub(super) cor: bool,
+    /// What its numbers are parts of, if it names a ratio of heights and nothing else.
+    pub(super) share: Option<Of>,
     /// A height of release that it states.
     drop: Option<DropHeight>,
     /// The meanings of its words.
@@ -134,6 +136,7 @@ impl Heading {
             unknown: Vec::new(),
             place: None,
             cor: false,
+            share: None,
             drop: None,
             atoms: Vec::new(),
             labels: Vec::new(),
@@ -169,6 +172,7 @@ impl Heading {
                 heading.atoms.extend(atoms);
             }
         }
+        heading.share = inside::share(&bare, &words, before).filter(|_| heading.unknown.is_empty());
         heading.cor = inside::is_cor(&words) && !heading.turned();
         // `v_in` beside `v_out`.
         if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {

@@ -42,6 +42,7 @@ pub(super) struct Track {
     pub(super) before: Option<usize>,
     pub(super) after: Option<usize>,
     pub(super) lost: Option<usize>,
+    pub(super) share: Option<usize>,
     /// The height of release that the headings state, m.
     pub(super) drop: Option<f64>,
     /// Columns of numbered bounces.
@@ -51,8 +52,10 @@ pub(super) struct Track {
 impl Track {
     fn take(&mut self, index: usize, column: &Column) {
         let Some(value) = column.value() else {
-            if column.kind == Kind::Lost {
-                self.lost = Some(index);
+            match column.kind {
+                Kind::Lost => self.lost = Some(index),
+                Kind::Share => self.share = Some(index),
+                _ => {}
             }
             return;
         };
@@ -152,7 +155,7 @@ pub(super) fn layout(
     if any(|t| !t.nth.is_empty()) && !tracks.iter().all(rests) {
         return Ok(Layout::Wide);
     }
-    if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.total.is_some()) {
+    if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.share.is_some() || t.total.is_some()) {
         return Ok(Layout::Pairs);
     }
     let released = any(Track::released);

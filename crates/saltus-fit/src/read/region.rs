@@ -137,7 +137,8 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
             // Below a table a single word, or names without rows, are no header.
             let next = before.is_none()
                 || header.below < end && (0..view.width(header.below)).any(|c| view.is_number(header.below, c));
-            let values = header.score >= VALUE && next;
+            let least = if before.is_some() { VALUE } else { SHARE };
+            let values = header.score >= least && next;
             if values && best.as_ref().is_none_or(|b| header.score > b.score) {
                 best = Some(header);
             }
@@ -156,6 +157,8 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
 
 /// What a column of numbers adds to the score of a header; a column of names adds one.
 const VALUE: usize = 100;
+/// What a column of ratios of heights adds, which are read where nothing else is.
+const SHARE: usize = 50;
 
 /// The headers that may begin in a row: one line, or two.
 fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
@@ -281,6 +284,7 @@ fn score(names: &[String]) -> usize {
             Meaning::Value(_) => VALUE + usize::from(heading.unit.is_some()),
             // A frame tells a time.
             Meaning::Frame => VALUE,
+            Meaning::Aside(_) if heading.share.is_some() => SHARE,
             Meaning::Empty | Meaning::Aside(_) => 0,
             _ => 1,
         }

@@ -49,8 +49,8 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         let apart = line > last + 1 && !region.view.across;
         last = line;
         let numbers = used.iter().any(|&n| region.view.is_number(row, n) || region.view.read(row, n) == Cell::Lost);
-        let values =
-            columns.values().any(|(n, _, _)| region.view.is_number(row, n) || region.view.read(row, n) == Cell::Lost);
+        let read = || columns.values().map(|(n, _, _)| n).chain(columns.one(&Kind::Share));
+        let values = read().any(|n| region.view.is_number(row, n) || region.view.read(row, n) == Cell::Lost);
         let leave = |why: Why, what: Part| {
             let words: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
             LeftAside::new(what, shown(&words.join(" ")), why).at(line)
@@ -88,8 +88,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             _ => {}
         }
         let event = columns.one(&Kind::Event).is_some_and(|n| !region.cell(row, n).is_empty());
-        let held = columns.values().map(|(n, _, _)| n).chain(columns.one(&Kind::Frame));
-        let empty = held.into_iter().all(|n| region.cell(row, n).is_empty());
+        let empty = read().chain(columns.one(&Kind::Frame)).all(|n| region.cell(row, n).is_empty());
         if empty && !event {
             if used.iter().any(|&n| !region.cell(row, n).is_empty()) {
                 found.aside.push(leave(Why::Empty, Part::Row));

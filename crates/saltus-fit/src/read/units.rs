@@ -45,6 +45,8 @@ pub(super) enum Scale {
     Pixels,
     /// A hundredth of the height of release.
     Percent,
+    /// The height of release, of which its numbers are parts.
+    Whole,
 }
 
 /// A unit.
@@ -56,6 +58,7 @@ pub(super) struct Unit {
 
 impl Unit {
     pub(super) const SECOND: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: 1.0 } };
+    pub(super) const WHOLE: Self = Self { dimension: Dimension::Length, scale: Scale::Whole };
     pub(super) const PIXEL: Self = Self { dimension: Dimension::Length, scale: Scale::Pixels };
 
     /// One frame, in seconds.
@@ -79,7 +82,7 @@ impl Unit {
     pub(super) fn si(self, value: f64) -> f64 {
         match self.scale {
             Scale::Si { times, over } => value * times / over,
-            Scale::Pixels => value,
+            Scale::Pixels | Scale::Whole => value,
             Scale::Percent => value / 100.0,
         }
     }

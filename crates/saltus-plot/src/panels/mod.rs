@@ -23,8 +23,9 @@ const MOST_PANELS: usize = 12;
 /// Each coordinate has a panel; those of one list or vector (`arm[0]`, `arm[1]`, …) share one.
 /// Curves are the run's own polynomials, within a third of a px of it, however short a peak is. At
 /// a jump a curve breaks: a ring is the limit before, a dot the one after, where there is room for
-/// them. An upright line marks each jump, a dashed one a limit at which jumps accumulate. Of a run
-/// with several modes a lane at the foot shows which is when.
+/// them; a long leap is dashed in the curve's own ink. An upright line marks each jump, where there
+/// are no more than eighty, a dashed one a limit at which jumps accumulate. Of a run with several
+/// modes a lane at the foot shows which is when.
 ///
 /// Names and units are those of the state ([`State::name`], [`State::unit`]); units of the SI get
 /// prefixes where numbers would be long. The same input gives the same bytes.

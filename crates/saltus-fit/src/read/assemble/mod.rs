@@ -336,15 +336,16 @@ impl Builder<'_> {
 
 /// Heights in hundredths of the release: it is itself a hundred of them.
 fn percent(region: &Region<'_>, columns: &Columns, table: &mut Table) -> Result<(), TableError> {
-    let Some((index, column, _)) = columns.values().find(|(_, c, _)| c.unit.is_some_and(|u| u.scale == Scale::Percent))
-    else {
+    let part = |unit: Unit| matches!(unit.scale, Scale::Percent | Scale::Whole);
+    let Some((index, column, _)) = columns.values().find(|(_, c, _)| c.unit.is_some_and(part)) else {
         return Ok(());
     };
+    let of_release = column.unit == Some(Unit::WHOLE);
     for trial in &mut table.trials {
         let bounces: Vec<usize> = trial.readings.iter().map(|r| r.bounce).collect();
         match bounces.as_slice() {
             [0, ..] => {}
-            [1] => trial
+            [1, more @ ..] if more.is_empty() || of_release => trial
                 .readings
                 .insert(0, Reading { height: Some(1.0), ..Reading::new(Event::Release, 0, trial.readings[0].line) }),
             _ => {
@@ -389,7 +390,8 @@ fn describe(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) 
             }
         }
         Layout::Pairs => {
-            match (first.release.or(first.before), height.or(first.lost).or(first.interval).or(first.total)) {
+            let rebound = height.or(first.lost).or(first.share).or(first.interval).or(first.total);
+            match (first.release.or(first.before), rebound) {
                 (Some(a), Some(b)) => format!("drops, one a row: '{}' and '{}'", name(a), name(b)),
                 _ => "drops, one a row".to_owned(),
             }

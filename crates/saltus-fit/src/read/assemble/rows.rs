@@ -237,8 +237,11 @@ impl Builder<'_> {
 
     /// A drop and its rebound.
     pub(super) fn pair(&mut self, row: &Row, track: &Track) -> Result<(), TableError> {
-        let rebound = track.height.or(track.after).or(track.lost).or(track.interval).or(track.total);
+        let rebound = track.height.or(track.after).or(track.lost).or(track.share).or(track.interval).or(track.total);
         let before = track.release.or(track.before);
+        if let Some(share) = track.share.filter(|_| before.is_none() && track.drop.is_none()) {
+            return self.rebound(row, track, share, (1.0, None));
+        }
         if let Some((drop, rebound)) = track.drop.filter(|_| before.is_none()).zip(rebound) {
             return self.rebound(row, track, rebound, (drop, None));
         }
@@ -289,7 +292,10 @@ impl Builder<'_> {
             self.trials[trial].timed = Some(Timed { until_rest, time, sigma, line });
             return Ok(());
         }
-        let (mut height, sigma) = if Some(rebound) == track.lost {
+        let (mut height, sigma) = if Some(rebound) == track.share {
+            let (share, sigma) = self.required(row.at, rebound)?;
+            (share * drop, sigma.map(|sigma| sigma * drop))
+        } else if Some(rebound) == track.lost {
             let (lost, sigma) = self.required(row.at, rebound)?;
             // Hundredths of the height of release.
             let percent = self.region.view.read(row.at, rebound);

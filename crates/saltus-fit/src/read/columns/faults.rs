@@ -108,7 +108,8 @@ impl Columns {
             }
             self.leave(index, Why::NotUnderstood);
         }
-        if self.values().next().is_none() && self.one(&Kind::Frame).is_none() && !region.chosen {
+        let keyed = [Kind::Frame, Kind::Share].iter().any(|kind| self.one(kind).is_some());
+        if self.values().next().is_none() && !keyed && !region.chosen {
             return Err(self.nothing(region));
         }
         Ok(())

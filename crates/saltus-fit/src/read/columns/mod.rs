@@ -3,6 +3,7 @@
 
 mod faults;
 mod pairs;
+mod shares;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
@@ -37,6 +38,8 @@ pub(super) enum Kind {
     High(usize),
     /// How much lower the rebound is than the release.
     Lost,
+    /// The part of its drop's height to which a rebound rises.
+    Share,
     /// Not used.
     Aside,
 }
@@ -95,6 +98,7 @@ impl Columns {
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;
+        found.shares(region);
         found.not_understood(region)?;
         found.drops(region);
         found.statistics(region)?;
@@ -117,7 +121,8 @@ impl Columns {
         self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;
-        self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled));
+        self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled))
+            || self.one(&Kind::Share).is_some() && !self.any(What::Height, Some(At::Release));
         for column in self.columns.iter_mut().filter(|c| c.holds(What::Height)) {
             column.zero = options.zero.unwrap_or(0.0);
             column.sign = if options.down == Some(true) { -1.0 } else { 1.0 };

@@ -75,6 +75,52 @@ pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     Some(before)
 }
 
+/// What a ratio of heights is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::read) enum Of {
+    /// The height of release.
+    Release,
+    /// The height before, or of the drop of its row.
+    Before,
+}
+
+/// The words that make a ratio of heights of what they stand beside.
+const RATIOS: [&str; 16] = [
+    "ratio",
+    "ratios",
+    "relative",
+    "fraction",
+    "proportion",
+    "quotient",
+    "normalised",
+    "normalized",
+    "verhaltnis",
+    "relativ",
+    "rapport",
+    "rapporto",
+    "cociente",
+    "razon",
+    "razao",
+    "verhouding",
+];
+
+/// What the numbers of a column are parts of whose words name a ratio of heights and nothing else:
+/// `h/h0`, `height ratio`, `% of previous height`.
+pub(super) fn share(text: &str, words: &[Word], hundredths: Option<bool>) -> Option<Of> {
+    let is = |atom: Atom| words.iter().any(|word| word.is(atom));
+    let derived = |word: &Word| word.is(Atom::Derived) && !RATIOS.contains(&folded(&word.text).as_str());
+    let other =
+        [Atom::Speed, Atom::Time, Atom::Interval, Atom::Total, Atom::Lost, Atom::Predicted, Atom::Goal, Atom::Error];
+    let plain = !words.iter().any(derived) && !other.into_iter().any(is);
+    let named = is(Atom::Derived) || hundredths == Some(true);
+    if !(plain && named && (is(Atom::Height) || hundredths == Some(true))) {
+        return None;
+    }
+    let first = |word: &Word| matches!(word.kind, Kind::Number(0)) || word.text == "H" || word.is(Atom::Release);
+    let counted = text.contains('/') && words.iter().any(first);
+    Some(if hundredths == Some(true) || !counted { Of::Before } else { Of::Release })
+}
+
 /// The place of a reading beside the bounce of its row, and the text without the sums: 1 for
 /// `h_n+1`, -1 for `h_n-1`, 0 for `h_n`; none for what lies between two places, `between bounce n
 /// and n+1`.

@@ -1,0 +1,64 @@
+//! Ratios of heights, where they are all there is: a table of them alone, or beside the heights of
+//! release.
+
+use super::{Columns, Kind, plain};
+use crate::read::cell::Cell;
+use crate::read::grid::shown;
+use crate::read::heading::{At, Of, Role, What};
+use crate::read::region::Region;
+use crate::read::units::{Scale, Unit};
+
+impl Columns {
+    /// The one column of ratios of heights of a table that has no other readings is read: as heights
+    /// of which the release is the whole, where bounces are counted and all are parts of it; else
+    /// each row is a drop.
+    pub(super) fn shares(&mut self, region: &Region<'_>) {
+        let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
+        let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
+        let counted = self.number().is_some_and(|(_, sure)| sure);
+        let metres = self.columns.iter().any(|c| released(c) && !c.heading.unit.is_none_or(Unit::unscaled));
+        if metres && !counted {
+            // Hundredths of the height of release beside it.
+            for column in &mut self.columns {
+                let hundredths = column.heading.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+                if hundredths && column.value().is_some_and(|v| v.what == What::Height && v.role == Role::Reading) {
+                    column.kind = Kind::Share;
+                }
+            }
+        }
+        if self.columns.iter().any(|c| read(c) && !released(c)) {
+            return;
+        }
+        let shares = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.share.is_some();
+        let found: Vec<usize> = (0..self.columns.len()).filter(shares).collect();
+        let &[index] = found.as_slice() else { return };
+        let percent = self.is_percent(region, index);
+        let whole = if percent { 100.0 } else { 1.0 };
+        let number = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(measured) => Some(measured.value),
+            _ => None,
+        };
+        let mut numbers = region.rows.iter().filter_map(number).peekable();
+        if numbers.peek().is_none() || !numbers.all(|value| value > 0.0 && value <= whole) {
+            return;
+        }
+        let of = self.columns[index].heading.share;
+        let series = of == Some(Of::Release) && counted && !self.columns.iter().any(released);
+        let name = shown(&self.columns[index].heading.text);
+        let column = &mut self.columns[index];
+        column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };
+        column.kind = if series { Kind::Value(plain(What::Height)) } else { Kind::Share };
+        self.aside.retain(|aside| aside.name != name);
+        self.notes.push(format!(
+            "'{name}' is taken as a ratio of heights{}",
+            if series { ", of the height of release" } else { ", of the rebound to its drop" }
+        ));
+    }
+
+    /// Whether a column holds hundredths, by its heading or its cells.
+    fn is_percent(&self, region: &Region<'_>, index: usize) -> bool {
+        let percent = |unit: Option<Unit>| unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        let cell = |row: &usize| matches!(region.view.read(*row, index), Cell::Number(m) if percent(m.unit));
+        percent(self.columns[index].heading.unit) || region.rows.iter().any(cell)
+    }
+}
