@@ -60,6 +60,14 @@ proptest! {
         }
     }
 
+    /// Of bounces that nothing counts, as they fall.
+    #[test]
+    fn ratios_that_are_listed(e in 0.5..0.9_f64, first in 0..2_i32) {
+        let rows = (first..first + 5).map(|n| format!("{:.4}\n", e.powi(2 * n)));
+        let text = format!("h/h0\n{}", rows.collect::<String>());
+        prop_assert!((cor(&text) - e).abs() < 4e-3, "{}", text);
+    }
+
     /// Beside heights they are left aside; above one they are none.
     #[test]
     fn ratios_beside_heights(e in 0.5..0.9_f64) {

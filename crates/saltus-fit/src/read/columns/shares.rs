@@ -8,10 +8,13 @@ use crate::read::heading::{At, Of, Role, What};
 use crate::read::region::Region;
 use crate::read::units::{Scale, Unit};
 
+/// Heights of one drop fall below this part of the one before: what keeps more is another drop.
+const FALLS: f64 = 0.95;
+
 impl Columns {
     /// The one column of ratios of heights of a table that has no other readings is read: as heights
-    /// of which the release is the whole, where bounces are counted and all are parts of it; else
-    /// each row is a drop.
+    /// of which the release is the whole, where all are parts of it and bounces are counted or
+    /// listed as they fall; else each row is a drop.
     pub(super) fn shares(&mut self, region: &Region<'_>) {
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
@@ -38,12 +41,14 @@ impl Columns {
             Cell::Number(measured) => Some(measured.value),
             _ => None,
         };
-        let mut numbers = region.rows.iter().filter_map(number).peekable();
-        if numbers.peek().is_none() || !numbers.all(|value| value > 0.0 && value <= whole) {
+        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        if numbers.is_empty() || !numbers.iter().all(|&value| value > 0.0 && value <= whole) {
             return;
         }
+        let alone = self.columns.iter().all(|c| matches!(c.kind, Kind::Aside | Kind::Number { .. }));
+        let listed = alone && numbers.windows(2).all(|pair| pair[1] < FALLS * pair[0]);
         let of = self.columns[index].heading.share;
-        let series = of == Some(Of::Release) && counted && !self.columns.iter().any(released);
+        let series = of == Some(Of::Release) && (counted || listed) && !self.columns.iter().any(released);
         let name = shown(&self.columns[index].heading.text);
         let column = &mut self.columns[index];
         column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };

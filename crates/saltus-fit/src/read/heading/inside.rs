@@ -117,7 +117,9 @@ pub(super) fn share(text: &str, words: &[Word], hundredths: Option<bool>) -> Opt
         return None;
     }
     let first = |word: &Word| matches!(word.kind, Kind::Number(0)) || word.text == "H" || word.is(Atom::Release);
-    let counted = text.contains('/') && words.iter().any(first);
+    // `h1/h0` is of one bounce.
+    let later = words.iter().any(|word| matches!(word.kind, Kind::Number(n) if n > 0));
+    let counted = text.contains('/') && words.iter().any(first) && !later;
     Some(if hundredths == Some(true) || !counted { Of::Before } else { Of::Release })
 }
 
