@@ -60,6 +60,20 @@ proptest! {
         }
     }
 
+    /// `H` is the height of release beside `h`, where it is above it; else that is a question.
+    #[test]
+    fn a_capital_is_the_release(e in 0.4..0.92_f64, swapped in any::<bool>()) {
+        let (heading, names) = if swapped { ("h (cm),H (cm)\n", [0, 1]) } else { ("H (cm),h (cm)\n", [1, 0]) };
+        let row = |k: i32| {
+            let high = 150.0 - 10.0 * f64::from(k);
+            let cells = [high * e * e, high];
+            format!("{:.1},{:.1}\n", cells[names[0]], cells[names[1]])
+        };
+        let text = format!("{heading}{}", (0..5).map(row).collect::<String>());
+        prop_assert!((cor(&text) - e).abs() < 4e-3, "{}", text);
+        prop_assert!(read(&text.replace('h', "x").replace('H', "h").replace('x', "H")).is_err());
+    }
+
     /// Of bounces that nothing counts, as they fall.
     #[test]
     fn ratios_that_are_listed(e in 0.5..0.9_f64, first in 0..2_i32) {

@@ -95,6 +95,7 @@ impl Columns {
         found.counting(region);
         found.spanning(region);
         found.placed();
+        found.capital(region);
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;

@@ -59,6 +59,27 @@ impl Columns {
         }
     }
 
+    /// `H` beside `h`: the height of release and that of the rebound, where each is above the other.
+    pub(super) fn capital(&mut self, region: &Region<'_>) {
+        let letter = |text: &str| text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
+        let called = |name: &str| {
+            let of = |(_, c, v): &(usize, &super::Column, &super::Value)| {
+                letter(&c.heading.text) == name && v.what == What::Height && v.at == At::Row && v.role == Role::Reading
+            };
+            let mut found = self.values().filter(of).map(|(n, _, _)| n);
+            found.next().filter(|_| found.next().is_none())
+        };
+        let (Some(release), Some(rebound)) = (called("H"), called("h")) else { return };
+        let number = |row: usize, column: usize| match region.view.read(row, column) {
+            Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
+            _ => None,
+        };
+        let pairs = region.rows.iter().filter_map(|&row| Some((number(row, release)?, number(row, rebound)?)));
+        if self.values().count() == 2 && pairs.clone().count() > 0 && pairs.clone().all(|(high, low)| high > low) {
+            self.place(release, At::Release, String::new());
+        }
+    }
+
     /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak
     /// height (m)`.
     pub(super) fn counting(&mut self, region: &Region<'_>) {
