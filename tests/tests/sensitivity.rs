@@ -289,7 +289,7 @@ fn a_jump_between_dimensions() {
 #[test]
 fn a_parameter_that_there_is_not() {
     let ball = Bounce::new(9.8, 0.5);
-    for (wrt, kind) in [(Initial(2), ErrorKind::InitialState), (Parameter(9), ErrorKind::Model)] {
+    for (wrt, kind) in [(Initial(2), ErrorKind::Model), (Parameter(9), ErrorKind::Model)] {
         let sensitive = Sensitive::of(&ball, [wrt]);
         let start = sensitive.start(0.0, vector![1.0, 0.0]);
         let failed = Simulation::of(&sensitive).run(Phase::Flight, start, 0.0..1.0).unwrap_err();

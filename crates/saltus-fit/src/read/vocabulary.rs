@@ -147,8 +147,8 @@ pub(super) fn first_word(text: &str) -> Option<&str> {
     ends.filter(|&end| meanings(&text[..end]).is_some()).last().map(|end| &text[..end])
 }
 
-/// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are the
-/// plain ones.
+/// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are
+/// the plain ones.
 pub(super) fn narrow(text: &str) -> String {
     let plain = |c: char| match c {
         '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - u32::from('！') + u32::from('!')).unwrap_or(c),

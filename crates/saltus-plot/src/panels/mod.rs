@@ -166,9 +166,9 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
     /// The picture as an SVG document.
     ///
     /// # Errors
-    /// [`PlotError::Coordinate`] for one that there is not, [`PlotError::Names`] for more names than
-    /// coordinates, [`PlotError::Window`] and [`PlotError::Missing`] where there is no time to draw,
-    /// [`PlotError::NotFinite`] naming the number at fault.
+    /// [`PlotError::Coordinate`] for one that there is not, [`PlotError::Names`] for more names
+    /// than coordinates, [`PlotError::Window`] and [`PlotError::Missing`] where there is no time to
+    /// draw, [`PlotError::NotFinite`] naming the number at fault.
     pub fn svg(&self) -> Result<String, PlotError> {
         let labels = labels(self.trajectory, &self.named)?;
         let groups = if self.groups.is_empty() {

@@ -59,7 +59,8 @@ impl Columns {
         }
     }
 
-    /// `H` beside `h`: the height of release and that of the rebound, where each is above the other.
+    /// `H` beside `h`: the height of release and that of the rebound, where each is above the
+    /// other.
     pub(super) fn capital(&mut self, region: &Region<'_>) {
         let letter = |text: &str| text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
         let called = |name: &str| {

@@ -12,9 +12,9 @@ use crate::read::units::{Scale, Unit};
 const FALLS: f64 = 0.95;
 
 impl Columns {
-    /// The one column of ratios of heights of a table that has no other readings is read: as heights
-    /// of which the release is the whole, where all are parts of it and bounces are counted or
-    /// listed as they fall; else each row is a drop.
+    /// The one column of ratios of heights of a table that has no other readings is read: as
+    /// heights of which the release is the whole, where all are parts of it and bounces are counted
+    /// or listed as they fall; else each row is a drop.
     pub(super) fn shares(&mut self, region: &Region<'_>) {
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
