@@ -441,7 +441,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<(), Error> {
         if self.memory.just_took(edge) && self.automaton.about(edge).entry == Entry::Refuse {
             self.memory.stats.guards += 1;
-            if self.clear_of_zero(edge, time, state) < 0.0 {
+            if self.guard(edge, time.seconds(), state) < 0.0 && self.clear_of_zero(edge, time, state) < 0.0 {
                 let place = Place::new(began.seconds(), mode, Some(edge), x);
                 return Err(Error::new(ErrorKind::Entry, place).noting(Some(FELL_ON.to_owned())));
             }
