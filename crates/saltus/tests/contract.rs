@@ -35,7 +35,7 @@ impl Automaton for Ladder {
         rung as f64 + 0.5 - x
     }
     fn about(&self, _: usize) -> About {
-        About::new().affine().entry(saltus::Entry::Wait)
+        About::new().affine().entry(Entry::Wait)
     }
     fn reset(&self, (): (), rung: usize, _t: f64, x: &f64) -> Result<((), f64), Refusal> {
         if rung == 1_000_002 { Err(std::fmt::Error.into()) } else { Ok(((), *x)) }
@@ -71,7 +71,7 @@ fn every_edge_is_watched() {
 fn a_hybrid_with_many_edges() {
     let ladder = (0..40).fold(Hybrid::new().mode("up", |_t, _x: &f64| 1.0), |ladder, rung| {
         let mark = f64::from(rung) + 0.5;
-        ladder.edge("up", "up", move |_t, x| mark - x, move |_t, x| *x).entry(saltus::Entry::Wait)
+        ladder.edge("up", "up", move |_t, x| mark - x, move |_t, x| *x).entry(Entry::Wait)
     });
     let run = Simulation::of(&ladder).run("up", 0.0, 0.0..40.0).unwrap();
     let taken: Vec<_> = run.trajectory.jumps().iter().filter_map(|jump| Some(jump.edge()?.place)).collect();

@@ -143,8 +143,8 @@ fn entries() -> impl Iterator<Item = (&'static str, std::str::Split<'static, cha
 
 /// The longest word that a text begins with, of a script that parts none by blanks.
 pub(super) fn first_word(text: &str) -> Option<&str> {
-    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8());
-    ends.filter(|&end| meanings(&text[..end]).is_some()).last().map(|end| &text[..end])
+    let mut ends = text.char_indices().rev().map(|(at, c)| at + c.len_utf8());
+    ends.find(|&end| meanings(&text[..end]).is_some()).map(|end| &text[..end])
 }
 
 /// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are
