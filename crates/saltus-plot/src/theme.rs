@@ -133,10 +133,10 @@ impl Dash {
         [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][(index + index / 4) % 4]
     }
 
-    /// Of lines that may be steep or have steps, whose own shape dashes would hide: four are
-    /// solid, and told apart by their inks alone.
+    /// Of lines that may be steep or have steps, whose own shape dashes would hide: the first four
+    /// are solid, and differ by their inks alone.
     pub(crate) fn steep(index: usize) -> Self {
-        [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][(index / 4) % 4]
+        Self::series(index / 4 * 4)
     }
 
     /// Lengths in units of the stroke's width; with round caps each dash grows by one such width.

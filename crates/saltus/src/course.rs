@@ -288,9 +288,12 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             Next::Arc => None,
             Next::Stop(stop) => Some(stop),
             Next::Limit { remaining, certified } => {
+                if let Some(stop) = self.stopped() {
+                    return Ok(Some(stop));
+                }
                 let stop = self.at_limit(remaining, certified, observer)?;
                 *stand = self.stand();
-                stop
+                stop.or_else(|| self.stopped())
             }
         })
     }
@@ -419,10 +422,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         certified: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<Stop<A::Edge>>, Error> {
-        let Self { automaton, options, at, .. } = self;
-        if at.jumps >= options.most_jumps {
-            return Ok(Some(Stop::Jumps { most: options.most_jumps }));
-        }
+        let Self { automaton, at, .. } = self;
         let (mode, x) = (at.mode, at.state);
         if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
             return Ok(Some(Stop::Observer));
@@ -444,11 +444,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), Cascade::NONE);
         at.memory.beyond();
-        Ok(if observer.jump(&jump).is_break() {
-            Some(Stop::Observer)
-        } else {
-            (at.jumps >= options.most_jumps).then_some(Stop::Jumps { most: options.most_jumps })
-        })
+        Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }
 }
 

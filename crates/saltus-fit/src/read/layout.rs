@@ -2,7 +2,7 @@
 
 use super::aside::Why;
 use super::cell::Cell;
-use super::columns::{Column, Columns, Kind};
+use super::columns::{Column, Columns, Kind, LEVEL};
 use super::grid::shown;
 use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::region::Region;
@@ -280,9 +280,6 @@ fn falling_throughout(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
 /// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and
 /// those of several drops do not.
 fn falling(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
-    /// A ball that keeps more of its height at every bounce is not told from one that is dropped
-    /// again and again.
-    const LEVEL: f64 = 0.95;
     let Some(column) = track.height.or(track.interval) else { return true };
     let number = |row: usize| match region.view.read(row, column) {
         Cell::Number(m) => Some(m.value),

@@ -46,6 +46,8 @@ pub(super) enum Atom {
     Predicted,
     Goal,
     Derived,
+    /// What is derived is a ratio.
+    Ratio,
     Other,
     Note,
     /// The word says nothing.
@@ -91,6 +93,7 @@ impl Atom {
             "predicted" => Self::Predicted,
             "goal" => Self::Goal,
             "derived" => Self::Derived,
+            "ratio" => Self::Ratio,
             "other" => Self::Other,
             "note" => Self::Note,
             "filler" => Self::Filler,

@@ -20,21 +20,21 @@ const STEPS: i32 = 25;
 pub(super) struct Untrue {
     /// The coordinate by which it is; none for the time.
     by: Option<String>,
-    told: f64,
+    given: f64,
     shown: f64,
 }
 
 impl fmt::Display for Untrue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { by, told, shown } = self;
+        let Self { by, given, shown } = self;
         match by {
             None => write!(
                 f,
-                "∂h/∂t is {told} by TwoSided::surface_rate, and differences of the surface show {shown:.6}: a surface that moves says how fast (Sides::moving)"
+                "∂h/∂t is {given} by TwoSided::surface_rate, and differences of the surface show {shown:.6}: a surface that moves says how fast (Sides::moving)"
             ),
             Some(name) => write!(
                 f,
-                "∂h/∂{name} is {told} by TwoSided::normal, and differences of the surface show {shown:.6}: give the gradient of the surface itself"
+                "∂h/∂{name} is {given} by TwoSided::normal, and differences of the surface show {shown:.6}: give the gradient of the surface itself"
             ),
         }
     }
@@ -49,30 +49,30 @@ pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> 
     let moved = |i: usize, by: f64| x.with(|j| if j == i { x.get(j) + by } else { x.get(j) });
     let rate = system.surface_rate(t, x);
     if let Some(shown) = contradicted(|by| system.surface(t + by, x), t, rate) {
-        return Some(Untrue { by: None, told: rate, shown });
+        return Some(Untrue { by: None, given: rate, shown });
     }
     let normal = system.normal(t, x);
     (0..x.len()).find_map(|i| {
         let shown = contradicted(|by| system.surface(t, &moved(i, by)), x.get(i), normal.get(i))?;
-        Some(Untrue { by: Some(x.name(i).into_owned()), told: normal.get(i), shown })
+        Some(Untrue { by: Some(x.name(i).into_owned()), given: normal.get(i), shown })
     })
 }
 
-/// The slope of `h` that its differences show about zero, where that is not the one `told`.
-fn contradicted(h: impl Fn(f64) -> f64, size: f64, told: f64) -> Option<f64> {
+/// The slope of `h` that its differences show about zero, where that is not the one `given`.
+fn contradicted(h: impl Fn(f64) -> f64, size: f64, given: f64) -> Option<f64> {
     let here = h(0.0);
     let middle = if size == 0.0 { MIDDLE } else { size.abs() * MIDDLE };
     let slopes = |k: i32| {
         let step = middle * 4_f64.powi(k);
         [(h(step) - here) / step, (here - h(-step)) / step]
     };
-    let agrees = |slopes: &[f64; 2]| slopes.iter().any(|&slope| alike(slope, told));
+    let agrees = |slopes: &[f64; 2]| slopes.iter().any(|&slope| alike(slope, given));
     if agrees(&slopes(0)) {
         return None;
     }
     let slopes: Vec<_> = (-STEPS / 2..=STEPS / 2).map(slopes).collect();
     // Over one small step rounding may show anything, and nothing over several.
-    if told != 0.0 && slopes.windows(2).any(|two| two.iter().all(agrees)) {
+    if given != 0.0 && slopes.windows(2).any(|two| two.iter().all(agrees)) {
         return None;
     }
     let stable = |window: &&[[f64; 2]]| {

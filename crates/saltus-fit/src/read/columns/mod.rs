@@ -5,6 +5,8 @@ mod faults;
 mod pairs;
 mod shares;
 
+pub(super) use shares::LEVEL;
+
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::{Cell, dated};

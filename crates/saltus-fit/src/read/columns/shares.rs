@@ -8,8 +8,9 @@ use crate::read::heading::{At, Of, Role, What};
 use crate::read::region::Region;
 use crate::read::units::{Scale, Unit};
 
-/// Heights of one drop fall below this part of the one before: what keeps more is another drop.
-const FALLS: f64 = 0.95;
+/// A ball that keeps more of its height at every bounce does not differ from one that is dropped
+/// again and again.
+pub(in crate::read) const LEVEL: f64 = 0.95;
 
 impl Columns {
     /// The one column of ratios of heights of a table that has no other readings is read: as
@@ -46,7 +47,7 @@ impl Columns {
             return;
         }
         let alone = self.columns.iter().all(|c| matches!(c.kind, Kind::Aside | Kind::Number { .. }));
-        let listed = alone && numbers.windows(2).all(|pair| pair[1] < FALLS * pair[0]);
+        let listed = alone && numbers.windows(2).all(|pair| pair[1] < LEVEL * pair[0]);
         let of = self.columns[index].heading.share;
         let series = of == Some(Of::Release) && (counted || listed) && !self.columns.iter().any(released);
         let name = shown(&self.columns[index].heading.text);

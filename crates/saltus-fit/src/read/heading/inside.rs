@@ -84,31 +84,11 @@ pub(in crate::read) enum Of {
     Before,
 }
 
-/// The words that make a ratio of heights of what they stand beside.
-const RATIOS: [&str; 16] = [
-    "ratio",
-    "ratios",
-    "relative",
-    "fraction",
-    "proportion",
-    "quotient",
-    "normalised",
-    "normalized",
-    "verhaltnis",
-    "relativ",
-    "rapport",
-    "rapporto",
-    "cociente",
-    "razon",
-    "razao",
-    "verhouding",
-];
-
 /// What the numbers of a column are parts of whose words name a ratio of heights and nothing else:
 /// `h/h0`, `height ratio`, `% of previous height`.
 pub(super) fn share(text: &str, words: &[Word], hundredths: Option<bool>) -> Option<Of> {
     let is = |atom: Atom| words.iter().any(|word| word.is(atom));
-    let derived = |word: &Word| word.is(Atom::Derived) && !RATIOS.contains(&folded(&word.text).as_str());
+    let derived = |word: &Word| word.is(Atom::Derived) && !word.is(Atom::Ratio);
     let other =
         [Atom::Speed, Atom::Time, Atom::Interval, Atom::Total, Atom::Lost, Atom::Predicted, Atom::Goal, Atom::Error];
     let plain = !words.iter().any(derived) && !other.into_iter().any(is);
