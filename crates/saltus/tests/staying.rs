@@ -26,7 +26,7 @@ fn run<'a, X: State>(
 /// error of a step and the rounding of differences over a thousandth of one that a kink has made
 /// short.
 fn lateness(tolerance: f64, power: i32) -> f64 {
-    (1e3 * tolerance + 1e-6).powf(1.0 / f64::from(power.max(1)))
+    (1e3 * tolerance + 3e-7).powf(1.0 / f64::from(power.max(1)))
 }
 
 proptest! {
