@@ -199,7 +199,7 @@ pub(crate) fn has(table: &Table, kind: Readings) -> bool {
     let any = |event: fn(&Reading) -> bool| table.trials().iter().any(|t| t.readings().iter().any(event));
     match kind {
         Readings::Heights => table.zero_rebounds > 0 || any(|r| r.event == Event::Apex && r.height.is_some()),
-        Readings::Times => any(|r| r.event == Event::Contact),
+        Readings::Times => any(|r| r.event == Event::Contact || r.event == Event::Apex && r.time.is_some()),
     }
 }
 

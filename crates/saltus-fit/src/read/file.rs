@@ -89,7 +89,7 @@ fn joined_up<'a>(
         && let Some((fps, line)) = titles.iter().find_map(|title| title.fps)
     {
         metadata.frame_rate = Some(fps);
-        stated.push(format!("{fps} frames a second, as line {line} states"));
+        stated.push(format!("{fps} frames, or samples, a second, as line {line} states"));
     }
     filmed(&mut regions, metadata.frame_rate);
     let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
@@ -165,7 +165,9 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let rows = sifted(region, &columns)?;
     region.rows = rows.rows.iter().map(|row| row.at).collect();
     columns.measure(region, options, metadata.frame_rate)?;
-    assemble::table(region, &mut columns, rows, options, metadata)
+    // A sound is sampled far more finely than a contact is heard.
+    let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
+    assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })
 }
 
 /// Places without a clock are a film, a row a frame, if the frame rate is known.
@@ -190,7 +192,11 @@ fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
 /// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
 /// of.
 fn titled(region: &Region<'_>, table: &mut Table) {
-    let turned = |text: &str| Heading::parse(text).turns();
+    // The rate of a recording is none of what it shows.
+    let turned = |text: &str| match title::frame_rate(text) {
+        Some(_) => Heading::parse(&text.replace("rate", "")).turns(),
+        None => Heading::parse(text).turns(),
+    };
     if region.header.iter().any(|name| turned(name)) {
         return;
     }

@@ -5,6 +5,7 @@ use saltus_bounce::units::Quantity;
 
 use super::Metadata;
 use super::cell::{self, Cell};
+use super::title;
 use crate::error::{Place, TableError};
 
 /// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
@@ -179,7 +180,9 @@ impl<'a> Grid<'a> {
             return Ok(found);
         }
         for (n, line) in self.text.lines().enumerate() {
-            let Some((key, value)) = line.strip_prefix('#').and_then(|comment| comment.split_once(':')) else {
+            let Some(comment) = line.strip_prefix('#') else { continue };
+            let Some((key, value)) = comment.split_once(':') else {
+                found.frame_rate = found.frame_rate.or(title::frame_rate(comment));
                 continue;
             };
             let value = value.trim();
@@ -206,7 +209,10 @@ impl<'a> Grid<'a> {
                 "drop height" | "drop" | "release height" | "dropped from" => (&mut found.drop, Quantity::Length),
                 "sigma height" | "height error" => (&mut found.sigma_height, Quantity::Length),
                 "sigma time" | "time error" => (&mut found.sigma_time, Quantity::Time),
-                _ => continue,
+                _ => {
+                    found.frame_rate = found.frame_rate.or(title::frame_rate(comment));
+                    continue;
+                }
             };
             let si = quantity.parse(value).map_err(|problem| error(problem.to_string()))?;
             if si <= 0.0 {

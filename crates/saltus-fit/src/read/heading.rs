@@ -2,12 +2,13 @@
 //! ball, and the words that are not understood.
 
 mod inside;
+mod meaning;
 
 use super::aside::Why;
-use super::units::{Dimension, Unit};
-use super::vocabulary::{Atom, folded, narrow};
-use super::words::{Kind, Numbers, Word, numbers, split};
-pub(super) use inside::{DropHeight, Of, release, released};
+use super::units::{Dimension, Scale, Unit};
+use super::vocabulary::{Atom, narrow};
+use super::words::{Kind, Word, split};
+pub(super) use inside::{DropHeight, Of, rate, release, released};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -115,6 +116,10 @@ pub(super) struct Heading {
     pub(super) cor: bool,
     /// What its numbers are parts of, if it names a ratio of heights and nothing else.
     pub(super) share: Option<Of>,
+    /// What its numbers are if they stand for heights, where it names an energy and nothing else.
+    pub(super) energy: Option<Value>,
+    /// How many frames, or samples, it states to be in a second.
+    pub(super) rate: Option<f64>,
     /// A height of release that it states.
     drop: Option<DropHeight>,
     /// The meanings of its words.
@@ -137,6 +142,8 @@ impl Heading {
             place: None,
             cor: false,
             share: None,
+            energy: None,
+            rate: None,
             drop: None,
             atoms: Vec::new(),
             labels: Vec::new(),
@@ -152,6 +159,8 @@ impl Heading {
         };
         let (drop, name) = release(name).map_or((None, name.to_owned()), |(drop, rest)| (Some(drop), rest));
         heading.drop = drop;
+        let (rate, name) = rate(&name).map_or((None, name.clone()), |(rate, rest)| (Some(rate), rest));
+        heading.rate = rate;
         let bare = heading.take_brackets(&name);
         let bare = heading.take_unit(&bare);
         let (place, bare) = inside::place(&bare);
@@ -172,17 +181,33 @@ impl Heading {
                 heading.atoms.extend(atoms);
             }
         }
-        heading.share = inside::share(&bare, &words, before).filter(|_| heading.unknown.is_empty());
-        heading.cor = inside::is_cor(&words) && !heading.turned();
+        let whole = heading.unit.is_none_or(|unit| unit.scale == Scale::Percent) && heading.unknown.is_empty();
+        let percent = heading.unit.is_some();
+        heading.share = inside::share(&bare, &words, before, percent).filter(|_| whole);
+        let joules = heading.unit.and_then(Unit::of_height).is_some();
+        heading.cor = inside::is_cor(&words) && !heading.turned() && !joules;
         // `v_in` beside `v_out`.
-        if heading.has(Atom::Speed) && words.last().is_some_and(|w| w.text == "in") {
+        if (heading.has(Atom::Speed) || heading.has(Atom::Energy)) && words.last().is_some_and(|w| w.text == "in") {
             heading.atoms.push(Atom::Before);
         }
         let placed = matches!(words.as_slice(), [Word { kind: Kind::Ordinal(_), .. }]);
         if !heading.atoms.is_empty() || heading.unit.is_some() || placed {
             heading.meaning = heading.interpret(&words, run);
         }
+        heading.energy = heading.of_energy(&words, run);
         heading
+    }
+
+    /// Whether it may count the samples of a sound: it names them, and no quantity.
+    pub(super) fn counts_samples(&self) -> bool {
+        let plain = self.unit.is_none_or(|unit| unit.dimension == Dimension::Other);
+        self.has(Atom::Sample) && self.unknown.is_empty() && plain
+    }
+
+    /// Whether the time of its row is that of a highest point.
+    pub(super) fn of_tops(&self) -> bool {
+        let time = self.value().is_some_and(|value| value.what == What::Time);
+        self.has(Atom::Top) || self.has(Atom::Max) && (self.has(Atom::Height) || !time)
     }
 
     fn called(self, text: &str) -> Self {
@@ -298,167 +323,7 @@ impl Heading {
             words.clear();
         }
     }
-
-    /// What the words say together.
-    fn interpret(&self, words: &[Word], run: &str) -> Meaning {
-        use Atom::{
-            Air, Between, Derived, Distance, Goal, Group, Height, Label, Note, Other, Position, Predicted, Total,
-        };
-        let has = |atom| self.has(atom);
-        let numbers = numbers(words);
-        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
-        if has(Note) && self.unit.is_none() {
-            return Meaning::Aside(Why::Note);
-        }
-        if has(Predicted) {
-            return Meaning::Aside(Why::Predicted);
-        }
-        if has(Goal) {
-            return Meaning::Aside(Why::Goal);
-        }
-        let intervals = has(Derived) && words.iter().any(|w| w.text == "delta") && has(Atom::Time);
-        // Of two bodies that meet: the speed of one as the other sees it, and no ratio.
-        let met = (has(Atom::Before) || has(Atom::After)) && has(Atom::Speed);
-        let relative = met && words.iter().all(|w| !w.is(Derived) || folded(&w.text).starts_with("relativ"));
-        if has(Derived) && !intervals && !relative {
-            return Meaning::Aside(Why::Derived);
-        }
-        let setting = has(Group)
-            && !named
-            && !has(Height)
-            && !has(Position)
-            && self.unit.is_none_or(|u| u.dimension == Dimension::Other);
-        if setting && !has(Label) {
-            return Meaning::Setting;
-        }
-        let flown = has(Distance) && has(Between) || has(Height) && has(Total);
-        if has(Other) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
-            return Meaning::Aside(Why::Other);
-        }
-        let what = if intervals { What::Interval } else { self.what() };
-        let what = if what == What::Unsaid && self.drop.is_some() { What::Height } else { what };
-        if what == What::Unsaid
-            && self.unit.is_none()
-            && let Some(key) = self.key(&numbers)
-        {
-            return key;
-        }
-        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) {
-            return Meaning::Aside(Why::Other);
-        }
-        self.reading(what, numbers, run)
-    }
-
-    /// The quantity that words and unit name.
-    fn what(&self) -> What {
-        use Atom::{
-            Air, Between, Distance, Height, Impact, Interval, Percent, Position, Rebound, Release, Rest, Speed, Time,
-            Total,
-        };
-        let has = |atom| self.has(atom);
-        let of = |dimension| self.unit.is_some_and(|unit: Unit| unit.dimension == dimension);
-        let timed = has(Time) || of(Dimension::Time);
-        if has(Speed) || of(Dimension::Speed) {
-            What::Speed
-        } else if has(Interval) || timed && (has(Between) || has(Air)) {
-            What::Interval
-        } else if timed && has(Rest) || has(Total) && !has(Height) && !of(Dimension::Length) {
-            What::Total
-        } else if timed && !has(Height) {
-            What::Time
-        } else if has(Height)
-            || has(Position)
-            || has(Distance)
-            || of(Dimension::Length)
-            || has(Percent)
-            || has(Rebound) && !has(Impact)
-            || has(Release) && !has(Atom::Trial)
-        {
-            What::Height
-        } else {
-            What::Unsaid
-        }
-    }
-
-    /// What a heading without a quantity tells apart.
-    fn key(&self, numbers: &Numbers) -> Option<Meaning> {
-        use Atom::{Error, Event, Frame, Group, Impact, Mean, Number, Release, Repeat, Trial};
-        let has = |atom| self.has(atom);
-        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
-        if has(Frame) {
-            return Some(Meaning::Frame);
-        }
-        if named || has(Mean) || has(Error) {
-            return None;
-        }
-        if has(Event) && !has(Repeat) {
-            return Some(Meaning::Event);
-        }
-        if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {
-            return Some(Meaning::Trial);
-        }
-        if has(Group) {
-            return Some(Meaning::Setting);
-        }
-        if has(Number) || has(Impact) {
-            return Some(Meaning::Number { sure: has(Impact) });
-        }
-        None
-    }
-
-    fn reading(&self, what: What, numbers: Numbers, run: &str) -> Meaning {
-        use Atom::{
-            After, Before, Distance, Error, Height, Impact, Lost, Max, Mean, Median, Min, Percent, Position, Rebound,
-            Release, Speed, Trial,
-        };
-        let has = |atom| self.has(atom);
-        if has(Percent) && what != What::Height {
-            return Meaning::Aside(Why::Derived);
-        }
-        // Components of a vector, the rise of something, a change of a change.
-        // At an impact it is the vertical one that turns round.
-        let at_impact = has(Before) || has(After);
-        if has(Speed) && (has(Position) && !at_impact || has(Release))
-            || numbers.bounce.len() > 1 && what != What::Interval
-        {
-            return Meaning::Aside(Why::Other);
-        }
-        let role = match () {
-            () if has(Error) => Role::Error,
-            () if has(Lost) => Role::Lost,
-            () if has(Mean) || has(Median) => Role::Mean,
-            () if has(Max) => Role::Max,
-            () if has(Min) => Role::Min,
-            () => Role::Reading,
-        };
-        let from = self.drop.as_ref();
-        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty() && from.is_none();
-        let at = match (numbers.bounce.first(), what) {
-            (Some(0), What::Height) => At::Release,
-            (Some(&n), _) => At::Nth(n),
-            (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {
-                At::Release
-            }
-            (None, What::Speed) if has(After) || has(Rebound) => At::After,
-            (None, What::Speed) if has(Before) || has(Impact) => At::Before,
-            _ => At::Row,
-        };
-        let mut label = if run.is_empty() { numbers.trial } else { run.to_owned() };
-        if let Some(drop) = from {
-            let apart = if label.is_empty() { "" } else { ", " };
-            label = format!("{label}{apart}from {}", drop.text);
-        }
-        Meaning::Value(Value {
-            what,
-            at,
-            role,
-            trial: label,
-            group: numbers.group,
-            position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
-            or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
-            drop: self.drop.clone(),
-        })
-    }
 }
+
 #[cfg(test)]
 mod tests;

@@ -147,6 +147,9 @@ pub(super) fn layout(
     let rowed = any(|t| t.height.is_some() || t.time.is_some() || t.interval.is_some() || t.speed.is_some());
     // Rows that are only counted may be those of a film, whose heights rise and fall.
     let filmed = !sure && !tracks.iter().all(|track| falling_throughout(region, rows, track));
+    if columns.of_tops() {
+        return Ok(if numbered { Layout::Numbered } else { Layout::Listed });
+    }
     if any(|t| t.time.is_some() && t.height.is_some()) && (!numbered || filmed) {
         return Ok(Layout::Samples { frames: false });
     }

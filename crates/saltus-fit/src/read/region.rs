@@ -2,6 +2,7 @@
 
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
+use super::columns::leap;
 use super::grid::{View, shown};
 use super::heading::{Heading, Meaning};
 use super::units::{Dimension, Unit};
@@ -157,7 +158,7 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
 
 /// What a column of numbers adds to the score of a header; a column of names adds one.
 const VALUE: usize = 100;
-/// What a column of ratios of heights adds, which are read where nothing else is.
+/// What a column of ratios of heights, or of energies, adds, which are read where nothing else is.
 const SHARE: usize = 50;
 
 /// The headers that may begin in a row: one line, or two.
@@ -181,7 +182,8 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     }
     let mut push = |names: Vec<String>, next: usize| {
         let score = score(&names);
-        let score = if (1..VALUE).contains(&score) && measured(view, &names, next) { score + VALUE } else { score };
+        let counted = measured(view, &names, next) || sampled(view, &names, next..end);
+        let score = if (1..VALUE).contains(&score) && counted { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
         // A row of words may stand between, such as of units that are not known; a header without
         // rows is one too.
@@ -213,6 +215,12 @@ fn measured(view: View<'_>, names: &[String], row: usize) -> bool {
         let unit = matches!(view.read(row, n), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension != Dimension::Other && !u.unscaled()));
         unit && Heading::parse(name).understood()
     })
+}
+
+/// Whether a name of samples stands above numbers of them, in the first rows.
+fn sampled(view: View<'_>, names: &[String], rows: std::ops::Range<usize>) -> bool {
+    let above = |n: usize| leap(rows.clone().take(2).map(|row| view.cell(row, n)));
+    names.iter().enumerate().any(|(n, name)| Heading::parse(name).counts_samples() && above(n))
 }
 
 /// Whether a row holds the name of an event and nothing else.
@@ -284,7 +292,7 @@ fn score(names: &[String]) -> usize {
             Meaning::Value(_) => VALUE + usize::from(heading.unit.is_some()),
             // A frame tells a time.
             Meaning::Frame => VALUE,
-            Meaning::Aside(_) if heading.share.is_some() => SHARE,
+            Meaning::Aside(_) if heading.share.is_some() || heading.energy.is_some() => SHARE,
             Meaning::Empty | Meaning::Aside(_) => 0,
             _ => 1,
         }
@@ -299,7 +307,7 @@ fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     let cell = |line: &[String], n: usize| line.get(n).cloned().unwrap_or_default();
     if of_units(lower) {
         let name = |n: usize| match (cell(upper, n), cell(lower, n)) {
-            (name, unit) if !name.is_empty() && !unit.is_empty() => {
+            (name, unit) if !name.is_empty() && !unit.is_empty() && !UNITLESS.contains(&unit.as_str()) => {
                 format!("{name} ({})", unit.trim_matches(['(', ')', '[', ']']).trim())
             }
             (name, _) => name,
@@ -349,13 +357,17 @@ fn spanned(name: &str, lower: &str) -> String {
     }
 }
 
+/// What stands for the unit of a count, in a line of units.
+const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
+
 /// Whether a line holds units and nothing else.
 fn of_units(line: &[String]) -> bool {
     let unit = |cell: &str| Unit::parse(cell.trim_matches(['(', ')', '[', ']'])).is_some();
+    let line = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
     // In brackets there may be others that are not known.
     let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
-    let known = line.iter().any(|cell| unit(cell));
-    known && line.iter().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
+    let known = line().any(|cell| unit(cell));
+    known && line().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
 }
 
 #[cfg(test)]

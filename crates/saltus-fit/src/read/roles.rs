@@ -53,7 +53,7 @@ impl Columns {
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
                         // The greatest height between two bounces is that of the apex.
-                        None if value.role == Role::Max && self.of_bounces(*index) => {
+                        None if value.role == Role::Max && (self.of_bounces(*index) || self.of_tops()) => {
                             self.read(*index);
                         }
                         None => return Err(self.extreme(region, *index)),

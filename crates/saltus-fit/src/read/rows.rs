@@ -10,6 +10,7 @@ use super::grid::shown;
 use super::heading::{At, Heading, Meaning};
 use super::region::Region;
 use super::vocabulary::{Atom, folded};
+use super::words::{Kind as WordKind, Word, split};
 use crate::error::TableError;
 
 /// A row of readings.
@@ -155,8 +156,32 @@ pub(super) fn event(cell: &str) -> Option<Event> {
     }
 }
 
-/// The number of the bounce that a cell names: `3`, `Bounce 3`, `2nd`, `drop`.
+/// The first of two bounces, one after the other, that a cell names: `1-2`, `1 → 2`, `bounce 1 to
+/// bounce 2`. What lies between the release and the first is no flight.
+fn between(cell: &str) -> Option<usize> {
+    let numbers: Vec<&str> = cell.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty()).collect();
+    let &[first, second] = numbers.as_slice() else { return None };
+    let (first, second): (usize, usize) = (first.parse().ok()?, second.parse().ok()?);
+    let words = split(cell);
+    let of_bounces = |w: &Word| match w.kind {
+        WordKind::Known(_) => {
+            w.is(Atom::Impact) || w.is(Atom::Rebound) || w.is(Atom::Between) || w.is(Atom::Filler) || w.is(Atom::Number)
+        }
+        WordKind::Number(_) | WordKind::Ordinal(_) => true,
+        _ => false,
+    };
+    let signs = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#');
+    let named = cell.chars().all(signs) && words.iter().all(of_bounces);
+    (named && first > 0 && second == first + 1).then_some(first)
+}
+
+/// The number of the bounce that a cell names: `3`, `Bounce 3`, `2nd`, `drop`; of what lies between
+/// two bounces that of the first.
 pub(super) fn bounce(cell: &str) -> Option<usize> {
+    numbered(cell).or_else(|| between(cell))
+}
+
+fn numbered(cell: &str) -> Option<usize> {
     if let Cell::Number(measured) = super::cell::read(cell, false) {
         let n = measured.value;
         // In range and whole: the cast is exact.

@@ -22,24 +22,32 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     // Old Macintosh files end their lines with a lone carriage return.
     let old = text.contains('\r') && !text.contains('\n');
     let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
-    let text = if let Some(at) = numero(&text) {
+    let counted = numeros(&text);
+    let text = if counted.is_empty() {
+        text
+    } else {
         // As long as before: what stands where does not change.
         let mut text = text.into_owned();
-        text.replace_range(at..=at, "n");
+        counted.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
         Cow::Owned(text)
-    } else {
-        text
     };
     let text = latex(&text).or_else(|| listed(&text)).map_or(text, Cow::Owned);
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }
 
-/// Where a first line begins with a `#` that is the name of a column, and no comment: `#,time (s)`.
-fn numero(text: &str) -> Option<usize> {
-    let at = text.find(|c: char| !c.is_whitespace())?;
-    let after = text[at..].strip_prefix('#')?.trim_start_matches(' ');
-    after.starts_with([',', ';', '\t']).then_some(at)
+/// Where lines begin with a `#` that is a cell, and no comment: `#,time (s)`, or `#,cm` below the
+/// names.
+fn numeros(text: &str) -> Vec<usize> {
+    let cell = |at: &usize| {
+        let after = text[*at..].strip_prefix('#').map(|after| after.trim_start_matches(' '));
+        after.is_some_and(|after| after.starts_with([',', ';', '\t']))
+    };
+    let starts = text.match_indices('\n').map(|(at, _)| at + 1);
+    let first = text.find(|c: char| !c.is_whitespace());
+    let mut found: Vec<usize> = first.into_iter().chain(starts).filter(cell).collect();
+    found.dedup();
+    found
 }
 
 /// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, with tabs between

@@ -3,7 +3,7 @@
 
 use super::cell::{self, Cell};
 use super::grid::shown;
-use super::heading::{At, Heading, Role, released};
+use super::heading::{At, Heading, Role, rate, released};
 use super::region::Region;
 use super::rows::names_floor;
 use super::units::{Dimension, Unit};
@@ -30,22 +30,19 @@ pub(super) struct Stated {
 /// Remarks below a table are looked for in so many of its last lines.
 const REMARKS: usize = 20;
 
-/// What frame rates are written in.
-const RATES: [&str; 14] = [
+/// What a rate may be called that is a bare number.
+const RATES: [&str; 11] = [
     "fps",
-    "frames per second",
-    "frames/s",
-    "frames/second",
-    "frames a second",
-    "hz",
-    "bilder/s",
-    "bilder pro sekunde",
-    "images/s",
-    "images par seconde",
-    "im/s",
-    "fotogrammi al secondo",
-    "fotogramas por segundo",
-    "cuadros por segundo",
+    "frame rate",
+    "framerate",
+    "sample rate",
+    "samplerate",
+    "sampling rate",
+    "sampling frequency",
+    "abtastrate",
+    "bildrate",
+    "frequence d'echantillonnage",
+    "frecuencia de muestreo",
 ];
 
 /// Reads the lines above a table.
@@ -54,6 +51,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     if region.view.across {
         return found;
     }
+    let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);
+    found.fps = headings.into_iter().next().map(|fps| (fps, region.view.line(region.header_row, 0)));
     // Below a table as well, where a line stands alone.
     let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
@@ -92,17 +91,14 @@ fn last_number(text: &str) -> Option<(f64, &str)> {
     (value.is_finite() && value > 0.0).then_some((value, before.trim_end_matches([' ', ':', '='])))
 }
 
-/// `240 fps`, `Frame rate: 240`.
-fn frame_rate(text: &str) -> Option<f64> {
-    let text = folded(text);
-    let number = RATES.iter().find_map(|unit| {
-        let at = text.find(unit)?;
-        let ends = text[at + unit.len()..].chars().next().is_none_or(|c| !c.is_alphanumeric());
-        last_number(text[..at].trim_end()).filter(|_| ends)
-    });
-    let named =
-        || last_number(text.trim_end()).filter(|(_, before)| matches!(*before, "fps" | "frame rate" | "framerate"));
-    number.or_else(named).map(|(value, _)| value)
+/// `240 fps`, `Frame rate: 240`, `44.1 kHz`, 1/s.
+pub(super) fn frame_rate(text: &str) -> Option<f64> {
+    let named = || {
+        let text = folded(text);
+        let (value, before) = last_number(text.trim_end())?;
+        RATES.contains(&before).then_some(value)
+    };
+    rate(text).map(|(value, _)| value).or_else(named)
 }
 
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the

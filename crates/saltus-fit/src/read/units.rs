@@ -47,7 +47,23 @@ pub(super) enum Scale {
     Percent,
     /// The height of release, of which its numbers are parts.
     Whole,
+    /// A number of joules, as much as a ball has at a height: a mass that nobody knows away from it.
+    Energy { times: f64, over: f64 },
 }
+
+/// Units of energy, and how many of them make a joule.
+const JOULES: [(&str, f64); 8] = [
+    ("j", 1.0),
+    ("joule", 1.0),
+    ("joules", 1.0),
+    ("kj", 1e-3),
+    ("mj", 1e3),
+    ("millijoule", 1e3),
+    ("millijoules", 1e3),
+    ("µj", 1e6),
+];
+/// By the international mile, m/s.
+const MILE_AN_HOUR: f64 = 0.447_04;
 
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +75,9 @@ pub(super) struct Unit {
 impl Unit {
     pub(super) const SECOND: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: 1.0 } };
     pub(super) const WHOLE: Self = Self { dimension: Dimension::Length, scale: Scale::Whole };
+    /// A joule, as a measure of the height it stands for.
+    pub(super) const JOULE: Self =
+        Self { dimension: Dimension::Length, scale: Scale::Energy { times: 1.0, over: 1.0 } };
     pub(super) const PIXEL: Self = Self { dimension: Dimension::Length, scale: Scale::Pixels };
 
     /// One frame, in seconds.
@@ -81,10 +100,15 @@ impl Unit {
     /// A number of this unit in SI units; pixels and hundredths stay what they are.
     pub(super) fn si(self, value: f64) -> f64 {
         match self.scale {
-            Scale::Si { times, over } => value * times / over,
+            Scale::Si { times, over } | Scale::Energy { times, over } => value * times / over,
             Scale::Pixels | Scale::Whole => value,
             Scale::Percent => value / 100.0,
         }
+    }
+
+    /// A unit of energy as a measure of the height at which a ball has it.
+    pub(super) fn of_height(self) -> Option<Self> {
+        matches!(self.scale, Scale::Energy { .. }).then_some(Self { dimension: Dimension::Length, ..self })
     }
 
     /// Whether only ratios of its numbers have a meaning.
@@ -106,6 +130,11 @@ impl Unit {
             "\"" | "″" | "''" | "”" => return Self::parse("in"),
             "'" | "′" | "’" => return Self::parse("ft"),
             "second" | "secs" => return Some(Self::SECOND),
+            "mph" | "mi/h" => return Some(Self::of(Dimension::Speed, MILE_AN_HOUR)),
+            _ if let Some((_, over)) = JOULES.iter().find(|(name, _)| *name == symbol) => {
+                let scale = Scale::Energy { times: 1.0, over: *over };
+                return Some(Self { dimension: Dimension::Other, scale });
+            }
             _ => {}
         }
         for (quantity, dimension) in [
@@ -118,8 +147,7 @@ impl Unit {
             }
         }
         let other = Quantity::ALL.iter().any(|quantity| quantity.scale(text).or(quantity.scale(symbol)).is_some())
-            || ["j", "mj", "n", "w", "°c", "°f", "k", "db", "psi", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"]
-                .contains(&symbol);
+            || ["n", "w", "°c", "°f", "k", "db", "psi", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
         other.then_some(Self { dimension: Dimension::Other, scale: Scale::Si { times: 1.0, over: 1.0 } })
     }
 }

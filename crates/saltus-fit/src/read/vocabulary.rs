@@ -48,6 +48,12 @@ pub(super) enum Atom {
     Derived,
     /// What is derived is a ratio.
     Ratio,
+    /// What is derived is an energy.
+    Energy,
+    /// What is repeated may be a sample of a sound.
+    Sample,
+    /// A rebound at its top, or the top itself.
+    Top,
     Other,
     Note,
     /// The word says nothing.
@@ -94,6 +100,9 @@ impl Atom {
             "goal" => Self::Goal,
             "derived" => Self::Derived,
             "ratio" => Self::Ratio,
+            "energy" => Self::Energy,
+            "sample" => Self::Sample,
+            "top" => Self::Top,
             "other" => Self::Other,
             "note" => Self::Note,
             "filler" => Self::Filler,

@@ -23,6 +23,9 @@ impl Word {
     }
 }
 
+/// What lies between bounces lies between two.
+const TWO: [&str; 9] = ["two", "zwei", "deux", "due", "dois", "twee", "tva", "dwoma", "dvema"];
+
 /// Nobody counts further.
 const COUNTED: usize = 1_000_000;
 
@@ -31,10 +34,19 @@ pub(super) fn split(text: &str) -> Vec<Word> {
     let mut words: Vec<Word> = Vec::new();
     for piece in pieces(text) {
         let folded = folded(&piece);
-        let kind = if let Some(atoms) = meanings(&folded) {
+        let kind = if folded == "dos" && words.last().is_some_and(|w| w.is(Atom::After) || w.text == "de") {
+            // Two in Spanish, and not `of the` in Portuguese: `después de dos rebotes`.
+            Kind::Unknown
+        } else if piece == "TID" {
+            // The number of a track, where `tid` is the time in Swedish.
+            Kind::Unknown
+        } else if let Some(atoms) = meanings(&folded) {
             Kind::Known(atoms)
         } else if let Some(n) = ordinal(&folded) {
             Kind::Ordinal(n)
+        } else if TWO.contains(&&*folded) && words.last().is_some_and(|w| w.is(Atom::Between)) {
+            // `between two bounces`.
+            continue;
         } else if words.last().is_some_and(counts) && folded.len() > 1 && ORDINALS.contains(&&*folded) {
             // `n-th`, `n-ten`: the end of a letter that counts.
             continue;
@@ -46,7 +58,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             let n = digits.parse().ok().filter(|n| *n <= COUNTED);
             match (meanings(letters), n) {
                 (Some(atoms), Some(n)) => {
-                    words.push(Word { text: letters.to_owned(), kind: Kind::Known(atoms) });
+                    let at = piece.find(|c: char| c.is_ascii_digit()).unwrap_or(piece.len());
+                    words.push(Word { text: piece[..at].to_owned(), kind: Kind::Known(atoms) });
                     words.push(Word { text: digits.to_owned(), kind: Kind::Number(n) });
                     continue;
                 }
@@ -83,6 +96,13 @@ pub(super) fn lettered(words: &mut [Word]) {
         if counted && matches!(words[n].text.as_str(), "V" | "v" | "T") && words[..n].iter().any(measured) {
             words[n].kind = Kind::Known(&[Atom::Trial]);
         }
+    }
+    // `R1`, `R2`: rebounds.
+    if let [first, second] = words
+        && first.text == "R"
+        && matches!(second.kind, Kind::Number(_))
+    {
+        first.kind = Kind::Known(&[Atom::Rebound]);
     }
     for n in 0..words.len() {
         let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());

@@ -6,7 +6,7 @@ use crate::compare::explain::Agreement;
 use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind};
 use crate::quantity::{Method, Readings, Source, Sourced};
-use crate::read::Event;
+use crate::read::{Event, Reading};
 use crate::solve::fits::Fits;
 
 /// A rebound so many standard errors high is not read as zero.
@@ -131,8 +131,9 @@ fn mostly_left_out(judgement: &mut Judgement, fits: &Fits<'_>) {
         return;
     }
     let readings = fits.table.trials().iter().flat_map(|trial| trial.readings());
-    let read = readings.filter(|reading| reading.event == Event::Contact && reading.time.is_some()).count();
-    let used: usize = fits.evidence.trials.iter().map(|trial| trial.moments.iter().filter(|m| !m.1).count()).sum();
+    let timed = |reading: &&Reading| matches!(reading.event, Event::Contact | Event::Apex) && reading.time.is_some();
+    let read = readings.filter(timed).count();
+    let used: usize = fits.evidence.trials.iter().map(|trial| trial.moments.len()).sum();
     let adrift = fits.evidence.adrift;
     if 2 * used < read {
         judgement.doubt(FindingKind::FewFollow { read, used });

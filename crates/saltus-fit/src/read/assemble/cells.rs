@@ -7,7 +7,7 @@ use crate::read::cell::{Cell, Fault, clock, read};
 use crate::read::columns::Kind;
 use crate::read::grid::shown;
 use crate::read::heading::{At, What};
-use crate::read::units::Dimension;
+use crate::read::units::{Dimension, Scale};
 
 /// Readings of one column that have no comma, where the others have one before three digits.
 const HUNDRED: f64 = 100.0;
@@ -51,7 +51,9 @@ impl Builder<'_> {
                 return wrong(format!("'{text}' {what}"), help);
             }
         };
-        let unit = match (measured.unit, own.unit) {
+        let joules = own.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }));
+        let in_cell = measured.unit.map(|unit| unit.of_height().filter(|_| joules).unwrap_or(unit));
+        let unit = match (in_cell, own.unit) {
             (Some(unit), Some(named)) if unit.dimension != named.dimension => {
                 return wrong(
                     format!("the unit of '{text}' is not one of {}", named.dimension.noun()),

@@ -44,6 +44,8 @@ struct Builder<'a> {
     aside: Vec<LeftAside>,
     /// Trials whose times are those of the flights.
     flights: Vec<usize>,
+    /// The times of rows are those of the tops beside them.
+    tops: bool,
 }
 
 /// A reading of a cell: its number in SI units, and its error.
@@ -84,6 +86,7 @@ pub(super) fn table(
     let mut builder = Builder {
         region,
         layout: Layout::Listed,
+        tops: columns.of_tops(),
         keys: Vec::new(),
         settings: Vec::new(),
         apart: vec![true; columns.columns.len()],
@@ -329,6 +332,7 @@ impl Builder<'_> {
             in_order(region, column, trial, matches!(layout, Layout::Listed))?;
         }
         percent(region, columns, &mut table)?;
+        energies(columns, &mut table.trials);
         stray::warn(region, columns, &table.trials, &mut table.warnings);
         Ok(table)
     }
@@ -363,6 +367,26 @@ fn percent(region: &Region<'_>, columns: &Columns, table: &mut Table) -> Result<
     Ok(())
 }
 
+/// Energies as heights: of each group, whose mass is one, the largest counts as a metre.
+fn energies(columns: &Columns, trials: &mut [Trial]) {
+    if !columns.values().any(|(_, c, _)| c.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }))) {
+        return;
+    }
+    let mut most: HashMap<String, f64> = HashMap::new();
+    for trial in &*trials {
+        let own = trial.readings.iter().filter_map(|r| r.height).fold(0.0, f64::max);
+        let largest = most.entry(trial.group.clone()).or_default();
+        *largest = largest.max(own);
+    }
+    for trial in trials {
+        let Some(&largest) = most.get(&trial.group).filter(|largest| **largest > 0.0) else { continue };
+        for reading in &mut trial.readings {
+            reading.height = reading.height.map(|height| height / largest);
+            reading.sigma_height = reading.sigma_height.map(|sigma| sigma / largest);
+        }
+    }
+}
+
 /// One line on what was recognised.
 fn describe(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) -> String {
     let name = |index: usize| columns.columns[index].heading.text.as_str();
@@ -378,6 +402,9 @@ fn describe(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) 
                 "in order, the first being the release"
             };
             match (time, first.interval, height) {
+                (Some(t), _, Some(h)) if !flights && columns.of_tops() => {
+                    format!("tops: their times '{}' and their heights '{}'", name(t), name(h))
+                }
                 (Some(t), _, Some(h)) if !flights => {
                     format!("contact times '{}' and the heights reached after them '{}'", name(t), name(h))
                 }

@@ -33,8 +33,9 @@ impl Builder<'_> {
                 let count =
                     self.trials[trial].readings.iter().filter(|r| r.event != Event::Release || r.bounce > 0).count();
                 let released = self.trials[trial].readings.iter().any(|r| r.event == Event::Release);
-                let next = if track.released() { count + 1 } else { count + usize::from(released) };
-                let place = if several { next } else { n + usize::from(track.released()) };
+                // Of tops none need be that of the release.
+                let next = if track.released() || self.tops { count + 1 } else { count + usize::from(released) };
+                let place = if several { next } else { n + usize::from(track.released() || self.tops) };
                 self.numbered(place, row, track, flights)
             }
         }
@@ -170,6 +171,13 @@ impl Builder<'_> {
                 sigma_height,
                 ..Reading::new(Event::Release, 0, line)
             });
+            return Ok(());
+        }
+        if let Some((time, sigma_time)) = time.filter(|_| self.tops && bounce > 0) {
+            let (height, sigma_height) = high.map_or((None, None), |(height, sigma)| (Some(height), sigma));
+            let top = Reading::new(Event::Apex, bounce, line);
+            let top = Reading { time: Some(time), height, sigma_time, sigma_height, ..top };
+            self.trials[trial].readings.push(top);
             return Ok(());
         }
         if let Some(found) = time {

@@ -1,10 +1,12 @@
 //! What the columns of a table are: a heading alone says much, its neighbours and its cells the
 //! rest.
 
+mod energies;
 mod faults;
 mod pairs;
 mod shares;
 
+pub(super) use energies::leap;
 pub(super) use shares::LEVEL;
 
 use super::ReadOptions;
@@ -14,6 +16,7 @@ use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::region::Region;
 use super::units::{Dimension, Unit};
+use super::vocabulary::Atom;
 use crate::error::TableError;
 
 /// What a column is for.
@@ -94,6 +97,7 @@ impl Columns {
         }
         found.counted(region);
         found.measured(region);
+        found.sampled(region);
         found.counting(region);
         found.spanning(region);
         found.placed();
@@ -102,6 +106,8 @@ impl Columns {
         found.groups(region, options)?;
         found.chosen(region, options)?;
         found.shares(region);
+        found.energies(region);
+        found.one_sided();
         found.not_understood(region)?;
         found.drops(region);
         found.statistics(region)?;
@@ -329,10 +335,12 @@ impl Columns {
         }
         let fps = fps.ok_or_else(|| {
             let name = shown(&self.columns[index].heading.text);
-            region
-                .header_error(index, format!("the column '{name}' counts frames: how many were filmed in a second?"))
-                .question()
-                .help("give the frame rate of the camera, such as --fps 100")
+            let (what, help) = if self.columns[index].heading.has(Atom::Sample) {
+                ("counts samples of a sound: how many", "give the sample rate of the recording, such as --fps 44100")
+            } else {
+                ("counts frames: how many were filmed", "give the frame rate of the camera, such as --fps 100")
+            };
+            region.header_error(index, format!("the column '{name}' {what} in a second?")).question().help(help)
         })?;
         self.columns[index].kind = Kind::Value(plain(What::Time));
         self.columns[index].unit = Some(Unit::frame(fps));

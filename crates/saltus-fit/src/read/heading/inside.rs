@@ -22,6 +22,59 @@ impl DropHeight {
     }
 }
 
+/// What rates of frames and of samples are written in, and what one of them is in 1/s.
+const RATES: [(&str, f64); 22] = [
+    ("fps", 1.0),
+    ("frames per second", 1.0),
+    ("frames/second", 1.0),
+    ("frames/s", 1.0),
+    ("frames a second", 1.0),
+    ("khz", 1000.0),
+    ("hz", 1.0),
+    ("samples per second", 1.0),
+    ("samples/second", 1.0),
+    ("samples/s", 1.0),
+    ("bilder/s", 1.0),
+    ("bilder pro sekunde", 1.0),
+    ("images/s", 1.0),
+    ("images par seconde", 1.0),
+    ("im/s", 1.0),
+    ("fotogrammi al secondo", 1.0),
+    ("fotogrammi/s", 1.0),
+    ("fotogramas por segundo", 1.0),
+    ("fotogramas/s", 1.0),
+    ("cuadros por segundo", 1.0),
+    ("quadros por segundo", 1.0),
+    ("beelden per seconde", 1.0),
+];
+
+/// The rate of frames or samples that a text states behind a number, `Frame (240 fps)`, `44.1 kHz`,
+/// in 1/s, and the text without it.
+pub(in crate::read) fn rate(text: &str) -> Option<(f64, String)> {
+    let lower = text.to_ascii_lowercase();
+    RATES.iter().find_map(|&(unit, factor)| {
+        let (at, _) = lower.match_indices(unit).next()?;
+        let after = &text[at + unit.len()..];
+        if after.starts_with(char::is_alphanumeric) {
+            return None;
+        }
+        let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',');
+        let head = text[..at].trim_end();
+        let before = head.trim_end_matches(digits);
+        let value = counted(&head[before.len()..])? * factor;
+        let before = before.trim_end_matches([' ', '@', '(', '[', '=', ':', '~']);
+        let before = before.strip_suffix(" at").unwrap_or(before);
+        Some((value, format!("{before} {}", after.trim_start_matches([')', ']']))))
+    })
+}
+
+/// A number above zero, whose comma may part thousands, `44,100`.
+fn counted(text: &str) -> Option<f64> {
+    let thousands = text.split_once(',').is_some_and(|(_, rest)| rest.len() == 3);
+    let plain = if thousands { text.replace(',', "") } else { text.replace(',', ".") };
+    plain.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
+}
+
 /// Drops that are only counted are not more than this.
 const COUNTED: f64 = 20.0;
 
@@ -86,14 +139,15 @@ pub(in crate::read) enum Of {
 
 /// What the numbers of a column are parts of whose words name a ratio of heights and nothing else:
 /// `h/h0`, `height ratio`, `% of previous height`.
-pub(super) fn share(text: &str, words: &[Word], hundredths: Option<bool>) -> Option<Of> {
+/// An energy is kept as the height is.
+pub(super) fn share(text: &str, words: &[Word], hundredths: Option<bool>, percent: bool) -> Option<Of> {
     let is = |atom: Atom| words.iter().any(|word| word.is(atom));
-    let derived = |word: &Word| word.is(Atom::Derived) && !word.is(Atom::Ratio);
+    let derived = |word: &Word| word.is(Atom::Derived) && !word.is(Atom::Ratio) && !word.is(Atom::Energy);
     let other =
         [Atom::Speed, Atom::Time, Atom::Interval, Atom::Total, Atom::Lost, Atom::Predicted, Atom::Goal, Atom::Error];
     let plain = !words.iter().any(derived) && !other.into_iter().any(is);
-    let named = is(Atom::Derived) || hundredths == Some(true);
-    if !(plain && named && (is(Atom::Height) || hundredths == Some(true))) {
+    let named = is(Atom::Ratio) || is(Atom::Energy) && percent || hundredths == Some(true);
+    if !(plain && named && (is(Atom::Height) || is(Atom::Energy) || hundredths == Some(true))) {
         return None;
     }
     let first = |word: &Word| matches!(word.kind, Kind::Number(0)) || word.text == "H" || word.is(Atom::Release);

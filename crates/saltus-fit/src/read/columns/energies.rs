@@ -1,0 +1,131 @@
+//! Columns that stand for others where nothing else is read: energies for heights, the speeds or
+//! energies of one side of the impacts for those of the row, samples of a sound for times.
+
+use super::{Columns, Kind};
+use crate::read::aside::Why;
+use crate::read::cell::Cell;
+use crate::read::grid::shown;
+use crate::read::heading::{At, Role, What};
+use crate::read::region::Region;
+use crate::read::units::{Scale, Unit};
+use crate::read::vocabulary::Atom;
+
+/// Numbers of samples rise by more than this from contact to contact, where trials are counted by
+/// ones: at 8000 a second, the slowest that sounds are recorded at, it is an eightieth of a second.
+const SAMPLES: f64 = 100.0;
+
+impl Columns {
+    /// Energies are read as the heights that a ball has them at, where a table has no other
+    /// readings: before and after a bounce, or bounce by bounce. Hundredths of it that are lost are
+    /// those of the height.
+    pub(super) fn energies(&mut self, region: &Region<'_>) {
+        let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
+        let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
+        if self.columns.iter().any(|c| read(c) && !released(c) && !c.value().is_some_and(|v| v.or_trial)) {
+            return;
+        }
+        let lost = |c: &super::Column| c.heading.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        let named = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.energy.is_some();
+        let (parts, joules): (Vec<usize>, Vec<usize>) =
+            (0..self.columns.len()).filter(named).partition(|&n| lost(&self.columns[n]));
+        let at = |n: &usize| self.columns[*n].heading.energy.as_ref().filter(|v| v.role == Role::Reading).map(|v| v.at);
+        let places: Vec<At> = joules.iter().filter_map(at).collect();
+        let paired = places.contains(&At::Release) && places.iter().any(|at| *at != At::Release);
+        let heights: Vec<usize> =
+            (0..self.columns.len()).filter(|&n| read(&self.columns[n]) && released(&self.columns[n])).collect();
+        let beside = heights.iter().any(|&n| !self.columns[n].value().is_some_and(|v| v.or_trial));
+        if !places.is_empty() && (paired || !beside) {
+            heights.into_iter().filter(|_| beside).for_each(|index| self.leave(index, Why::Elsewhere));
+            joules.into_iter().for_each(|index| self.stands_for_a_height(region, index));
+        } else if let ([index], true) = (parts.as_slice(), beside) {
+            self.promote(*index);
+        }
+    }
+
+    /// A column of energies is one of heights, in joules.
+    fn stands_for_a_height(&mut self, region: &Region<'_>, index: usize) {
+        let of_cell = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(m) => m.unit.and_then(Unit::of_height),
+            _ => None,
+        };
+        let own = self.columns[index].heading.unit.and_then(Unit::of_height);
+        // Of a mass that is not known a joule stands for any height: only ratios count.
+        let unit = own.or(region.rows.iter().find_map(of_cell)).unwrap_or(Unit::JOULE);
+        self.columns[index].unit = Some(unit);
+        self.promote(index);
+        let name = shown(&self.columns[index].heading.text);
+        self.notes.push(format!("'{name}' is taken as an energy, which is as the height"));
+    }
+
+    fn promote(&mut self, index: usize) {
+        let name = shown(&self.columns[index].heading.text);
+        if let Some(value) = self.columns[index].heading.energy.clone() {
+            self.columns[index].kind = Kind::Value(value);
+            self.aside.retain(|aside| aside.name != name);
+        }
+    }
+
+    /// Speeds, or energies, of impacts that are counted, all of one side: those of the row.
+    pub(super) fn one_sided(&mut self) {
+        let counted = self.number().is_some_and(|(_, sure)| sure);
+        let sides: Vec<usize> = self
+            .values()
+            .filter(|(_, c, v)| {
+                v.what == What::Speed || c.unit.is_some_and(|u| matches!(u.scale, Scale::Energy { .. }))
+            })
+            .filter(|(_, _, v)| v.role == Role::Reading)
+            .map(|(n, _, _)| n)
+            .collect();
+        let before = |&n: &usize| {
+            self.columns[n].heading.has(Atom::Impact)
+                && self.columns[n].value().is_some_and(|v| matches!(v.at, At::Before | At::Release))
+        };
+        if !counted || self.values().count() != sides.len() || !sides.iter().all(before) {
+            return;
+        }
+        for index in sides {
+            if let Kind::Value(value) = &mut self.columns[index].kind {
+                value.at = At::Row;
+            }
+        }
+    }
+
+    /// Numbers of samples, as sound programs count them, are a clock, as those of frames are.
+    pub(super) fn sampled(&mut self, region: &Region<'_>) {
+        let found = (0..self.columns.len()).find(|&n| {
+            let column = &self.columns[n];
+            column.heading.counts_samples() && leap(region.rows.iter().map(|&row| region.cell(row, n)))
+        });
+        if let Some(index) = found {
+            self.columns[index].kind = Kind::Frame;
+            self.columns[index].unit = None;
+            let name = shown(&self.columns[index].heading.text);
+            self.aside.retain(|aside| aside.name != name);
+        }
+    }
+
+    /// Whether the clock counts samples of a sound.
+    pub(in crate::read) fn heard(&self) -> bool {
+        self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Sample))
+    }
+
+    /// Whether the times of the rows are those of the tops beside them, by the name of the times or
+    /// of what counts the rows.
+    pub(in crate::read) fn of_tops(&self) -> bool {
+        let row = |what: What| self.values().find(move |(_, _, v)| v.what == what && v.at == At::Row);
+        let (Some((_, time, _)), Some(_)) = (row(What::Time), row(What::Height)) else { return false };
+        let counted = self.number().is_some_and(|(n, _)| {
+            let heading = &self.columns[n].heading;
+            heading.of_tops() && !heading.has(Atom::Impact)
+        });
+        !time.heading.has(Atom::Impact) && (time.heading.of_tops() || counted)
+    }
+}
+
+/// Whether cells hold whole numbers that rise as those of samples do.
+pub(in crate::read) fn leap<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+    let whole = |cell: &str| cell.parse().ok().filter(|value: &f64| value.fract() == 0.0);
+    let numbers: Vec<Option<f64>> = cells.filter(|cell| !cell.is_empty()).map(whole).collect();
+    let rises = |pair: &[Option<f64>]| matches!(pair, [Some(a), Some(b)] if b - a > SAMPLES);
+    numbers.len() > 1 && numbers.windows(2).all(rises)
+}

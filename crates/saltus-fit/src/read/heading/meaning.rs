@@ -1,0 +1,199 @@
+//! What the words of a heading say together: a quantity, what it tells apart, or why its numbers
+//! are no readings.
+
+use super::super::aside::Why;
+use super::super::units::{Dimension, Scale, Unit};
+use super::super::vocabulary::{Atom, folded};
+use super::super::words::{Numbers, Word, numbers};
+use super::{At, Heading, Meaning, Role, Value, What};
+
+impl Heading {
+    /// What the words say together.
+    pub(super) fn interpret(&self, words: &[Word], run: &str) -> Meaning {
+        use Atom::{
+            Air, Between, Derived, Distance, Goal, Group, Height, Label, Note, Other, Position, Predicted, Total,
+        };
+        let has = |atom| self.has(atom);
+        let numbers = numbers(words);
+        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
+        if has(Note) && self.unit.is_none() {
+            return Meaning::Aside(Why::Note);
+        }
+        if has(Predicted) {
+            return Meaning::Aside(Why::Predicted);
+        }
+        if has(Goal) {
+            return Meaning::Aside(Why::Goal);
+        }
+        let intervals = has(Derived) && words.iter().any(|w| w.text == "delta") && has(Atom::Time);
+        // Of two bodies that meet: the speed of one as the other sees it, and no ratio.
+        let met = (has(Atom::Before) || has(Atom::After)) && has(Atom::Speed);
+        let relative = met && words.iter().all(|w| !w.is(Derived) || folded(&w.text).starts_with("relativ"));
+        if has(Derived) && !intervals && !relative {
+            return Meaning::Aside(Why::Derived);
+        }
+        let setting = has(Group)
+            && !named
+            && !has(Height)
+            && !has(Position)
+            && self.unit.is_none_or(|u| u.dimension == Dimension::Other);
+        if setting && !has(Label) {
+            return Meaning::Setting;
+        }
+        let flown = has(Distance) && has(Between) || has(Height) && has(Total);
+        if has(Other) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
+            return Meaning::Aside(Why::Other);
+        }
+        let what = if intervals { What::Interval } else { self.what() };
+        let what = if what == What::Unsaid && self.drop.is_some() { What::Height } else { what };
+        if what == What::Unsaid
+            && self.unit.is_none()
+            && let Some(key) = self.key(&numbers)
+        {
+            return key;
+        }
+        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) {
+            return Meaning::Aside(Why::Other);
+        }
+        self.reading(what, numbers, run)
+    }
+
+    /// The quantity that words and unit name.
+    fn what(&self) -> What {
+        use Atom::{
+            Air, Between, Distance, Height, Impact, Interval, Percent, Position, Rebound, Release, Rest, Speed, Time,
+            Total,
+        };
+        let has = |atom| self.has(atom);
+        let of = |dimension| self.unit.is_some_and(|unit: Unit| unit.dimension == dimension);
+        let timed = has(Time) || of(Dimension::Time);
+        if has(Speed) || of(Dimension::Speed) {
+            What::Speed
+        } else if has(Interval) || timed && (has(Between) || has(Air)) {
+            What::Interval
+        } else if timed && has(Rest) || has(Total) && !has(Height) && !of(Dimension::Length) {
+            What::Total
+        } else if timed && (!has(Height) || has(Time) && of(Dimension::Time)) {
+            What::Time
+        } else if has(Height)
+            || has(Position)
+            || has(Distance)
+            || of(Dimension::Length)
+            || has(Percent)
+            || has(Rebound) && !has(Impact)
+            || has(Release) && !has(Atom::Trial)
+        {
+            What::Height
+        } else {
+            What::Unsaid
+        }
+    }
+
+    /// What a heading without a quantity tells apart.
+    fn key(&self, numbers: &Numbers) -> Option<Meaning> {
+        use Atom::{Error, Event, Frame, Group, Impact, Mean, Number, Release, Repeat, Trial};
+        let has = |atom| self.has(atom);
+        let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
+        if has(Frame) {
+            return Some(Meaning::Frame);
+        }
+        if named || has(Mean) || has(Error) {
+            return None;
+        }
+        if has(Event) && !has(Repeat) {
+            return Some(Meaning::Event);
+        }
+        if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {
+            return Some(Meaning::Trial);
+        }
+        if has(Group) {
+            return Some(Meaning::Setting);
+        }
+        if has(Number) || has(Impact) {
+            return Some(Meaning::Number { sure: has(Impact) });
+        }
+        None
+    }
+
+    fn reading(&self, what: What, numbers: Numbers, run: &str) -> Meaning {
+        use Atom::{
+            After, Before, Distance, Error, Height, Impact, Lost, Max, Mean, Median, Min, Percent, Position, Rebound,
+            Release, Speed, Trial,
+        };
+        let has = |atom| self.has(atom);
+        if has(Percent) && what != What::Height {
+            return Meaning::Aside(Why::Derived);
+        }
+        // Components of a vector, the rise of something, a change of a change.
+        // At an impact it is the vertical one that turns round.
+        let at_impact = has(Before) || has(After);
+        if has(Speed) && (has(Position) && !at_impact || has(Release))
+            || numbers.bounce.len() > 1 && what != What::Interval
+        {
+            return Meaning::Aside(Why::Other);
+        }
+        let role = match () {
+            () if has(Error) => Role::Error,
+            () if has(Lost) => Role::Lost,
+            () if has(Mean) || has(Median) => Role::Mean,
+            // The time of the greatest height.
+            () if has(Max) && has(Height) && what == What::Time => Role::Reading,
+            () if has(Max) => Role::Max,
+            () if has(Min) => Role::Min,
+            () => Role::Reading,
+        };
+        let from = self.drop.as_ref();
+        let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty() && from.is_none();
+        let at = match (numbers.bounce.first(), what) {
+            (Some(0), What::Height) => At::Release,
+            (Some(&n), _) => At::Nth(n),
+            (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {
+                At::Release
+            }
+            (None, What::Speed) if has(After) || has(Rebound) => At::After,
+            (None, What::Speed) if has(Before) || has(Impact) => At::Before,
+            _ => At::Row,
+        };
+        let mut label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        if let Some(drop) = from {
+            let apart = if label.is_empty() { "" } else { ", " };
+            label = format!("{label}{apart}from {}", drop.text);
+        }
+        Meaning::Value(Value {
+            what,
+            at,
+            role,
+            trial: label,
+            group: numbers.group,
+            position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
+            or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
+            drop: self.drop.clone(),
+        })
+    }
+
+    /// What its numbers are as heights, if every word is of an energy: m g h of a height, and of a
+    /// speed what it was, or will be, at the top.
+    pub(super) fn of_energy(&self, words: &[Word], run: &str) -> Option<Value> {
+        let joules = self.unit.is_some_and(|unit| unit.of_height().is_some());
+        let lost = self.has(Atom::Lost) && self.unit.is_none_or(|unit| unit.scale == Scale::Percent);
+        let named = words.iter().any(|w| w.is(Atom::Energy));
+        let other = |w: &Word| {
+            let letter = joules && folded(&w.text) == "e";
+            w.is(Atom::Derived) && !w.is(Atom::Energy) && !letter || w.is(Atom::Other)
+        };
+        let turned = [Atom::Predicted, Atom::Goal].iter().any(|atom| self.has(*atom)) || words.iter().any(other);
+        let fits = joules || named && (self.unit.is_none() || lost);
+        if !fits || turned || !self.unknown.is_empty() {
+            return None;
+        }
+        let Meaning::Value(value) = self.reading(What::Height, numbers(words), run) else { return None };
+        let has = |atom| self.has(atom);
+        let at = match value.at {
+            At::Nth(_) => value.at,
+            _ if has(Atom::After) || has(Atom::Rebound) => At::Row,
+            _ if has(Atom::Before) || has(Atom::Release) || has(Atom::Impact) => At::Release,
+            at => at,
+        };
+        Some(Value { at, position: false, or_trial: false, ..value })
+    }
+}

@@ -1,0 +1,165 @@
+//! Columns that stand for heights or times: energies, speeds of one side, samples of a sound, the
+//! moments of tops. Balls of any COR are planted, and what is made of them is read.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+use proptest::prelude::*;
+use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
+
+fn read(text: &str) -> Result<Table, TableError> {
+    Table::parse("t.csv", text.as_bytes(), &ReadOptions::default())
+}
+
+fn fit(text: &str) -> Report {
+    Fit::new().run(&read(text).unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
+}
+
+/// The COR of a table, which is trusted.
+fn trusted(text: &str) -> f64 {
+    let report = fit(text);
+    assert_eq!(report.verdict(), Verdict::Trusted, "{text}{report}");
+    report.cor().unwrap().value
+}
+
+/// Rows below a header.
+fn table(header: &str, rows: impl IntoIterator<Item = String>) -> String {
+    rows.into_iter().fold(format!("{header}\n"), |text, row| text + &row + "\n")
+}
+
+/// The times of the contacts of a ball dropped from `drop` at 0 s.
+fn contacts(drop: f64, e: f64, count: i32) -> Vec<f64> {
+    let fall = (2.0 * drop / 9.81f64).sqrt();
+    (0..count).map(|n| fall + 2.0 * fall * (1..=n).map(|k| e.powi(k)).sum::<f64>()).collect()
+}
+
+/// What energies before and after a bounce are called.
+const SIDES: &[(&str, &str)] = &[
+    ("PE before (J)", "PE after (J)"),
+    ("Potential energy at drop (mJ)", "Potential energy at rebound (mJ)"),
+    ("Initial energy (J)", "Final energy (J)"),
+    ("Kinetic energy before impact (J)", "Kinetic energy after impact (J)"),
+    ("KE in (mJ)", "KE after (mJ)"),
+    ("E1 before (mJ)", "E2 after (mJ)"),
+    ("Energie vor dem Stoß (mJ)", "Energie nach dem Stoß (mJ)"),
+    ("Énergie potentielle avant (J)", "Énergie potentielle après (J)"),
+    ("Energía inicial (J)", "Energía final (J)"),
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Before and after a bounce, whatever the mass: the ratio of energies is e².
+    #[test]
+    fn energies_before_and_after(e in 0.4f64..0.9, mass in 0.005f64..0.6, sides in 0..SIDES.len()) {
+        let (before, after) = SIDES[sides];
+        let unit = if before.contains("mJ") { 1e3 } else { 1.0 };
+        let rows = [0.5, 1.0, 1.5, 2.0].map(|h: f64| {
+            let energy = unit * mass * 9.81 * h;
+            format!("{energy:.6},{:.6}", energy * e * e)
+        });
+        let of = |header: String| trusted(&table(&header, rows.clone()));
+        let alone = of(format!("{before},{after}"));
+        prop_assert!((alone - e).abs() < 1e-3);
+        // Beside the heights they are from they are left aside, whatever they say.
+        let rows = [0.5, 1.0, 1.5, 2.0].map(|h: f64| format!("{h},{:.5},{:.4},{:.4}", h * e * e, 9.0 * h, 2.0 * h));
+        let heights = fit(&table(&format!("Drop (m),Rebound (m),{before},{after}"), rows));
+        prop_assert!((heights.cor().unwrap().value - e).abs() < 1e-3, "{}", heights);
+        prop_assert_eq!(heights.left_aside().len(), 2);
+    }
+
+    /// Bounce by bounce, of the tops or of the impacts.
+    #[test]
+    fn energies_and_speeds_bounce_by_bounce(e in 0.6f64..0.9, mass in 0.005f64..0.6) {
+        for (header, first, power) in [
+            ("Bounce,Potential energy (J)", 0, 2),
+            ("Bounce,Kinetic energy at impact (J)", 1, 2),
+            ("Impact,Speed at impact (m/s)", 1, 1),
+        ] {
+            let rows = (0..6).map(|n| format!("{},{:.6}", n + first, 9.0 * mass.powi(power - 1) * e.powi(power * n)));
+            prop_assert!((trusted(&table(header, rows)) - e).abs() < 1e-3, "{}", header);
+        }
+    }
+
+    /// Hundredths that are kept, or lost, of the energy are those of the height.
+    #[test]
+    fn parts_of_the_energy(e in 0.4f64..0.9) {
+        for (header, part) in [
+            ("Drop height (cm),Energy retained (%)", 100.0 * e * e),
+            ("Drop height (cm),Energy lost (%)", 100.0 * (1.0 - e * e)),
+            ("Drop height (cm),Fraction of height recovered", e * e),
+        ] {
+            let rows = [60, 80, 100, 120].map(|h| format!("{h},{part:.4}"));
+            prop_assert!((trusted(&table(header, rows)) - e).abs() < 1e-3, "{}", header);
+        }
+    }
+
+    /// Numbers of samples are times at the rate that is stated, wherever it stands; without one
+    /// they are asked for.
+    #[test]
+    fn samples_of_a_sound(e in 0.6f64..0.9, rate in prop::sample::select(vec![8000, 22050, 44100, 48000, 96000])) {
+        let times = contacts(1.0, e, 7);
+        let rows = || times.iter().enumerate().map(|(n, t)| format!("{},{}", n + 1, (t * f64::from(rate)).round()));
+        for (above, header) in [
+            (String::new(), format!("Bounce,Sample ({rate} Hz)")),
+            (format!("Recording, {rate} Hz\n"), "Click,Sample number".to_owned()),
+            (format!("Sample rate: {} kHz\n", f64::from(rate) / 1000.0), "Impact,Sample".to_owned()),
+            (format!("# sampled at {rate} Hz\n"), "Bounce,Sample index".to_owned()),
+        ] {
+            let text = above + &table(&header, rows());
+            let report = fit(&text);
+            prop_assert!((report.cor().unwrap().value - e).abs() < 2e-3, "{}{}", text, report);
+            // A sample is no error of hearing a contact.
+            prop_assert!(!report.to_string().contains("frame"), "{}", report);
+        }
+        let asked = read(&table("Bounce,Sample number", rows())).unwrap_err();
+        prop_assert!(asked.is_question() && asked.to_string().contains("--fps 44100"), "{}", asked);
+    }
+
+    /// The moment of a top beside its height is no contact: heights and times agree on one COR.
+    #[test]
+    fn moments_of_tops(e in 0.6f64..0.9, drop in 0.5f64..2.0) {
+        let hits = contacts(drop, e, 7);
+        let tops = || (0..6).map(|n| (n + 1, 0.5 * (hits[n] + hits[n + 1]), 100.0 * drop * e.powi(2 * n as i32 + 2)));
+        for (header, counted) in [
+            ("Peak,Time (s),Height (cm)", true),
+            ("Apex no.,t (s),h (cm)", true),
+            ("Maximum Nr.,t (s),h (cm)", true),
+            ("Bounce,Time of peak (s),Height (cm)", true),
+            ("Time of max height (s),Max height (cm)", false),
+        ] {
+            let rows = tops().map(|(n, t, h)| {
+                let row = format!("{t:.3},{h:.1}");
+                if counted { format!("{n},{row}") } else { row }
+            });
+            let text = table(header, rows);
+            let report = fit(&text);
+            prop_assert!((report.cor().unwrap().value - e).abs() < 4e-3, "{}{}", text, report);
+            prop_assert_eq!(report.verdict(), Verdict::Trusted, "{}{}", text, report);
+        }
+        // Contacts by name stay contacts.
+        let rows = hits.iter().enumerate().map(|(n, t)| format!("{},{t:.3},{:.1}", n + 1, 100.0 * drop * e.powi(2 * n as i32 + 2)));
+        let report = fit(&table("Bounce,Time of impact (s),Height (cm)", rows));
+        prop_assert!((report.cor().unwrap().value - e).abs() < 4e-3 && report.verdict() == Verdict::Trusted, "{}", report);
+    }
+
+    /// Rows may be named by the two bounces that a flight lies between.
+    #[test]
+    fn flights_are_named_by_their_ends(e in 0.6f64..0.9, mark in prop::sample::select(vec!["-", "–", " → ", " to ", " & "])) {
+        let times = contacts(1.0, e, 7);
+        let rows = times.windows(2).enumerate().map(|(n, w)| format!("{}{mark}{},{:.1}", n + 1, n + 2, 1000.0 * (w[1] - w[0])));
+        let report = fit(&table("Bounces,Time between (ms)", rows));
+        prop_assert!((report.cor().unwrap().value - e).abs() < 3e-3, "{}", report);
+    }
+}
+
+/// A single energy, or one that is a model's, is no height.
+#[test]
+fn energies_that_tell_no_cor_are_not_read() {
+    for text in [
+        "Drop height (m),Energy after bounce (J)\n1,0.36\n2,0.72\n",
+        "Trial,Expected PE before (J),Expected PE after (J)\n1,0.57,0.36\n2,0.36,0.23\n",
+        "Trial,Energy ratio error\n1,0.02\n2,0.03\n",
+    ] {
+        assert!(read(text).is_err(), "{text}");
+    }
+}
