@@ -87,10 +87,69 @@ proptest! {
             ("Drop height (cm),Energy retained (%)", 100.0 * e * e),
             ("Drop height (cm),Energy lost (%)", 100.0 * (1.0 - e * e)),
             ("Drop height (cm),Fraction of height recovered", e * e),
+            ("Trial,Energy lost (%)", 100.0 * (1.0 - e * e)),
+            ("Trial,Energy retained (%)", 100.0 * e * e),
         ] {
             let rows = [60, 80, 100, 120].map(|h| format!("{h},{part:.4}"));
             prop_assert!((trusted(&table(header, rows)) - e).abs() < 1e-3, "{}", header);
         }
+    }
+
+    /// Parts that fall from bounce to bounce are of the first height, with its row or without.
+    #[test]
+    fn parts_of_the_first_height(e in 0.6f64..0.9, first in 0i32..2) {
+        for header in ["Bounce,Energy (%)", "Bounce,Energy retained (%)", "Bounce,Height ratio"] {
+            let whole = if header.contains('%') { 100.0 } else { 1.0 };
+            let rows = (first..5).map(|n| format!("{n},{:.5}", whole * e.powi(2 * n)));
+            prop_assert!((trusted(&table(header, rows)) - e).abs() < 1e-3, "{}", header);
+        }
+    }
+
+    /// A plain height beside that of a bounce, above it in every row, is where the ball was dropped.
+    #[test]
+    fn a_plain_height_beside_a_bounce(e in 0.4f64..0.9) {
+        let rows = [60, 80, 100, 120].map(|h| format!("{h},{:.2}", f64::from(h) * e * e));
+        prop_assert!((trusted(&table("Height (cm),Bounce (cm)", rows)) - e).abs() < 1e-3);
+    }
+
+    /// Symbols of what was before and after: `u` and `v`, a prime, `i` and `f`.
+    #[test]
+    fn symbols_of_before_and_after(e in 0.4f64..0.9) {
+        for (header, power) in
+            [("u (m/s),v (m/s)", 1), ("v (m/s),v' (m/s)", 1), ("vi (m/s),vf (m/s)", 1), ("h (cm),h' (cm)", 2), ("hi (cm),hf (cm)", 2)]
+        {
+            let rows = [3.0, 4.0, 5.0, 6.0].map(|v: f64| format!("{v},{:.4}", v * e.powi(power)));
+            prop_assert!((fit(&table(header, rows)).cor().unwrap().value - e).abs() < 2e-3, "{}", header);
+        }
+    }
+
+    /// Lines of a name and a number each, words among them being remarks.
+    #[test]
+    fn lines_of_names_and_numbers(e in 0.4f64..0.9, equals: bool, remark: bool) {
+        let mark = if equals { " = " } else { ": " };
+        let mut text = if remark { "Ball: golf\nPlace: gym\n".to_owned() } else { String::new() };
+        for (n, name) in ["h0", "h1", "h2", "h3"].into_iter().enumerate() {
+            text += &format!("{name}{mark}{:.2} cm\n", 100.0 * e.powi(2 * n as i32));
+        }
+        let report = fit(&text);
+        prop_assert!((report.cor().unwrap().value - e).abs() < 3e-3, "{}{}", text, report);
+    }
+
+    /// Cells that two blanks or more part, below names that are underlined or not.
+    #[test]
+    fn tables_are_aligned_by_blanks(e in 0.4f64..0.9, ruled: bool, comma: bool, words: bool) {
+        let mut text = "Ball no.     Drop (cm)   Rebound (cm)\n".to_owned();
+        if ruled {
+            text += "--------     ---------   ------------\n";
+        }
+        for (n, h) in [60.0, 80.0, 100.0, 120.0].into_iter().enumerate() {
+            let ball = if words { "n/a".to_owned() } else { (n + 1).to_string() };
+            text += &format!("{ball}            {h:.1}        {:.2}\n", h * e * e);
+        }
+        let text = if comma { text.replace("0.", "0,").replace('.', ",").replace("no,", "no.") } else { text };
+        let text = text.replace("Ball no.", "Trial   ");
+        let report = fit(&text);
+        prop_assert!((report.cor().unwrap().value - e).abs() < 1e-3, "{}{}", text, report);
     }
 
     /// Numbers of samples are times at the rate that is stated, wherever it stands; without one
@@ -149,6 +208,16 @@ proptest! {
         let rows = times.windows(2).enumerate().map(|(n, w)| format!("{}{mark}{},{:.1}", n + 1, n + 2, 1000.0 * (w[1] - w[0])));
         let report = fit(&table("Bounces,Time between (ms)", rows));
         prop_assert!((report.cor().unwrap().value - e).abs() < 3e-3, "{}", report);
+    }
+}
+
+/// Hours are no height, and a time counts no bounces, in whatever unit.
+#[test]
+fn hours_count_no_bounces() {
+    for unit in ["(h)", "(min)", "(days)", ""] {
+        let text = format!("Time {unit},Bounce height (cm)\n0,60\n1,55\n2,50.5\n3,46\n");
+        let report = read(&text).map(|table| Fit::new().run(&table).unwrap());
+        assert!(report.is_err() || report.is_ok_and(|report| report.verdict() != Verdict::Trusted), "{text}");
     }
 }
 

@@ -325,6 +325,10 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table,
         Ok(grid) => grid,
         Err(problem) => return Ok(Err(problem)),
     };
+    let view = View { grid: &grid, across: false };
+    if !(0..grid.rows()).any(|row| (0..grid.width(row)).any(|column| view.is_number(row, column))) {
+        return Ok(Err(TableError::new(name, "there is no number in it").nothing()));
+    }
     match read(&grid, options) {
         Ok(table) => Ok(Ok(table)),
         // What is no table of bounces is left aside; a table that cannot be read is an error.

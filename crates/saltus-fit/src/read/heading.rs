@@ -6,7 +6,7 @@ mod meaning;
 
 use super::aside::Why;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::{Atom, narrow};
+use super::vocabulary::{Atom, folded, narrow};
 use super::words::{Kind, Word, split};
 pub(super) use inside::{DropHeight, Of, rate, release, released};
 
@@ -154,7 +154,7 @@ impl Heading {
         }
         // Programs put the run before the name: 'Latest: Time (s)'.
         let (run, name) = match text.split_once(':') {
-            Some((run, name)) if !name.trim().is_empty() => (run.trim(), name),
+            Some((run, name)) if !name.trim().is_empty() && !run.contains(['(', '[']) => (run.trim(), name),
             _ => ("", text),
         };
         let (drop, name) = release(name).map_or((None, name.to_owned()), |(drop, rest)| (Some(drop), rest));
@@ -196,6 +196,11 @@ impl Heading {
         }
         heading.energy = heading.of_energy(&words, run);
         heading
+    }
+
+    /// Whether it is of a single word.
+    pub(super) fn only(&self) -> bool {
+        self.unknown.is_empty() && self.atoms.len() == 1
     }
 
     /// Whether it may count the samples of a sound: it names them, and no quantity.
@@ -265,7 +270,12 @@ impl Heading {
                 matches!(inside, "n" | "i" | "k" | "t" | "x") && rest[..open].ends_with(char::is_alphanumeric);
             rest = &rest[open + close + 1..];
             let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
-            if let Some(error) = error.map(str::trim) {
+            let timed = || split(&left).iter().any(|w| w.is(Atom::Time) || w.is(Atom::Interval));
+            if inside == "h" && timed() {
+                self.unit = self.unit.or(Some(Unit::HOUR));
+            } else if of_a_clock(inside) {
+                left.push_str("time ");
+            } else if let Some(error) = error.map(str::trim) {
                 let digits = error.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(error.len());
                 self.spread = error[..digits].replace(',', ".").parse().ok().filter(|e: &f64| *e > 0.0);
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
@@ -290,14 +300,15 @@ impl Heading {
         if self.unit.is_some() {
             return text.to_owned();
         }
-        for mark in [" / ", "/", ", ", " "] {
+        // What stands last by itself comes first: `v in m/s` is not in seconds.
+        for mark in [" ", " / ", "/", ", "] {
             if let Some((name, unit)) = text.trim().rsplit_once(mark)
                 && !name.trim().is_empty()
-                && (mark != " " || unit.contains(['/', '%']))
+                && (mark != " " || unit.contains(['/', '%']) && !unit.starts_with('/'))
                 && let Some(unit) = Unit::parse(unit)
             {
                 self.unit = Some(unit);
-                return name.to_owned();
+                return name.trim_end().strip_suffix(" in").unwrap_or(name).to_owned();
             }
         }
         text.to_owned()
@@ -323,6 +334,14 @@ impl Heading {
             words.clear();
         }
     }
+}
+
+/// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.
+fn of_a_clock(text: &str) -> bool {
+    let part = |part: &str| {
+        matches!(&*folded(part), "h" | "hh" | "m" | "mm" | "min" | "s" | "ss" | "sec" | "ms" | "sss" | "f" | "00")
+    };
+    text.contains(':') && text.split([':', '.', ',']).all(part)
 }
 
 #[cfg(test)]

@@ -71,7 +71,10 @@ pub(super) fn tables<'a>(
 pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
     let found = region::tables(View { grid, across: true });
     // A name says what it is of: numbered rows alone are no names.
-    let says = |name: &String| Heading::parse(name).value().is_some_and(|value| value.what != What::Unsaid);
+    let says = |name: &String| {
+        let heading = Heading::parse(name);
+        heading.energy.is_some() || heading.value().is_some_and(|value| value.what != What::Unsaid)
+    };
     found.into_iter().find(|region| !region.rows.is_empty() && region.header.iter().any(says))
 }
 

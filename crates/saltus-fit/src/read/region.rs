@@ -2,7 +2,7 @@
 
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
-use super::columns::leap;
+use super::columns::of_samples;
 use super::grid::{View, shown};
 use super::heading::{Heading, Meaning};
 use super::units::{Dimension, Unit};
@@ -219,8 +219,10 @@ fn measured(view: View<'_>, names: &[String], row: usize) -> bool {
 
 /// Whether a name of samples stands above numbers of them, in the first rows.
 fn sampled(view: View<'_>, names: &[String], rows: std::ops::Range<usize>) -> bool {
-    let above = |n: usize| leap(rows.clone().take(2).map(|row| view.cell(row, n)));
-    names.iter().enumerate().any(|(n, name)| Heading::parse(name).counts_samples() && above(n))
+    names
+        .iter()
+        .enumerate()
+        .any(|(n, name)| of_samples(&Heading::parse(name), rows.clone().take(2).map(|row| view.cell(row, n))))
 }
 
 /// Whether a row holds the name of an event and nothing else.

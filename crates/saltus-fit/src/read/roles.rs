@@ -10,7 +10,7 @@ use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
-use super::units::Dimension;
+use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
 use crate::statistics::median;
@@ -39,8 +39,10 @@ impl Columns {
         };
         // A mean stands for the readings between its extremes.
         let within = |v: &Value| values.iter().any(|(_, o)| role(o, Role::Mean) && same(o, v) && placed(o, v));
+        let tops = self.of_tops();
         for (index, value) in &values {
             match value.role {
+                Role::Max if tops && matches!(value.what, What::Time | What::Height) => self.read(*index),
                 Role::Reading => {}
                 Role::Mean if beside(value) => self.leave(*index, Why::Statistic),
                 Role::Mean => self.read(*index),
@@ -53,7 +55,7 @@ impl Columns {
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
                         // The greatest height between two bounces is that of the apex.
-                        None if value.role == Role::Max && (self.of_bounces(*index) || self.of_tops()) => {
+                        None if value.role == Role::Max && self.of_bounces(*index) => {
                             self.read(*index);
                         }
                         None => return Err(self.extreme(region, *index)),
@@ -63,7 +65,7 @@ impl Columns {
                     let drop = values.iter().any(|(_, o)| role(o, Role::Reading) && o.at == At::Release);
                     if beside(value) {
                         self.leave(*index, Why::Derived);
-                    } else if drop && !self.number().is_some_and(|(_, sure)| sure) {
+                    } else if drop && (!self.number().is_some_and(|(_, sure)| sure) || self.own_drops(region)) {
                         self.columns[*index].kind = Kind::Lost;
                     } else {
                         let name = shown(&self.columns[*index].heading.text);
@@ -78,6 +80,15 @@ impl Columns {
             }
         }
         Ok(())
+    }
+
+    /// Whether the height of release is another in every row, so that each is a drop of its own.
+    fn own_drops(&self, region: &Region<'_>) -> bool {
+        let release = self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading);
+        release.is_some_and(|(n, _, _)| {
+            let cells: BTreeSet<&str> = region.rows.iter().map(|&row| region.cell(row, n)).collect();
+            cells.len() == region.rows.len() && !cells.contains("")
+        })
     }
 
     /// Whether the rows are bounces, by the name that counts them or by that of the column itself:
@@ -115,7 +126,10 @@ impl Columns {
         };
         let before = values.iter().rev().filter(|(n, _)| *n < index).find(fits);
         let named = values.iter().filter(|(_, v)| error.at != At::Row && v.at == error.at).find(fits);
-        match named.or(before).or(values.iter().find(fits)) {
+        let percent = |n: usize| self.columns[n].unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        // Hundredths are of what somebody expected, or of nothing that is said.
+        let found = named.or(before).or(values.iter().find(fits)).filter(|(of, _)| !percent(index) || percent(*of));
+        match found {
             Some((of, _)) => self.columns[index].kind = Kind::Error(*of),
             None => self.leave(index, Why::Statistic),
         }

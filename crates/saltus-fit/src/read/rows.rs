@@ -170,7 +170,7 @@ fn between(cell: &str) -> Option<usize> {
         WordKind::Number(_) | WordKind::Ordinal(_) => true,
         _ => false,
     };
-    let signs = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#');
+    let signs = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#' | '.');
     let named = cell.chars().all(signs) && words.iter().all(of_bounces);
     (named && first > 0 && second == first + 1).then_some(first)
 }

@@ -50,20 +50,27 @@ fn numeros(text: &str) -> Vec<usize> {
     found
 }
 
-/// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, with tabs between
-/// them; `None` if any is something else.
+/// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
+/// tabs between them; words may be read of some, `Ball: golf`. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     let line = |line: &str| {
-        let (name, values) = line.split_once(": ")?;
+        let (name, values) = line.split_once(": ").or(line.split_once('='))?;
         let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();
-        let plain = !name.contains(['\t', ';']) && !name.trim().is_empty() && values.iter().all(number);
-        plain.then(|| format!("{}\t{}", name.trim(), values.join("\t")))
+        let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
+        // Words are a remark.
+        let read = values.iter().all(number);
+        let spelt = if read { format!("{}\t{}", name.trim(), values.join("\t")) } else { format!("#{line}") };
+        plain.then_some((read, spelt))
     };
     let lines = || text.lines().filter(|line| !line.trim().is_empty());
-    let found: Option<Vec<String>> = lines().map(line).collect();
+    let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
+    let numbers = found.iter().filter(|(number, _)| *number).count();
+    if numbers < 2 || 2 * numbers < found.len() {
+        return None;
+    }
     // A blank line stays one, so that lines keep their numbers.
-    let mut found = found.filter(|found| found.len() > 1)?.into_iter();
+    let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
 }
@@ -93,18 +100,26 @@ fn latex(text: &str) -> Option<String> {
 /// A text whose columns are made by runs of spaces, with a tab at the end of each run in their
 /// place; `None` if it is none.
 fn aligned(text: &str) -> Option<String> {
-    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#') && !drawn(line));
     let numbers = |line: &str| line.split_whitespace().all(|cell| cell.parse::<f64>().is_ok());
-    let width = lines().find(|line| numbers(line)).map(|line| line.split_whitespace().count())?;
+    let width = lines().find(|line| numbers(line)).map_or(0, |line| line.split_whitespace().count());
     let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ");
     let rows = lines().filter(|line| numbers(line));
-    let of_spaces =
-        !text.contains(['\t', ';', ',']) && rows.clone().all(|line| line.split_whitespace().count() == width);
-    if width < 2 || !of_spaces || 2 * rows.count() < lines().count() || !lines().any(spaced) {
+    let of_numbers = width > 1
+        && !text.contains(['\t', ';', ','])
+        && rows.clone().all(|line| line.split_whitespace().count() == width)
+        && 2 * rows.count() >= lines().count()
+        && lines().any(spaced);
+    if !of_numbers && !of_cells(text, lines()) {
         return None;
     }
+    let width = if of_numbers { width } else { 0 };
     let mut found = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
+        if drawn(line) {
+            found.push_str(&line[line.trim_end().len()..]);
+            continue;
+        }
         // A name may hold single spaces, unless there are as many words as columns.
         let least = if line.split_whitespace().count() == width { 1 } else { 2 };
         let indent = line.len() - line.trim_start().len();
@@ -126,6 +141,36 @@ fn aligned(text: &str) -> Option<String> {
         found.push_str(end);
     }
     Some(found)
+}
+
+/// Whether a line is drawn, and holds nothing: `-----  ------`, `=====`.
+fn drawn(line: &str) -> bool {
+    let bare = line.trim();
+    (bare.contains("---") || bare.contains("===")) && bare.chars().all(|c| matches!(c, '-' | '=' | ' '))
+}
+
+/// The cells of a line that are parted by two blanks or more.
+fn parted(line: &str) -> impl Iterator<Item = &str> {
+    line.trim().split("  ").map(str::trim).filter(|cell| !cell.is_empty())
+}
+
+/// Whether two blanks or more part the cells of lines, some of them words: as many in most lines,
+/// and in two of these a number; a comma is a decimal one.
+fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> bool {
+    let decimal = |(at, _): (usize, &str)| {
+        let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+        digit(text[..at].chars().next_back()) && digit(text[at + 1..].chars().next())
+    };
+    if text.contains(['\t', ';', '|', '&']) || !text.match_indices(',').all(decimal) {
+        return false;
+    }
+    let number = |line: &&str| parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)));
+    let Some(width) = lines.clone().find(number).map(|line| parted(line).count()).filter(|width| *width > 1) else {
+        return false;
+    };
+    let alike = |line: &&str| parted(line).count() == width;
+    let rows = lines.clone().filter(alike).filter(number).count();
+    rows > 1 && 3 * lines.clone().filter(alike).count() >= 2 * lines.count()
 }
 
 fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {

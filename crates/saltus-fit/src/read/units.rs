@@ -74,6 +74,7 @@ pub(super) struct Unit {
 
 impl Unit {
     pub(super) const SECOND: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: 1.0 } };
+    pub(super) const HOUR: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 3600.0, over: 1.0 } };
     pub(super) const WHOLE: Self = Self { dimension: Dimension::Length, scale: Scale::Whole };
     /// A joule, as a measure of the height it stands for.
     pub(super) const JOULE: Self =

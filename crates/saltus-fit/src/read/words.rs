@@ -26,6 +26,9 @@ impl Word {
 /// What lies between bounces lies between two.
 const TWO: [&str; 9] = ["two", "zwei", "deux", "due", "dois", "twee", "tva", "dwoma", "dvema"];
 
+/// What the highest one of is the top of a flight.
+const POINTS: [&str; 5] = ["point", "punkt", "punto", "ponto", "punt"];
+
 /// Nobody counts further.
 const COUNTED: usize = 1_000_000;
 
@@ -37,6 +40,12 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         let kind = if folded == "dos" && words.last().is_some_and(|w| w.is(Atom::After) || w.text == "de") {
             // Two in Spanish, and not `of the` in Portuguese: `después de dos rebotes`.
             Kind::Unknown
+        } else if piece.to_lowercase() == "před" {
+            // Before, in Czech; `pred` is short for predicted.
+            Kind::Known(&[Atom::Before])
+        } else if POINTS.contains(&&*folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
+            // `highest point`.
+            Kind::Known(&[Atom::Rebound, Atom::Top])
         } else if piece == "TID" {
             // The number of a track, where `tid` is the time in Swedish.
             Kind::Unknown
@@ -140,6 +149,18 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     for number in ["N°", "n°", "N.º", "n.º", "Nº", "nº"] {
         spelt = spelt.replace(number, " number ");
     }
+    // `h'` beside `h`, `v'` beside `v`: after the impact.
+    let primed = |text: &str, letter: char| {
+        let mark = |c: char| matches!(c, '\'' | '′' | '’');
+        let mut letters = text.trim().chars();
+        letters.next() == Some(letter)
+            && letters.next().is_some_and(mark)
+            && !letters.next().is_some_and(char::is_alphanumeric)
+    };
+    let spelt = match ['h', 'H', 'v', 'V'].into_iter().find(|letter| primed(&spelt, *letter)) {
+        Some(letter) => spelt.trim().replacen(letter, &format!("{letter} after "), 1),
+        None => spelt,
+    };
     // Whose it is: "the ball's height".
     let spelt = spelt.replace("'s ", " ").replace("’s ", " ");
     // A date is none.

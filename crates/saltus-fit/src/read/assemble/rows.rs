@@ -12,6 +12,7 @@ use crate::read::layout::{Layout, Track};
 use crate::read::region::Region;
 use crate::read::rows::{Row, event};
 use crate::read::units::Scale;
+use crate::read::vocabulary::Atom;
 use crate::read::{Event, Reading, Timed, Trial};
 
 impl Builder<'_> {
@@ -302,6 +303,8 @@ impl Builder<'_> {
         }
         let (mut height, sigma) = if Some(rebound) == track.share {
             let (share, sigma) = self.required(row.at, rebound)?;
+            let lost = self.columns.columns[rebound].heading.has(Atom::Lost);
+            let share = if lost { 1.0 - share } else { share };
             (share * drop, sigma.map(|sigma| sigma * drop))
         } else if Some(rebound) == track.lost {
             let (lost, sigma) = self.required(row.at, rebound)?;

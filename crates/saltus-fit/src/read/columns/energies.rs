@@ -1,11 +1,11 @@
 //! Columns that stand for others where nothing else is read: energies for heights, the speeds or
 //! energies of one side of the impacts for those of the row, samples of a sound for times.
 
-use super::{Columns, Kind};
+use super::{Columns, Kind, LEVEL};
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Role, What};
+use crate::read::heading::{At, Heading, Role, What};
 use crate::read::region::Region;
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
@@ -19,7 +19,8 @@ impl Columns {
     /// readings: before and after a bounce, or bounce by bounce. Hundredths of it that are lost are
     /// those of the height.
     pub(super) fn energies(&mut self, region: &Region<'_>) {
-        let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
+        let stands = |role: Role| !matches!(role, Role::Error | Role::Lost);
+        let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| stands(v.role));
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
         if self.columns.iter().any(|c| read(c) && !released(c) && !c.value().is_some_and(|v| v.or_trial)) {
             return;
@@ -39,6 +40,24 @@ impl Columns {
             joules.into_iter().for_each(|index| self.stands_for_a_height(region, index));
         } else if let ([index], true) = (parts.as_slice(), beside) {
             self.promote(*index);
+        } else if let ([index], true) = (parts.as_slice(), joules.is_empty()) {
+            self.lost_each(region, *index);
+        }
+    }
+
+    /// Hundredths of the energy that are lost at every bounce: of the height before, unless they add
+    /// up from bounce to bounce.
+    fn lost_each(&mut self, region: &Region<'_>, index: usize) {
+        let number = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(m) => Some(m.value),
+            _ => None,
+        };
+        let lost: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        let parts = lost.iter().all(|lost| (0.0..100.0).contains(lost));
+        let add_up = lost.len() > 1 && lost.windows(2).all(|pair| pair[0] < LEVEL * pair[1]);
+        if parts && !add_up {
+            self.promote(index);
+            self.columns[index].kind = Kind::Share;
         }
     }
 
@@ -92,15 +111,22 @@ impl Columns {
 
     /// Numbers of samples, as sound programs count them, are a clock, as those of frames are.
     pub(super) fn sampled(&mut self, region: &Region<'_>) {
-        let found = (0..self.columns.len()).find(|&n| {
-            let column = &self.columns[n];
-            column.heading.counts_samples() && leap(region.rows.iter().map(|&row| region.cell(row, n)))
-        });
-        if let Some(index) = found {
-            self.columns[index].kind = Kind::Frame;
-            self.columns[index].unit = None;
+        // Beside heights they are specimens.
+        if self.values().any(|(_, c, v)| v.what != What::Unsaid && c.heading.unit.is_some() && v.role != Role::Error) {
+            return;
+        }
+        let cells = |n: usize| region.rows.iter().map(move |&row| region.cell(row, n));
+        let counts = |n: &usize| of_samples(&self.columns[*n].heading, cells(*n));
+        let found: Vec<usize> = (0..self.columns.len()).filter(counts).collect();
+        for (place, &index) in found.iter().enumerate() {
             let name = shown(&self.columns[index].heading.text);
             self.aside.retain(|aside| aside.name != name);
+            self.columns[index].unit = None;
+            self.columns[index].kind = Kind::Frame;
+            // Where a sound ends tells nothing that its start does not.
+            if place > 0 {
+                self.leave(index, Why::Other);
+            }
         }
     }
 
@@ -113,17 +139,31 @@ impl Columns {
     /// of what counts the rows.
     pub(in crate::read) fn of_tops(&self) -> bool {
         let row = |what: What| self.values().find(move |(_, _, v)| v.what == what && v.at == At::Row);
-        let (Some((_, time, _)), Some(_)) = (row(What::Time), row(What::Height)) else { return false };
+        let (Some((_, time, _)), Some((_, height, _))) = (row(What::Time), row(What::Height)) else { return false };
+        let both = time.heading.has(Atom::Max) && height.heading.of_tops();
         let counted = self.number().is_some_and(|(n, _)| {
             let heading = &self.columns[n].heading;
             heading.of_tops() && !heading.has(Atom::Impact)
         });
-        !time.heading.has(Atom::Impact) && (time.heading.of_tops() || counted)
+        !time.heading.has(Atom::Impact) && (time.heading.of_tops() || counted || both)
     }
 }
 
+/// Whether a column is of samples of a sound, by its heading and its cells.
+pub(in crate::read) fn of_samples<'a>(heading: &Heading, cells: impl Iterator<Item = &'a str>) -> bool {
+    let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
+    heading.counts_samples() && if between { many(cells) } else { leap(cells) }
+}
+
+/// Whether cells hold whole numbers that are many, as those of the samples of a flight are.
+fn many<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+    let many = |cell: &str| cell.parse().is_ok_and(|value: f64| value.fract() == 0.0 && value > SAMPLES);
+    let mut cells = cells.filter(|cell| !cell.is_empty()).peekable();
+    cells.peek().is_some() && cells.all(many)
+}
+
 /// Whether cells hold whole numbers that rise as those of samples do.
-pub(in crate::read) fn leap<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+fn leap<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let whole = |cell: &str| cell.parse().ok().filter(|value: &f64| value.fract() == 0.0);
     let numbers: Vec<Option<f64>> = cells.filter(|cell| !cell.is_empty()).map(whole).collect();
     let rises = |pair: &[Option<f64>]| matches!(pair, [Some(a), Some(b)] if b - a > SAMPLES);

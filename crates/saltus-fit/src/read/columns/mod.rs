@@ -6,7 +6,7 @@ mod faults;
 mod pairs;
 mod shares;
 
-pub(super) use energies::leap;
+pub(super) use energies::of_samples;
 pub(super) use shares::LEVEL;
 
 use super::ReadOptions;
@@ -99,9 +99,11 @@ impl Columns {
         found.measured(region);
         found.sampled(region);
         found.counting(region);
+        found.naming(region);
         found.spanning(region);
         found.placed();
         found.capital(region);
+        found.letters();
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;
@@ -342,7 +344,9 @@ impl Columns {
             };
             region.header_error(index, format!("the column '{name}' {what} in a second?")).question().help(help)
         })?;
-        self.columns[index].kind = Kind::Value(plain(What::Time));
+        let heading = &self.columns[index].heading;
+        let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
+        self.columns[index].kind = Kind::Value(plain(if between { What::Interval } else { What::Time }));
         self.columns[index].unit = Some(Unit::frame(fps));
         Ok(())
     }

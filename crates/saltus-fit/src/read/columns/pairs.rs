@@ -70,7 +70,24 @@ impl Columns {
             let mut found = self.values().filter(of).map(|(n, _, _)| n);
             found.next().filter(|_| found.next().is_none())
         };
-        let (Some(release), Some(rebound)) = (called("H"), called("h")) else { return };
+        let of = |bounced: bool| {
+            let is = |c: &super::Column| {
+                let other =
+                    [Atom::Release, Atom::Before, Atom::After, Atom::Top].iter().any(|atom| c.heading.has(*atom));
+                let plain =
+                    c.heading.has(Atom::Height) && !c.heading.has(Atom::Rebound) && !c.heading.has(Atom::Impact);
+                let sprung = [Atom::Rebound, Atom::Impact, Atom::After].iter().any(|atom| c.heading.has(*atom));
+                let rebounds = !c.heading.has(Atom::Height) || sprung;
+                c.heading.unknown.is_empty() && if bounced { rebounds } else { plain && !other }
+            };
+            let row = |v: &super::Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading;
+            let mut found = self.values().filter(|(_, c, v)| row(v) && is(c)).map(|(n, _, _)| n);
+            found.next().filter(|_| found.next().is_none())
+        };
+        let counted = self.number().is_some_and(|(_, sure)| sure);
+        let letters = called("H").zip(called("h"));
+        // `Height (cm)` beside `Bounce (cm)`, a drop a row.
+        let Some((release, rebound)) = letters.or_else(|| of(false).zip(of(true)).filter(|_| !counted)) else { return };
         let number = |row: usize, column: usize| match region.view.read(row, column) {
             Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
             _ => None,
@@ -79,6 +96,29 @@ impl Columns {
         if self.values().count() == 2 && pairs.clone().count() > 0 && pairs.clone().all(|(high, low)| high > low) {
             self.place(release, At::Release, String::new());
         }
+    }
+
+    /// `u` beside `v`, or `v` beside `v'`: the speeds before and after, as schools write them.
+    pub(super) fn letters(&mut self) {
+        let speed = |c: &super::Column, name: &str| {
+            let unit = c.heading.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
+            unit && c.heading.text.split([' ', '(', '[', '/']).next() == Some(name) && c.heading.only()
+        };
+        let one = |name: &str| {
+            let mut found = (0..self.columns.len()).filter(|&n| speed(&self.columns[n], name));
+            found.next().filter(|_| found.next().is_none())
+        };
+        let primed = (0..self.columns.len()).find(|&n| {
+            let column = &self.columns[n];
+            column.value().is_some_and(|v| (v.what, v.at) == (What::Speed, At::After))
+                && column.heading.text.starts_with('v')
+        });
+        let Some((before, after)) = one("u").zip(one("v")).or(one("v").zip(primed)) else { return };
+        let name = shown(&self.columns[before].heading.text);
+        self.aside.retain(|aside| aside.name != name);
+        self.columns[before].kind = Kind::Value(plain(What::Speed));
+        self.place(before, At::Before, String::new());
+        self.place(after, At::After, String::new());
     }
 
     /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak
@@ -91,7 +131,9 @@ impl Columns {
             self.one(&Kind::Frame).is_some() || self.values().any(|(other, c, _)| other != n && c.unit.is_some())
         };
         let found = self.values().find(|(n, c, v)| {
-            let bare = c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
+            // A time is none, in whatever unit it counts.
+            let counted = matches!(v.what, What::Height | What::Interval | What::Unsaid);
+            let bare = counted && c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
             let rows = region.rows.iter().filter(|&&row| !region.cell(row, *n).is_empty());
             let first =
                 rows.clone().next().and_then(|&row| region.cell(row, *n).parse::<usize>().ok()).filter(|n| *n < 2);
@@ -102,6 +144,23 @@ impl Columns {
         });
         if let Some(index) = found.map(|(n, _, _)| n) {
             self.columns[index].kind = Kind::Number { sure: self.columns[index].heading.has(Atom::Rebound) };
+        }
+    }
+
+    /// A column without a unit whose cells all name bounces, some of them in words: `bounce 1 to
+    /// bounce 2`.
+    pub(super) fn naming(&mut self, region: &Region<'_>) {
+        if self.number().is_some() {
+            return;
+        }
+        let found = self.values().find(|(n, c, _)| {
+            let cells = || region.rows.iter().map(|&row| region.cell(row, *n)).filter(|cell| !cell.is_empty());
+            let words =
+                cells().any(|cell| cell.contains(char::is_alphabetic) && cell.contains(|c: char| c.is_ascii_digit()));
+            c.unit.is_none() && words && cells().count() > 1 && cells().all(|cell| bounce(cell).is_some())
+        });
+        if let Some(index) = found.map(|(n, _, _)| n) {
+            self.columns[index].kind = Kind::Number { sure: true };
         }
     }
 

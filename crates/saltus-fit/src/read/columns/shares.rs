@@ -7,10 +7,25 @@ use crate::read::grid::shown;
 use crate::read::heading::{At, Of, Role, What};
 use crate::read::region::Region;
 use crate::read::units::{Scale, Unit};
+use crate::read::vocabulary::Atom;
 
 /// A ball that keeps more of its height at every bounce does not differ from one that is dropped
 /// again and again.
 pub(in crate::read) const LEVEL: f64 = 0.95;
+
+/// Parts of the height of release fall by about the first of them from bounce to bounce, where
+/// those of the height before stay: so much of it is left to a COR that changes.
+const ABOUT: f64 = 0.15;
+
+/// Whether numbers are parts of the first height, by how they fall from the whole.
+fn of_the_first(numbers: &[f64], whole: f64) -> bool {
+    // A first number that is all of it is the release itself.
+    let released = numbers.first() == Some(&whole);
+    let Some(first) = numbers.iter().find(|number| **number < whole).map(|number| number / whole) else { return false };
+    let falls =
+        |pair: &[f64]| pair[1] < LEVEL * pair[0] && (released || (pair[1] / pair[0] / first - 1.0).abs() < ABOUT);
+    numbers.len() > 1 && numbers.windows(2).all(falls)
+}
 
 impl Columns {
     /// The one column of ratios of heights of a table that has no other readings is read: as
@@ -49,7 +64,9 @@ impl Columns {
         let alone = self.columns.iter().all(|c| matches!(c.kind, Kind::Aside | Kind::Number { .. }));
         let listed = alone && numbers.windows(2).all(|pair| pair[1] < LEVEL * pair[0]);
         let of = self.columns[index].heading.share;
-        let series = of == Some(Of::Release) && (counted || listed) && !self.columns.iter().any(released);
+        let said = self.columns[index].heading.has(Atom::Before);
+        let whole_first = of == Some(Of::Release) || !said && of_the_first(&numbers, whole);
+        let series = whole_first && (counted || listed) && !self.columns.iter().any(released);
         let name = shown(&self.columns[index].heading.text);
         let column = &mut self.columns[index];
         column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };

@@ -137,7 +137,7 @@ impl Heading {
             () if has(Lost) => Role::Lost,
             () if has(Mean) || has(Median) => Role::Mean,
             // The time of the greatest height.
-            () if has(Max) && has(Height) && what == What::Time => Role::Reading,
+            () if has(Max) && (has(Height) && what == What::Time || has(Atom::Top)) => Role::Reading,
             () if has(Max) => Role::Max,
             () if has(Min) => Role::Min,
             () => Role::Reading,
