@@ -15,6 +15,18 @@ pub(crate) const SCATTER: usize = 4;
 /// 773: strong evidence).
 pub(crate) const CLEAR: f64 = 6.0;
 
+/// This much less speaks for something, weakly; a model that is worse by more is out of the
+/// question (Kass and Raftery).
+pub(crate) const WEAK: f64 = 2.0;
+/// Numbers further apart than so many standard errors differ: one chance in a hundred.
+pub(crate) const SURELY: f64 = 2.576;
+/// A reading so many standard errors from where it should be is none.
+pub(crate) const FAR: f64 = 5.0;
+/// So many readings, or trials, to spare tell a scatter that is compared with another one.
+pub(crate) const SPARE: usize = 3;
+/// From so many bounces, or trials, on a COR that changes along them shows.
+pub(crate) const TREND: usize = 6;
+
 /// The 97.5 % point of the normal distribution.
 pub(crate) const NORMAL: f64 = 1.959_963_984_540_054;
 

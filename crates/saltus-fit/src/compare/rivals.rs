@@ -16,25 +16,17 @@ use crate::solve::one::identified;
 use crate::solve::profile::limit;
 use crate::solve::robust;
 use crate::solve::successive::{Fitted, fit};
-use crate::statistics::{CLEAR, chi_square_p};
+use crate::statistics::{CLEAR, SPARE, TREND, WEAK, chi_square_p};
 
-/// So many spare readings a model must leave to be worth comparing.
-const SPARE: usize = 3;
-/// Speeds must differ by this factor, over so many bounces, before a dependence on speed can be
-/// told from one COR.
+/// Speeds must differ by this factor before a dependence on speed can be told from one COR, and
+/// heights before a wrong zero shows.
 const SPEEDS: f64 = 2.0;
-const IMPACTS: usize = 6;
 /// The same for drag, which has a law of its own.
 const DRAG_SPEEDS: f64 = 1.6;
-/// Heights must differ by a factor of two over so many bounces before a wrong zero shows.
-const OFFSET_SPEEDS: f64 = std::f64::consts::SQRT_2;
+/// A wrong zero shows over so many bounces.
 const OFFSET_IMPACTS: usize = 4;
-/// From so many bounces on, the COR is drawn through four speeds instead of three.
-const FOUR_KNOTS: usize = 12;
 /// A COR for every bounce is tried for up to so many.
 const BOUNCES: usize = 12;
-/// A model whose BIC is worse by more is out of the question.
-const DISPUTED: f64 = 2.0;
 /// Leaving out each trial in turn is tried for up to so many trials and readings.
 const TRIALS: usize = 30;
 const LEFT_OUT: usize = 1500;
@@ -107,13 +99,13 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
     let of = |law| Flight { law, ..base.clone() };
     let mut list = Vec::new();
     let mut push = |name, model| list.push(Rival { name, missing: None, model });
-    if spans && factor >= SPEEDS && count >= IMPACTS {
+    if spans && factor >= SPEEDS && count >= TREND {
         let (low, high, middle) = (slowest, fastest, (slowest * fastest).sqrt());
         push(CorModel::Linear, of(CorLaw::Linear { low, high }));
         push(CorModel::Viscoelastic, of(CorLaw::Viscoelastic { high }));
         push(CorModel::Plastic, of(CorLaw::Plastic { middle }));
         push(CorModel::Power, of(CorLaw::Power { middle }));
-        let knots = if count >= FOUR_KNOTS { 4 } else { 3 };
+        let knots = if count >= 2 * TREND { 4 } else { 3 };
         let at = |k: usize| slowest * factor.powf(k as f64 / (knots - 1) as f64);
         push(CorModel::Knots, of(CorLaw::Knots((0..knots).map(at).collect())));
     }
@@ -125,7 +117,7 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
         push(CorModel::Contact, Flight { lasting: Some(LONGEST_CONTACT), ..base.clone() });
     }
     let heights = base.trials.iter().any(|t| !t.heights.is_empty());
-    if heights && spans && factor >= OFFSET_SPEEDS && count >= OFFSET_IMPACTS {
+    if heights && spans && factor >= SPEEDS.sqrt() && count >= OFFSET_IMPACTS {
         let lowest = base.trials.iter().flat_map(|t| &t.heights).map(|h| h.1).fold(f64::INFINITY, f64::min);
         // No ball is higher than where it is let go; the lowest reading may well lie within the
         // error of the zero.
@@ -198,11 +190,11 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     let speeds = impacts(&base, &constant);
     let (slowest, fastest, count) = speeds;
     compared.untried = readings.wanted.map(|wanted| Untried::Needs { need: needs(wanted, &base, speeds) });
-    if count < IMPACTS || fastest / slowest < SPEEDS {
+    if count < TREND || fastest / slowest < SPEEDS {
         compared.notes.push(Finding::note(FindingKind::SpeedNotTried {
             bounces: count,
             factor: (fastest / slowest).max(1.0),
-            needs_bounces: IMPACTS,
+            needs_bounces: TREND,
             needs_factor: SPEEDS,
         }));
     }
@@ -222,8 +214,8 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     list.retain(|m| m.0.contact_s.is_none_or(|c| c.value < LONGEST_CONTACT));
     list.sort_by(|a, b| a.0.bic.total_cmp(&b.0.bic));
     // Where one COR stands alone there is nothing for the trials to decide.
-    let disputed = list.iter().filter(|m| m.0.bic < DISPUTED).count() > 1;
-    for (choice, model, fitted) in list.iter_mut().filter(|m| disputed && m.0.bic < DISPUTED) {
+    let disputed = list.iter().filter(|m| m.0.bic < WEAK).count() > 1;
+    for (choice, model, fitted) in list.iter_mut().filter(|m| disputed && m.0.bic < WEAK) {
         choice.left_out = left_out(model, fitted)?;
     }
     let best = list.first().map_or(0.0, |m| m.0.bic);
@@ -251,13 +243,13 @@ fn needs(wanted: CorModel, base: &Flight, (slowest, fastest, count): (f64, f64, 
         CorModel::Contact if base.trials.iter().all(|t| t.moments.is_empty()) => Need::Times,
         CorModel::Each if base.bounces() > BOUNCES => Need::FewBounces { most: BOUNCES },
         CorModel::Drag | CorModel::Contact if spread <= DRAG_SPEEDS => speeds(None, DRAG_SPEEDS),
-        CorModel::Offset | CorModel::Rebounds if spread < OFFSET_SPEEDS || count < OFFSET_IMPACTS => {
-            speeds(Some(OFFSET_IMPACTS), OFFSET_SPEEDS)
+        CorModel::Offset | CorModel::Rebounds if spread < SPEEDS.sqrt() || count < OFFSET_IMPACTS => {
+            speeds(Some(OFFSET_IMPACTS), SPEEDS.sqrt())
         }
         CorModel::Linear | CorModel::Viscoelastic | CorModel::Plastic | CorModel::Power | CorModel::Knots
-            if spread < SPEEDS || count < IMPACTS =>
+            if spread < SPEEDS || count < TREND =>
         {
-            speeds(Some(IMPACTS), SPEEDS)
+            speeds(Some(TREND), SPEEDS)
         }
         _ => Need::Spare { readings: SPARE },
     }

@@ -4,10 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::read::Trial;
-use crate::statistics::{Line, chi_square_p, variance_ratio_p};
-
-/// From this many spare trials on, the spread within settings is the measure of that between them.
-const SPARE: usize = 3;
+use crate::statistics::{Line, SPARE, TREND, chi_square_p, variance_ratio_p};
 
 /// How settings differ: the probability of that by chance, and the settings with the lowest and the
 /// highest COR.
@@ -69,9 +66,6 @@ fn differ_by<'a>(
     Some(Differ { p, spare, low: own().min_by(by_cor)?, high: own().max_by(by_cor)? })
 }
 
-/// From so many trials on, a COR that changes in their order shows.
-const ORDERED: usize = 6;
-
 /// A COR that changes from trial to trial in their order: the probability of that by chance, and
 /// what it is at the first and at the last.
 pub(crate) struct Drift {
@@ -87,7 +81,7 @@ pub(crate) fn drift(separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
     let trials = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
     let count = trials().count();
     let line = Line::through(trials());
-    let freedom = count.checked_sub(2).filter(|_| count >= ORDERED)?;
+    let freedom = count.checked_sub(2).filter(|_| count >= TREND)?;
     let p = variance_ratio_p(line.explained / ((line.all - line.explained).max(1e-300) / freedom as f64), 1, freedom)?;
     Some(Drift { p, first: cor + line.at(0.0), last: cor + line.at(separate.len() as f64 - 1.0) })
 }

@@ -8,7 +8,7 @@
 //! (Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260), for CORs from one end of the possible to the
 //! other; those that cost about as little as the best are its rivals.
 
-use crate::statistics::{CLEAR, NORMAL, SCATTER, median};
+use crate::statistics::{CLEAR, NORMAL, SCATTER, WEAK, median};
 
 /// Between two contacts that are kept lie up to so many flights, and up to one less that are left
 /// out.
@@ -18,10 +18,6 @@ const APART: usize = 3;
 const BOUNCES: f64 = 0.05;
 /// The CORs that are tried, and how many: neighbours are nearer than [`BOUNCES`].
 const CORS: (f64, f64, u32) = (0.05, 1.25, 70);
-/// A second trigger follows its contact, and a contact at an end that follows from nothing is left
-/// without a cause: where two ways fit about alike, weak evidence speaks against one that leaves
-/// out the earlier of two, or an end.
-const WEAK: f64 = 2.0;
 /// Runs of more contacts tell no more of how to read them.
 const TELLING: usize = 400;
 /// Golden sections that narrow a COR down from two steps to a thousandth of one.
@@ -104,6 +100,8 @@ impl Prices {
     fn events(&self, times: &[f64], j: usize, k: usize, flights: usize) -> f64 {
         let nearer = |i: &usize| times[k] - times[*i] < times[*i] - times[j];
         let early = if flights == 1 { (j + 1..k).filter(nearer).count() } else { 0 };
+        // Where two ways fit about alike, one that leaves out the earlier of two, or an end without
+        // a cause, is the less likely.
         CLEAR * (k - j - 1 + flights - 1) as f64 + WEAK * early as f64
     }
 

@@ -161,6 +161,7 @@ impl Heading {
         heading.drop = drop;
         let (rate, name) = rate(&name).map_or((None, name.clone()), |(rate, rest)| (Some(rate), rest));
         heading.rate = rate;
+        let name = heading.take_spread(&name);
         let bare = heading.take_brackets(&name);
         let bare = heading.take_unit(&bare);
         let (place, bare) = inside::place(&bare);
@@ -171,6 +172,7 @@ impl Heading {
             heading.unit = Unit::parse("%");
         }
         heading.take_unit_word(&mut words);
+        heading.of_trials(&mut words);
         heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
         heading.labels = words.iter().filter(|w| w.is(Atom::Label)).map(|w| w.text.clone()).collect();
         // Hundredths of the height before are ratios.
@@ -196,6 +198,17 @@ impl Heading {
         }
         heading.energy = heading.of_energy(&words, run);
         heading
+    }
+
+    /// `T1 (cm)`: a length is of a trial and no time.
+    fn of_trials(&self, words: &mut [Word]) {
+        if let [first, second] = words
+            && first.text == "T"
+            && matches!(second.kind, Kind::Number(_))
+            && self.unit.is_some_and(|unit| unit.dimension == Dimension::Length)
+        {
+            first.kind = Kind::Known(&[Atom::Trial]);
+        }
     }
 
     /// Whether it is of a single word.
@@ -255,6 +268,27 @@ impl Heading {
     pub(super) fn sums_up(&self) -> bool {
         use Atom::{Derived, Error, Goal, Lost, Max, Mean, Median, Min, Predicted, Total};
         [Mean, Median, Error, Max, Min, Total, Derived, Predicted, Goal, Lost].iter().any(|atom| self.has(*atom))
+    }
+
+    /// Takes an error at the end out, `height (cm) ± 0.5`.
+    fn take_spread(&mut self, text: &str) -> String {
+        let parts = ["±", "+/-"].iter().find_map(|mark| text.rsplit_once(mark));
+        let Some((name, error)) = parts.filter(|(name, _)| !name.trim_end().ends_with(['(', '['])) else {
+            return text.to_owned();
+        };
+        let error = error.trim();
+        let digits = error.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ','))).unwrap_or(error.len());
+        let spread: Option<f64> = error[..digits].replace(',', ".").parse().ok();
+        let closes = error[digits..].ends_with([')', ']']);
+        let unit = error[digits..].trim_end_matches([')', ']']).trim();
+        let Some(spread) = spread.filter(|spread| *spread > 0.0 && (unit.is_empty() || Unit::parse(unit).is_some()))
+        else {
+            return text.to_owned();
+        };
+        self.spread = Some(spread);
+        self.unit = Unit::parse(unit);
+        // `height (cm ± 0.5)`.
+        format!("{}{}", name.trim_end(), if closes { ")" } else { "" })
     }
 
     /// Takes the text in brackets out: a unit, an error, or words like any others.

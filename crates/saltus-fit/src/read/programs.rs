@@ -75,7 +75,14 @@ pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
         let heading = Heading::parse(name);
         heading.energy.is_some() || heading.value().is_some_and(|value| value.what != What::Unsaid)
     };
-    found.into_iter().find(|region| !region.rows.is_empty() && region.header.iter().any(says))
+    // Or a number that bears a unit does.
+    let measured = |region: &Region<'_>| {
+        let numbered = |name: &String| Heading::parse(name).understood();
+        let unit = |cell: Cell| matches!(cell, Cell::Number(m) if m.unit.is_some_and(|unit| unit.dimension != Dimension::Other));
+        let cell = |column: usize| region.rows.first().is_some_and(|&row| unit(region.view.read(row, column)));
+        region.header.iter().all(numbered) && (0..region.header.len()).all(cell)
+    };
+    found.into_iter().find(|region| !region.rows.is_empty() && (region.header.iter().any(says) || measured(region)))
 }
 
 /// The column of a row with this text.

@@ -174,6 +174,28 @@ impl Columns {
             .push(format!("'{}' are taken for repeats and not for bounces one after another", names.join("', '")));
     }
 
+    /// Columns of one name beside a height of release, nearly as high as one another: trials.
+    pub(super) fn namesakes(&mut self, region: &Region<'_>) {
+        let row =
+            |v: &Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading && v.trial.is_empty();
+        let Some((_, name)) = self.values().find(|(_, _, v)| row(v)).map(|(n, c, _)| (n, c.heading.text.clone()))
+        else {
+            return;
+        };
+        let same: Vec<usize> =
+            self.values().filter(|(_, c, v)| row(v) && c.heading.text == name).map(|(n, _, _)| n).collect();
+        let drop = self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading).map(|(n, _, _)| n);
+        if same.len() < 2 || drop.is_none() || !level(region, drop, &same, false) {
+            return;
+        }
+        for (count, &index) in same.iter().enumerate() {
+            if let Kind::Value(value) = &mut self.columns[index].kind {
+                value.trial = format!("trial {}", count + 1);
+            }
+        }
+        self.notes.push(format!("the columns '{}' are taken for repeats", shown(&name)));
+    }
+
     /// The quantity of columns that do not say it: from their cells, the rows' names, their
     /// neighbours, the options.
     pub(super) fn infer(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
@@ -193,8 +215,10 @@ impl Columns {
                 self.leave(index, Why::Other);
                 continue;
             }
-            let neighbour =
-                self.values().find(|(_, c, v)| v.what != What::Unsaid && c.unit.is_some()).map(|(_, _, v)| v.what);
+            let neighbour = self
+                .values()
+                .find(|(n, _, v)| v.what != What::Unsaid && self.unit_of(region, *n).is_some())
+                .map(|(_, _, v)| v.what);
             let what = match (own, of_rows, options) {
                 (Some(Dimension::Length), _, _) => What::Height,
                 (Some(Dimension::Time), _, _) => What::Time,

@@ -111,6 +111,19 @@ impl Columns {
         Err(self.no_unit(region, index, dimension))
     }
 
+    /// The unit of a column: that of its heading, or the one that all its cells bear.
+    pub(super) fn unit_of(&self, region: &Region<'_>, index: usize) -> Option<Unit> {
+        let own = self.columns[index].heading.unit.or(self.columns[index].unit);
+        own.or_else(|| {
+            let mut cells = region.rows.iter().filter_map(|&row| match region.view.read(row, index) {
+                Cell::Number(m) => Some(m.unit),
+                _ => None,
+            });
+            let first = cells.next()??;
+            cells.all(|unit| unit == Some(first)).then_some(first)
+        })
+    }
+
     /// The unit of the height of release in the heading, if the numbers below it are no higher in
     /// it.
     fn of_the_drop(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
@@ -128,8 +141,8 @@ impl Columns {
     fn adopted(&mut self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
         let mut units: Vec<(usize, Unit)> = self
             .values()
-            .filter(|(n, c, v)| *n != index && v.what.dimension() == Some(dimension) && c.heading.unit.is_some())
-            .filter_map(|(n, c, _)| Some((n, c.heading.unit?)))
+            .filter(|(n, _, v)| *n != index && v.what.dimension() == Some(dimension))
+            .filter_map(|(n, _, _)| Some((n, self.unit_of(region, n)?)))
             .collect();
         let (from, unit) = units.pop()?;
         if units.iter().any(|(_, other)| *other != unit) || unit.unscaled() {

@@ -54,7 +54,9 @@ fn numeros(text: &str) -> Vec<usize> {
 /// tabs between them; words may be read of some, `Ball: golf`. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     let line = |line: &str| {
-        let (name, values) = line.split_once(": ").or(line.split_once('='))?;
+        let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
+        let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
+        let (name, values) = line.split_once(": ").or(line.split_once('=')).or_else(dash)?;
         let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();
         let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();

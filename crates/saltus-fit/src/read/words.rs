@@ -125,6 +125,10 @@ pub(super) fn lettered(words: &mut [Word]) {
     }
 }
 
+fn greek(c: char) -> bool {
+    matches!(c, '\u{370}'..='\u{3ff}')
+}
+
 /// The runs of letters and digits of a text, its signs as words.
 pub(super) fn pieces(text: &str) -> Vec<String> {
     let mut spelt = String::with_capacity(text.len());
@@ -134,7 +138,9 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
             '√' => spelt.push_str(" root "),
             '²' | '³' => spelt.push_str(" squared "),
             'Δ' | '∆' => spelt.push_str(" delta "),
-            'σ' | '±' => spelt.push_str(" error "),
+            '±' => spelt.push_str(" error "),
+            // A letter of a Greek word is none.
+            'σ' if !spelt.ends_with(greek) && !letters.peek().is_some_and(|c| greek(*c)) => spelt.push_str(" error "),
             'Ø' | 'ø'
                 if !spelt.ends_with(char::is_alphabetic) && !letters.peek().is_some_and(|c| c.is_alphabetic()) =>
             {

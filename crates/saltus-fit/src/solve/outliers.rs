@@ -6,15 +6,10 @@ use super::robust;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::quantity::{Loss, Sourced};
-use crate::statistics::{REJECT, chi_square_p, median, rounding};
+use crate::statistics::{FAR, REJECT, SCATTER, chi_square_p, median, rounding};
 
-/// A reading this many standard errors from the robust fit is left out.
-const FAR: f64 = 5.0;
-/// The same where the standard error is only the scatter of the others.
+/// How many standard errors from the robust fit a reading is left out where the standard error is only the scatter of the others.
 const FAR_BY_SCATTER: f64 = 8.0;
-/// With fewer readings to spare nobody can tell which are wrong; without a stated error, it takes
-/// twice as many.
-const SPARE: usize = 4;
 /// More than this part cannot be outliers: then it is the model that is wrong.
 const MOST: f64 = 0.4;
 /// More than this part of the trials cannot be outliers for the most part: then the trials differ.
@@ -65,7 +60,8 @@ fn find<M: OneKind>(
         return none;
     }
     let Some(start) = identified(M::READINGS.name(), model.minimise())? else { return none };
-    if start.freedom < if stated { SPARE } else { 2 * SPARE } {
+    // With fewer readings to spare nobody can tell which are wrong.
+    if start.freedom < if stated { SCATTER } else { 2 * SCATTER } {
         return none;
     }
     // A clean table needs no second look: nothing is far off by the scatter that least squares

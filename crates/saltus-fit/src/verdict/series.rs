@@ -8,7 +8,7 @@ use crate::solve::choice::{ModelChoice, of_recording};
 use crate::solve::estimate::Estimate;
 use crate::solve::series::{Choice, Pooled, Series, Track, Unseen, in_metres};
 use crate::solve::spread::across;
-use crate::statistics::{CLEAR, NORMAL};
+use crate::statistics::{CLEAR, NORMAL, SURELY};
 
 /// A single impact is taken to last up to this, in seconds, as that of a squash ball does.
 const LASTS: f64 = 0.01;
@@ -17,8 +17,6 @@ const ROUGH: f64 = 6.0;
 /// Gravity that differs from film to film by this factor is that of another scale or clock: a
 /// camera that stands still keeps it to a hundredth or two.
 const MOVED: f64 = 1.05;
-/// Two numbers further apart than so many standard errors differ: one chance in a hundred.
-const DIFFER: f64 = 2.576;
 
 /// Judges the fit of all recordings; fills the estimates and the models of the report.
 pub(crate) fn judge(
@@ -279,7 +277,7 @@ fn physical(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
             judgement.doubt(FindingKind::DragUnphysical { drag_per_m });
         }
     } else if tracks.iter().all(|track| track.impacts.len() == 1)
-        && let Some(drag) = free().find(|drag| drag.value - DIFFER * drag.standard_error > ORDINARY_DRAG)
+        && let Some(drag) = free().find(|drag| drag.value - SURELY * drag.standard_error > ORDINARY_DRAG)
         && let Some((_, cor, _)) = pooled.rivals.iter().find(|rival| rival.0.1)
     {
         judgement.doubt(FindingKind::DragUnheld { drag_per_m: drag.value, cor_with: cor.value });
@@ -297,7 +295,7 @@ fn gravity_off(judgement: &mut Judgement, tracks: &[Track], (expected, pixels): 
     let by = |a: &&Track, b: &&Track| a.gravity.value.total_cmp(&b.gravity.value);
     if let Some((least, most)) = tracks.iter().min_by(by).zip(tracks.iter().max_by(by)).filter(|_| pixels) {
         let (low, high) = (least.gravity, most.gravity);
-        let surely = high.value - low.value > DIFFER * high.standard_error.hypot(low.standard_error);
+        let surely = high.value - low.value > SURELY * high.standard_error.hypot(low.standard_error);
         if surely && high.value > MOVED * low.value {
             judgement.doubt(FindingKind::GravitiesDiffer { low: low.value, high: high.value });
         }

@@ -5,10 +5,8 @@ use crate::compare::rivals::Compared;
 use crate::finding::{Basis, Cause, Finding, FindingKind, Severity, Untried, Widening};
 use crate::quantity::{CorModel, Readings, Source, Sourced};
 use crate::solve::choice::{Misfit, ModelChoice};
-use crate::statistics::{CLEAR, NORMAL, REJECT};
+use crate::statistics::{CLEAR, NORMAL, REJECT, WEAK};
 
-/// A BIC this much less speaks for the model, weakly.
-const BETTER: f64 = 2.0;
 /// CORs that differ by less are the same for any purpose.
 const SAME: f64 = 0.002;
 /// A COR that changes by less over all speeds may be called one.
@@ -71,7 +69,7 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
         }
         // One that fits better counts even where its own error is as large as the difference; one
         // that hardly does, with its COR alone.
-        let reach = match (differ || model.bic < -BETTER && apart > SAME, model.bic < 0.0) {
+        let reach = match (differ || model.bic < -WEAK && apart > SAME, model.bic < 0.0) {
             (true, _) => Some(NORMAL * model.cor.standard_error),
             (false, better) => better.then_some(0.0),
         };

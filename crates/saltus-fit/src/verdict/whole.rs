@@ -8,14 +8,11 @@ use crate::finding::{Basis, By, Finding, FindingKind};
 use crate::quantity::{Method, Readings, Source, Sourced};
 use crate::read::{Event, Reading};
 use crate::solve::fits::Fits;
+use crate::statistics::{FAR as OUT, SURELY};
 
-/// A rebound so many standard errors high is not read as zero.
-const TOO_HIGH: f64 = 5.0;
 /// Times that do not follow from the others are a doubt if there is one for fewer than so many that
 /// do.
 const ADRIFT: usize = 3;
-/// Two CORs further apart than so many standard errors differ: one chance in a hundred.
-const DIFFER: f64 = 2.576;
 /// The COR of the first flight, which needs gravity and the height of release, is shown where it is
 /// so many standard errors away.
 const FAR: f64 = 3.0;
@@ -149,7 +146,7 @@ fn contradicted(judgement: &mut Judgement, fits: &Fits<'_>) {
         // A trial with a single height has no level of its own.
         let level = own.first().filter(|_| trial.heights.len() > 1)?;
         let height = |n: usize| (level + 2.0 * n as f64 * kind.fitted.shared[0]).exp();
-        let too_high = |n: &&usize| height(**n) > TOO_HIGH * fits.sigma_height.value;
+        let too_high = |n: &&usize| height(**n) > OUT * fits.sigma_height.value;
         trial.zeros.iter().find(too_high).map(|&n| (trial.trial, height(n), n))
     });
     if let Some((trial, height_m, bounce)) = found {
@@ -162,7 +159,7 @@ fn contradicted(judgement: &mut Judgement, fits: &Fits<'_>) {
 fn either(judgement: &mut Judgement, first: (By, Option<Cor>), second: (By, Option<Cor>)) -> Option<Cor> {
     let (Some(a), Some(b)) = (first.1, second.1) else { return first.1.or(second.1) };
     let (s, t) = (a.standard_error.unwrap_or(f64::INFINITY), b.standard_error.unwrap_or(f64::INFINITY));
-    if (a.value - b.value).abs() > DIFFER * s.hypot(t) {
+    if (a.value - b.value).abs() > SURELY * s.hypot(t) {
         let (first, second) = (first.0, second.0);
         judgement.doubt(FindingKind::MethodsDiffer { first, first_cor: a.value, second, second_cor: b.value });
         return Some(Cor::within(0.5 * (a.value + b.value), a.low.min(b.low), a.high.max(b.high)));

@@ -114,6 +114,7 @@ impl Columns {
         found.drops(region);
         found.statistics(region)?;
         found.paired(region)?;
+        found.namesakes(region);
         found.repeats(region, released);
         Ok(found)
     }
