@@ -240,6 +240,23 @@ fn hours_count_no_bounces() {
     }
 }
 
+/// Heights of one day each are no bounces of one drop; the same day beside all says nothing.
+#[test]
+fn a_day_each_is_no_bounce() {
+    for (name, days) in [("Day", ["0", "1", "2", "3"]), ("Date", ["3 May", "4 May", "5 May", "6 May"])] {
+        let rows = |days: [&str; 4]| {
+            let heights = ["60", "57", "54", "51"];
+            table(
+                &format!("{name},Bounce height (cm)"),
+                days.into_iter().zip(heights).map(|(day, h)| format!("{day},{h}")),
+            )
+        };
+        let asked = read(&rows(days)).unwrap_err();
+        assert!(asked.is_question() && asked.to_string().contains("bounces of one drop"), "{asked}");
+        assert!(read(&rows(["5 May"; 4])).is_ok(), "{name}");
+    }
+}
+
 /// A single energy, or one that is a model's, is no height.
 #[test]
 fn energies_that_tell_no_cor_are_not_read() {

@@ -1,5 +1,7 @@
 //! How rows and columns become trials: the layout that explains all columns that are understood.
 
+use std::collections::HashSet;
+
 use super::aside::Why;
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind, LEVEL};
@@ -184,14 +186,7 @@ pub(super) fn layout(
         return Ok(if listed { Layout::Listed } else { Layout::Pairs });
     }
     if !rowed && !any(|t| t.after.is_some()) {
-        let unknown = columns.columns.iter().position(|c| c.heading.value().is_some() && !c.heading.unknown.is_empty());
-        if let Some((index, word)) = unknown.and_then(|n| Some((n, columns.columns[n].heading.unknown.first()?))) {
-            return Err(columns.unknown(region, index, word));
-        }
-        return Err(region
-            .error("no column holds heights or times of bounces")
-            .nothing()
-            .help("a height of release alone tells nothing: give the rebounds, in a column such as 'rebound_cm'"));
+        return Err(nothing(region, columns));
     }
     if numbered {
         return Ok(Layout::Numbered);
@@ -200,6 +195,18 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// No column holds readings of bounces.
+fn nothing(region: &Region<'_>, columns: &Columns) -> TableError {
+    let unknown = columns.columns.iter().position(|c| c.heading.value().is_some() && !c.heading.unknown.is_empty());
+    if let Some((index, word)) = unknown.and_then(|n| Some((n, columns.columns[n].heading.unknown.first()?))) {
+        return columns.unknown(region, index, word);
+    }
+    region
+        .error("no column holds heights or times of bounces")
+        .nothing()
+        .help("a height of release alone tells nothing: give the rebounds, in a column such as 'rebound_cm'")
 }
 
 /// Numbers whose name is not understood, beside readings that nothing counts: they may be the
@@ -230,12 +237,11 @@ fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableE
 fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let (index, column, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
     let keyed = columns.one(&Kind::Trial).is_some() || columns.columns.iter().any(|c| c.kind == Kind::Setting);
-    if column.heading.has(Atom::Impact) || column.heading.has(Atom::Between) || keyed {
-        return None;
-    }
+    let named = column.heading.has(Atom::Impact) || column.heading.has(Atom::Between);
     let other = columns.columns.iter().enumerate().find(|(n, c)| {
         let measures = matches!(c.heading.meaning, Meaning::Aside(Why::Other)) || !c.heading.unknown.is_empty();
-        c.kind == Kind::Aside && measures && rows.rows.iter().any(|row| region.view.is_number(row.at, *n))
+        let numbers = || rows.rows.iter().any(|row| region.view.is_number(row.at, *n));
+        !keyed && (c.kind == Kind::Aside && measures && !named && numbers() || dates(region, c, *n, rows))
     });
     let (name, other) = (shown(&column.heading.text), shown(&other?.1.heading.text));
     Some(
@@ -247,6 +253,16 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
                  times, or with --fps and 'y' for a name",
             ),
     )
+}
+
+/// Whether a remark is a day, or a number, that is another in every row: as those of readings that
+/// were taken one by one.
+fn dates(region: &Region<'_>, column: &Column, index: usize, rows: &Rows) -> bool {
+    let dated = |cell: &str| cell.contains(|c: char| c.is_ascii_digit());
+    let cells: Vec<&str> = rows.rows.iter().map(|row| region.cell(row.at, index)).collect();
+    let apart: HashSet<&str> = cells.iter().copied().collect();
+    let note = column.kind == Kind::Aside && matches!(column.heading.meaning, Meaning::Aside(Why::Note));
+    note && cells.len() > 1 && apart.len() == cells.len() && cells.into_iter().all(dated)
 }
 
 /// Whether bounces are counted up beside one height of release, and the count is of bounces rather

@@ -15,11 +15,6 @@ pub(super) fn renumbered(
 ) -> Result<Vec<Trial>, TableError> {
     let mut split: Vec<Trial> = Vec::with_capacity(trials.len());
     for trial in trials {
-        let unique = |readings: &[Reading]| {
-            let mut keys: Vec<(bool, usize)> = readings.iter().map(|r| (r.event == Event::Contact, r.bounce)).collect();
-            keys.sort_unstable();
-            keys.windows(2).all(|pair| pair[0] != pair[1])
-        };
         if unique(&trial.readings) {
             split.push(trial);
             continue;
@@ -31,25 +26,7 @@ pub(super) fn renumbered(
             .copied()
             .filter(|r| r.event == Event::Release && trial.readings.iter().skip(1).any(|o| o.line == r.line));
         let released = Trial { readings: Vec::new(), ..trial.clone() };
-        let mut runs: Vec<Vec<Reading>> = Vec::new();
-        let mut last: Option<Reading> = None;
-        for reading in trial.readings.into_iter().skip(usize::from(told.is_some())) {
-            let repeated = last.is_some_and(|last| Reading { line: reading.line, ..last } == reading);
-            if repeated {
-                repairs.push(format!("line {}: the same as the line before, counted once", reading.line));
-                continue;
-            }
-            let restarts = last.is_none_or(|last| {
-                (reading.bounce, reading.event == Event::Apex) <= (last.bounce, last.event == Event::Apex)
-            });
-            if restarts {
-                runs.push(Vec::new());
-            }
-            last = Some(reading);
-            if let Some(run) = runs.last_mut() {
-                run.push(reading);
-            }
-        }
+        let runs = runs(trial.readings.into_iter().skip(usize::from(told.is_some())), repairs);
         let count = runs.len();
         let first = runs.first().and_then(|run| run.first()).map_or(0, |r| r.bounce);
         for (n, readings) in runs.into_iter().enumerate() {
@@ -79,6 +56,37 @@ pub(super) fn renumbered(
         }
     }
     Ok(split)
+}
+
+/// Whether no bounce is given twice.
+fn unique(readings: &[Reading]) -> bool {
+    let mut keys: Vec<(bool, usize)> = readings.iter().map(|r| (r.event == Event::Contact, r.bounce)).collect();
+    keys.sort_unstable();
+    keys.windows(2).all(|pair| pair[0] != pair[1])
+}
+
+/// Readings whose numbers restart, run by run.
+fn runs(readings: impl Iterator<Item = Reading>, repairs: &mut Vec<String>) -> Vec<Vec<Reading>> {
+    let mut runs: Vec<Vec<Reading>> = Vec::new();
+    let mut last: Option<Reading> = None;
+    for reading in readings {
+        let repeated = last.is_some_and(|last| Reading { line: reading.line, ..last } == reading);
+        if repeated {
+            repairs.push(format!("line {}: the same as the line before, counted once", reading.line));
+            continue;
+        }
+        let restarts = last.is_none_or(|last| {
+            (reading.bounce, reading.event == Event::Apex) <= (last.bounce, last.event == Event::Apex)
+        });
+        if restarts {
+            runs.push(Vec::new());
+        }
+        last = Some(reading);
+        if let Some(run) = runs.last_mut() {
+            run.push(reading);
+        }
+    }
+    runs
 }
 
 /// Puts the readings in the order of the events and refuses clocks that run backwards.

@@ -74,26 +74,8 @@ impl Columns {
         if let Some(unit) = default.or(pixels.then_some(Unit::PIXEL)).filter(|unit| unit.dimension == dimension) {
             return Ok(Some(sized(unit)));
         }
-        let cells: Vec<usize> = region.rows.iter().copied().filter(|&row| region.view.is_number(row, index)).collect();
-        let clocks = cells.iter().filter(|&&row| clock(region.cell(row, index)).is_some()).count();
-        if dimension == Dimension::Time && clocks > 0 && clocks == cells.len() {
-            return Ok(Some(Unit::SECOND));
-        }
-        let bare = |row: &&usize| !matches!(region.view.read(**row, index), Cell::Number(m) if m.unit.is_some());
-        match cells.iter().find(bare) {
-            None if !cells.is_empty() => return Ok(None),
-            // Written once, behind the first of them, it is that of all.
-            Some(_) if cells.len() > 1 && cells.iter().filter(bare).count() + 1 == cells.len() && !bare(&&cells[0]) => {
-                let Cell::Number(first) = region.view.read(cells[0], index) else { return Ok(None) };
-                return Ok(first.unit);
-            }
-            Some(&row) if cells.len() > 1 && cells.iter().filter(bare).count() < cells.len() => {
-                return Err(region
-                    .view
-                    .error(row, index, format!("this number has no unit, and others of '{name}' have one"))
-                    .help("write the unit behind each, or once in the header"));
-            }
-            _ => {}
+        if let Some(unit) = self.in_cells(region, index, dimension)? {
+            return Ok(unit);
         }
         // A film needs no scale.
         let filmed = region.frames || self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Frame));
@@ -109,6 +91,40 @@ impl Columns {
             return Ok(Some(unit));
         }
         Err(self.no_unit(region, index, dimension))
+    }
+
+    /// The unit that the cells of a column bear: none where each bears its own; nothing where they
+    /// bear none.
+    #[allow(clippy::option_option)] // whether the cells tell, and what
+    fn in_cells(
+        &self,
+        region: &Region<'_>,
+        index: usize,
+        dimension: Dimension,
+    ) -> Result<Option<Option<Unit>>, TableError> {
+        let name = shown(&self.columns[index].heading.text);
+        let cells: Vec<usize> = region.rows.iter().copied().filter(|&row| region.view.is_number(row, index)).collect();
+        let clocks = cells.iter().filter(|&&row| clock(region.cell(row, index)).is_some()).count();
+        if dimension == Dimension::Time && clocks > 0 && clocks == cells.len() {
+            return Ok(Some(Some(Unit::SECOND)));
+        }
+        let bare = |row: &&usize| !matches!(region.view.read(**row, index), Cell::Number(m) if m.unit.is_some());
+        match cells.iter().find(bare) {
+            None if !cells.is_empty() => return Ok(Some(None)),
+            // Written once, behind the first of them, it is that of all.
+            Some(_) if cells.len() > 1 && cells.iter().filter(bare).count() + 1 == cells.len() && !bare(&&cells[0]) => {
+                let Cell::Number(first) = region.view.read(cells[0], index) else { return Ok(None) };
+                return Ok(Some(first.unit));
+            }
+            Some(&row) if cells.len() > 1 && cells.iter().filter(bare).count() < cells.len() => {
+                return Err(region
+                    .view
+                    .error(row, index, format!("this number has no unit, and others of '{name}' have one"))
+                    .help("write the unit behind each, or once in the header"));
+            }
+            _ => {}
+        }
+        Ok(None)
     }
 
     /// The unit of a column: that of its heading, or the one that all its cells bear.

@@ -234,6 +234,16 @@ impl Scaled {
         found.map(|(_, j, side)| (j, side))
     }
 
+    /// The largest part of the gradient, which must vanish up to the multipliers of the bounds, and
+    /// these where there is slack.
+    fn steepest(&self, z: &DVector<f64>, limits: &[(usize, Side)], multipliers: &[f64]) -> f64 {
+        let mut gradient = self.x.transpose() * (&self.x * z - &self.y);
+        for (&(j, side), multiplier) in limits.iter().zip(multipliers) {
+            gradient[j] += if side == Side::High { *multiplier } else { -multiplier };
+        }
+        gradient.amax()
+    }
+
     /// Solves by Clarabel with the bounds nearer than `reach`; gives the scaled unknowns and the
     /// bounds that hold.
     fn conic(&self, reach: f64) -> Result<(DVector<f64>, Vec<Option<Side>>), Failure> {
@@ -286,14 +296,8 @@ impl Scaled {
         match solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {}
             SolverStatus::InsufficientProgress | SolverStatus::MaxIterations | SolverStatus::NumericalError => {
-                // The gradient must vanish up to the multipliers of the bounds, and these where
-                // there is slack.
-                let mut gradient = self.x.transpose() * (&self.x * &z - &self.y);
-                for (&(j, side), multiplier) in limits.iter().zip(multipliers) {
-                    gradient[j] += if side == Side::High { *multiplier } else { -multiplier };
-                }
                 let slack = multipliers.iter().zip(&solution.s[m..]).map(|(z, s)| (z * s).abs()).fold(0.0, f64::max);
-                if gradient.amax() > 1e-6 || slack > 1e-6 {
+                if self.steepest(&z, &limits, multipliers) > 1e-6 || slack > 1e-6 {
                     return Err(Failure::Solver(format!("{:?}", solution.status)));
                 }
             }

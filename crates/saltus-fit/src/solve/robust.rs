@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::conic::{Outcome, Program};
 use super::least_squares::Failure;
-use crate::model::Model;
+use crate::model::{Bounds, Model};
 use crate::quantity::Loss;
 
 /// 95 % efficient where errors are normal (Huber 1964).
@@ -149,6 +149,39 @@ fn whole(
     (x, left)
 }
 
+/// The own and the shared unknowns after a step, the shared ones within their bounds.
+fn moved(
+    own: &[Vec<f64>],
+    shared: &[f64],
+    sizes: &[(usize, usize)],
+    step: &[f64],
+    ranges: &[(Bounds, f64)],
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let mut rest = step;
+    let next_own = own
+        .iter()
+        .zip(sizes)
+        .map(|(own, &(_, q))| {
+            let (by, after) = rest.split_at(q);
+            rest = after;
+            if q == 0 { own.clone() } else { own.iter().zip(by).map(|(value, by)| value + by).collect() }
+        })
+        .collect();
+    let next = shared.iter().zip(rest).zip(ranges);
+    (next_own, next.map(|((value, by), (bounds, _))| (value + by).clamp(bounds.low, bounds.high)).collect())
+}
+
+/// The residuals, block by block.
+fn by_block(left: &DVector<f64>, sizes: &[(usize, usize)]) -> Vec<Vec<f64>> {
+    let mut rest = left.as_slice();
+    let blocks = sizes.iter().map(|&(m, _)| {
+        let (block, after) = rest.split_at(m);
+        rest = after;
+        block.to_vec()
+    });
+    blocks.collect()
+}
+
 /// Minimises the loss from a start, such as the least-squares fit, or over the own unknowns only;
 /// `None` for a table with too many rows.
 pub(crate) fn fit(
@@ -194,18 +227,8 @@ pub(crate) fn fit(
         let mut accepted = false;
         let mut fraction = 1.0;
         while fraction > 1e-3 {
-            let next: Vec<f64> = (0..shared.len())
-                .map(|j| (shared[j] + fraction * step[owned + j]).clamp(ranges[j].0.low, ranges[j].0.high))
-                .collect();
-            let mut place = 0;
-            let next_own: Vec<Vec<f64>> = own
-                .iter()
-                .zip(&sizes)
-                .map(|(o, &(_, q))| {
-                    place += q;
-                    if q == 0 { o.clone() } else { (0..q).map(|j| o[j] + fraction * step[place - q + j]).collect() }
-                })
-                .collect();
+            let scaled: Vec<f64> = step.iter().map(|by| fraction * by).collect();
+            let (next_own, next) = moved(&own, &shared, &sizes, &scaled, &ranges);
             let (there_x, there) = whole(model, &sizes, &next_own, &next);
             if there.iter().chain(there_x.iter()).all(|v| v.is_finite()) && loss.cost(&there) <= here {
                 (shared, own, x, left) = (next, next_own, there_x, there);
@@ -225,12 +248,6 @@ pub(crate) fn fit(
             trust *= fraction;
         }
     }
-    let mut rest = left.as_slice();
-    let blocks = sizes.iter().map(|&(m, _)| {
-        let (block, after) = rest.split_at(m);
-        rest = after;
-        block.to_vec()
-    });
-    let left_blocks = blocks.collect();
+    let left_blocks = by_block(&left, &sizes);
     Ok(Some(Robust { shared, own, left: left_blocks, loss: loss.cost(&left) }))
 }

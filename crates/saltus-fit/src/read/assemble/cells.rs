@@ -7,7 +7,7 @@ use crate::read::cell::{Cell, Fault, clock, read};
 use crate::read::columns::Kind;
 use crate::read::grid::shown;
 use crate::read::heading::{At, What};
-use crate::read::units::{Dimension, Scale};
+use crate::read::units::{Dimension, Scale, Unit};
 
 /// Readings of one column that have no comma, where the others have one before three digits.
 const HUNDRED: f64 = 100.0;
@@ -51,9 +51,30 @@ impl Builder<'_> {
                 return wrong(format!("'{text}' {what}"), help);
             }
         };
+        let unit = self.unit(row, column, measured.unit)?;
+        let sigma = match measured.error {
+            Some(error) => Some(unit.si(error)),
+            None => self.sigma(row, column)?,
+        };
+        let mut value = unit.si(measured.value);
+        if own.holds(What::Height) {
+            let zero = own.unit.map_or(own.zero, |named| named.si(own.zero));
+            // The difference in the column's own unit is exact where the sum of conversions is not.
+            value = if measured.unit.is_none() { unit.si(measured.value - own.zero) } else { value - zero };
+            value *= own.sign;
+        }
+        self.ranged(row, column, value, sigma)
+    }
+
+    /// The unit of a number: that of its cell, where the column has one of its kind, else that of the
+    /// column.
+    fn unit(&self, row: usize, column: usize, in_cell: Option<Unit>) -> Result<Unit, TableError> {
+        let (view, own) = (self.region.view, &self.columns.columns[column]);
+        let text = shown(view.cell(row, column));
+        let wrong = |message: String, help: &str| Err(view.error(row, column, message).help(help));
         let joules = own.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }));
-        let in_cell = measured.unit.map(|unit| unit.of_height().filter(|_| joules).unwrap_or(unit));
-        let unit = match (in_cell, own.unit) {
+        let in_cell = in_cell.map(|unit| unit.of_height().filter(|_| joules).unwrap_or(unit));
+        Ok(match (in_cell, own.unit) {
             (Some(unit), Some(named)) if unit.dimension != named.dimension => {
                 return wrong(
                     format!("the unit of '{text}' is not one of {}", named.dimension.noun()),
@@ -77,19 +98,7 @@ impl Builder<'_> {
             (None, None) => {
                 return wrong(format!("'{text}' has no unit"), "write it behind the number, or in the header");
             }
-        };
-        let sigma = match measured.error {
-            Some(error) => Some(unit.si(error)),
-            None => self.sigma(row, column)?,
-        };
-        let mut value = unit.si(measured.value);
-        if own.holds(What::Height) {
-            let zero = own.unit.map_or(own.zero, |named| named.si(own.zero));
-            // The difference in the column's own unit is exact where the sum of conversions is not.
-            value = if measured.unit.is_none() { unit.si(measured.value - own.zero) } else { value - zero };
-            value *= own.sign;
-        }
-        self.ranged(row, column, value, sigma)
+        })
     }
 
     /// Whether the commas of a column part thousands: numbers below a thousand stand beside them,

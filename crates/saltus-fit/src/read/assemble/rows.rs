@@ -1,6 +1,6 @@
 //! Rows of each layout as readings of their trials.
 
-use super::Builder;
+use super::{Builder, Found};
 use crate::error::TableError;
 use crate::quantity::Ball;
 use crate::read::aside::{LeftAside, Part, Why};
@@ -150,35 +150,23 @@ impl Builder<'_> {
         };
         let (time, mut interval) = if flights { (None, time) } else { (time, None) };
         if let Some(column) = track.interval {
-            interval = self.number(row.at, column)?;
-            if interval.is_some_and(|(time, _)| time < 0.0) {
-                return Err(self
-                    .region
-                    .view
-                    .error(row.at, column, "a time between contacts cannot be negative")
-                    .help("check the cell"));
-            }
+            interval = self.between(row.at, column)?;
         }
         let high = height.map(|column| self.height(row.at, column)).transpose()?.flatten();
-        if height.is_some() && (track.time.is_some() && !flights) && bounce == 0 {
-            // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds
-            // to.
-            let (sigma_time, sigma_height) = (time.and_then(|t| t.1), high.and_then(|h| h.1));
-            let (time, height) = (time.map(|t| t.0), high.map(|h| h.0));
+        // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds to, or
+        // that top.
+        let both = match bounce {
+            0 => (height.is_some() && track.time.is_some() && !flights).then_some(Event::Release),
+            _ => (self.tops && time.is_some()).then_some(Event::Apex),
+        };
+        if let Some(event) = both {
             self.trials[trial].readings.push(Reading {
-                time,
-                height,
-                sigma_time,
-                sigma_height,
-                ..Reading::new(Event::Release, 0, line)
+                time: time.map(|t| t.0),
+                height: high.map(|h| h.0),
+                sigma_time: time.and_then(|t| t.1),
+                sigma_height: high.and_then(|h| h.1),
+                ..Reading::new(event, bounce, line)
             });
-            return Ok(());
-        }
-        if let Some((time, sigma_time)) = time.filter(|_| self.tops && bounce > 0) {
-            let (height, sigma_height) = high.map_or((None, None), |(height, sigma)| (Some(height), sigma));
-            let top = Reading::new(Event::Apex, bounce, line);
-            let top = Reading { time: Some(time), height, sigma_time, sigma_height, ..top };
-            self.trials[trial].readings.push(top);
             return Ok(());
         }
         if let Some(found) = time {
@@ -203,6 +191,16 @@ impl Builder<'_> {
             self.apex(trial, bounce, found, line);
         }
         Ok(())
+    }
+
+    /// A time between contacts.
+    fn between(&self, row: usize, column: usize) -> Result<Found, TableError> {
+        let interval = self.number(row, column)?;
+        if interval.is_some_and(|(time, _)| time < 0.0) {
+            let error = self.region.view.error(row, column, "a time between contacts cannot be negative");
+            return Err(error.help("check the cell"));
+        }
+        Ok(interval)
     }
 
     /// Bounces side by side, a row being a trial.

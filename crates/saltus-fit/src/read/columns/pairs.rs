@@ -132,7 +132,8 @@ impl Columns {
         };
         let found = self.values().find(|(n, c, v)| {
             // A time is none, in whatever unit it counts.
-            let counted = matches!(v.what, What::Height | What::Interval | What::Unsaid);
+            let named = !c.heading.has(Atom::Height) || c.heading.has(Atom::Rebound);
+            let counted = matches!(v.what, What::Height | What::Interval | What::Unsaid) && named;
             let bare = counted && c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
             let rows = region.rows.iter().filter(|&&row| !region.cell(row, *n).is_empty());
             let first =

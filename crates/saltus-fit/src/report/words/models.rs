@@ -60,6 +60,13 @@ pub(super) fn words(kind: &FindingKind) -> Option<String> {
         FindingKind::ModelNotHeeded => {
             "a series chooses its model by itself: what was asked for is not heeded".to_owned()
         }
+        _ => return recordings(kind),
+    })
+}
+
+/// Of models of a recording.
+fn recordings(kind: &FindingKind) -> Option<String> {
+    Some(match kind {
         FindingKind::DragNeeded { bic, cor_without } => format!(
             "air drag is needed: without it the BIC is {bic:.0} worse, and the COR would come out as {cor_without:.3}"
         ),

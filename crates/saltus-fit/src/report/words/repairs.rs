@@ -18,9 +18,11 @@ pub(super) fn words(finding: &Finding) -> Option<String> {
             "the {heard} contacts come in pairs up to {:.1} ms apart, as if each was heard twice: the second of every pair left out",
             1e3 * apart_s
         ),
-        FindingKind::ReleaseAmongContacts => "the time 0 is taken as that of the release: the first interval is shorter beside the \
+        FindingKind::ReleaseAmongContacts => {
+            "the time 0 is taken as that of the release: the first interval is shorter beside the \
              others than between contacts it would be; if it is a contact, see --no-repair"
-            .to_owned(),
+                .to_owned()
+        }
         FindingKind::ContactMissed { after_s } => {
             format!("a contact was missed after {after_s:.4} s: the later ones were counted on by one")
         }
@@ -46,6 +48,13 @@ pub(super) fn words(finding: &Finding) -> Option<String> {
             let contact = finding.at.bounce.unwrap_or(0);
             format!("the time of contact {contact}, {time_s:.4} s, does not belong to the others: left out")
         }
+        _ => return samples_of(&finding.kind),
+    })
+}
+
+/// Of the samples of a recording.
+fn samples_of(kind: &FindingKind) -> Option<String> {
+    Some(match kind {
         FindingKind::SameTime { samples } => {
             format!("{samples} samples at a time that another sample has: the first of each was used")
         }

@@ -8,7 +8,10 @@ use crate::quantity::{Readings, Source};
 use crate::report::numbers::{duration, length, measured};
 
 pub(super) fn words(finding: &Finding) -> Option<String> {
-    one_kind(&finding.kind).or_else(|| whole(finding)).or_else(|| recordings(&finding.kind))
+    one_kind(&finding.kind)
+        .or_else(|| changing(&finding.kind))
+        .or_else(|| whole(finding))
+        .or_else(|| recordings(&finding.kind))
 }
 
 /// Of one kind of reading.
@@ -62,6 +65,17 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
         FindingKind::Lossless { readings } => format!(
             "the {readings} hardly shrink, as if no bounce lost anything: they are those of something else, or in another unit"
         ),
+        FindingKind::Loud { readings, part } => format!(
+            "the {readings} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
+            100.0 * part
+        ),
+        _ => return None,
+    })
+}
+
+/// Of a COR that is not the same throughout.
+fn changing(kind: &FindingKind) -> Option<String> {
+    Some(match kind {
         FindingKind::SettingsDiffer { readings, low, high, p } => format!(
             "the COR by {readings} is not the same throughout: {:.3} for {}, {:.3} for {} (by chance: p {})",
             low.1,
@@ -82,10 +96,6 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
             high.1,
             high.0,
             chance(*p)
-        ),
-        FindingKind::Loud { readings, part } => format!(
-            "the {readings} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
-            100.0 * part
         ),
         FindingKind::OrderDrift { first, last, p } => format!(
             "the COR changes from trial to trial in the order of the table, from {first:.3} to {last:.3} (by chance: p {}): one COR is a mean \

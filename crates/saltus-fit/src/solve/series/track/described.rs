@@ -2,7 +2,7 @@
 
 use super::{Candidates, Choice, Scale};
 use crate::finding::FindingKind;
-use crate::model::{Dual, FLOOR, GRAVITY, Law};
+use crate::model::{Dual, FLOOR, GRAVITY, Law, Trajectory};
 use crate::quantity::Measured;
 use crate::solve::choice::of_recording;
 use crate::solve::series::recording::{Course, Impact, Track, Variant};
@@ -52,27 +52,7 @@ impl Candidates {
         let floor = unknown(FLOOR, range, origin.1);
         let left = self.left(values, chosen.choice);
         let rms = range * (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
-        let fitted = model.impacts(values);
-        let course = Course {
-            contacts: fitted.iter().map(|i| origin.0 + unit * i.time.value).collect(),
-            lasting: fitted.iter().map(|i| unit * i.lasts.as_ref().map_or(0.0, |lasts| lasts.value)).collect(),
-            apexes: model
-                .apexes(values)
-                .iter()
-                .map(|(t, h)| (origin.0 + unit * t, range * (h - values[FLOOR])))
-                .collect(),
-            gravity: values[GRAVITY] * range / (unit * unit),
-            drag: model.air(values).drag / range,
-            samples: self
-                .samples
-                .iter()
-                .zip(&left)
-                .map(|(s, r)| {
-                    let floor = values[FLOOR] + model.drift_place().map_or(0.0, |j| values[j] * s.time);
-                    (origin.0 + unit * s.time, range * (s.height - floor), range * r)
-                })
-                .collect(),
-        };
+        let course = self.course(&model, values, &left);
         Some(Track {
             trial: self.trial,
             samples: self.samples.len(),
@@ -94,6 +74,32 @@ impl Candidates {
             free_drag: self.free_drag(),
             course,
         })
+    }
+
+    /// The motion that was fitted, in the table's units.
+    fn course(&self, model: &Trajectory<'_>, values: &[f64], left: &[f64]) -> Course {
+        let Scale { origin, unit, range } = self.scale;
+        let fitted = model.impacts(values);
+        Course {
+            contacts: fitted.iter().map(|i| origin.0 + unit * i.time.value).collect(),
+            lasting: fitted.iter().map(|i| unit * i.lasts.as_ref().map_or(0.0, |lasts| lasts.value)).collect(),
+            apexes: model
+                .apexes(values)
+                .iter()
+                .map(|(t, h)| (origin.0 + unit * t, range * (h - values[FLOOR])))
+                .collect(),
+            gravity: values[GRAVITY] * range / (unit * unit),
+            drag: model.air(values).drag / range,
+            samples: self
+                .samples
+                .iter()
+                .zip(left)
+                .map(|(s, r)| {
+                    let floor = values[FLOOR] + model.drift_place().map_or(0.0, |j| values[j] * s.time);
+                    (origin.0 + unit * s.time, range * (s.height - floor), range * r)
+                })
+                .collect(),
+        }
     }
 
     fn variants(&self) -> Vec<Variant> {
