@@ -62,12 +62,9 @@ pub(in crate::read) fn rate(text: &str) -> Option<(f64, String)> {
         let head = text[..at].trim_end();
         let before = head.trim_end_matches(digits);
         let value = counted(&head[before.len()..])? * factor;
-        let bare = before.trim_end_matches([' ', '=', ':', '~']);
-        // In brackets what the rate is called: `(fs = 44100 Hz)`.
-        let called = bare
-            .rfind(['(', '['])
-            .filter(|open| bare.len() < before.trim_end().len() && !bare[*open..].contains([')', ']']));
-        let before = called.map_or(bare, |open| &bare[..open]).trim_end_matches([' ', '@', '(', '[']);
+        // In brackets what the rate is called: `(fs = 44100 Hz)`, `(filmed at 120 fps)`.
+        let open = before.rfind(['(', '[']).filter(|open| !before[*open..].contains([')', ']']));
+        let before = open.map_or(before, |open| &before[..open]).trim_end_matches([' ', '@', '=', ':', '~']);
         let before = before.strip_suffix(" at").unwrap_or(before);
         Some((value, format!("{before} {}", after.trim_start_matches([')', ']']))))
     })
