@@ -5,7 +5,7 @@
     python3 tests/readers/check.py [target/release/saltus] [--blender]
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed
-under target/readers: Pixar's USD, Khronos' glTF validator, three.js, lottie-web, and with --blender Blender as a module (300 MB; its
+under target/readers: Pixar's USD, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender as a module (300 MB; its
 version 5.0 wants Python 3.11). The exit status is 1 if a file is wrong.
 """
 import json
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import venv
+import zipfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -22,7 +23,7 @@ ROOT = HERE.parent.parent
 INSTALLED = ROOT / "target" / "readers"
 PYTHON = ["usd-core==26.11"]
 BLENDER = ["bpy==5.0.1"]
-NODE = ["gltf-validator@2.0.0-dev.3.10", "three@0.187.0", "lottie-web@5.13.0"]
+NODE = ["gltf-validator@2.0.0-dev.3.10", "three@0.187.0", "lottie-web@5.13.0", "@lottiefiles/dotlottie-web@0.80.0"]
 
 SQUASH = """gravity = "9.8 m/s^2"
 restitution = 0.55
@@ -66,7 +67,8 @@ def install(blender):
         modules.mkdir(parents=True, exist_ok=True)
         (modules / "package.json").write_text('{"private": true}')
         run("npm", "install", "--silent", *NODE, cwd=modules)
-        shutil.copy(HERE / "glb.mjs", modules)
+        for script in ("glb.mjs", "dotlottie.mjs"):
+            shutil.copy(HERE / script, modules)
     return python, bool(node)
 
 
@@ -90,7 +92,7 @@ def readers(python, node, blender, folder):
     """For each format the reader of a file, at times in s."""
     last = lambda done: json.loads(done.stdout.strip().splitlines()[-1])
     script = lambda name: lambda path, times: last(run(python, HERE / name, path, json.dumps(times)))
-    known = {"usd": script("usd.py"), "usd-splines": script("usd.py")}
+    known = {"usd": script("usd.py"), "usd-splines": script("usd.py"), "usdz": script("usd.py")}
     if blender:
         known["blender"] = script("blender.py")
     if node:
@@ -101,6 +103,21 @@ def readers(python, node, blender, folder):
         if node:
             player = INSTALLED / "node/node_modules/lottie-web/build/player/lottie_svg.min.js"
             known["lottie"] = lambda path, times: page(folder, "", player.read_text(), path.read_text(), times)
+
+            def dotlottie(path, times):
+                """The player for packages says what it plays; heights are those of the animation in it."""
+                played = last(run("node", "dotlottie.mjs", path, cwd=modules))
+                with zipfile.ZipFile(path) as archive:
+                    animation = archive.read("a/%s.json" % played["animations"][0]).decode()
+                document = json.loads(animation)
+                frames = document["op"] - document["ip"]
+                found = page(folder, "", player.read_text(), animation, times)
+                if played["version"] != "2" or abs(played["frames"] - frames) > 1e-6 * frames:
+                    found["errors"] += 1
+                    found["issues"].append("it plays %s, of %s frames" % (played, frames))
+                return found
+
+            known["dotlottie"] = dotlottie
     return known
 
 
@@ -135,7 +152,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         known = readers(python, node, blender, folder)
-        for name in {"glb", "svg", "lottie", "blender"} - known.keys():
+        for name in {"glb", "svg", "lottie", "dotlottie", "blender"} - known.keys():
             print("left out, for its reader is not here: %s" % name)
         for scene, options, same in CASES:
             path = folder / "scene.toml"
@@ -150,12 +167,12 @@ def main():
                 assert worst < 1e-12, "the simulation is %g m off its formula" % worst
             times = sorted(truth)
             for kind, read in sorted(known.items()):
-                file = folder / ("ball." + {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json"}.get(kind, kind))
+                file = folder / ("ball." + {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json", "dotlottie": "lottie"}.get(kind, kind))
                 said = run(saltus, "export", path, *options, "--to", kind, "--force", "-o", file).stderr
                 height, volume = promised(said)
                 found = read(file, times)
                 for animation, rows in found["animations"].items():
-                    scale = radius(SCENES[scene]) if kind in ("svg", "lottie") else 1.0
+                    scale = radius(SCENES[scene]) if kind in ("svg", "lottie", "dotlottie") else 1.0
                     lows = [scale * row[0] for row in rows]
                     off = max(abs(low - truth[t]) for low, t in zip(lows, times)) if same else None
                     below = max(0.0, -min(lows))

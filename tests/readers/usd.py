@@ -1,4 +1,4 @@
-"""What Pixar's USD makes of a .usda: the lowest point and the volume of the ball at given times."""
+"""What Pixar's USD makes of a .usda or .usdz: the lowest point and the volume of the ball at given times."""
 import json
 import math
 import sys

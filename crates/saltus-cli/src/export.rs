@@ -70,11 +70,13 @@ fn format(args: &Export) -> Result<Format, Error> {
         (None, Some("html" | "htm")) => Ok(Format::Html),
         (None, Some("gltf")) => Ok(Format::Gltf),
         (None, Some("wav")) => Ok(Format::Wav),
+        (None, Some("usdz")) => Ok(Format::Usdz),
+        (None, Some("lottie")) => Ok(Format::DotLottie),
         (None, Some("json" | "py")) => {
             Err(Error::new("several formats go by that extension: say --to json, lottie, blender or maya"))
         }
         (None, Some(other)) => {
-            let says = "use .html, .glb, .gltf, .usda, .svg, .csv or .wav, or say --to";
+            let says = "use .html, .glb, .gltf, .usda, .usdz, .lottie, .svg, .csv or .wav, or say --to";
             Err(Error::new(format!("no format goes by the extension '.{other}': {says}")))
         }
         (None, None) => Err(Error::new("say which format, such as --to glb, or name a file, such as -o ball.glb")),

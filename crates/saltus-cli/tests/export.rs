@@ -66,7 +66,9 @@ fn what_is_exported_reads_back_as_promised() {
             ("glb", "ball.glb"),
             ("usd", "ball.usda"),
             ("usd-splines", "splines.usda"),
+            ("usdz", "ball.usdz"),
             ("lottie", "lottie.json"),
+            ("dotlottie", "ball.lottie"),
             ("json", "ball.json"),
             ("svg", "ball.svg"),
             ("csv", "ball.csv"),
@@ -122,9 +124,15 @@ fn a_file_that_is_wrong_is_found_out() {
     {
         assert!(refused(&["check", &path(name), scene]).contains(says));
     }
-    for (name, content) in
-        [("a.glb", "no glb"), ("a.json", "{}"), ("a.usda", "#usda 1.0"), ("a.svg", "<svg/>"), ("a.csv", "a,b\n1,2\n")]
-    {
+    for (name, content) in [
+        ("a.glb", "no glb"),
+        ("a.json", "{}"),
+        ("a.usda", "#usda 1.0"),
+        ("a.svg", "<svg/>"),
+        ("a.csv", "a,b\n1,2\n"),
+        ("a.usdz", "no zip"),
+        ("a.lottie", "{}"),
+    ] {
         fs::write(path(name), content).unwrap();
         assert!(refused(&["check", &path(name), scene]).contains("cannot be read back"), "{name}");
     }
@@ -172,7 +180,14 @@ fn what_animators_ask_for() {
     let squash = squash.to_str().unwrap();
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    for (name, begins) in [("ball.html", "<!doctype html>"), ("ball.gltf", "{"), ("ball.wav", "RIFF")] {
+    let begins = [
+        ("ball.html", "<!doctype html>"),
+        ("ball.gltf", "{"),
+        ("ball.wav", "RIFF"),
+        ("ball.usdz", "PK"),
+        ("ball.lottie", "PK"),
+    ];
+    for (name, begins) in begins {
         assert!(run(&["-q", "export", squash, "-o", &path(name)]).status.success());
         assert!(fs::read(path(name)).unwrap().starts_with(begins.as_bytes()), "{name}");
     }

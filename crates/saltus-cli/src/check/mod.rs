@@ -1,5 +1,6 @@
 //! `saltus check`: an exported file in, how far its heights are from the motion out.
 
+mod package;
 mod read;
 
 use std::path::PathBuf;
@@ -18,9 +19,9 @@ use crate::staging::Staging;
 
 /// Read a file that `saltus export` wrote, and say how far its heights are from the scene's motion.
 ///
-/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, SVG,
-/// CSV and JSON. Give the options it was exported with. Exit status 1 if a height is farther off
-/// than the export says, or than --tolerance.
+/// The file is read as its format has it, not as it was written: glTF, USD as text, Lottie, both
+/// as packages too, SVG, CSV and JSON. Give the options it was exported with. Exit status 1 if a
+/// height is farther off than the export says, or than --tolerance.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Check {
     /// The file.

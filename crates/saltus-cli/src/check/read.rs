@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::package;
 use crate::error::Error;
 use crate::output::extension;
 
@@ -89,24 +90,23 @@ pub(super) fn readings(path: &Path) -> Result<Vec<Reading>, Error> {
             "a script can only be run by the program it is for: Blender's and Maya's say themselves how near their curves are to the motion",
         ));
     }
-    if !["glb", "usda", "json", "svg", "csv"].contains(&extension.as_str()) {
+    if !["glb", "usda", "usdz", "json", "lottie", "svg", "csv"].contains(&extension.as_str()) {
         let scene = if extension == "toml" { "; `saltus explain` checks a scene" } else { "" };
         return Err(Error::new(format!(
-            "'{}' cannot be checked: of what saltus export writes, .glb, .usda, .json, .svg and .csv can be read back{scene}",
+            "'{}' cannot be checked: of what saltus export writes, .glb, .usda, .usdz, .json, .lottie, .svg and .csv can be read back{scene}",
             path.display()
         )));
     }
     let bytes = fs::read(path).map_err(|error| Error::new(format!("cannot read '{}': {error}", path.display())))?;
-    let readings = if extension == "glb" {
-        glb(&bytes)
-    } else {
-        let text = String::from_utf8(bytes).map_err(|_| Error::new("it is no text"));
-        text.and_then(|text| match extension.as_str() {
-            "usda" => usda(&text),
-            "svg" => svg(&text),
-            "csv" => csv(&text),
-            _ => json(&text),
-        })
+    let text = |bytes| String::from_utf8(bytes).map_err(|_| Error::new("it is no text"));
+    let readings = match extension.as_str() {
+        "glb" => glb(&bytes),
+        "usda" => text(bytes).and_then(|text| usda(&text)),
+        "usdz" => package::layer(&bytes).and_then(|text| usda(&text)),
+        "svg" => text(bytes).and_then(|text| svg(&text)),
+        "csv" => text(bytes).and_then(|text| csv(&text)),
+        "lottie" => package::animation(&bytes).and_then(|text| json(&text)),
+        _ => text(bytes).and_then(|text| json(&text)),
     };
     readings.map_err(|error| Error::new(format!("'{}' cannot be read back: {error}", path.display())))
 }

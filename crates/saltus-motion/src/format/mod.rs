@@ -6,6 +6,7 @@ mod flat;
 mod gltf;
 mod lottie;
 mod maya;
+mod package;
 mod player;
 mod sound;
 mod svg;
@@ -60,11 +61,15 @@ pub enum Format {
     Contacts,
     /// A tick at each contact, as loud as it is fast: mono, 16 bits, 48 kHz.
     Wav,
+    /// [`Format::Usd`] as a package: a zip archive whose one file is not compressed.
+    Usdz,
+    /// [`Format::Lottie`] as a package: dotLottie 2, a zip archive with a manifest.
+    DotLottie,
 }
 
 impl Format {
     /// Every one.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Csv,
         Self::CsvFrames,
         Self::Json,
@@ -80,6 +85,8 @@ impl Format {
         Self::Gltf,
         Self::Contacts,
         Self::Wav,
+        Self::Usdz,
+        Self::DotLottie,
     ];
 
     /// Its name.
@@ -101,6 +108,8 @@ impl Format {
             Self::Gltf => "gltf",
             Self::Contacts => "contacts",
             Self::Wav => "wav",
+            Self::Usdz => "usdz",
+            Self::DotLottie => "dotlottie",
         }
     }
 
@@ -123,6 +132,8 @@ impl Format {
             Self::Gltf => "gltf",
             Self::Contacts => "contacts.csv",
             Self::Wav => "wav",
+            Self::Usdz => "usdz",
+            Self::DotLottie => "lottie",
         }
     }
 
@@ -147,13 +158,15 @@ impl Format {
             Self::Gltf => "glTF as text, all in one file",
             Self::Contacts => "The contacts as a table: when, where, how fast",
             Self::Wav => "A sound with a tick at each contact, as loud as it is fast",
+            Self::Usdz => "USD as a package, a place for every frame",
+            Self::DotLottie => "Lottie as a package, dotLottie 2",
         }
     }
 
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {
-        matches!(self, Self::CsvFrames | Self::Glb | Self::Gltf | Self::Usd)
+        matches!(self, Self::CsvFrames | Self::Glb | Self::Gltf | Self::Usd | Self::Usdz)
     }
 }
 
@@ -267,6 +280,8 @@ impl Export<'_> {
             Format::Html => player::page(self, &balls)?.into_bytes(),
             Format::Contacts => sound::contacts(self).into_bytes(),
             Format::Wav => sound::wav(self)?,
+            Format::Usdz => package::usdz(&usd::samples(self, &balls))?,
+            Format::DotLottie => package::dotlottie(&lottie::json(self, &balls)?)?,
         };
         let miss = balls.iter().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
         let shown = balls.iter().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
