@@ -15,7 +15,7 @@ use saltus_examples::study::stages::{Curve, Start, mark, measured};
 use saltus_examples::study::trials::{Plan, Trial, mean, of_mean_heights};
 use saltus_examples::study::{CONTACTS, DROP, EARLY, GRAVITY, MODELLED, RADIUS, REBOUNDS, keys, report};
 use saltus_fit::{Report, Verdict};
-use saltus_motion::{Export, Format, Frames, Rate, Shape, Snap};
+use saltus_motion::{Export, Format, Frames, Rate, Shape, Snap, Space};
 use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
 
 type Done = Result<(), Box<dyn Error>>;
@@ -377,7 +377,8 @@ fn keyframes() -> Done {
     assert_eq!(numbers, [0.0, 14.0, 29.0, 38.0, 43.0, 46.0, 48.0, 50.0]);
     check(whole[0].place[2], 1.067, 1e-3);
     let export = |motion, format| {
-        Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false }.file(format)
+        Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }
+            .file(format)
     };
     let (script, baked) = (export(&motion, Format::Maya)?, export(&motion, Format::CsvFrames)?);
     println!(

@@ -1,4 +1,4 @@
-"""What Blender makes of its script: the lowest point and the volume of the ball at given times, and what the script says of itself."""
+"""What Blender makes of its script: the lowest point and the volume of the ball at given times, in metres, and what the script says of itself."""
 import contextlib
 import io
 import json
@@ -26,7 +26,7 @@ for t in times:
     world = ball.matrix_world
     up = math.sqrt(sum(world[2][k] ** 2 for k in range(3)))
     low = world[2][2] * middle + world[2][3] - radius * up
-    rows.append([low, world.to_3x3().determinant()])
+    rows.append([scene.unit_settings.scale_length * low, world.to_3x3().determinant()])
 name = "Blender " + bpy.app.version_string
 wrong = [line for line in said.getvalue().splitlines() if "do not trust" in line]
 print("\n" + json.dumps({"issues": wrong, "errors": len(wrong), "animations": {name: rows}}))

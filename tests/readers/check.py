@@ -34,15 +34,20 @@ SCENES = {
     "topspin": (ROOT / "examples/scenes/topspin.toml").read_text(),
     "slow contact": (ROOT / "examples/scenes/slow-contact.toml").read_text(),
 }
-# Scene, options, and whether heights are those of the simulation at the same times.
+# Scene, options, unit and axis, and whether heights are those of the simulation at the same times.
 CASES = [
-    ("drop", [], True),
-    ("drop", ["--fps", "29.97", "--first-frame", "1"], True),
-    ("drop", ["--snap", "gravity", "--squash", "0.3", "--stretch", "0.1"], False),
-    ("drop", ["--loop", "--squash", "0.3"], False),
-    ("topspin", [], True),
-    ("slow contact", ["--squash", "law", "--stretch", "0.2"], False),
+    ("drop", [], [], True),
+    ("drop", ["--fps", "29.97", "--first-frame", "1"], [], True),
+    ("drop", ["--snap", "gravity", "--squash", "0.3", "--stretch", "0.1"], [], False),
+    ("drop", ["--loop", "--squash", "0.3"], [], False),
+    ("topspin", [], [], True),
+    ("topspin", [], ["--units", "cm", "--up", "z"], True),
+    ("topspin", [], ["--units", "in"], True),
+    ("slow contact", ["--squash", "law", "--stretch", "0.2"], [], False),
+    ("slow contact", ["--squash", "law", "--stretch", "0.2"], ["--units", "mm", "--up", "z"], False),
 ]
+# What can be in another unit, with z upwards.
+SPACES = {"usd", "usd-splines", "usdz", "blender"}
 # How exact a reader may be, beside what the export promises: single precision in Blender, glTF and on screens.
 READER = 2e-5
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
@@ -154,7 +159,7 @@ def main():
         known = readers(python, node, blender, folder)
         for name in {"glb", "svg", "lottie", "dotlottie", "blender"} - known.keys():
             print("left out, for its reader is not here: %s" % name)
-        for scene, options, same in CASES:
+        for scene, options, space, same in CASES:
             path = folder / "scene.toml"
             path.write_text(SCENES[scene])
             samples = json.loads(run(saltus, "-q", "simulate", path, "--fps", "97", "--format", "json").stdout)["samples"]
@@ -167,8 +172,10 @@ def main():
                 assert worst < 1e-12, "the simulation is %g m off its formula" % worst
             times = sorted(truth)
             for kind, read in sorted(known.items()):
+                if space and kind not in SPACES:
+                    continue
                 file = folder / ("ball." + {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json", "dotlottie": "lottie"}.get(kind, kind))
-                said = run(saltus, "export", path, *options, "--to", kind, "--force", "-o", file).stderr
+                said = run(saltus, "export", path, *options, *space, "--to", kind, "--force", "-o", file).stderr
                 height, volume = promised(said)
                 found = read(file, times)
                 for animation, rows in found["animations"].items():
@@ -181,7 +188,7 @@ def main():
                     bad = bad or max(volumes, default=0.0) > 1.05 * volume + 1e-4
                     wrong += bool(bad)
                     print("%-5s %-12s %-44s %-12s %-20s height %-9s below 0 by %.1e m, volume %s" % (
-                        "WRONG" if bad else "ok", scene, " ".join(options), kind, animation,
+                        "WRONG" if bad else "ok", scene, " ".join(options + space), kind, animation,
                         "-" if off is None else "%.1e" % off, below, "%.2f %%" % (100 * max(volumes)) if volumes else "-"))
                 for issue in found["issues"]:
                     print("      %s: %s" % (kind, issue))

@@ -1,4 +1,4 @@
-"""What Pixar's USD makes of a .usda or .usdz: the lowest point and the volume of the ball at given times."""
+"""What Pixar's USD makes of a .usda or .usdz: the lowest point and the volume of the ball at given times, in metres."""
 import json
 import math
 import sys
@@ -7,15 +7,16 @@ from pxr import Usd, UsdGeom, UsdValidation
 
 path, times = sys.argv[1], json.loads(sys.argv[2])
 stage = Usd.Stage.Open(path)
+up, metres = "XYZ".index(UsdGeom.GetStageUpAxis(stage)), UsdGeom.GetStageMetersPerUnit(stage)
 fps, first = stage.GetTimeCodesPerSecond(), stage.GetStartTimeCode()
 ball = next(prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Sphere))
 radius = UsdGeom.Sphere(ball).GetRadiusAttr().Get()
 rows = []
 for t in times:
     world = UsdGeom.Xformable(ball).ComputeLocalToWorldTransform(Usd.TimeCode(first + t * fps))
-    # Row vectors: a place is p M, and height is y.
-    up = math.sqrt(sum(world[k][1] ** 2 for k in range(3)))
-    rows.append([world[3][1] - radius * up, world.GetDeterminant()])
+    # Row vectors: a place is p M.
+    reach = radius * math.sqrt(sum(world[k][up] ** 2 for k in range(3)))
+    rows.append([metres * (world[3][up] - reach), world.GetDeterminant()])
 registry = UsdValidation.ValidationRegistry()
 found = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators()).Validate(stage)
 issues = ["%s: %s" % (error.GetName(), error.GetMessage()) for error in found]

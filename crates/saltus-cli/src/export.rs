@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
-use saltus_motion::Format;
+use saltus_motion::{Format, Space, Unit, Up};
 
 use crate::error::Error;
 use crate::output::{check_new, extension, say, write};
@@ -46,12 +46,27 @@ pub(crate) struct Shown {
     /// How far keys may be from the motion where more than gravity acts.
     #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
     pub(crate) tolerance: f64,
+    /// The unit of the file's lengths; a format that has its own refuses any other.
+    #[arg(long, value_name = "UNIT", value_parser = one_of(&Unit::ALL, Unit::symbol, Unit::about), default_value = "m")]
+    pub(crate) units: Unit,
+    /// The axis that is up; without it the format's own: y in USD.
+    #[arg(long, value_name = "AXIS", value_parser = one_of(&Up::ALL, Up::name, Up::about))]
+    pub(crate) up: Option<Up>,
+}
+
+impl Shown {
+    /// The unit and the axis of files.
+    pub(crate) const fn space(&self) -> Space {
+        Space { unit: self.units, up: self.up }
+    }
 }
 
 pub(crate) fn run(args: &Export, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
+    format.takes(args.shown.space()).map_err(Error::new)?;
     check_new(args.output.as_deref(), args.force)?;
-    let stage = args.shown.staging.of(&args.scene, args.shown.first_frame, quiet)?;
+    let mut stage = args.shown.staging.of(&args.scene, args.shown.first_frame, quiet)?;
+    stage.space = args.shown.space();
     let file = stage.file(format, args.shown.tolerance).map_err(Error::new)?;
     write(args.output.as_deref(), &file.bytes)?;
     say(quiet, &stage.says(&file));

@@ -57,6 +57,7 @@ pub(crate) struct Library {
 }
 
 pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
+    args.to.iter().try_for_each(|format| format.takes(args.shown.space())).map_err(Error::new)?;
     let vary = args.vary.vary();
     let keys = vary.keys().map_err(Error::new)?;
     let runs = vary.runs().map_err(Error::new)?;
@@ -214,7 +215,8 @@ impl Maker<'_> {
         let end = ending(staging.until, None);
         let scene = self.template.scene(&of_scene, end).map_err(|error| refused(&error))?;
         let record = scene.plan().map_err(|error| error.to_string())?.run().map_err(|error| error.to_string())?;
-        let stage = staging.stage(&record, args.shown.first_frame).map_err(|error| error.to_string())?;
+        let mut stage = staging.stage(&record, args.shown.first_frame).map_err(|error| error.to_string())?;
+        stage.space = args.shown.space();
         let name = self.name(run, &values);
         let (mut files, mut written, mut miss) = (Vec::new(), Map::new(), 0.0_f64);
         for &format in &args.to {

@@ -173,6 +173,48 @@ fn squash_and_stretch_are_never_silent() {
     assert!(refuse("squash.toml", &["--squash", "0.5", "--exaggerate", "4"]).contains("squash it by 0 to 0.9"));
 }
 
+/// A unit and an axis are read off the file: nothing more has to be said to check it.
+#[test]
+fn files_in_other_units_read_back() {
+    let scene = root().join("examples/scenes/topspin.toml");
+    let scene = scene.to_str().unwrap();
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    for (units, up) in [("cm", "z"), ("mm", "y"), ("in", "z"), ("ft", "y"), ("m", "z")] {
+        for (format, name) in [("usd", "a.usda"), ("usd-splines", "b.usda"), ("usdz", "c.usdz"), ("csv", "d.csv")] {
+            let file = path(name);
+            let up: &[&str] = if format == "csv" { &[] } else { &["--up", up] };
+            let export = ["-q", "export", scene, "--to", format, "--units", units, "-o", &file, "--force"];
+            done(&[&export[..], up].concat());
+            let says = done(&["-q", "check", &file, scene]);
+            assert!(says.contains("contacts touch; within"), "{format} {units}: {says}");
+        }
+    }
+    // What a format cannot have is refused before there is a file.
+    for (format, option, value, says) in [
+        ("glb", "--units", "cm", "glb cannot be in cm: glTF is in metres by its specification; leave out the unit"),
+        ("gltf", "--up", "z", "in glTF y is up by its specification"),
+        ("blender", "--up", "y", "in Blender z is always up"),
+        ("maya", "--up", "z", "which a script should leave alone"),
+        ("csv", "--up", "z", "go by the names x, y and height"),
+        ("json", "--units", "ft", "metres by its contract"),
+        ("lottie", "--units", "mm", "a picture has the size of its page"),
+        ("html", "--up", "z", "a picture is upright"),
+        ("wav", "--units", "in", "a sound has no lengths"),
+    ] {
+        let file = path(format);
+        let refusal = refused(&["-q", "export", scene, "--to", format, option, value, "-o", &file]);
+        assert!(refusal.contains(says), "{format}: {refusal}");
+        assert!(!Path::new(&file).exists(), "{format}");
+    }
+    // What a format has anyway may be asked for.
+    done(&["-q", "export", scene, "--to", "glb", "--units", "m", "--up", "y", "-o", &path("own.glb")]);
+    // A file that is there stays as it is when the next one is refused.
+    let before = fs::read(path("own.glb")).unwrap();
+    refused(&["-q", "export", scene, "--to", "glb", "--units", "cm", "-o", &path("own.glb"), "--force"]);
+    assert_eq!(fs::read(path("own.glb")).unwrap(), before);
+}
+
 /// What an animator may do by mistake, or asks for beyond keys.
 #[test]
 fn what_animators_ask_for() {

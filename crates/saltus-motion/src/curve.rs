@@ -147,6 +147,11 @@ pub struct Miss {
 }
 
 impl Miss {
+    /// In another unit, so many of which make one of this.
+    pub(crate) const fn times(self, factor: f64) -> Self {
+        Self { height: self.height * factor, place: self.place * factor }
+    }
+
     /// The worse of two.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {

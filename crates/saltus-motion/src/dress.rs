@@ -53,6 +53,11 @@ pub struct Shown {
 }
 
 impl Shown {
+    /// In another unit of length, so many of which make one of this.
+    pub(crate) const fn times(self, factor: f64) -> Self {
+        Self { moved: self.moved * factor, sunk: self.sunk * factor, ..self }
+    }
+
     pub(crate) const fn or(self, other: Self) -> Self {
         Self {
             least: self.least.min(other.least),

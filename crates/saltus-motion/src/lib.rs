@@ -4,10 +4,11 @@
 //! A [`Motion`] is data: for each ball, polynomials in time from contact to contact.
 //! [`Motion::cut`] ends the infinitely many last hops, [`Motion::snapped`] moves contacts to whole
 //! frames, and an [`Export`] writes it as any [`Format`] and says how exact that is. Metres and
-//! seconds throughout; places are (x, y, up) of the ball's lowest point, so that 0 is touch.
+//! seconds throughout, but where a file is asked for in another [`Space`]; places are (x, y, up) of
+//! the ball's lowest point, so that 0 is touch.
 //!
 //! ```
-//! use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};
+//! use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Space, Stretch, Track};
 //!
 //! // One metre down, and up again half as fast.
 //! let arc = |start: f64, span: f64, height: f64, speed: f64| Stretch {
@@ -26,7 +27,7 @@
 //! let motion = Motion::new("drop", vec![ball], Vec::new())?;
 //!
 //! let frames = Frames::new("24".parse()?);
-//! let exact = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false }.file(Format::Csv)?;
+//! let exact = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }.file(Format::Csv)?;
 //! assert_eq!(exact.keys, 3);
 //! assert!(exact.miss.height < 1e-12);
 //!
@@ -37,7 +38,7 @@
 //! // Two frames on the floor, 30 % shorter there, and 10 % longer in flight, of one volume always.
 //! let held = snapped.held(2.0 / 24.0)?;
 //! let shape = Shape { squash: 0.3, stretch: 0.1, hold: 2.0 / 24.0 };
-//! let shown = Export { motion: &held, frames, tolerance: 1e-4, shape, apexes: false }.file(Format::Glb)?.shown.unwrap_or_default();
+//! let shown = Export { motion: &held, frames, tolerance: 1e-4, shape, apexes: false, space: Space::default() }.file(Format::Glb)?.shown.unwrap_or_default();
 //! assert!(shown.least == 0.7 && shown.sunk.abs() < 1e-15);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -51,6 +52,7 @@ mod motion;
 mod rate;
 mod shape;
 mod snap;
+mod space;
 mod turn;
 
 pub use curve::{Between, Curve, Key, Miss};
@@ -60,4 +62,5 @@ pub use motion::{Contact, Motion, MotionError, Piece, Point, Stretch, Track};
 pub use rate::{Frames, Rate, RateError};
 pub use shape::{Form, Pose, Shape};
 pub use snap::Snap;
+pub use space::{Space, Unit, Up};
 pub use turn::Turn;

@@ -275,6 +275,34 @@ impl Motion {
         Ok(Self { title: title.to_owned(), tracks, ground, loops: false })
     }
 
+    /// All lengths times a factor; as many seconds.
+    ///
+    /// ```
+    /// use saltus_motion::{Motion, Piece, Stretch, Track};
+    /// let piece = Piece { start: 0.0, span: 1.0, coefficients: vec![[0.0, 0.0, 2.0]], spin: Vec::new() };
+    /// let stretch = Stretch { contact: None, flight: true, pieces: vec![piece] };
+    /// let track = Track { name: "ball".into(), radius: 0.02, stretches: vec![stretch] };
+    /// let motion = Motion::new("still", vec![track], Vec::new())?.scaled(100.0);
+    /// assert_eq!((motion.tracks[0].at(0.5)[2], motion.tracks[0].radius), (200.0, 2.0));
+    /// # Ok::<(), saltus_motion::MotionError>(())
+    /// ```
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        for track in &mut scaled.tracks {
+            track.radius *= factor;
+            for stretch in &mut track.stretches {
+                if let Some(contact) = &mut stretch.contact {
+                    contact.speed *= factor;
+                }
+                let coefficients = stretch.pieces.iter_mut().flat_map(|piece| &mut piece.coefficients);
+                coefficients.flatten().for_each(|c| *c *= factor);
+            }
+        }
+        scaled.ground.iter_mut().flatten().flatten().for_each(|c| *c *= factor);
+        scaled
+    }
+
     /// When it ends, in s.
     #[must_use]
     pub fn end(&self) -> f64 {

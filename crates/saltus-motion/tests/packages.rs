@@ -1,11 +1,11 @@
-//! What is in an archive is the plain export, bit for bit, and lies where the specification wants it.
+//! What is in an archive is the plain export, bit for bit, and lies where it should.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use std::io::{Cursor, Read};
 
 use drop::drop;
-use saltus_motion::{Export, Format, Frames, Motion, Shape};
+use saltus_motion::{Export, Format, Frames, Motion, Shape, Space};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
@@ -13,7 +13,10 @@ mod drop;
 
 fn written(motion: &Motion, format: Format) -> Vec<u8> {
     let frames = Frames::new("24".parse().unwrap());
-    Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false }.file(format).unwrap().bytes
+    Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }
+        .file(format)
+        .unwrap()
+        .bytes
 }
 
 struct Entry {
@@ -74,9 +77,16 @@ fn a_package_is_as_exact_as_what_is_in_it() {
     let motion = drop(1.0, 0.7, 3, 0.8, [0.0; 3], 0.05);
     let frames = Frames::new("24".parse().unwrap());
     let file = |format| {
-        Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false }
-            .file(format)
-            .unwrap()
+        Export {
+            motion: &motion,
+            frames,
+            tolerance: 1e-4,
+            shape: Shape::default(),
+            apexes: false,
+            space: Space::default(),
+        }
+        .file(format)
+        .unwrap()
     };
     for (package, plain) in [(Format::Usdz, Format::Usd), (Format::DotLottie, Format::Lottie)] {
         let (package, plain) = (file(package), file(plain));

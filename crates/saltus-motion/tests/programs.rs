@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use drop::{G, drop};
-use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Stretch, Track};
+use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Space, Stretch, Track};
 use serde_json::Value;
 
 mod drop;
@@ -16,7 +16,9 @@ fn frames() -> Frames {
 }
 
 fn written(motion: &Motion, format: Format, shape: Shape) -> File {
-    Export { motion, frames: frames(), tolerance: 1e-4, shape, apexes: false }.file(format).unwrap()
+    Export { motion, frames: frames(), tolerance: 1e-4, shape, apexes: false, space: Space::default() }
+        .file(format)
+        .unwrap()
 }
 
 fn text(file: File) -> String {
@@ -185,8 +187,14 @@ fn a_motion_without_a_frame_is_refused() {
     let ball = Track { name: "ball".into(), radius: 0.05, stretches: vec![stretch] };
     let motion = Motion::new("short", vec![ball], Vec::new()).unwrap();
     for format in Format::ALL {
-        let export =
-            Export { motion: &motion, frames: frames(), tolerance: 1e-4, shape: Shape::default(), apexes: false };
+        let export = Export {
+            motion: &motion,
+            frames: frames(),
+            tolerance: 1e-4,
+            shape: Shape::default(),
+            apexes: false,
+            space: Space::default(),
+        };
         let error = export.file(format).unwrap_err().to_string();
         assert!(error.contains("less than a hundredth of a frame"), "{format:?}: {error}");
     }
@@ -204,8 +212,14 @@ fn a_small_ball_is_seen() {
 #[test]
 fn keys_at_apexes_leave_the_motion() {
     let motion = drop(1.0, 0.7, 3, 0.8, [0.0; 3], 0.05);
-    let export =
-        |apexes| Export { motion: &motion, frames: frames(), tolerance: 1e-4, shape: Shape::default(), apexes };
+    let export = |apexes| Export {
+        motion: &motion,
+        frames: frames(),
+        tolerance: 1e-4,
+        shape: Shape::default(),
+        apexes,
+        space: Space::default(),
+    };
     let (plain, with) = (export(false).file(Format::Csv).unwrap(), export(true).file(Format::Csv).unwrap());
     assert_eq!(with.keys, plain.keys + 3, "the drop starts at its top");
     assert!(with.miss.place < 1e-12, "{:?}", with.miss);

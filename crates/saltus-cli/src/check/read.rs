@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use saltus_motion::Unit;
 use serde_json::Value;
 
 use super::package;
@@ -181,26 +182,31 @@ fn glb(bytes: &[u8]) -> Result<Vec<Reading>, Error> {
     if readings.is_empty() { Err(lacks("animation")) } else { Ok(readings) }
 }
 
-/// Samples of places, or splines of heights; y is up.
+/// Samples of places, or splines of heights; the unit and the axis that is up are those of the
+/// stage.
 fn usda(text: &str) -> Result<Vec<Reading>, Error> {
     let number =
         |name: &str| -> Option<f64> { after(text, &format!("{name} = "))?.lines().next()?.trim().parse().ok() };
     let fps = number("timeCodesPerSecond").ok_or_else(|| lacks("timeCodesPerSecond"))?;
     let first = number("startTimeCode").ok_or_else(|| lacks("startTimeCode"))?;
+    let metres = number("metersPerUnit").ok_or_else(|| lacks("metersPerUnit"))?;
+    let axis = after(text, "upAxis = \"").and_then(|rest| rest.chars().next()).ok_or_else(|| lacks("upAxis"))?;
+    let place_of = if axis == 'Z' { 2 } else { 1 };
     let (mut balls, mut sampled) = (Vec::new(), false);
     for part in text.split("def Xform \"Ball").skip(1) {
         let seconds = |frame: &str| frame.trim().parse::<f64>().ok().map(|frame| (frame - first) / fps);
         // The path comes before what it carries.
         let path = part.split("def ").next().unwrap_or_default();
         let samples = after(path, "xformOp:translate.timeSamples = {").and_then(|rest| rest.split('}').next());
-        let spline = after(path, "xformOp:translateY.spline = {").and_then(|rest| rest.split('}').next());
+        let spline =
+            after(path, &format!("xformOp:translate{axis}.spline = {{")).and_then(|rest| rest.split('}').next());
         let keys: Option<Vec<Key>> = match (samples, spline) {
             (Some(samples), _) => {
                 sampled = true;
                 let key = |line: &str| {
                     let (frame, place) = line.split_once(": (")?;
-                    let value = place.split(',').nth(1)?.trim().parse().ok()?;
-                    Some(Key { t: seconds(frame)?, value, after: After::Line })
+                    let value: f64 = place.trim_end_matches("),").split(',').nth(place_of)?.trim().parse().ok()?;
+                    Some(Key { t: seconds(frame)?, value: metres * value, after: After::Line })
                 };
                 samples.lines().filter(|line| !line.trim().is_empty()).map(key).collect()
             }
@@ -212,14 +218,14 @@ fn usda(text: &str) -> Result<Vec<Reading>, Error> {
                 };
                 let key = |(n, line): (usize, &&str)| {
                     let (frame, rest) = line.trim().split_once(": ")?;
-                    let value = rest.trim_end_matches(',').split(';').next()?.trim().parse().ok()?;
+                    let value: f64 = rest.trim_end_matches(',').split(';').next()?.trim().parse().ok()?;
                     let next = lines.get(n + 1).and_then(|next| slope(next, "pre ("));
                     let after = match (slope(line, "post curve ("), next) {
-                        (Some(leave), Some(enter)) => After::Cubic(leave * fps, enter * fps),
+                        (Some(leave), Some(enter)) => After::Cubic(metres * leave * fps, metres * enter * fps),
                         _ if rest.contains("post linear") => After::Line,
                         _ => After::Hold,
                     };
-                    Some(Key { t: seconds(frame)?, value, after })
+                    Some(Key { t: seconds(frame)?, value: metres * value, after })
                 };
                 lines.iter().enumerate().map(key).collect()
             }
@@ -264,20 +270,28 @@ fn svg(text: &str) -> Result<Vec<Reading>, Error> {
     Ok(vec![Reading { name: "SVG".to_owned(), sampled, balls }])
 }
 
-/// Keys with velocities on both sides; from frame to frame they are the slopes of the motion, not
-/// of lines.
+/// Keys with velocities on both sides, in the unit that the names of columns have; from frame to
+/// frame they are the slopes of the motion, not of lines.
 fn csv(text: &str) -> Result<Vec<Reading>, Error> {
     let mut table = ::csv::Reader::from_reader(text.as_bytes());
     let header = table.headers().map_err(Error::new)?.clone();
     let column =
         |name: &str| header.iter().position(|cell| cell == name).ok_or_else(|| lacks(&format!("column '{name}'")));
-    let columns = [column("time_s")?, column("height_m")?, column("in_up_m_per_s")?, column("out_up_m_per_s")?];
+    let unit = Unit::ALL.into_iter().find(|unit| column(&format!("height_{}", unit.symbol())).is_ok());
+    let (unit, metres) = unit.map_or(("m", 1.0), |unit| (unit.symbol(), unit.metres()));
+    let columns = [
+        column("time_s")?,
+        column(&format!("height_{unit}"))?,
+        column(&format!("in_up_{unit}_per_s"))?,
+        column(&format!("out_up_{unit}_per_s"))?,
+    ];
     let ball = column("ball")?;
     let mut rows: Vec<(String, Vec<[f64; 4]>)> = Vec::new();
     for record in table.records() {
         let record = record.map_err(Error::new)?;
         let cell = |n: usize| record.get(n).and_then(|cell| cell.parse::<f64>().ok()).ok_or_else(|| lacks("number"));
-        let row = [cell(columns[0])?, cell(columns[1])?, cell(columns[2])?, cell(columns[3])?];
+        let row =
+            [cell(columns[0])?, metres * cell(columns[1])?, metres * cell(columns[2])?, metres * cell(columns[3])?];
         let name = record.get(ball).unwrap_or_default();
         match rows.last_mut().filter(|(last, keys)| last == name && keys.last().is_some_and(|key| key[0] < row[0])) {
             Some((_, keys)) => keys.push(row),

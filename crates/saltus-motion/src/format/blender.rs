@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Ball, Export, Node};
 use crate::curve::{Between, Curve, Key};
+use crate::space::Unit;
 use crate::turn::Turn;
 
 /// Handles at a third of the time between keys make Blender's curve a plain cubic in time.
@@ -159,6 +160,11 @@ scene = bpy.context.scene
 scene.render.fps = DATA["fps"]
 scene.render.fps_base = DATA["fps_base"]
 scene.frame_start, scene.frame_end = DATA["range"]
+if DATA["unit"]:
+    # A length of 1 is one of these, and Blender shows it as one; metres are what a scene has that is left alone.
+    scene.unit_settings.system = DATA["unit"]["system"]
+    scene.unit_settings.scale_length = DATA["unit"]["metres"]
+    scene.unit_settings.length_unit = DATA["unit"]["name"]
 worst = 0.0
 for ball in DATA["balls"]:
     around = None
@@ -186,7 +192,7 @@ for number, (vertices, faces) in enumerate(DATA["ground"]):
     paint(item, "ground", (0.6, 0.6, 0.6, 1.0))
 camera_and_light()
 scene.frame_set(DATA["range"][0])
-print("saltus: %d balls; the curves are within %.2g m of the motion" % (len(DATA["balls"]), worst))
+print("saltus: %d balls; the curves are within %.2g %s of the motion" % (len(DATA["balls"]), worst, DATA["lengths"]))
 if worst > 1e-5 * DATA["size"]:
     print("saltus: that is more than single precision explains: please do not trust these curves")
 "#;
@@ -214,7 +220,7 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     });
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({
-        "fps": whole, "fps_base": fps / nominal, "range": export.range(), "loops": export.motion.loops,
+        "unit": unit(export.space.unit), "lengths": export.space.unit.symbol(), "fps": whole, "fps_base": fps / nominal, "range": export.range(), "loops": export.motion.loops,
         "collection": collection(&export.motion.title), "reach": export.motion.reach(),
         "balls": balls.collect::<Vec<_>>(), "ground": ground(export), "size": (right - left).max(high - low).max(1.0),
     });
@@ -222,6 +228,18 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let data = data.to_string().replace('\'', "\\u0027");
     let head = "# Blender 4 and 5: blender --python FILE, or the Scripting tab. Written by saltus.\n";
     format!("{head}{}", SCRIPT.trim_start().replace("@DATA@", &data).replace("\"fps\":", "\n\"fps\":"))
+}
+
+/// A unit as Blender sets it; metres are not set.
+fn unit(unit: Unit) -> Option<Value> {
+    let (system, name) = match unit {
+        Unit::Metre => return None,
+        Unit::Centimetre => ("METRIC", "CENTIMETERS"),
+        Unit::Millimetre => ("METRIC", "MILLIMETERS"),
+        Unit::Inch => ("IMPERIAL", "INCHES"),
+        Unit::Foot => ("IMPERIAL", "FEET"),
+    };
+    Some(json!({ "system": system, "name": name, "metres": unit.metres() }))
 }
 
 /// The name of the collection: Blender's names have 63 bytes at most.

@@ -58,7 +58,8 @@ def key_axes(node, what, moves, small):
             cmds.setKeyframe(node, attribute=what + letter, time=when(key), value=key["value"][axis], **extra)
     if kind != "fixed":
         return
-    for per_unit in (DATA["frame"], 1.0, 100.0 * DATA["frame"], 100.0):
+    centimetres = DATA["centimetres"]
+    for per_unit in (DATA["frame"], 1.0, centimetres * DATA["frame"], centimetres):
         tangents(node, what, moves, per_unit)
         if worst(node, what, moves) <= small:
             print("saltus: %s of %s is exact to %.2g" % (what, node, worst(node, what, moves)))
@@ -77,7 +78,7 @@ def key_turns(node, turns):
         cmds.rotationInterpolation(*[node + ".rotate" + letter for letter in AXES], convert="quaternionSlerp")
 
 
-cmds.currentUnit(linear="m", angle="deg", time=DATA["time"])
+cmds.currentUnit(linear=DATA["linear"], angle="deg", time=DATA["time"])
 for ball in DATA["balls"]:
     around = None
     for number, node in enumerate(ball["nodes"]):
@@ -218,7 +219,7 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, 
     };
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({
-        "time": unit(export)?, "frame": frames.rate.frame(), "shift": f64::from(frames.first) * frames.rate.frame(),
+        "time": unit(export)?, "linear": export.space.unit.symbol(), "centimetres": 100.0 * export.space.unit.metres(), "frame": frames.rate.frame(), "shift": f64::from(frames.first) * frames.rate.frame(),
         "range": export.range(), "size": (right - left).max(high - low).max(1.0),
         "loops": export.motion.loops, "balls": balls.collect::<Vec<_>>(), "ground": export.motion.ground.iter().map(strip).collect::<Vec<_>>(),
     });

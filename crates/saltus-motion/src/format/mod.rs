@@ -6,6 +6,7 @@ mod flat;
 mod gltf;
 mod lottie;
 mod maya;
+mod own;
 mod package;
 mod player;
 mod sound;
@@ -21,6 +22,7 @@ use crate::dress::{Dress, Shown};
 use crate::motion::{Motion, Point, Track};
 use crate::rate::Frames;
 use crate::shape::Shape;
+use crate::space::{Space, Unit};
 use crate::turn::Turn;
 
 /// More frames than this are refused: an hour and more at 240 frames per second.
@@ -199,6 +201,8 @@ pub struct Export<'a> {
     /// Whether there is a key at the top of every flight, for those who change the motion by hand;
     /// the motion is the same.
     pub apexes: bool,
+    /// The unit and the axis of the file; what is said of the file is in m all the same.
+    pub space: Space,
 }
 
 /// What is shown of one ball: where it is, and how it looks if that changes.
@@ -251,8 +255,34 @@ impl Export<'_> {
     ///
     /// # Errors
     /// [`ExportError`] if the motion has more than a million frames, or the format cannot hold its
-    /// frame rate.
+    /// frame rate, the unit or the axis.
+    ///
+    /// ```
+    /// use saltus_motion::{Export, Format, Frames, Motion, Piece, Shape, Space, Stretch, Track, Unit};
+    /// let piece = Piece { start: 0.0, span: 1.0, coefficients: vec![[0.0, 0.0, 2.0]], spin: Vec::new() };
+    /// let stretch = Stretch { contact: None, flight: true, pieces: vec![piece] };
+    /// let track = Track { name: "ball".into(), radius: 0.02, stretches: vec![stretch] };
+    /// let motion = Motion::new("still", vec![track], Vec::new())?;
+    /// let (frames, space) = (Frames::new("24".parse()?), Space { unit: Unit::Centimetre, up: None });
+    /// let export = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space };
+    /// assert!(String::from_utf8(export.file(Format::Csv)?.bytes)?.starts_with("ball,frame,time_s,x_cm,"));
+    /// assert!(export.file(Format::Glb).is_err_and(|error| error.to_string().contains("glTF is in metres")));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn file(&self, format: Format) -> Result<File, ExportError> {
+        format.takes(self.space)?;
+        if self.space.unit == Unit::Metre {
+            return self.written(format);
+        }
+        // All lengths are scaled at once, so that no writer can forget one.
+        let (per, metres) = (self.space.unit.per_metre(), self.space.unit.metres());
+        let motion = self.motion.scaled(per);
+        let file = Export { motion: &motion, tolerance: self.tolerance * per, ..*self }.written(format)?;
+        Ok(File { miss: file.miss.times(metres), shown: file.shown.map(|shown| shown.times(metres)), ..file })
+    }
+
+    /// The file, its lengths those of the motion.
+    fn written(&self, format: Format) -> Result<File, ExportError> {
         let (end, frame) = (self.motion.end(), self.frames.rate.frame());
         if end / frame > MOST_FRAMES {
             let says = format!("{:.0} frames are too many: end the motion earlier", end / frame);

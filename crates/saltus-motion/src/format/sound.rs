@@ -8,7 +8,8 @@ use super::{Export, ExportError};
 /// One row for each contact: ball, frame, time, place, the normal of what is touched, and the speed
 /// of approach along it.
 pub(super) fn contacts(export: &Export<'_>) -> String {
-    let mut csv = String::from("ball,frame,time_s,x_m,y_m,height_m,normal_x,normal_y,normal_up,speed_m_per_s\n");
+    let u = export.space.unit.symbol();
+    let mut csv = format!("ball,frame,time_s,x_{u},y_{u},height_{u},normal_x,normal_y,normal_up,speed_{u}_per_s\n");
     for hit in hits(export) {
         let _ = write!(csv, "{},{},{}", super::table::quoted(hit.name), export.frames.number(hit.t), hit.t);
         for number in hit.place.iter().chain(&hit.normal).chain([&hit.speed]) {

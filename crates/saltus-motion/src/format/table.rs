@@ -20,13 +20,14 @@ pub(super) fn quoted(name: &str) -> String {
 /// One row for each key. Where the form or the orientation has keys between those of the path, the
 /// path has rows there too; it is the same path.
 pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
-    let mut csv = String::from(
-        "ball,frame,time_s,x_m,y_m,height_m,in_x_m_per_s,in_y_m_per_s,in_up_m_per_s,out_x_m_per_s,out_y_m_per_s,out_up_m_per_s,contact",
+    let u = export.space.unit.symbol();
+    let mut csv = format!(
+        "ball,frame,time_s,x_{u},y_{u},height_{u},in_x_{u}_per_s,in_y_{u}_per_s,in_up_{u}_per_s,out_x_{u}_per_s,out_y_{u}_per_s,out_up_{u}_per_s,contact",
     );
     let shaped = balls.iter().any(|ball| ball.dress.as_ref().is_some_and(Dress::shaped));
     let turns = balls.iter().any(|ball| ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()));
     if shaped {
-        csv.push_str(",centre_x_m,centre_y_m,centre_up_m,along,across,axis_x,axis_y,axis_up");
+        let _ = write!(csv, ",centre_x_{u},centre_y_{u},centre_up_{u},along,across,axis_x,axis_y,axis_up");
     }
     if turns {
         csv.push_str(",turn_x,turn_y,turn_up,turn_w");

@@ -1,10 +1,12 @@
-//! USD as text. Y is up, metres; time codes are frames. (x, y, up) becomes (x, up, -y).
+//! USD as text. Time codes are frames. Y is up and (x, y, up) becomes (x, up, -y), or z is and it
+//! stays.
 
 use std::fmt::Write;
 
 use super::{Ball, Export, Node};
 use crate::curve::{Between, Curve};
 use crate::motion::Point;
+use crate::space::Up;
 
 /// A place for each frame, and one where a contact begins between two.
 pub(super) fn samples(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
@@ -73,22 +75,29 @@ pub(super) fn splines(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     })
 }
 
-/// (x, y, up) as the stage has it, and the part along the axis where its scale is.
-fn turned([x, y, up]: Point) -> Point {
-    [x, up, 0.0 - y]
+/// How (x, y, up) lies in the stage.
+type Lie = fn(Point) -> Point;
+
+/// Of places, and of scales, which have no sign.
+fn lies(export: &Export<'_>) -> [Lie; 2] {
+    match export.space.up {
+        Some(Up::Z) => [|place| place; 2],
+        Some(Up::Y) | None => [|[x, y, up]| [x, up, 0.0 - y], |[x, y, along]| [x, along, y]],
+    }
 }
 
 /// One operation that moves: written to the text under its name, the names of the attributes
 /// returned.
-type Move<'a> = &'a dyn Fn(&mut String, &str, &Curve, fn(Point) -> Point) -> Vec<String>;
+type Move<'a> = &'a dyn Fn(&mut String, &str, &Curve, Lie) -> Vec<String>;
 
 /// The operations of a node.
 fn operations(usd: &mut String, export: &Export<'_>, node: &Node<'_>, held: bool, moves: Move<'_>) {
     let mut order = Vec::new();
+    let [lie, lie_scale] = lies(export);
     match node.place {
-        Some(place) => order.extend(moves(usd, "translate", place, turned)),
+        Some(place) => order.extend(moves(usd, "translate", place, lie)),
         None if node.still != [0.0; 3] => {
-            let [x, y, z] = turned(node.still);
+            let [x, y, z] = lie(node.still);
             let _ = writeln!(usd, "    double3 xformOp:translate = ({x}, {y}, {z})");
             order.push("\"xformOp:translate\"".to_owned());
         }
@@ -98,13 +107,14 @@ fn operations(usd: &mut String, export: &Export<'_>, node: &Node<'_>, held: bool
         usd.push_str("    quatd xformOp:orient.timeSamples = {\n");
         let rows = node.turns.iter().map(|turn| {
             let [x, y, up, w] = turn.quaternion;
-            (turn.t, [w, x, up, -y])
+            let [x, y, z] = lie([x, y, up]);
+            (turn.t, [w, x, y, z])
         });
         timed(usd, export, held, rows);
         order.push("\"xformOp:orient\"".to_owned());
     }
     if let Some(scale) = node.scale {
-        order.extend(moves(usd, "scale", scale, |[x, y, along]| [x, along, y]));
+        order.extend(moves(usd, "scale", scale, lie_scale));
     }
     if !order.is_empty() {
         let _ = writeln!(usd, "    uniform token[] xformOpOrder = [{}]", order.join(", "));
@@ -114,13 +124,15 @@ fn operations(usd: &mut String, export: &Export<'_>, node: &Node<'_>, held: bool
 fn stage(
     export: &Export<'_>,
     balls: &[Ball<'_>],
-    moves: impl Fn(&mut String, &str, &Curve, fn(Point) -> Point) -> Vec<String>,
+    moves: impl Fn(&mut String, &str, &Curve, Lie) -> Vec<String>,
 ) -> String {
     let [first, last] = export.range();
     let fps = export.frames.rate.per_second();
     let mut usd = format!(
-        "#usda 1.0\n(\n    defaultPrim = \"Scene\"\n    doc = {}\n    metersPerUnit = 1\n    upAxis = \"Y\"\n    startTimeCode = {first}\n    endTimeCode = {last}\n    timeCodesPerSecond = {fps}\n    framesPerSecond = {fps}\n)\n\ndef Xform \"Scene\"\n{{\n",
-        quoted(&export.motion.title)
+        "#usda 1.0\n(\n    defaultPrim = \"Scene\"\n    doc = {}\n    metersPerUnit = {}\n    upAxis = \"{}\"\n    startTimeCode = {first}\n    endTimeCode = {last}\n    timeCodesPerSecond = {fps}\n    framesPerSecond = {fps}\n)\n\ndef Xform \"Scene\"\n{{\n",
+        quoted(&export.motion.title),
+        export.space.unit.metres(),
+        export.space.up.unwrap_or(Up::Y).name().to_uppercase()
     );
     for (n, ball) in balls.iter().enumerate() {
         let radius = ball.track.radius;
@@ -143,10 +155,13 @@ fn stage(
         usd.push_str(&"    }\n".repeat(nodes.len() - 1));
         usd.push_str("}\n");
     }
-    let depth = super::depth(export.motion);
+    let (depth, [lie, _]) = (super::depth(export.motion), lies(export));
     for (n, line) in export.motion.ground.iter().filter(|line| line.len() > 1).enumerate() {
-        let points: Vec<String> =
-            line.iter().flat_map(|&[x, up]| [depth, -depth].map(|z| format!("({x}, {up}, {z})"))).collect();
+        let points: Vec<String> = line
+            .iter()
+            .flat_map(|&[x, up]| [-depth, depth].map(|y| lie([x, y, up])))
+            .map(|[x, y, z]| format!("({x}, {y}, {z})"))
+            .collect();
         let faces: Vec<String> =
             (1..line.len()).map(|k| format!("{}, {}, {}, {}", 2 * k - 2, 2 * k, 2 * k + 1, 2 * k - 1)).collect();
         let _ = write!(

@@ -6,7 +6,7 @@ mod departure;
 pub use departure::{Departure, length};
 
 use nalgebra::Vector3;
-use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
+use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Space, Stretch, Track};
 
 use crate::plan::{Impact, Record, Segment, Sides, With};
 use crate::{Error, Scene};
@@ -76,6 +76,8 @@ pub struct Stage {
     pub drawn: Option<f64>,
     /// Whether there is a key at the top of every flight.
     pub apexes: bool,
+    /// The unit and the axis of files: metres and the format's own, unless it is set.
+    pub space: Space,
 }
 
 impl Stage {
@@ -85,8 +87,8 @@ impl Stage {
     /// # Errors
     /// [`Error`] where the format cannot hold it.
     pub fn file(&self, format: Format, tolerance: f64) -> Result<File, Error> {
-        let Self { motion, frames, shape, .. } = self;
-        Export { motion, frames: *frames, tolerance, shape: *shape, apexes: self.apexes }
+        let Self { motion, frames, shape, apexes, space, .. } = self;
+        Export { motion, frames: *frames, tolerance, shape: *shape, apexes: *apexes, space: *space }
             .file(format)
             .map_err(Error::new)
     }
@@ -199,7 +201,7 @@ impl Staging {
             let count = (motion.end() / frames.rate.frame()).round();
             departures.push(Departure::Again { last: f64::from(frames.first) + count, first: frames.first });
         }
-        Ok(Stage { motion, frames, shape, departures, drawn, apexes: self.apexes })
+        Ok(Stage { motion, frames, shape, departures, drawn, apexes: self.apexes, space: Space::default() })
     }
 
     /// What is asked for by squash, stretch and hold, and how it departs from the motion.
