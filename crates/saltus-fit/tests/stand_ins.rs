@@ -105,7 +105,8 @@ proptest! {
         }
     }
 
-    /// A plain height beside that of a bounce, above it in every row, is where the ball was dropped.
+    /// A plain height beside that of a bounce, above it in every row, is where the ball was
+    /// dropped.
     #[test]
     fn a_plain_height_beside_a_bounce(e in 0.4f64..0.9) {
         let rows = [60, 80, 100, 120].map(|h| format!("{h},{:.2}", f64::from(h) * e * e));

@@ -47,7 +47,8 @@ pub(super) enum Scale {
     Percent,
     /// The height of release, of which its numbers are parts.
     Whole,
-    /// A number of joules, as much as a ball has at a height: a mass that nobody knows away from it.
+    /// A number of joules, as much as a ball has at a height: a mass that nobody knows away from
+    /// it.
     Energy { times: f64, over: f64 },
 }
 

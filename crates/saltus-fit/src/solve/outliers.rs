@@ -8,7 +8,8 @@ use crate::evidence::Evidence;
 use crate::quantity::{Loss, Sourced};
 use crate::statistics::{FAR, REJECT, SCATTER, chi_square_p, median, rounding};
 
-/// How many standard errors from the robust fit a reading is left out where the standard error is only the scatter of the others.
+/// How many standard errors from the robust fit a reading is left out where the standard error is
+/// only the scatter of the others.
 const FAR_BY_SCATTER: f64 = 8.0;
 /// More than this part cannot be outliers: then it is the model that is wrong.
 const MOST: f64 = 0.4;

@@ -66,8 +66,8 @@ impl Builder<'_> {
         self.ranged(row, column, value, sigma)
     }
 
-    /// The unit of a number: that of its cell, where the column has one of its kind, else that of the
-    /// column.
+    /// The unit of a number: that of its cell, where the column has one of its kind, else that of
+    /// the column.
     fn unit(&self, row: usize, column: usize, in_cell: Option<Unit>) -> Result<Unit, TableError> {
         let (view, own) = (self.region.view, &self.columns.columns[column]);
         let text = shown(view.cell(row, column));

@@ -153,8 +153,8 @@ impl Builder<'_> {
             interval = self.between(row.at, column)?;
         }
         let high = height.map(|column| self.height(row.at, column)).transpose()?.flatten();
-        // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds to, or
-        // that top.
+        // With both, bounce 0 is the release; bounce n is a contact and the height it rebounds to,
+        // or that top.
         let both = match bounce {
             0 => (height.is_some() && track.time.is_some() && !flights).then_some(Event::Release),
             _ => (self.tops && time.is_some()).then_some(Event::Apex),

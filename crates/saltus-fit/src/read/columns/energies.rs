@@ -45,8 +45,8 @@ impl Columns {
         }
     }
 
-    /// Hundredths of the energy that are lost at every bounce: of the height before, unless they add
-    /// up from bounce to bounce.
+    /// Hundredths of the energy that are lost at every bounce: of the height before, unless they
+    /// add up from bounce to bounce.
     fn lost_each(&mut self, region: &Region<'_>, index: usize) {
         let number = |row: &usize| match region.view.read(*row, index) {
             Cell::Number(m) => Some(m.value),
