@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use saltus::{About, Automaton, Coords, Edges, Entry, Jump, Limit, Observer, Polynomial, Refusal, Simulation, Solution, State as _, Stop};
+use saltus::{About, Automaton, Coords, Edges, Entry, JumpOf, Limit, Observer, Polynomial, Refusal, Simulation, Solution, State as _, Stop};
 
 use super::{Answer, Jumps, MOST_EVENTS, State, System, TOLERANCE};
 
@@ -71,7 +71,7 @@ impl Automaton for Model<'_> {
 }
 
 impl Observer<Model<'_>> for Answer {
-    fn jump(&mut self, jump: &Jump<Model<'_>>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Model<'_>>) -> ControlFlow<()> {
         self.events.extend(jump.edge().map(|edge| (edge.guard, jump.t())));
         ControlFlow::Continue(())
     }

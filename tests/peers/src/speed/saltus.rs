@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use saltus::step::Stepper;
-use saltus::{About, Automaton, Edges, Jump, Observer, Refusal, Rodas5P, Series, Simulation, Solution};
+use saltus::{About, Automaton, Edges, JumpOf, Observer, Refusal, Rodas5P, Series, Simulation, Solution};
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Cor, Mode, Phase};
 
@@ -25,7 +25,7 @@ impl<A: Automaton> Observer<A> for Times<'_, A::Edge> {
         false
     }
     #[inline]
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         if jump.edge() == Some(self.edge) {
             self.log.push(jump.t());
         }
@@ -332,7 +332,7 @@ impl<A: Automaton> Observer<A> for All<'_> {
         false
     }
     #[inline]
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.0.push(jump.t());
         ControlFlow::Continue(())
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use rayon::prelude::*;
-use saltus::{Auto, Automaton, Jump, Observer, Simulation};
+use saltus::{Auto, Automaton, JumpOf, Observer, Simulation};
 use saltus_bounce::flight::QuadraticDragFlight;
 use saltus_bounce::{Cor, Phase, Restitution};
 
@@ -66,7 +66,7 @@ impl Observer<Stepped> for Count {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<Stepped>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<Stepped>) -> ControlFlow<()> {
         if jump.edge() == Some(Turn::Floor) {
             self.count += 1;
             if -self.cor * jump.before[1] < LEAST {
@@ -83,7 +83,7 @@ impl<A: Automaton<Edge = saltus_bounce::Turn>> Observer<A> for Floors {
     fn wants_pieces(&self) -> bool {
         false
     }
-    fn jump(&mut self, jump: &Jump<A>) -> ControlFlow<()> {
+    fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.0 += usize::from(jump.edge() == Some(saltus_bounce::Turn::Floor));
         ControlFlow::Continue(())
     }
