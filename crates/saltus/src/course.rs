@@ -1,21 +1,20 @@
 //! The loop: advance an arc to its first crossing, jump, look again.
 
 use std::fmt;
-use std::ops::Range;
 
-use crate::advance::{Advance, ArcEnd, Held, Memory, Smooth, later_stop};
+use crate::advance::{Advance, ArcEnd, Begun, later_stop};
+use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Limit};
-use crate::ending::Options;
-use crate::ending::{Ending, EndingOf, Limits, Stats, Stop};
+use crate::checkpoint::{Checkpoint, CheckpointOf, Stage, StageOf};
+use crate::ending::{Ending, EndingOf, Limits, Options, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::jump::{Cause, Jump};
 use crate::observe::Observer;
 use crate::piece::Piece;
 use crate::recent::Recent;
-use crate::series::Tape;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
-use crate::ticks::Ticks;
+use crate::ticks::Due;
 use crate::time::{Span, Time};
 use crate::zeno::{Cascade, Contraction};
 
@@ -41,22 +40,29 @@ use crate::zeno::{Cascade, Contraction};
 /// # Ok::<(), saltus::Error>(())
 /// ```
 pub struct Course<'a, A: Automaton, M = Auto> {
-    automaton: &'a A,
-    stepper: M,
-    options: Options,
-    at: CheckpointOf<A>,
-    tape: Tape,
-    held: Held<A>,
+    arc: Advance<'a, A, M>,
+    at: StageOf<A>,
 }
 
 /// Where a run stands just after a jump, handed on to the next arc: read back from where it is
 /// kept, it would be waited for, by a fifth of a ball's impact.
-struct Stand<A: Automaton> {
-    mode: A::Mode,
-    state: A::State,
+#[derive(Clone, Copy)]
+struct Stand<M, S> {
+    mode: M,
+    state: S,
     now: Time,
-    /// See [`Checkpoint`]; nothing where that is now, as it mostly is.
-    instant: Option<Time>,
+}
+
+type StandOf<A> = Stand<<A as Automaton>::Mode, <A as Automaton>::State>;
+
+/// The end of an arc where a jump follows.
+struct Crossed<A: Automaton> {
+    edge: A::Edge,
+    time: Time,
+    /// x⁻.
+    before: A::State,
+    /// Whether a clock made it.
+    ticked: bool,
 }
 
 /// What comes after an arc and the jump at its end.
@@ -71,123 +77,6 @@ enum Next<A: Automaton> {
     Stop(Stop<A::Edge>),
 }
 
-/// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes
-/// it, [`Simulation::resume`](crate::Simulation::resume) goes on from it; the feature `serde`
-/// writes and reads it.
-///
-/// What is written bears the number of its format, and one of another number is refused: a run goes
-/// on to the bit only with what it was begun with. Modes and edges of a [`Hybrid`](crate::Hybrid)
-/// are names, which are borrowed from the text that is read: let it last by [`String::leak`]. Lists
-/// of more than 32 coordinates are read and written as `SVector`.
-///
-/// ```
-/// use saltus::{Hybrid, Simulation, Stop};
-/// let tank = Hybrid::new()
-///     .mode("fill", |_t, _x: &f64| 1.0)
-///     .edge("fill", "fill", |_t, x| 2.0 - x, |_t, _x| 0.0);
-/// let mut first = Simulation::of(&tank).most_jumps(3).start("fill", 0.0, 0.0..10.5)?;
-/// assert_eq!(first.finish(&mut ())?.stop, Stop::Jumps { most: 3 });
-/// let checkpoint = first.checkpoint();
-/// assert!((checkpoint.time().seconds() - 6.0).abs() < 1e-12);
-/// // With a higher limit it goes on from there.
-/// let end = Simulation::of(&tank).resume(checkpoint).finish(&mut ())?;
-/// assert_eq!((end.stop, end.jumps), (Stop::Time, 5));
-/// # Ok::<(), saltus::Error>(())
-/// ```
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[derive(Clone)]
-pub struct Checkpoint<M, E, S> {
-    #[cfg_attr(not(feature = "serde"), allow(dead_code))] // what is written and read
-    format: Format,
-    mode: M,
-    state: S,
-    span: Span,
-    jumps: usize,
-    /// The time of the last jump that was not at once after another.
-    instant: Time,
-    cascade: Cascade,
-    contraction: Contraction<S>,
-    recent: Recent<E>,
-    ticks: Ticks<M>,
-    limits: Limits,
-    memory: Memory<E, S>,
-    stop: Option<Stop<E>>,
-}
-
-/// The format of a checkpoint that is written: a number, raised whenever a field is added, removed
-/// or changes its meaning (tests/running.rs, `another_format_is_refused`).
-#[derive(Clone, Copy, Debug)]
-struct Format;
-
-#[cfg(feature = "serde")]
-mod format {
-    use super::Format;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    const NUMBER: u32 = 8;
-
-    impl Serialize for Format {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            NUMBER.serialize(serializer)
-        }
-    }
-
-    impl<'de> Deserialize<'de> for Format {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            match u32::deserialize(deserializer)? {
-                NUMBER => Ok(Self),
-                other => Err(D::Error::custom(format_args!(
-                    "a checkpoint of format {other}, and this version of saltus reads format {NUMBER}: go on with the version that wrote it, or run again from the start"
-                ))),
-            }
-        }
-    }
-}
-
-/// A checkpoint of the automaton `A`.
-pub type CheckpointOf<A> = Checkpoint<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
-
-impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq, S: State> Checkpoint<M, E, S> {
-    pub(crate) fn start(mode: M, state: S, span: Range<f64>, memory: Memory<E, S>) -> Self {
-        let start = Time::new(span.start);
-        let span = Span { start, now: start, end: Time::new(span.end) };
-        Self {
-            format: Format,
-            mode,
-            state,
-            span,
-            jumps: 0,
-            instant: start,
-            cascade: Cascade::NONE,
-            contraction: Contraction::new(&state),
-            recent: Recent::new(),
-            ticks: Ticks::new(),
-            limits: Limits::default(),
-            memory,
-            stop: None,
-        }
-    }
-
-    /// When it was taken.
-    #[must_use]
-    pub fn time(&self) -> Time {
-        self.span.now
-    }
-
-    /// No longer ended by a limit that these options have raised.
-    pub(crate) fn under(mut self, options: &Options) -> Self {
-        self.stop = self.stop.filter(|stop| !stop.is_lifted(options));
-        self
-    }
-}
-
-impl<M: fmt::Debug, E, S: State> fmt::Debug for Checkpoint<M, E, S> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mode, state, span, jumps, .. } = self;
-        write!(f, "{mode:?} {state:?} at (t = {}, j = {jumps})", span.now.seconds())
-    }
-}
-
 impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.at.fmt(f)
@@ -195,8 +84,16 @@ impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
 }
 
 impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
-    pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, at: CheckpointOf<A>) -> Self {
-        Self { automaton, stepper, options, at, tape: Tape::new(), held: Held::default() }
+    #[inline]
+    pub(crate) fn new(arc: Advance<'a, A, M>, at: StageOf<A>) -> Self {
+        Self { arc, at }
+    }
+
+    /// Goes on from a checkpoint; no longer ended by a limit that these options have raised.
+    pub(crate) fn from(automaton: &'a A, stepper: M, options: Options, checkpoint: CheckpointOf<A>) -> Self {
+        let Checkpoint { mut at, memory, .. } = checkpoint;
+        at.stop = at.stop.filter(|stop| !stop.is_lifted(&options));
+        Self::new(Advance::new(automaton, stepper, options, memory), at)
     }
 
     /// The time reached.
@@ -226,13 +123,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// What it has cost so far.
     #[must_use]
     pub fn stats(&self) -> Stats {
-        Stats { jumps: self.at.jumps, ..self.at.memory.stats }
+        Stats { jumps: self.at.jumps, ..self.arc.memory.stats }
     }
 
     /// What it takes to go on from here.
     #[must_use]
     pub fn checkpoint(&self) -> CheckpointOf<A> {
-        self.at.clone()
+        Checkpoint::new(self.at.clone(), self.arc.memory.clone())
     }
 
     /// Advances to the end.
@@ -253,7 +150,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         };
         self.at.stop = Some(stop);
-        let Checkpoint { mode, state, span, jumps, limits, .. } = self.at;
+        let Stage { mode, state, span, jumps, limits, .. } = self.at;
         Ok(Ending { stop, stats: self.stats(), time: span.now, jumps, mode, state, limits })
     }
 
@@ -272,18 +169,22 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     /// Why it goes no further, before another arc.
     fn stopped(&self) -> Option<Stop<A::Edge>> {
-        let most = self.options.most_jumps;
+        let most = self.arc.options.most_jumps;
         self.at.stop.or((self.at.jumps >= most).then_some(Stop::Jumps { most }))
     }
 
     #[inline]
-    fn stand(&self) -> Stand<A> {
-        let Checkpoint { mode, state, span: Span { now, .. }, instant, .. } = self.at;
-        Stand { mode, state, now, instant: (instant != now).then_some(instant) }
+    fn stand(&self) -> StandOf<A> {
+        let Stage { mode, state, span: Span { now, .. }, .. } = self.at;
+        Stand { mode, state, now }
     }
 
     #[inline]
-    fn step(&mut self, stand: &mut Stand<A>, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
+    fn step(
+        &mut self,
+        stand: &mut StandOf<A>,
+        observer: &mut impl Observer<A>,
+    ) -> Result<Option<Stop<A::Edge>>, Error> {
         Ok(match self.arc_and_jump(stand, observer)? {
             Next::Arc => None,
             Next::Stop(stop) => Some(stop),
@@ -298,67 +199,102 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         })
     }
 
-    #[inline]
-    fn arc_and_jump(&mut self, stand: &mut Stand<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
-        let Self { automaton, stepper, options, at, tape, held } = self;
+    /// An arc and the jump at its end.
+    ///
+    /// Where a formula gives the end, the jump is compiled into the loop, and its state stays in
+    /// registers; each other arc is long beside a copy by way of memory.
+    #[inline(always)]
+    fn arc_and_jump(&mut self, stand: &mut StandOf<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
+        let automaton = self.arc.automaton;
         // x is x⁺ of the last jump, or the initial state.
-        let Stand { mode, state: x, now: began, instant } = *stand;
-        let mut span = Span { now: began, ..at.span };
-        let due = at.ticks.next(*automaton, mode, &x, &span)?;
-        if let Some(due) = &due {
-            span.end = later_stop(&automaton.stops(mode), due.time);
+        let Stand { mode, state: x, now, .. } = *stand;
+        let Span { start, end, .. } = self.at.span;
+        let due = self.at.ticks.next(automaton, mode, &x, &Span { start, now, end })?;
+        let end = due.as_ref().map_or(end, |due| later_stop(&automaton.stops(mode), due.time));
+        let remaining = end.since(now);
+        let begun = self.arc.begin(mode, &x, now, (remaining, now.since(start)))?;
+        if let Begun::Open { exact: true } = begun
+            && !observer.wants_pieces()
+            && let Some(edge) = automaton.edges(mode).only()
+            && let Fall::In(s, before) = automaton.falls(mode, edge, now.seconds(), &x)
+            && self.arc.falls(mode, edge, (s, &before), now, remaining, observer)
+        {
+            return self.jump(stand, Crossed { edge, time: now.after(s), before, ticked: false }, observer);
         }
-        let memory = &mut at.memory;
-        let mut arc = Advance {
-            automaton: *automaton,
-            stepper: *stepper,
-            options: &*options,
-            memory,
-            tape,
-            held,
-            smooth: Smooth::ALWAYS,
+        let next = self.go_and_jump(&Span { start, now, end }, due.as_ref(), begun, observer)?;
+        *stand = self.stand();
+        Ok(next)
+    }
+
+    #[inline(never)]
+    fn go_and_jump(
+        &mut self,
+        span: &Span,
+        due: Option<&Due<A::Mode, A::Edge>>,
+        begun: Begun<A::Edge>,
+        observer: &mut impl Observer<A>,
+    ) -> Result<Next<A>, Error> {
+        let mut stand = self.stand();
+        let Stand { mode, state: x, now, .. } = stand;
+        let end = match begun {
+            Begun::Crossing(edge) => ArcEnd::Crossing { edge, time: now, before: x },
+            Begun::Over => ArcEnd::Stop { stop: Stop::Time, time: span.end, state: x },
+            Begun::Open { exact } => self.arc.go(mode, &x, span, exact, observer)?,
         };
-        let (edge, time, before, ticked) = match arc.arc(mode, &x, &span, observer)? {
-            ArcEnd::Crossing { edge, time, before } => (edge, time, before, false),
-            ArcEnd::Stop { stop, time, state } => match due {
-                Some(due) if matches!(stop, Stop::Time) => {
-                    at.ticks.take(&due, time.seconds());
-                    (due.edge, time, state, true)
-                }
-                _ => {
-                    (at.span.now, at.state) = (time, state);
-                    let endless = matches!(stop, Stop::Time) && at.span.end.seconds() == f64::INFINITY;
-                    return Ok(Next::Stop(if endless { Stop::Forever } else { stop }));
-                }
-            },
+        let crossed = match (end, due) {
+            (ArcEnd::Crossing { edge, time, before }, _) => Crossed { edge, time, before, ticked: false },
+            (ArcEnd::Stop { stop: Stop::Time, time, state: before }, Some(due)) => {
+                self.at.ticks.take(due, time.seconds());
+                Crossed { edge: due.edge, time, before, ticked: true }
+            }
+            (ArcEnd::Stop { stop, time, state }, _) => {
+                let at = &mut self.at;
+                (at.span.now, at.state) = (time, state);
+                let endless = matches!(stop, Stop::Time) && at.span.end.seconds() == f64::INFINITY;
+                return Ok(Next::Stop(if endless { Stop::Forever } else { stop }));
+            }
         };
-        if std::mem::take(&mut arc.memory.spurious) {
+        if std::mem::take(&mut self.arc.memory.spurious) {
+            let (at, Crossed { edge, time, before, .. }) = (&mut self.at, crossed);
             (at.span.now, at.state) = (time, before);
             at.recent.push(edge);
             let certified = at.contraction.remaining(time.since(at.span.start), true).is_some();
             return Ok(Next::Limit { remaining: 0.0, certified });
         }
-        // Here x⁻ = before, still inside the domain of the mode.
+        self.jump(&mut stand, crossed, observer)
+    }
+
+    /// The jump at the end of an arc, whose state x⁻ is still inside the domain of the mode.
+    #[inline(always)]
+    fn jump(
+        &mut self,
+        stand: &mut StandOf<A>,
+        crossed: Crossed<A>,
+        observer: &mut impl Observer<A>,
+    ) -> Result<Next<A>, Error> {
+        let Stand { mode, state: x, now: began } = *stand;
+        let Crossed { edge, time, before, ticked } = crossed;
+        let Self { arc, at } = self;
+        let automaton = arc.automaton;
         let now = time.seconds();
         let (to, after) =
-            automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, &before))?;
+            automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, before))?;
         let duration = time.since(began);
-        let since = instant.map_or(duration, |instant| time.since(instant));
+        let since = time.since(at.instant);
         let at_once = arc.memory.at_once(since);
-        let held = if at_once { Some(instant.unwrap_or(began)) } else { None };
-        let instant = held.unwrap_or(time);
+        let instant = if at_once { at.instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
         if !stands {
             if at_once {
-                at.cascade = at.cascade.and(&x, &after);
+                at.cascade = at.cascade.and(x, after);
             } else if at.cascade.jumps() > 0 {
                 at.cascade = Cascade::NONE;
             }
             at.instant = instant;
             if !after.is_finite() || to != mode && automaton.validate(to, now, &after).is_err() {
-                let (kind, note) = wrong(*automaton, to, now, after);
-                return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before)).noting(Some(note)));
+                let (kind, note) = wrong(automaton, to, now, after);
+                return Err(Error::new(kind, Place::new(now, mode, Some(edge), &{ before })).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory: that copy
             // alone took a fifth of a ball's impact.
@@ -379,37 +315,50 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
         arc.landed(edge, &before, (to, now, &after));
         at.recent.push(edge);
-        at.contraction.push(if at_once { 0.0 } else { duration }, &after);
         let elapsed = time.since(at.span.start);
-        let remaining = if stands { Some(0.0) } else { at.contraction.remaining(elapsed, at.memory.hides_durations()) };
+        let (lapse, short) = if at_once { (0.0, true) } else { (duration, arc.memory.is_short(duration)) };
+        at.contraction.push(lapse, short, after);
+        let remaining =
+            if stands { Some(0.0) } else { at.contraction.remaining(elapsed, arc.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
             return Ok(Next::Limit { remaining, certified: true });
         }
-        let next = self.after_jump(edge, now);
+        let next = self.after_jump(edge, now, at_once);
         if matches!(next, Next::Arc) {
-            *stand = Stand { mode: to, state: after, now: time, instant: held };
+            *stand = Stand { mode: to, state: after, now: time };
         }
         Ok(next)
     }
 
-    /// What follows a jump at time `t`: another arc, unless jumps at one time contract or a limit
-    /// of the run is reached.
+    /// What follows a jump at time `t`, `at_once` after another: another arc, unless jumps at one
+    /// time contract or a limit of the run is reached.
     #[inline]
-    fn after_jump(&self, edge: A::Edge, t: f64) -> Next<A> {
-        let Self { automaton, options, at, .. } = self;
-        // Collisions that go on at one time: where they contract, what lies beyond them is the
-        // model's to say.
-        let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
+    fn after_jump(&self, edge: A::Edge, t: f64, at_once: bool) -> Next<A> {
+        let Self { arc, at } = self;
+        let options = &arc.options;
         if at.jumps >= options.most_jumps {
-            Next::Stop(Stop::Jumps { most: options.most_jumps })
-        } else if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
-            Next::Limit { remaining: 0.0, certified: true }
-        } else if at.cascade.jumps() >= options.longest_cascade {
-            Next::Stop(Stop::Cascade { edge })
-        } else if at.memory.stats.evaluations() >= options.most_evaluations {
-            Next::Stop(Stop::Evaluations { most: options.most_evaluations })
+            return Next::Stop(Stop::Jumps { most: options.most_jumps });
+        }
+        if at_once && let Some(next) = self.after_cascade(edge, t) {
+            return next;
+        }
+        if arc.memory.stats.evaluations() >= options.most_evaluations {
+            return Next::Stop(Stop::Evaluations { most: options.most_evaluations });
+        }
+        options.overdue().map_or(Next::Arc, Next::Stop)
+    }
+
+    /// What follows jumps that go on at one time, where they contract, which is the model's to say,
+    /// or are too many.
+    #[cold]
+    #[inline(never)]
+    fn after_cascade(&self, edge: A::Edge, t: f64) -> Option<Next<A>> {
+        let Self { arc: Advance { automaton, options, .. }, at } = self;
+        let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
+        if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
+            Some(Next::Limit { remaining: 0.0, certified: true })
         } else {
-            options.overdue().map_or(Next::Arc, Next::Stop)
+            (at.cascade.jumps() >= options.longest_cascade).then_some(Next::Stop(Stop::Cascade { edge }))
         }
     }
 
@@ -422,7 +371,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         certified: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<Stop<A::Edge>>, Error> {
-        let Self { automaton, at, .. } = self;
+        let Self { arc, at } = self;
+        let automaton = arc.automaton;
         let (mode, x) = (at.mode, at.state);
         if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
             return Ok(Some(Stop::Observer));
@@ -434,7 +384,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             return Ok(Some(if certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
         };
         if !after.is_finite() || automaton.validate(to, limit, &after).is_err() {
-            let (kind, note) = wrong(*automaton, to, limit, after);
+            let (kind, note) = wrong(automaton, to, limit, after);
             let note = if kind == ErrorKind::Model { format!("Automaton::beyond {note}") } else { note };
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
@@ -443,7 +393,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
         (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), Cascade::NONE);
-        at.memory.beyond();
+        arc.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }
 }
@@ -451,8 +401,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 /// The failure of a run whose reset refuses.
 #[cold]
 #[inline(never)]
-fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl fmt::Debug, x: &X) -> Error {
-    refusal.at(Place::new(t, mode, Some(edge), x))
+fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl fmt::Debug, x: X) -> Error {
+    refusal.at(Place::new(t, mode, Some(edge), &x))
 }
 
 /// What is wrong with a mode and a state that a jump led to and that cannot be gone on from.

@@ -175,6 +175,14 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Doubts<M, E> {
     /// The step in progress ends here, and what lies after it was not gone through.
     #[inline]
     pub(crate) fn settle(&mut self, end: Time) {
+        if self.settled < self.list.len() {
+            self.settle_all(end);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn settle_all(&mut self, end: Time) {
         while self.settle_next(end).is_some() {}
     }
 

@@ -4,10 +4,11 @@ use std::fmt;
 use std::ops::{ControlFlow, Range};
 use std::time::Duration;
 
-use crate::advance::Memory;
+use crate::advance::{Advance, Memory};
 use crate::automaton::Automaton;
+use crate::checkpoint::{CheckpointOf, Stage};
 use crate::control::Tolerance;
-use crate::course::{Checkpoint, CheckpointOf, Course};
+use crate::course::Course;
 use crate::ending::{Ending, EndingOf, Failed, FailedOf, Options, Run, RunOf, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::InspectionOf;
@@ -60,6 +61,8 @@ impl<A, M: fmt::Debug> fmt::Debug for Simulation<'_, A, M> {
 /// Records until there is no more room.
 struct Bounded<'t, A: Automaton> {
     trajectory: &'t mut TrajectoryOf<A>,
+    /// What has been recorded takes at most so much.
+    bytes: usize,
     room: Room,
     /// How many bytes may be taken before the room is asked again.
     next: usize,
@@ -69,14 +72,18 @@ struct Bounded<'t, A: Automaton> {
 
 impl<A: Automaton> Bounded<'_, A> {
     #[inline]
-    fn full(&mut self) -> ControlFlow<()> {
-        let bytes = self.trajectory.bytes();
-        if bytes < self.next { ControlFlow::Continue(()) } else { self.ask(bytes) }
+    fn grow(&mut self, by: usize) -> ControlFlow<()> {
+        self.bytes += by;
+        if self.bytes < self.next { ControlFlow::Continue(()) } else { self.ask() }
     }
 
     #[cold]
-    fn ask(&mut self, bytes: usize) -> ControlFlow<()> {
-        match self.room.ask(bytes) {
+    fn ask(&mut self) -> ControlFlow<()> {
+        self.bytes = self.trajectory.bytes();
+        if self.bytes < self.next {
+            return ControlFlow::Continue(()); // doubts have been settled
+        }
+        match self.room.ask(self.bytes) {
             Ok(next) => {
                 self.next = next;
                 ControlFlow::Continue(())
@@ -91,16 +98,17 @@ impl<A: Automaton> Bounded<'_, A> {
 
 impl<A: Automaton> Observer<A> for Bounded<'_, A> {
     fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
-        self.trajectory.push_piece(piece);
-        self.full()
+        let by = self.trajectory.push_piece(piece);
+        self.grow(by)
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        self.trajectory.push_jump(*jump);
-        self.full()
+        let by = self.trajectory.push_jump(*jump);
+        self.grow(by)
     }
     fn inspection(&mut self, inspection: &InspectionOf<A>) {
         if inspection.evidence.doubt().is_some() {
             self.trajectory.push_doubt(inspection);
+            self.bytes += size_of_val(inspection);
         }
     }
 }
@@ -282,7 +290,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
             Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),
         };
         let room = self.options.room;
-        let mut record = Bounded { trajectory: &mut trajectory, room, next: room.first(), most: None };
+        let mut record =
+            Bounded { bytes: trajectory.bytes(), trajectory: &mut trajectory, room, next: room.first(), most: None };
         let end = course.finish(&mut record);
         let most = record.most;
         match end {
@@ -302,6 +311,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     ///
     /// # Errors
     /// See [`Error`]; the observer has had everything before it.
+    #[inline]
     pub fn drive(
         &self,
         mode: A::Mode,
@@ -316,10 +326,12 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     ///
     /// # Errors
     /// See [`Error`]: a span, tolerance, mode or state that cannot be run.
+    #[inline]
     pub fn start(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Course<'a, A, M>, Error> {
         self.check(mode, &state, &span)?;
-        let memory = Memory::new(&self.fitted(), self.options.first_step);
-        Ok(self.resume(Checkpoint::start(mode, state, span, memory)))
+        let (stepper, options) = (self.fitted(), self.options.begun());
+        let memory = Memory::new(&stepper, options.first_step);
+        Ok(Course::new(Advance::new(self.automaton, stepper, options, memory), Stage::start(mode, state, span)))
     }
 
     /// Goes on from a checkpoint, to the bit as if there had been no pause.
@@ -331,7 +343,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// comes from.
     #[must_use]
     pub fn resume(&self, checkpoint: CheckpointOf<A>) -> Course<'a, A, M> {
-        Course::new(self.automaton, self.fitted(), self.options.begun(), checkpoint.under(&self.options))
+        Course::from(self.automaton, self.fitted(), self.options.begun(), checkpoint)
     }
 
     /// The relative tolerance.

@@ -88,9 +88,14 @@ impl<const N: usize> State for [f64; N] {
     fn get(&self, i: usize) -> f64 {
         self[i]
     }
+    // A loop, whose body is compiled in: `std::array::from_fn` calls a larger one.
     #[inline]
-    fn with(&self, f: impl FnMut(usize) -> f64) -> Self {
-        std::array::from_fn(f)
+    fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
+        let mut of = [0.0; N];
+        for (i, coordinate) in of.iter_mut().enumerate() {
+            *coordinate = f(i);
+        }
+        of
     }
 }
 

@@ -152,7 +152,9 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
         }
     }
 
-    pub(crate) fn push_piece(&mut self, piece: &Piece<'_, S>) {
+    /// Records a piece; says how many bytes it takes.
+    #[inline]
+    pub(crate) fn push_piece(&mut self, piece: &Piece<'_, S>) -> usize {
         let first = self.coefficients.len();
         let (start, span, scale) = (piece.start(), piece.span(), piece.scale());
         self.coefficients.extend_from_slice(piece.coefficients());
@@ -160,14 +162,18 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
         self.pieces.push(Stored { start, span, scale, first, len });
         self.end = start.after(span);
         self.doubts.settle(self.end);
+        size_of::<Stored>() + size_of_val(piece.coefficients())
     }
 
-    pub(crate) fn push_jump(&mut self, jump: Jump<M, E, S>) {
+    /// Records a jump and the arc that begins there; says how many bytes they take.
+    #[inline]
+    pub(crate) fn push_jump(&mut self, jump: Jump<M, E, S>) -> usize {
         self.end = jump.time;
         let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
         self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
         self.jumps.push(jump);
         self.doubts.settle(jump.time);
+        size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>()
     }
 
     pub(crate) fn push_doubt(&mut self, doubt: &Inspection<M, E>) {

@@ -1,5 +1,6 @@
 //! Zeno: jumps accumulate where the times between them *and* what they change contract to nothing.
 
+use crate::certainty::{FAR, ROUNDINGS};
 use crate::state::State;
 use crate::time::resolution;
 
@@ -8,18 +9,12 @@ const MEMORY: usize = 16;
 /// The longest repeating pattern of jumps looked for.
 const LONGEST_CYCLE: usize = 4;
 
-/// A duration that is this part of the time elapsed is far from the time's resolution.
-const FAR: f64 = 1e6 * f64::EPSILON;
 /// A ratio of durations that rounding has not brought below one.
 const CLEARLY_BELOW_ONE: f64 = 0.995;
 
 /// Ratios of durations are of one contraction if they differ by no more than this: one that is far
 /// below the others is of jumps that rounding keeps from being at one time.
 const ALIKE: f64 = 1e-3;
-
-/// A coordinate that differs by this part of itself from a cycle ago has been rounded: a landing
-/// leaves a height a few units in the last place off.
-const STILL: f64 = 8.0 * f64::EPSILON;
 
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
@@ -33,60 +28,91 @@ const STATES: usize = 2 * LONGEST_CYCLE + 1;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
-    /// The states x⁺ after the last jumps at each of the last instants.
+    count: usize,
+    states: States<S>,
+}
+
+/// The states x⁺ after the last jumps at each of the last instants.
+///
+/// Kept only while jumps come in short times: no limit is near elsewhere, and a jump by a formula
+/// costs little more than their copy.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct States<S> {
+    /// The last of them, each in its turn.
     after: [S; STATES],
+    count: usize,
     /// The square of the longest way that x⁺ went in a cycle of 1, 2, ... jumps.
     longest: [f64; LONGEST_CYCLE],
-    count: usize,
+}
+
+impl<S: State> States<S> {
+    /// x⁺ at the instant `back` instants ago, 0 for the last one.
+    fn last(&self, back: usize) -> &S {
+        &self.after[(self.count - 1 - back) % STATES]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn push(&mut self, after: S) {
+        for cycle in 1..=LONGEST_CYCLE.min(self.count) {
+            let way = square_way(&after, self.last(cycle - 1));
+            self.longest[cycle - 1] = self.longest[cycle - 1].max(way);
+        }
+        self.after[self.count % STATES] = after;
+        self.count += 1;
+    }
+
+    /// The last jump went on at once, to `after`.
+    #[cold]
+    #[inline(never)]
+    fn replace(&mut self, after: S) {
+        self.after[(self.count - 1) % STATES] = after;
+    }
+
+    fn forget(&mut self) {
+        (self.count, self.longest) = (0, [0.0; LONGEST_CYCLE]);
+    }
+
+    /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
+    /// that what remains of its way is less than the longest cycle's.
+    fn contract(&self, cycle: usize) -> bool {
+        if self.count <= 2 * cycle {
+            return false;
+        }
+        let way = |from: usize| square_way(self.last(from), self.last(from + cycle)).sqrt();
+        let (now, before, longest) = (way(0), way(cycle), self.longest[cycle - 1].sqrt());
+        now == 0.0 || now < before && now * now <= longest * (before - now)
+    }
 }
 
 impl<S: State> Contraction<S> {
     /// Before any jump; from a state of the same shape as those to come.
     pub(crate) const fn new(start: &S) -> Self {
-        Self { durations: [0.0; MEMORY], after: [*start; STATES], longest: [0.0; LONGEST_CYCLE], count: 0 }
+        let states = States { after: [*start; STATES], count: 0, longest: [0.0; LONGEST_CYCLE] };
+        Self { durations: [0.0; MEMORY], count: 0, states }
     }
 
-    /// Adds the time since the last jump and the state `after` this one; of jumps at one time the
-    /// last one counts.
+    /// Adds a jump some time after the one at the instant before, and the state `after` it, which
+    /// counts where that time was `short`; of jumps at one time the last one counts.
     #[inline]
-    pub(crate) fn push(&mut self, duration: f64, after: &S) {
+    pub(crate) fn push(&mut self, duration: f64, short: bool, after: S) {
         if duration > 0.0 {
             self.durations[self.count % MEMORY] = duration;
-            self.after[self.count % STATES] = *after;
             self.count += 1;
-            if self.count <= MEMORY || self.count.is_multiple_of(MEMORY) {
-                self.measure(after);
+            if short {
+                self.states.push(after);
+            } else if self.states.count > 0 {
+                self.states.forget();
             }
-        } else if self.count > 0 {
-            self.after[(self.count - 1) % STATES] = *after;
+        } else if self.states.count > 0 {
+            self.states.replace(after);
         }
-    }
-
-    /// How far x⁺ went in the last cycles. Looked at while jumps are few, and now and then: a
-    /// longest way that is missed makes the test of the displacements stricter.
-    #[inline(never)]
-    fn measure(&mut self, after: &S) {
-        for cycle in 1..=LONGEST_CYCLE.min(self.count - 1) {
-            self.longest[cycle - 1] = self.longest[cycle - 1].max(square_way(after, self.state(cycle)));
-        }
-    }
-
-    /// x⁺ at the instant `back` instants ago, 0 for the last one.
-    fn state(&self, back: usize) -> &S {
-        &self.after[(self.count - 1 - back) % STATES]
     }
 
     /// The duration `back` jumps ago, 0 for the last one.
     fn last(&self, back: usize) -> f64 {
         self.durations[(self.count - 1 - back) % MEMORY]
-    }
-
-    /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
-    /// that what remains of its way is less than the longest cycle's.
-    fn displacements_contract(&self, cycle: usize) -> bool {
-        let way = |from: usize| square_way(self.state(from), self.state(from + cycle)).sqrt();
-        let (now, before, longest) = (way(0), way(cycle), self.longest[cycle - 1].sqrt());
-        now == 0.0 || now < before && now * now <= longest * (before - now)
     }
 
     /// The time from the last jump to the limit, if the durations contract and the next one is
@@ -100,7 +126,7 @@ impl<S: State> Contraction<S> {
     /// better can be had later: the ratios decide if they are clearly below one.
     #[inline]
     pub(crate) fn remaining(&self, elapsed: f64, hidden: bool) -> Option<f64> {
-        if self.count == 0 || self.last(0) > FAR * elapsed && !hidden {
+        if self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden {
             None
         } else if hidden {
             self.certified(f64::INFINITY, CLEARLY_BELOW_ONE)
@@ -112,7 +138,7 @@ impl<S: State> Contraction<S> {
     fn certified(&self, resolution: f64, most: f64) -> Option<f64> {
         let known = self.count.min(MEMORY);
         let bound = |cycle| {
-            if known < cycle + 4 || known <= 2 * cycle {
+            if known < cycle + 4 {
                 return None;
             }
             let ratios = (0..4.max(cycle)).filter(|i| i + cycle < known).map(|i| self.last(i) / self.last(i + cycle));
@@ -122,7 +148,7 @@ impl<S: State> Contraction<S> {
             }
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
             let longest = (0..cycle).map(|i| self.last(i)).fold(0.0, f64::max);
-            (ratio < most && longest * ratio < resolution && self.displacements_contract(cycle))
+            (ratio < most && longest * ratio < resolution && self.states.contract(cycle))
                 .then(|| last_cycle * ratio / (1.0 - ratio))
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of
@@ -157,8 +183,8 @@ impl Cascade {
     /// After one more jump, from the state after the one before to the state `after` it.
     #[cold]
     #[inline(never)]
-    pub(crate) fn and<S: State>(self, before: &S, after: &S) -> Self {
-        let (jumps, way) = (self.jumps + 1, square_way(before, after));
+    pub(crate) fn and<S: State>(self, before: S, after: S) -> Self {
+        let (jumps, way) = (self.jumps + 1, square_way(&before, &after));
         let first = if jumps <= FIRST { self.first.max(way) } else { self.first };
         let late = if jumps.is_power_of_two() { way } else { self.late.max(way) };
         Self { jumps, first, late }
@@ -186,7 +212,7 @@ fn square_way<S: State>(x: &S, y: &S) -> f64 {
     let square = |i: usize| {
         let (x, y) = (x.get(i), y.get(i));
         let by = (y - x).abs();
-        if by <= STILL * x.abs().max(y.abs()) { 0.0 } else { by * by }
+        if by <= ROUNDINGS * f64::EPSILON * x.abs().max(y.abs()) { 0.0 } else { by * by }
     };
     (0..x.len()).map(square).sum()
 }
@@ -204,7 +230,7 @@ mod tests {
         let mut d = 1.0;
         let mut sum = 0.0;
         while contraction.remaining(LATE, false).is_none() {
-            contraction.push(d, &d);
+            contraction.push(d, true, d);
             sum += d;
             d *= 0.8;
         }
@@ -219,7 +245,7 @@ mod tests {
                 let (mut d, mut by, mut x) = (1.0, 1.0, 0.0);
                 for n in 0..400 {
                     x += by;
-                    contraction.push(d, &if n % 2 == 0 { x } else { turn * x });
+                    contraction.push(d, true, if n % 2 == 0 { x } else { turn * x });
                     assert_eq!(contraction.remaining(LATE, false), None);
                     (d, by) = (0.8 * d, growth * by);
                 }
@@ -231,7 +257,7 @@ mod tests {
     fn a_harmonic_series_is_not_zeno() {
         let mut contraction = Contraction::new(&0.0);
         for n in 1..100_000 {
-            contraction.push(1e-3 / f64::from(n), &0.0);
+            contraction.push(1e-3 / f64::from(n), true, 0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -240,7 +266,7 @@ mod tests {
     fn a_cascade_is_not_zeno() {
         let mut contraction = Contraction::new(&0.0);
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
-            contraction.push(duration, &0.0);
+            contraction.push(duration, true, 0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -250,7 +276,7 @@ mod tests {
         // Swings of one length but for rounding, and two collisions a rounding apart.
         let mut contraction = Contraction::new(&0.0);
         for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
-            contraction.push(duration, &0.0);
+            contraction.push(duration, true, 0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -261,7 +287,7 @@ mod tests {
             let (mut cascade, mut x) = (Cascade::NONE, 0.0);
             for n in 0..10_000 {
                 let next = x + way(n);
-                cascade = cascade.and(&x, &next);
+                cascade = cascade.and(x, next);
                 x = next;
             }
             cascade.contracts(10_000)
@@ -277,7 +303,7 @@ mod tests {
             let (mut cascade, mut speed) = (Cascade::NONE, 1.0);
             while !cascade.contracts(10_000) {
                 let next = speed * 10_f64.powi(-power);
-                cascade = cascade.and(&speed, &next);
+                cascade = cascade.and(speed, next);
                 speed = next;
                 assert!(speed * speed > 0.0, "1e-{power} after {} jumps", cascade.jumps());
             }
@@ -291,7 +317,7 @@ mod tests {
         let mut sum = 0.0;
         for _ in 0..60 {
             for part in [d, 3.0 * d] {
-                contraction.push(part, &part);
+                contraction.push(part, true, part);
                 sum += part;
             }
             d *= 0.5;

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Formula;
+use crate::certainty::FEW;
 use crate::cross::{Undefined, chebyshev};
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
@@ -119,9 +120,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
 /// Where on a piece it is compared with the solution: between the nodes of its interpolant.
 const FITS_AT: [f64; 3] = [0.221_324_6, 0.635_914_1, 0.97];
-/// Roundings of time by which a solution may be off.
-const LATE: f64 = 4.0;
-
 /// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as
 /// the exact state `at` it.
 fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
@@ -132,7 +130,7 @@ fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
             // No nearer than the rounding of time allows, late in an arc that swings or in a run,
             // nor than the smallest numbers can say.
             let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
-            let hidden = f64::MIN_POSITIVE + LATE * f64::EPSILON * rate * late / h;
+            let hidden = f64::MIN_POSITIVE + FEW * f64::EPSILON * rate * late / h;
             (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
         })
     })

@@ -1,6 +1,7 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
+use crate::certainty::{FAR, FEW, SURELY};
 use crate::cross::{
     Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
@@ -13,23 +14,16 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::{Advance, SLACK};
+use super::Advance;
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
-/// An arc so many roundings of time long is resolved.
-const RESOLVED: f64 = 64.0;
 /// A guard that rises by less than so many of its roundings on a short arc spoils its duration.
-const SHOWN: f64 = 65536.0;
+const SHOWN: f64 = FAR * SURELY;
 /// How far aside of a fall its guard is looked at, in the length at which the rounding of time and
 /// what a guard bends by weigh alike: (ulp(t) T²)^⅓.
 const ASIDE: f64 = 0.3;
-/// Roundings of its terms by which a guard may be off that is added up coordinate by coordinate.
-const ADDED_UP: f64 = 64.0;
-/// Roundings of its terms by which an affine guard may be off at the start of a step.
-const STARTS: f64 = 4.0;
-
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
     /// were searched.
@@ -46,7 +40,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let Step { now, c, scale } = step;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge));
-            if self.memory.wall_count > 0 && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
+            if !self.memory.walls.is_empty() && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
                 if let Some(crossing) = self.leaves(mode, edge, step, limit) {
                     found = earlier(found, OnStep { edge, crossing, near: None });
                 }
@@ -168,9 +162,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let nearest = at(root);
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
-        self.memory.slack = SLACK * g.abs().max(outer.abs());
+        self.memory.slack = FEW * g.abs().max(outer.abs());
         let short = self.memory.is_short(root);
-        let resolved = root > RESOLVED * f64::EPSILON * t.abs();
+        let resolved = root > SURELY * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();
         let hidden =
             short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
@@ -191,7 +185,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.guard(edge, t, end);
         let moved = (self.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < SHOWN * self.guard_rounding(edge, t, end, g, end) + RESOLVED * by_time
+        rise < SHOWN * self.guard_rounding(edge, t, end, g, end) + SURELY * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that
@@ -217,7 +211,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// with room for the digits that its `constant` costs.
 #[inline]
 pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
-    let rounding = ADDED_UP * f64::EPSILON * (constant.abs() + start.abs() + most);
+    let rounding = SURELY * f64::EPSILON * (constant.abs() + start.abs() + most);
     start > most + rounding && rounding < f64::INFINITY
 }
 
@@ -407,7 +401,7 @@ struct Along<'p> {
 impl Along<'_> {
     /// How far its value at the start may be off.
     fn rounding(&self) -> f64 {
-        STARTS * f64::EPSILON * (self.constant.abs() + self.start.abs())
+        FEW * f64::EPSILON * (self.constant.abs() + self.start.abs())
     }
 
     /// Where it first falls, as far as its powers show it at once.

@@ -4,26 +4,22 @@ use std::cell::Cell;
 
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
+use crate::certainty::{FAR, ROUNDINGS, SURELY};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
-use super::noise::ROUNDINGS;
 
 /// A guard no larger than this part of the state may be zero but for rounding.
 const SMALL: f64 = 1e-12;
-/// A guard that changes by this many roundings at a glance is sure to rise or fall.
-const SURELY: f64 = 64.0;
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
 
 /// The longest time over which a guard's slope is looked at, as a part of the last arc's duration,
 /// or in s where there was none.
 const GLANCE: f64 = 1e-6;
-/// The shortest, in spacings of time, of a guard that moves.
-const TICKS: f64 = 1024.0;
 /// Each look is so many times as long as the one before.
 const LONGER: f64 = 8.0;
 /// The change of a guard doubles with time if it differs from that by no more than this part.
@@ -35,22 +31,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
         let mut zero = None;
-        self.memory.wall_count = 0;
+        self.memory.walls.clear();
         let edges = self.automaton.edges(mode);
         if let Some(flaw) = edges.flaw() {
-            return Err(Error::new(ErrorKind::Model, Place::new(t, mode, None::<A::Edge>, x)).noting(Some(flaw)));
+            return Err(Error::new(ErrorKind::Model, Place::new(t, mode, None::<A::Edge>, &{ *x })).noting(Some(flaw)));
         }
         for edge in edges.iter() {
             self.memory.stats.guards += 1;
             let g = self.guard(edge, t, x);
             let spent = self.memory.spent_as(edge);
             if spent.is_some_and(|spent| g.abs() <= spent.slack) {
-                if self.memory.idle_count == 0 || !self.is_driven(mode, edge, t, x, g) {
+                if self.memory.idle.is_empty() || !self.is_driven(mode, edge, t, &{ *x }, g) {
                     continue;
                 }
             } else if spent.is_none() && g > SMALL * size(x) {
                 continue;
             }
+            let x = &{ *x };
             if self.is_entered(mode, edge, t, x, g, &mut zero)? {
                 let first = self.first_of(mode, t, x, zero, edge);
                 self.note_switch(first, x);
@@ -146,8 +143,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// and the floor until its rebounds are rounding, and struck again.
     #[cold]
     fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
-        let mut idle = self.memory.idle[..self.memory.idle_count].iter().flatten();
-        let then = idle.find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
+        let then = self.memory.idle.iter().find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
         then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) < DRIVEN * then)
     }
 
@@ -167,7 +163,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ///
     /// The shortest time is taken over which the change of the guard doubles (or, where it never
     /// does, quadruples) with time twice in a row: longer than rounding, shorter than the way to
-    /// the guard's next root. A change by no more than `rounding` is none.
+    /// the guard's next root. A change by no more than `rounding` is none. That of a guard promised
+    /// affine doubles over every time along a line: the longest one has the least rounding.
     pub(super) fn guard_slope(
         &mut self,
         mode: A::Mode,
@@ -179,6 +176,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> f64 {
         let longest = self.glance();
         let slope = self.flow(mode, t, x);
+        if self.automaton.about(edge).affine && self.smooth.within(t + longest) == t + longest {
+            self.memory.stats.guards += 1;
+            let ahead = x.with(|i| x.get(i) + longest * slope.get(i));
+            let change = self.automaton.guard(edge, t + longest, &ahead) - g;
+            if change.abs() > ROUNDINGS * rounding {
+                return change / longest;
+            }
+        }
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
         let (automaton, smooth, guards) = (self.automaton, self.smooth, Cell::from_mut(&mut self.memory.stats.guards));
         let change = |h: f64, bends: f64| {
@@ -190,7 +195,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A guard that moves changes by no less than some roundings of time.
         guards.set(guards.get() + 1);
         let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
-        let shortest = (longest / (1_u64 << 60) as f64).max(TICKS * tick).min(longest);
+        let shortest = (longest / (1_u64 << 60) as f64).max(FAR * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
             while h < longest && h > 0.0 {

@@ -2,6 +2,7 @@
 //! of the steps.
 
 use crate::automaton::Automaton;
+use crate::certainty::{FAR, ROUNDINGS};
 use crate::cross::{AT_START, Crossing};
 use crate::state::State;
 use crate::step::Stepper;
@@ -24,6 +25,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place,
     /// with the size sᵢ that the coordinate was summed up from.
     pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
+        /// By this part of its size a coordinate is moved: large beside rounding, small beside what
+        /// a guard bends over.
         const NUDGE: f64 = 1.0 / (1 << 20) as f64;
         self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
     }
@@ -59,10 +62,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ
     /// |∂g/∂xᵢ| so many times that.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        const STEPS: f64 = 1024.0;
         let rounding = self.still(edge, t, x, g);
         let tolerance = self.options.tolerance;
-        STEPS * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
+        FAR * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
     }
 
     /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance
@@ -88,10 +90,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last
     /// place of t, seen over some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        const SOME: f64 = 1024.0;
         self.memory.stats.guards += 1;
-        let ahead = t + SOME * resolution(t);
-        let change = (self.guard(edge, ahead, x) - g).abs() / SOME;
+        let ahead = t + FAR * resolution(t);
+        let change = (self.guard(edge, ahead, x) - g).abs() / FAR;
         if change.is_finite() { change } else { 0.0 }
     }
 
@@ -106,11 +107,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (t, x, by) = (step.now.seconds(), &step.c[0], PROBE * step.scale);
             self.memory.stats.guards += 2;
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
-            if (guard(by) - guard(-by)).abs() <= LEAVES * slack {
+            // Six digits more than rounding leaves of it: it leaves its wall.
+            if (guard(by) - guard(-by)).abs() <= FAR * FAR * slack {
                 self.memory.at_wall(edge, 0.0);
             }
         }
-        if self.memory.wall_count > 0 {
+        if !self.memory.walls.is_empty() {
             self.sort_walls(mode, step);
         }
     }
@@ -119,8 +121,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn sort_walls(&mut self, mode: A::Mode, step: Step<'_, A::State>) {
         let Step { now, c, scale } = step;
         let (t, x) = (now.seconds(), &c[0]);
-        for k in 0..self.memory.wall_count {
-            let Some(Wall { edge, level, .. }) = self.memory.walls[k] else { continue };
+        let mut walls = self.memory.walls;
+        walls.retain(|wall| {
+            let edge = wall.edge;
             let rate = self.guard_rate(mode, edge, t, x, PROBE * scale);
             let mut along = |part: f64| {
                 let s = part * scale;
@@ -129,10 +132,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             // A guard that falls or rises as a power of time does so within a small part of the
             // step.
             let along = along(1.0) || along(EARLY);
-            let stays = along && rate.abs() <= self.rate_rounding(edge, t, x, PROBE * scale);
-            let taken = self.memory.spent_as(edge).is_some();
-            self.memory.walls[k] = (stays || !taken).then_some(Wall { edge, level, stays });
-        }
+            wall.stays = along && rate.abs() <= self.rate_rounding(edge, t, x, PROBE * scale);
+            wall.stays || self.memory.spent_as(edge).is_none()
+        });
+        self.memory.walls = walls;
     }
 
     /// How far rounding may take the rate of a guard from differences over `by`.
@@ -206,17 +209,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[cold]
     pub(super) fn keep_staying(&mut self, mode: A::Mode, now: Time, x: &A::State, h: f64) {
         let t = now.seconds();
-        for k in 0..self.memory.wall_count {
-            let Some(Wall { edge, stays: true, .. }) = self.memory.walls[k].take() else { continue };
-            if self.carried(mode, edge, t, x, h) == Carried::Along {
+        let mut walls = self.memory.walls;
+        walls.retain(|Wall { edge, level, stays }| {
+            *stays = *stays && self.carried(mode, *edge, t, x, h) == Carried::Along;
+            if *stays {
                 self.memory.stats.guards += 1;
-                let level = self.guard(edge, t, x);
-                self.memory.walls[k] = Some(Wall { edge, level, stays: true });
+                *level = self.guard(*edge, t, x);
             }
-        }
-        if self.memory.walls[..self.memory.wall_count].iter().all(Option::is_none) {
-            self.memory.wall_count = 0;
-        }
+            *stays
+        });
+        self.memory.walls = walls;
     }
 }
 
@@ -230,11 +232,3 @@ enum Carried {
     Down,
     Along,
 }
-
-/// A guard that moves by so many times what rounding leaves of it leaves its wall.
-const LEAVES: f64 = (1_u64 << 20) as f64;
-
-/// How many times what rounding its coordinates and the time may move a guard by, its value may be
-/// off: its own arithmetic rounds as well, a dozen times or so, and so did that of the jumps before
-/// at the same time.
-pub(super) const ROUNDINGS: f64 = 16.0;

@@ -2,12 +2,12 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
+use crate::certainty::ROUNDINGS;
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
-use super::noise::ROUNDINGS;
 use super::series::OTHER;
 use super::{Advance, ArcEnd};
 

@@ -21,8 +21,9 @@ use super::smooth::Arrival;
 use super::stepped::{evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd};
 
-/// The lowest and the highest order: no higher than guards along it can be bounded.
+/// The lowest order.
 const LOWEST: usize = 6;
+/// The highest order: no higher than guards along it can be bounded.
 const HIGHEST: usize = MAX_DEGREE;
 /// How many orders more there are where they may save a step.
 const FURTHER: usize = 8;
@@ -103,7 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if at_stop && let Some(edge) = self.pass_stop(mode, clock.now, &x)? {
                 return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
             }
-            if self.memory.wall_count > 0 {
+            if !self.memory.walls.is_empty() {
                 self.keep_staying(mode, clock.now, &x, h);
             }
         }
@@ -145,7 +146,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<Expansion>, Error> {
         let mut unit = 1.0;
         loop {
-            let mut series = Series::around(self.tape, self.smooth.within(now.seconds()), x, 0, order, unit);
+            let mut series = Series::around(&mut self.tape, self.smooth.within(now.seconds()), x, 0, order, unit);
             flow(self.automaton, mode, &mut series);
             if let Some(dimension) = series.mismatch() {
                 return Err(wrong_dimension(dimension, mode, now, x));
@@ -161,7 +162,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let finite = c[..=order].iter().all(State::is_finite);
                 return Ok(finite.then_some(Expansion { unit, order, reach }));
             }
-            unit = own_unit(&self.options.tolerance, x, &self.slope(mode, now, x)?);
+            let slope = self.slope(mode, now, x)?;
+            unit = own_unit(&self.options.tolerance, x, &slope);
         }
     }
 
@@ -177,7 +179,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         c: &mut [A::State; MOST_COEFFICIENTS],
     ) {
         let (known, order) = (expansion.order, (expansion.order + FURTHER).min(HIGHEST));
-        let mut series = Series::around(self.tape, now.seconds(), x, known, order, expansion.unit);
+        let mut series = Series::around(&mut self.tape, now.seconds(), x, known, order, expansion.unit);
         if order == known {
             return;
         }
@@ -197,10 +199,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let &Way { mode, now, since, remaining, first } = way;
         while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
             let limit = searched(h, remaining, since, now.after(remaining));
-            let mut held = std::mem::take(self.held);
+            let mut held = std::mem::take(&mut self.held);
             held.0.clear();
             let found = self.first_crossing(mode, Step { now, c, scale: unit }, limit, first, Some(&mut held));
-            *self.held = held;
+            self.held = held;
             let near = match &found {
                 Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),
                 Ok(Some(OnStep { crossing, .. })) => Near::around(c, unit, crossing.root),
@@ -331,8 +333,9 @@ fn power_of_two(x: f64) -> f64 {
     if x < EXPONENT { f64::from_bits(((x + EXPONENT) * MANTISSA).max(0.0) as i64 as u64) } else { f64::INFINITY }
 }
 
-/// A mantissa's unit in the place of an exponent's, and the exponent of one.
+/// A mantissa's unit in the place of an exponent's.
 const MANTISSA: f64 = (1_u64 << 52) as f64;
+/// The exponent of one.
 const EXPONENT: f64 = 1023.0;
 
 /// Another unit of time than a second, a power of two of it, in which a state changes by about its

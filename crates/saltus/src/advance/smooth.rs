@@ -2,12 +2,13 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::clocks::{Clock, Source};
+use crate::certainty::FEW;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::step::Stepper;
 use crate::time::{Span, Time, grace};
 
-use super::{Advance, ArcEnd, SLACK};
+use super::{Advance, ArcEnd};
 
 /// The times strictly between two stops, at which a step asks for the flow: at a stop itself the
 /// flow may have the value of either side.
@@ -151,7 +152,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let clear = self.memory.wall(edge).is_none() || -behind > self.guard_rounding(edge, stop, x, behind, x);
         let fell = before >= 0.0 && behind < 0.0 && clear;
         fell.then(|| {
-            self.memory.slack = SLACK * before.max(-behind);
+            self.memory.slack = FEW * before.max(-behind);
             stop
         })
     }

@@ -10,8 +10,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, grace};
 
+use super::Advance;
 use super::crossing::{Close, together};
-use super::{Advance, ArcEnd};
 
 /// The first crossing on a solution.
 pub(super) struct First<A: Automaton> {
@@ -78,28 +78,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(found)
     }
 
-    /// How an arc of a mode with one edge ends, where a formula gives the time of its fall and the
-    /// state there: nothing is then searched, nor even the solution asked for, if no observer wants
-    /// its pieces.
+    /// Whether an arc of a mode with one edge ends a time `s` ahead in a state on its guard, as a
+    /// formula gives them. Nothing is then searched, nor the solution asked for, if no observer
+    /// wants its pieces.
     #[inline]
-    pub(super) fn told(
+    pub(crate) fn falls(
         &mut self,
         mode: A::Mode,
-        x: &A::State,
+        edge: A::Edge,
+        (s, state): (f64, &A::State),
         now: Time,
         remaining: f64,
         observer: &mut impl Observer<A>,
-    ) -> Option<ArcEnd<A>> {
-        let edge = self.automaton.edges(mode).only()?;
-        let Fall::In(s, state) = self.automaton.falls(mode, edge, now.seconds(), x) else { return None };
-        if !(s < remaining && self.arrives(edge, now, s, &state, remaining)) {
-            return None;
+    ) -> bool {
+        if !(s < remaining && self.arrives(edge, now, s, state, remaining)) {
+            return false;
         }
         self.memory.stats.exact += 1;
         self.arrived();
         let span = past(now, remaining);
         observer.inspection(&Inspection { mode, edge, start: now, span, evidence: Evidence::Isolated });
-        Some(ArcEnd::Crossing { edge, time: now.after(s), before: state })
+        true
     }
 
     /// An arc has ended on its guard exactly: rounding has left nothing.

@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
+use crate::certainty::{FEW, ROUNDINGS};
 use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
 use crate::ending::Stop;
@@ -18,7 +19,7 @@ use crate::time::{LAST, Span, Time, grace, resolution};
 use super::crossing::{OnStep, Step, exceeds, is_rounding, less_constant};
 use super::noise::PROBE;
 use super::smooth::Arrival;
-use super::{Advance, ArcEnd, SLACK};
+use super::{Advance, ArcEnd};
 
 /// The shortest step, in spacings of time.
 const SHORTEST: f64 = 2.0;
@@ -29,9 +30,6 @@ const INSIDE: f64 = 0.875;
 
 /// A first step that contradicts the flow is tried again at this part of its size.
 const RETRIED: f64 = 0.1;
-/// A dense output falls from a wall by more than so many roundings of the guard.
-const FALLS: f64 = 8.0;
-
 /// A crossing within this part of a step of its start is where the dense output is exact.
 const EXACT: f64 = 1e-9;
 /// How far before a crossing its guard is looked at for its slope, as a part of the step.
@@ -40,14 +38,8 @@ const BESIDE: f64 = 1e-3;
 const TOO_FAR: f64 = 0.1;
 /// A correction this small leaves an error of its square only.
 const NEAR_ENOUGH: f64 = 1e-5;
-/// Roundings of a step's size, past its end, that a crossing on it is looked for as well.
-const ROOM: f64 = 16.0;
-
 /// A last step is lengthened by up to this factor rather than followed by a tiny one.
 const STRETCHED: f64 = 1.01;
-/// Roundings of a step's size, past the end of the span, in which a crossing is still in it.
-const PAST: f64 = 8.0;
-
 /// With no more coordinates than these a guard is probed in each of them.
 const MOST_PROBED: usize = 8;
 
@@ -61,9 +53,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut first: bool,
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
-        if self.memory.gait.stiff {
-            self.stepper = self.stepper.adapted(true);
-        }
+        self.stepper = self.stepper.adapted(self.memory.gait.stiff);
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
             let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
@@ -87,7 +77,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
             let state = if clear && !observer.wants_pieces() {
-                self.memory.wall_count = 0; // clear of zero
+                self.memory.walls.clear(); // clear of zero
                 trial.end
             } else {
                 let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
@@ -121,7 +111,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 }
                 slope = self.slope(mode, clock.now, &x)?;
             }
-            if self.memory.wall_count > 0 {
+            if !self.memory.walls.is_empty() {
                 self.keep_staying(mode, clock.now, &x, h);
             }
         }
@@ -267,7 +257,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let root = by * here / (here - there);
                 // A state a little inside where rounding leaves the nearest one outside.
                 let s = [root, INSIDE * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
-                self.memory.slack = SLACK * (here - there);
+                self.memory.slack = FEW * (here - there);
                 return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
             }
         }
@@ -323,7 +313,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 };
                 let (rate, told) = (rise(slope, s), rise(c1, PROBE));
                 let g = self.guard(edge, t, x);
-                (rate, told, told < 0.0 && -told > FALLS * self.guard_rounding(edge, t, x, g, x))
+                (rate, told, told < 0.0 && -told > ROUNDINGS * self.guard_rounding(edge, t, x, g, x))
             };
             if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
                 return true;
@@ -410,7 +400,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return None;
             }
             if shift.abs() <= NEAR_ENOUGH * h {
-                let ahead = (h + 2.0 * shift.abs() + ROOM * f64::EPSILON * h).min(limit);
+                let ahead = (h + 2.0 * shift.abs() + ROUNDINGS * f64::EPSILON * h).min(limit);
                 return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);
@@ -450,7 +440,7 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
 /// began: the last one a few roundings past its end.
 #[inline]
 pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
-    if h >= remaining { h + (PAST * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
+    if h >= remaining { h + (ROUNDINGS * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

@@ -1,6 +1,7 @@
 //! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a
 //! long stretch shows to more digits than a short one.
 
+use crate::certainty::{FAR, FEW, SURELY};
 use crate::poly::{Bernstein, DIVIDED};
 
 use super::Undefined;
@@ -28,25 +29,13 @@ pub(super) struct Departure {
     order: Option<f64>,
 }
 
-/// So much longer a stretch gives the slope better than the steps of rounding on a shorter one.
-const FAR: f64 = 1024.0;
-/// A guard is seen where it is by this larger than its rounding, which a few samples may show too
-/// small.
-const SEEN: f64 = 64.0;
-/// A guard that is zero at the start is seen to rise from there where it is by this larger than it
-/// may be off.
-const RISEN: f64 = 4.0;
 /// A guard no larger than this many times its rounding may be hidden by it, where it was seen to
 /// rise on a longer stretch.
-const HIDDEN: f64 = 64.0 * RISEN;
+const HIDDEN: f64 = SURELY * FEW;
 /// A slope up counts from this part of what it may be off by, which is taken with room: of ten
 /// million guards with clustered roots, two that fall at once seem to rise with 0.27 and 0.30 of
 /// it, by chance.
 const SURE: f64 = 0.4;
-/// A slope down counts as none up to so many times what it may be off by. The jump at a touch may
-/// change its sign, and it is not to be lost then.
-const NONE: f64 = 64.0;
-
 /// A margin that keeps more than this part of itself, while a stretch is halved, is rounding.
 const STAYS: f64 = 0.125;
 /// The part of a stretch on which rounding is to show if it hides all of it.
@@ -66,7 +55,7 @@ impl Departure {
             _ => Self { slope, doubt, rest: *rest, length, order: last.and_then(|last| last.order) },
         };
         let (half, end) = (0.5 * rest.halves().0.end(), rest.end());
-        if half < -SEEN * (margin + roughness) {
+        if half < -SURELY * (margin + roughness) {
             best.order = Some(order(half, end, 0.5, 1.0));
         }
         best
@@ -77,9 +66,10 @@ impl Departure {
         self.slope > SURE * self.doubt
     }
 
-    /// Whether no slope stands out of the rounding, and the guard falls as the square of time.
+    /// Whether no slope stands out of the rounding for sure, and the guard falls as the square of
+    /// time: the jump at a touch may change the slope's sign, and it is not to be lost then.
     pub(super) fn touches(&self) -> bool {
-        self.slope > -NONE * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
+        self.slope > -SURELY * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
     }
 
     /// The steepest fall that the slope allows.
@@ -108,13 +98,13 @@ impl Search<'_> {
         b: f64,
     ) -> Result<bool, Undefined> {
         let nowhere_below = least > -margin;
-        if nowhere_below && p.halves().0.end().min(p.end()) > RISEN * (margin + self.roughness(b)) {
+        if nowhere_below && p.halves().0.end().min(p.end()) > FEW * (margin + self.roughness(b)) {
             self.rise = Some(margin);
             return Ok(false);
         }
         // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
         // number by number its steps have an order.
-        let stays = |then: f64| STAYS * then < margin && margin < SEEN * then;
+        let stays = |then: f64| STAYS * then < margin && margin < SURELY * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
             && p.end() < HIDDEN * margin

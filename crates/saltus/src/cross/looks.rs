@@ -3,6 +3,7 @@
 
 use super::search::{Part, Search, Side};
 use super::{Doubt, Evidence, Undefined};
+use crate::certainty::FEW;
 
 /// How many samples are taken of a guard that seems to be nothing but rounding.
 const LOOKS: usize = 128;
@@ -15,9 +16,6 @@ const MOST_TURNS: usize = 8;
 const STANDS_AT: [f64; 2] = [0.3, 0.6];
 /// A fall of which the slope explains less than this part has no speed.
 const SLOW: f64 = 0.25;
-/// The rounding of samples is so many times the largest by which one is off its two neighbours.
-const ROUNDED: f64 = 4.0;
-
 impl Search<'_> {
     /// Number by number.
     pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
@@ -125,7 +123,7 @@ impl Search<'_> {
     /// What is left of samples when all that is as small as their rounding counts as zero.
     fn seen_through(&mut self, samples: &[(f64, f64); LOOKS], a: f64, b: f64, side: Side) -> Part {
         let bend = |three: &[(f64, f64)]| (three[1].1 - 0.5 * (three[0].1 + three[2].1)).abs();
-        let rounding = ROUNDED * samples.windows(3).map(bend).fold(0.0, f64::max);
+        let rounding = FEW * samples.windows(3).map(bend).fold(0.0, f64::max);
         let came_from = side;
         let mut side = side;
         let mut hidden: Option<(f64, f64)> = None;

@@ -1,5 +1,6 @@
 //! The first fall of a polynomial by its powers, where they show it to be the only one up to there.
 
+use crate::certainty::SURELY;
 use crate::poly::MAX_DEGREE;
 
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
@@ -11,10 +12,6 @@ const CLOSE: f64 = 1e-6;
 const CLOSEST: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
-
-/// How far a sum of powers must be from zero, as a part of its terms' sizes, for its sign to be no
-/// rounding.
-const SURELY: f64 = 64.0 * f64::EPSILON;
 
 /// Where a polynomial on `0..=1` first falls through zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +106,7 @@ impl Powers {
     /// How far the rounding of its terms may take it.
     #[inline]
     pub(crate) fn rounding(&self) -> f64 {
-        SURELY * (self.a[0].abs() + self.change())
+        SURELY * f64::EPSILON * (self.a[0].abs() + self.change())
     }
 
     /// What it is at 1.

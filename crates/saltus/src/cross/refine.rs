@@ -2,6 +2,7 @@
 
 use super::search::{AT_START, ROUNDING, Search};
 use super::{Crossing, Doubt, Evidence, Undefined};
+use crate::certainty::FAR;
 
 /// The fall close to `near`, a root exact but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
@@ -60,16 +61,12 @@ pub(super) enum Passage {
     Leap,
 }
 
-/// A guard is looked at so many times farther from its change of sign than where that is seen: a
-/// root of up to the fourth order has grown at least fourfold there, and so has shrunk what comes
-/// from a pole of the order 1/5 and higher.
-const FARTHER: f64 = 1024.0;
 /// What a guard grows or shrinks by, by then.
 const CLEARLY: f64 = 4.0;
 
-/// How often a fall is looked for around its guess, each time so much farther; at first so many
-/// numbers away.
+/// How often a fall is looked for around its guess.
 const TRIES: usize = 4;
+/// Each time so much farther, and at first so many numbers away.
 const WIDER: f64 = 4.0;
 
 /// κ₁ of the ITP method, in parts of the interval: its authors' choice.
@@ -83,7 +80,9 @@ impl Search<'_> {
         if near.is_finite() && near <= ROUNDING * self.largest {
             return Ok(Passage::Root);
         }
-        let by = FARTHER * (outside - inside).max(self.tick);
+        // A root of up to the fourth order has grown fourfold there, and what comes from a pole of
+        // the order 1/5 and higher has shrunk as much.
+        let by = FAR * (outside - inside).max(self.tick);
         let (before, after) = ((inside - by).max(0.0), outside + by);
         let far = (self.guard)(before).abs() + (self.guard)(after).abs();
         let passage = if near == f64::INFINITY || CLEARLY * far < near && self.largest < CLEARLY * near {

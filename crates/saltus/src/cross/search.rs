@@ -1,5 +1,6 @@
 //! Halving an interval until bounds exclude a fall in each part, or show one.
 
+use crate::certainty::{FAR, ROUNDINGS, SURELY};
 use crate::poly::{Bernstein, DIVIDED, Shape};
 
 use super::departure::Departure;
@@ -12,39 +13,28 @@ use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, settle};
 const DEEPEST: u32 = 64;
 /// A fall within this fraction of the interval from its start is at its start.
 pub(crate) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
-/// An interval that holds no more numbers than this is looked at number by number.
-const FEW: f64 = 64.0;
 /// Rounding is smaller than this fraction of the guard's largest magnitude.
 pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
 /// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts
 /// with the exact slope, but its higher powers carry the error of the step and the rounding of its
 /// stages.
 pub(crate) const ROUGH: f64 = 1e-6;
-/// Roundings of a guard's largest value that its values near zero may be off by, where it cancels:
-/// what is rougher is no rounding.
-const CANCELLED: f64 = 1024.0;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
-
-/// A guard that falls from a spent root by this more than its samples leave open does so: that is
-/// the fall that was spent.
-const SURELY: f64 = 1024.0;
 
 /// An interpolant whose error is this small beside its size shows the shape of the guard.
 const SHAPED: f64 = 1e-4;
 /// An error that halving a stretch does not bring below this part of what it was is the guard's own
 /// rounding: that of a smooth guard shrinks by hundreds.
 const STUCK: f64 = 0.1;
-/// A guard no larger than so many margins may be nothing but rounding.
-const BURIED: f64 = 8.0;
 /// From this part of the guard's size on an error may come from a guard that goes in steps.
 const IN_STEPS: f64 = 1e-3;
 /// A slope over a half and over a quarter of a stretch is that over the whole, if it differs by no
 /// more than this part of it.
 const SAME: f64 = 0.2;
-/// A rise from a spent start is looked for at so many times, each this part of the one before: down
-/// to 2⁻³² of the stretch.
+/// A rise from a spent start is looked for at so many times, down to 2⁻³² of the stretch.
 const LOOKS_BACK: usize = 8;
+/// Each of them is this part of the one before.
 const NEARER: f64 = 1.0 / 16.0;
 
 /// Compiled once for every guard: it is much code, and a call through a table costs little beside a
@@ -239,7 +229,7 @@ impl<'a> Search<'a> {
 
     fn part(&mut self, stretch: &Stretch, side: Side) -> Result<Part, Undefined> {
         let &Stretch { a, b, depth, ref known, .. } = stretch;
-        if b - a <= FEW * (b.next_up() - b) {
+        if b - a <= SURELY * (b.next_up() - b) {
             return self.walked(a, b, side);
         }
         if side == Side::Wall && b <= self.span * AT_START {
@@ -334,7 +324,7 @@ impl<'a> Search<'a> {
                     if leaving
                         && self.spent
                         && known.is_none()
-                        && (q.start() > -SURELY * sampled || self.rises_first(b)?) =>
+                        && (q.start() > -FAR * sampled || self.rises_first(b)?) =>
                 {
                     return Ok(Next::Halves);
                 }
@@ -375,7 +365,7 @@ impl<'a> Search<'a> {
     /// or goes in steps.
     fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
         let &Stretch { a, b, ref known, .. } = stretch;
-        let rounding = scale <= BURIED * margin && (known.is_some() || margin <= ROUNDING * self.largest);
+        let rounding = scale <= ROUNDINGS * margin && (known.is_some() || margin <= ROUNDING * self.largest);
         if rounding || margin > IN_STEPS * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
@@ -409,7 +399,7 @@ impl<'a> Search<'a> {
 
     /// Whether values off by so much are off by more than a guard's cancellation explains.
     pub(super) fn is_rougher_than_rounding(&self, off: f64) -> bool {
-        off > CANCELLED * f64::EPSILON * self.largest
+        off > FAR * f64::EPSILON * self.largest
     }
 
     /// How far a guard on a step may be off a time `s` after its start, if it is zero there.

@@ -12,6 +12,7 @@ use crate::advance::Smooth;
 use crate::automaton::clocks::Clock;
 use crate::automaton::edges::Edges;
 use crate::automaton::{About, Automaton, Entry};
+use crate::certainty::{FAR, FEW};
 use crate::error::Refusal;
 use crate::state::State;
 
@@ -154,12 +155,9 @@ impl<T: TwoSided + ?Sized> TwoSided for &T {
     }
 }
 
-/// By this part of its terms' sizes rounding may leave h, or a difference of flows, off zero.
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
-
 /// So many roundings of its terms h may be off zero where a state is on the surface: what is left
 /// of a curved surface, of a state that was worked out elsewhere.
-const OFF: f64 = (1_u64 << 20) as f64;
+const OFF: f64 = FAR * FAR;
 
 /// How far ahead two flows that agree are looked at once more, as a part of the time, in s at zero:
 /// far enough for a difference to show, near enough for nothing else to happen.
@@ -167,7 +165,7 @@ const AHEAD: f64 = 1.0 / (1_u64 << 26) as f64;
 
 /// Whether two flows agree but for rounding.
 fn agree<S: State>(f: &S, g: &S) -> bool {
-    let apart = |i: usize| (f.get(i) - g.get(i)).abs() > ROUNDED * (f.get(i).abs() + g.get(i).abs());
+    let apart = |i: usize| (f.get(i) - g.get(i)).abs() > FEW * f64::EPSILON * (f.get(i).abs() + g.get(i).abs());
     !(0..f.len()).any(apart)
 }
 
@@ -286,7 +284,7 @@ impl<T: TwoSided> Filippov<T> {
     fn rounding(&self, t: f64, x: &T::State) -> f64 {
         let n = self.system.normal(t, x);
         let size: f64 = (0..x.len()).map(|i| (n.get(i) * x.get(i)).abs()).sum();
-        ROUNDED * (size + (self.system.surface_rate(t, x) * t).abs())
+        FEW * f64::EPSILON * (size + (self.system.surface_rate(t, x) * t).abs())
     }
 
     /// How far L₋ - L₊, by which the flows push the state against the surface, is above what
@@ -301,7 +299,7 @@ impl<T: TwoSided> Filippov<T> {
         let (n, rate) = (self.system.normal(t, x), self.system.surface_rate(t, x));
         let size: f64 = (0..x.len()).map(|i| n.get(i).abs() * (above.get(i).abs() + below.get(i).abs())).sum();
         let gap: f64 = (0..x.len()).map(|i| n.get(i) * (below.get(i) - above.get(i))).sum();
-        gap - f64::MIN_POSITIVE - ROUNDED * (size + 2.0 * rate.abs())
+        gap - f64::MIN_POSITIVE - FEW * f64::EPSILON * (size + 2.0 * rate.abs())
     }
 
     /// Whether both flows are one from here on, and not only at this point: a brake that is

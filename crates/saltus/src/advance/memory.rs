@@ -1,0 +1,233 @@
+//! What is kept from arc to arc.
+
+use crate::certainty::FEW;
+use crate::control::Controller;
+use crate::ending::Stats;
+use crate::state::State;
+use crate::step::Stepper;
+
+use super::smooth::Switched;
+use super::stiff::Gait;
+
+/// An edge taken, whose root is spent, and how far from zero its guard is there for rounding alone.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Spent<E> {
+    pub(super) edge: E,
+    pub(super) slack: f64,
+}
+
+/// An edge at whose wall the state is: its guard is zero, but for rounding or the drift of the
+/// steps.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Wall<E> {
+    pub(super) edge: E,
+    /// What rounding or drift has left of the guard.
+    pub(super) level: f64,
+    /// Whether the flow runs along the wall, as far as rounding shows: the edge stays, and is taken
+    /// only where the flow carries the guard down.
+    pub(super) stays: bool,
+}
+
+/// How many edges at a time are remembered as idle, or at their walls: with more, the oldest are
+/// taken for new ones.
+const MOST: usize = 16;
+
+/// A list of so few that it is kept in place: a run, and a checkpoint at each frame, allocate
+/// nothing.
+#[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Few<T> {
+    items: [Option<T>; MOST],
+    count: usize,
+}
+
+impl<T: Copy> Few<T> {
+    const NONE: Self = Self { items: [None; MOST], count: 0 };
+
+    pub(super) const fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    pub(super) const fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
+        self.items[..self.count].iter().flatten()
+    }
+
+    pub(super) fn push(&mut self, item: T) {
+        if self.count == MOST {
+            self.items.rotate_left(1);
+            self.count -= 1;
+        }
+        self.items[self.count] = Some(item);
+        self.count += 1;
+    }
+
+    pub(super) fn retain(&mut self, mut keep: impl FnMut(&mut T) -> bool) {
+        let mut kept = 0;
+        for k in 0..self.count {
+            if let Some(mut item) = self.items[k]
+                && keep(&mut item)
+            {
+                self.items[kept] = Some(item);
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+}
+
+/// An arc this small a part of the longest one is short.
+const SHORT: f64 = 1e-4;
+
+/// What is kept from arc to arc.
+#[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Memory<E, S> {
+    pub(crate) stats: Stats,
+    /// What each coordinate was summed up from, over the arcs so far that took time, since it was
+    /// last exactly zero: the largest of |xᵢ| at the start of an arc and of |xᵢ'| times its
+    /// duration.
+    pub(super) largest: Option<S>,
+    /// x' on the last piece of an arc that ends at a crossing.
+    pub(super) slope: Option<S>,
+    pub(super) controller: Controller,
+    pub(super) gait: Gait,
+    pub(super) step: Option<f64>,
+    pub(super) spent: Option<Spent<E>>,
+    /// The edge of the last jump.
+    pub(super) last: Option<E>,
+    /// Edges taken earlier whose guards went on falling, and how fast: not taken again before they
+    /// have risen, or are driven on.
+    pub(super) idle: Few<(Spent<E>, f64)>,
+    /// Edges whose guards are zero, but for rounding, as the mode is entered, and were not just
+    /// taken.
+    pub(super) walls: Few<Wall<E>>,
+    /// How far the search of this exact arc went before a limit of the run cut it.
+    pub(super) cut_at: Option<f64>,
+    pub(super) slack: f64,
+    pub(super) last_duration: f64,
+    pub(super) longest_duration: f64,
+    /// How many arcs in a row, up to the last one, were so short that the rounding of a guard
+    /// spoils their duration.
+    pub(super) hidden: u32,
+    /// How many arcs there were.
+    pub(super) arcs: u64,
+    /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
+    /// step.
+    pub(super) resolved: bool,
+    /// Edges that were taken in the last stop because their guards switch there.
+    pub(super) switched: Switched<E>,
+    /// Whether the last crossing was the rounding of its guard, on an arc that leads away from
+    /// zero: jumps have accumulated as far as numbers resolve.
+    pub(crate) spurious: bool,
+}
+
+impl<E: Copy + PartialEq, S: State> Memory<E, S> {
+    pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
+        Self {
+            stats: Stats::default(),
+            largest: None,
+            slope: None,
+            controller: Controller::new(stepper),
+            gait: Gait::START,
+            step: first_step,
+            spent: None,
+            last: None,
+            idle: Few::NONE,
+            walls: Few::NONE,
+            cut_at: None,
+            slack: 0.0,
+            last_duration: 0.0,
+            longest_duration: 0.0,
+            hidden: 0,
+            arcs: 0,
+            resolved: false,
+            switched: Switched::none(),
+            spurious: false,
+        }
+    }
+
+    /// The edge among those whose root at this time is spent.
+    #[inline]
+    pub(super) fn spent_as(&self, edge: E) -> Option<Spent<E>> {
+        let idle = self.idle.iter().map(|(spent, _)| spent);
+        self.spent.iter().chain(idle).find(|spent| spent.edge == edge).copied()
+    }
+
+    /// The guard of `edge` is away from zero: no root is spent.
+    pub(super) fn unspend(&mut self, edge: E) {
+        self.spent = self.spent.filter(|spent| spent.edge != edge);
+        self.idle.retain(|(idle, _)| idle.edge != edge);
+    }
+
+    /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of
+    /// it.
+    pub(super) fn at_wall(&mut self, edge: E, g: f64) {
+        self.walls.push(Wall { edge, level: g, stays: false });
+    }
+
+    #[cold]
+    #[inline(never)]
+    pub(super) fn level(&self, edge: E) -> f64 {
+        self.wall(edge).map_or(0.0, |wall| wall.level)
+    }
+
+    pub(super) fn wall(&self, edge: E) -> Option<&Wall<E>> {
+        self.walls.iter().find(|wall| wall.edge == edge)
+    }
+
+    /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
+    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen
+    /// it at every arc, until its crossings were lost at its start.
+    #[inline]
+    pub(super) fn cut(&mut self, size: f64) {
+        self.step = self.step.map(|step| step.min(size));
+    }
+
+    /// An arc from `x` that took time has ended.
+    #[inline]
+    pub(super) fn went(&mut self, x: &S, duration: f64) {
+        let alike = |y: &S| y.len() == x.len();
+        let (largest, slope) = (self.largest.filter(alike), self.slope.take().filter(alike));
+        self.largest = Some(x.with(|i| {
+            let here = x.get(i).abs();
+            let before = largest.map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
+            let way = slope.map_or(0.0, |slope| (slope.get(i) * duration).abs());
+            here.max(before).max(way)
+        }));
+    }
+
+    /// Whether an arc is so short beside the longest one that rounding may show in what guards do
+    /// on it.
+    #[inline]
+    pub(crate) fn is_short(&self, duration: f64) -> bool {
+        duration < SHORT * self.longest_duration
+    }
+
+    /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
+    #[inline]
+    pub(crate) fn at_once(&self, since: f64) -> bool {
+        since <= FEW * f64::EPSILON * self.last_duration
+    }
+
+    /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row,
+    /// for one may be short by chance.
+    pub(crate) fn hides_durations(&self) -> bool {
+        self.hidden >= 3
+    }
+
+    /// Whether the last jump took this very edge.
+    pub(crate) fn just_took(&self, edge: E) -> bool {
+        self.spent.is_some_and(|spent| spent.edge == edge)
+    }
+
+    /// After a jump that no edge made.
+    pub(crate) fn beyond(&mut self) {
+        (self.spent, self.last) = (None, None);
+    }
+}
