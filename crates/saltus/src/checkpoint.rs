@@ -12,9 +12,11 @@ use crate::ticks::Ticks;
 use crate::time::{Span, Time};
 use crate::zeno::{Cascade, Contraction};
 
-/// Everything a run needs to go on from just after a jump, to the bit. [`Course::checkpoint`] takes
-/// it, [`Simulation::resume`](crate::Simulation::resume) goes on from it; the feature `serde`
-/// writes and reads it.
+/// Everything a run needs to go on from just after a jump, to the bit.
+///
+/// [`Course::checkpoint`](crate::Course::checkpoint) takes it,
+/// [`Simulation::resume`](crate::Simulation::resume) goes on from it; the feature `serde` writes
+/// and reads it.
 ///
 /// What is written bears the number of its format, and one of another number is refused: a run goes
 /// on to the bit only with what it was begun with. Modes and edges of a [`Hybrid`](crate::Hybrid)
