@@ -65,6 +65,8 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// ```
 pub struct Hybrid<'a, S> {
     modes: Vec<Mode<'a, S>>,
+    /// Whether any mode has clocks.
+    clocked: bool,
     /// Whether any mode has stops, and those of every mode.
     stopped: bool,
     everywhere: Vec<Clock>,
@@ -98,6 +100,7 @@ impl<S> Default for Hybrid<'_, S> {
         Self {
             modes: Vec::new(),
             stopped: false,
+            clocked: false,
             everywhere: Vec::new(),
             last: None,
             misplaced: None,
@@ -266,6 +269,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         let place = mode.edges.len();
         mode.edges.push((to, Edge::clocked(reset)));
         mode.clocks.push((clock, Link { from, to, place }));
+        self.clocked = true;
         self.last = Some(from);
         self
     }

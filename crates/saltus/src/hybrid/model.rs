@@ -38,7 +38,8 @@ impl<S: State> Automaton for Hybrid<'_, S> {
     }
 
     fn clocks(&self, mode: &'static str) -> Clocks<'_, Link> {
-        self.find(mode).map_or(Clocks::none(), |mode| Clocks::kept(&mode.clocks))
+        let mode = if self.clocked { self.find(mode) } else { None };
+        mode.map_or(Clocks::none(), |mode| Clocks::kept(&mode.clocks))
     }
 
     fn stops(&self, mode: &'static str) -> Cow<'_, [Clock]> {
