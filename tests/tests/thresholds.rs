@@ -11,14 +11,14 @@ const SOURCES: [&str; 4] = ["certainty.rs", "cross", "advance", "zeno.rs"];
 
 const HEAD: &str = "# Thresholds
 
-Every constant of the engine that decides whether, where and how a guard falls, what a step may be,
-and when jumps accumulate: its value and what it is for. For whoever changes the engine. The table
+The named numbers by which the engine decides whether, where and how a guard falls, what a step may
+be, and when jumps accumulate: the value of each and what it is for. For whoever changes the engine. The table
 is written from the sources by `SALTUS_BLESS=1 cargo test -p saltus-tests --test thresholds`, and the
 same test holds it to them.
 
 The first four are one scale of certainty, in multiples of a value's noise: what one rounding of each
-number that it is made from changes it by. Wherever a guard, a slope, a time or a duration is
-compared with its noise, it is by one of them.
+number that it is made from changes it by. A comparison of a guard, a slope, a time or a duration
+with its noise is to use one of them; time.rs keeps a 4 of its own, whose derivation is its own.
 
 ";
 
@@ -26,8 +26,8 @@ const LIMITS: &str = "
 ## Limits
 
 The table says what a number is for, not that its value could not be another: most could be several
-times larger or smaller, and no test would tell. Steppers have coefficients of their own, which are
-not listed.
+times larger or smaller, and no test would tell. Lists of places to look at, numbers without a name
+and the coefficients of steppers are not listed.
 ";
 
 struct Constant {

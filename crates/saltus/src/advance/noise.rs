@@ -107,7 +107,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (t, x, by) = (step.now.seconds(), &step.c[0], PROBE * step.scale);
             self.memory.stats.guards += 2;
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
-            // Six digits more than rounding leaves of it: it leaves its wall.
+            // A guard that moves by more than a million times what rounding leaves of it has left
+            // its wall.
             if (guard(by) - guard(-by)).abs() <= FAR * FAR * slack {
                 self.memory.at_wall(edge, 0.0);
             }

@@ -61,7 +61,8 @@ pub(super) enum Passage {
     Leap,
 }
 
-/// What a guard grows or shrinks by, by then.
+/// What a guard grows or shrinks by where it is looked at `FAR` times farther from its change of
+/// sign.
 const CLEARLY: f64 = 4.0;
 
 /// How often a fall is looked for around its guess.
