@@ -51,7 +51,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let unclear = by_powers == FirstFall::Unclear;
             let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
-            let bend = if unclear && p.is_none() { self.bend(edge, now, c) } else { 0.0 };
+            let (value, bend) = if unclear && p.is_none() {
+                self.memory.stats.guards += 1;
+                let value = self.guard(edge, now.seconds(), &c[0]) - level;
+                // How far it bends tells what it is rough by near a zero at the start, and only there.
+                let at_zero = start == Start::Spent || value == 0.0;
+                (value, if at_zero { self.bend(edge, now, c) } else { 0.0 })
+            } else {
+                (0.0, 0.0)
+            };
             let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
             // Where the dense output is long, it is summed up once.
             let near = match by_powers {
@@ -68,7 +76,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
                 (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
                 (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
-                _ => first_fall_on_arc(&mut above, limit, start, bend, resolution(now.seconds().abs() + limit)),
+                _ => {
+                    let tick = resolution(now.seconds().abs() + limit);
+                    first_fall_on_arc(&mut above, value, limit, start, bend, tick)
+                }
             };
             let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
             let Searched { fall, mut evidence, turn } =
@@ -98,6 +109,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// How far the guard bends along a polynomial: by its powers from the second on.
+    #[cold]
     fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
         self.memory.stats.guards += 2;
         let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));

@@ -120,7 +120,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 automaton.guard(edge, now.after(s).seconds(), &at(s))
             };
             let tick = resolution(now.seconds().abs() + to);
-            let searched = first_fall_on_arc(&mut |s| guard(from + s) - level, to - from, start, 0.0, tick)
+            let mut above = |s| guard(from + s) - level;
+            let value = above(0.0);
+            let searched = first_fall_on_arc(&mut above, value, to - from, start, 0.0, tick)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));

@@ -58,6 +58,22 @@ impl<T: Copy> Few<T> {
         self.items[..self.count].iter().flatten()
     }
 
+    pub(super) const fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(super) fn get(&self, k: usize) -> Option<T> {
+        self.items[k]
+    }
+
+    pub(super) fn set(&mut self, k: usize, item: T) {
+        self.items[k] = Some(item);
+    }
+
+    pub(super) const fn truncate(&mut self, count: usize) {
+        self.count = count;
+    }
+
     pub(super) fn push(&mut self, item: T) {
         if self.count == MOST {
             self.items.rotate_left(1);

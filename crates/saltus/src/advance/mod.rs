@@ -16,7 +16,7 @@ mod stepped;
 mod stiff;
 
 pub(crate) use memory::Memory;
-use memory::{Spent, Wall};
+use memory::{Few, Spent, Wall};
 use series::Held;
 pub(crate) use smooth::{Smooth, later_stop};
 
@@ -165,9 +165,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// were taken.
     #[cold]
     fn forget_risen(&mut self, mode: A::Mode, t: f64, x: &A::State) {
-        let mut idle = self.memory.idle;
-        idle.retain(|(spent, _)| self.is_below(mode, spent.edge, t, x));
-        self.memory.idle = idle;
+        self.sift(|memory| &mut memory.idle, |this, (spent, _)| this.is_below(mode, spent.edge, t, x));
+    }
+
+    /// Keeps of a list in memory what is to be kept, item by item where it is: a list moved out and
+    /// back costs more than what most guards do.
+    #[inline]
+    fn sift<T: Copy>(
+        &mut self,
+        list: impl Fn(&mut Memory<A::Edge, A::State>) -> &mut Few<T>,
+        mut keep: impl FnMut(&mut Self, &mut T) -> bool,
+    ) {
+        let mut kept = 0;
+        for k in 0..list(&mut self.memory).count() {
+            if let Some(mut item) = list(&mut self.memory).get(k)
+                && keep(self, &mut item)
+            {
+                list(&mut self.memory).set(kept, item);
+                kept += 1;
+            }
+        }
+        list(&mut self.memory).truncate(kept);
     }
 
     /// Looks at the guards as an arc from `x` in `mode` begins, with so much of the span

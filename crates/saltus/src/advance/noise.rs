@@ -122,21 +122,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn sort_walls(&mut self, mode: A::Mode, step: Step<'_, A::State>) {
         let Step { now, c, scale } = step;
         let (t, x) = (now.seconds(), &c[0]);
-        let mut walls = self.memory.walls;
-        walls.retain(|wall| {
-            let edge = wall.edge;
-            let rate = self.guard_rate(mode, edge, t, x, PROBE * scale);
-            let mut along = |part: f64| {
-                let s = part * scale;
-                self.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
-            };
-            // A guard that falls or rises as a power of time does so within a small part of the
-            // step.
-            let along = along(1.0) || along(EARLY);
-            wall.stays = along && rate.abs() <= self.rate_rounding(edge, t, x, PROBE * scale);
-            wall.stays || self.memory.spent_as(edge).is_none()
-        });
-        self.memory.walls = walls;
+        self.sift(
+            |memory| &mut memory.walls,
+            |this, wall| {
+                let edge = wall.edge;
+                let rate = this.guard_rate(mode, edge, t, x, PROBE * scale);
+                let flat = rate.abs() <= this.rate_rounding(edge, t, x, PROBE * scale);
+                let mut along = |part: f64| {
+                    let s = part * scale;
+                    this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
+                };
+                // A guard that falls or rises as a power of time does so within a small part of
+                // the step.
+                wall.stays = flat && (along(1.0) || along(EARLY));
+                wall.stays || this.memory.spent_as(edge).is_none()
+            },
+        );
     }
 
     /// How far rounding may take the rate of a guard from differences over `by`.
@@ -210,16 +211,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[cold]
     pub(super) fn keep_staying(&mut self, mode: A::Mode, now: Time, x: &A::State, h: f64) {
         let t = now.seconds();
-        let mut walls = self.memory.walls;
-        walls.retain(|Wall { edge, level, stays }| {
-            *stays = *stays && self.carried(mode, *edge, t, x, h) == Carried::Along;
-            if *stays {
-                self.memory.stats.guards += 1;
-                *level = self.guard(*edge, t, x);
-            }
-            *stays
-        });
-        self.memory.walls = walls;
+        self.sift(
+            |memory| &mut memory.walls,
+            |this, Wall { edge, level, stays }| {
+                *stays = *stays && this.carried(mode, *edge, t, x, h) == Carried::Along;
+                if *stays {
+                    this.memory.stats.guards += 1;
+                    *level = this.guard(*edge, t, x);
+                }
+                *stays
+            },
+        );
     }
 }
 

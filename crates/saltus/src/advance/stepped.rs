@@ -67,13 +67,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return self.ended(mode, stop, clock.now, x);
             }
             let ahead = remaining.min(self.smooth.ahead(clock.now));
-            let (h, trial) = match self.accepted(mode, clock.now, &x, &slope, ahead) {
-                Ok(accepted) => accepted,
+            let (mut h, longest) = self.before_step(mode, clock.now, &x, &slope, ahead);
+            let mut trial = self.trial(mode, clock.now.seconds(), &x, &slope, evened(h, longest));
+            let accepted = self.accepted(mode, clock.now, (&x, &slope), (&mut h, longest), &mut trial);
+            match accepted {
+                Ok(()) => {}
                 Err(error) if error.kind() == ErrorKind::Flow => {
                     return self.edge_of_flow(mode, clock.now, &x, &slope).ok_or(error);
                 }
                 Err(error) => return Err(error),
-            };
+            }
             let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
             let state = if clear && !observer.wants_pieces() {
@@ -163,49 +166,53 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ArcEnd::after(Some(found.edge), told, close.time, close.state)
     }
 
-    /// A step that the error estimate accepts, and its size.
-    #[allow(clippy::type_complexity)] // a pair
+    /// The size to try for the next step, and the longest that it may have.
+    #[inline]
+    fn before_step(&mut self, mode: A::Mode, now: Time, x: &A::State, slope: &A::State, remaining: f64) -> (f64, f64) {
+        self.change_method();
+        let longest = remaining.min(self.options.longest_step);
+        let h = self.memory.step.unwrap_or_else(|| {
+            let (tolerance, order) = (self.options.tolerance, self.stepper.error_order());
+            first_step(|t, x| self.flow(mode, t, x), now.seconds(), x, slope, &tolerance, order, longest)
+        });
+        (h, longest)
+    }
+
+    /// Tries shorter steps than the `trial` of the size `h` until the error estimate accepts one,
+    /// whose size is then `h`.
+    ///
+    /// The trial stays where it is: moved, it would go by way of memory in other pieces than it is
+    /// read in, and be waited for.
+    #[inline(always)]
     fn accepted(
         &mut self,
         mode: A::Mode,
         now: Time,
-        x: &A::State,
-        slope: &A::State,
-        remaining: f64,
-    ) -> Result<(f64, Trial<A::State, M::Stages<A::State>>), Error> {
-        self.change_method();
+        (x, slope): (&A::State, &A::State),
+        (h, longest): (&mut f64, f64),
+        trial: &mut Trial<A::State, M::Stages<A::State>>,
+    ) -> Result<(), Error> {
         let t = now.seconds();
-        let longest = remaining.min(self.options.longest_step);
         let tolerance = self.options.tolerance;
-        let order = self.stepper.error_order();
-        let mut h = match self.memory.step {
-            Some(h) => h,
-            None => first_step(|t, x| self.flow(mode, t, x), t, x, slope, &tolerance, order, longest),
-        };
         loop {
-            let size = evened(h, longest);
-            let trial = self.trial(mode, t, x, slope, size);
+            let size = evened(*h, longest);
             let error = self.stepper.error(size, trial.as_ref(), |error| tolerance.square(error, x, &trial.end));
             let finite = !error.is_nan() && trial.end.is_finite() && trial.slope.is_finite();
             let (accepted, factor) = self.memory.controller.judge(if finite { error } else { f64::INFINITY }, size);
             if accepted {
                 self.memory.stats.steps += 1;
-                self.memory.step = Some(if size < h { (size * factor).max(h) } else { size * factor });
-                self.notice_stiffness(mode, t, x, size, &trial, slope);
-                return Ok((size, trial));
+                self.memory.step = Some(if size < *h { (size * factor).max(*h) } else { size * factor });
+                self.notice_stiffness(mode, t, x, size, trial, slope);
+                *h = size;
+                return Ok(());
             }
             self.memory.stats.rejected += 1;
             self.memory.gait.rejected();
-            h = size * factor;
-            if h <= SHORTEST * resolution(t) {
-                let place = Place::new(t, mode, None::<A::Edge>, x);
-                return Err(if finite {
-                    Error::new(ErrorKind::StepSize, place)
-                } else {
-                    let which = Some(not_finite(&trial.slope)).filter(|which| !which.is_empty());
-                    Error::new(ErrorKind::Flow, place).noting(which)
-                });
+            *h = size * factor;
+            if *h <= SHORTEST * resolution(t) {
+                return Err(too_short(finite, &trial.slope, Place::new(t, mode, None::<A::Edge>, x)));
             }
+            *trial = self.trial(mode, t, x, slope, evened(*h, longest));
         }
     }
 
@@ -448,4 +455,14 @@ pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
 pub(super) fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
     let place = Place::new(time.seconds(), mode, None::<()>, x);
     Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
+}
+
+/// No step is accepted: the shortest fails at its error, or at a slope that is no number.
+#[cold]
+fn too_short<S: State>(finite: bool, slope: &S, place: Place) -> Error {
+    if finite {
+        return Error::new(ErrorKind::StepSize, place);
+    }
+    let which = Some(not_finite(slope)).filter(|which| !which.is_empty());
+    Error::new(ErrorKind::Flow, place).noting(which)
 }

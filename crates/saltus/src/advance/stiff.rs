@@ -7,11 +7,17 @@ use crate::step::{Stepper, Trial};
 
 use super::Advance;
 
-/// A step is looked at after this many, as long as nothing speaks for a change.
+/// A step is looked at after this many at the earliest, as long as nothing speaks for a change.
 ///
-/// A look costs three evaluations of the flow: with one in 32 steps a flow that is not stiff loses
-/// less than two percent (tests/stiffness.rs, `what_is_not_stiff_loses_little`).
+/// A look costs three evaluations of the flow: with one in 32 steps and ever fewer a flow that is
+/// not stiff loses less than two percent (tests/stiffness.rs, `what_is_not_stiff_loses_little`);
+/// after twice as many a short stiff arc would be over (`no_more_than_twice_the_best_choice`).
 const SELDOM: u64 = 32;
+
+/// Each look in vain makes the steps to the next one more by one in so many: a run notices that it
+/// has become stiff later by no more than this part of its steps, and n steps that are not stiff
+/// are looked at log n times.
+const LATER: u64 = 4;
 
 /// As so many steps counts one that is rejected.
 const REJECTED: u64 = 8;
@@ -43,18 +49,21 @@ pub(super) struct Gait {
     pub(super) stiff: bool,
     signs: u32,
     patience: u32,
-    /// Steps since the last look.
-    steps: u64,
+    /// Steps from one look to the next.
+    wait: u64,
+    /// Those until the next one.
+    left: u64,
     /// Whether the next step is the first of another method.
     changes: bool,
 }
 
 impl Gait {
-    pub(super) const START: Self = Self { stiff: false, signs: 0, patience: SIGNS, steps: 0, changes: false };
+    pub(super) const START: Self =
+        Self { stiff: false, signs: 0, patience: SIGNS, wait: SELDOM, left: SELDOM, changes: false };
 
     /// A step was rejected, as those are that stability limits.
     pub(super) fn rejected(&mut self) {
-        self.steps += REJECTED;
+        self.left = self.left.saturating_sub(REJECTED);
     }
 }
 
@@ -73,10 +82,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) {
         let Some(limit) = self.stepper.stable_to() else { return };
         self.memory.stats.stiff += u64::from(self.memory.gait.stiff);
-        self.memory.gait.steps += 1;
-        if self.memory.gait.signs > 0 || self.memory.gait.steps >= SELDOM {
+        self.memory.gait.left = self.memory.gait.left.saturating_sub(1);
+        if self.memory.gait.left == 0 {
             let change = x.with(|i| trial.slope.get(i) - slope.get(i));
-            self.look_at_stiffness(mode, t + h, (&trial.end, &trial.slope), change, h / limit);
+            let (end, slope) = (trial.end, trial.slope); // copies: what others refer to is kept in memory
+            self.look_at_stiffness(mode, t + h, (&end, &slope), change, h / limit);
         }
     }
 
@@ -90,7 +100,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         change: A::State,
         part: f64,
     ) {
-        self.memory.gait.steps = 0;
+        self.memory.gait.left = self.memory.gait.wait;
         // Of a state that the tolerance does not resolve nothing tells what its guards want of a
         // method.
         if self.options.tolerance.norm(end, end, end) < 1.0 && !self.automaton.edges(mode).is_empty() {
@@ -98,7 +108,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let stiff = part * self.damping(mode, t, (end, slope), change) > NEAR;
         let gait = &mut self.memory.gait;
-        gait.signs = if stiff == gait.stiff { 0 } else { gait.signs + 1 };
+        if stiff == gait.stiff {
+            (gait.signs, gait.wait) = (0, gait.wait + gait.wait / LATER);
+            return;
+        }
+        (gait.signs, gait.left) = (gait.signs + 1, 0);
         if gait.signs >= gait.patience {
             let patience = MOST_SIGNS.min(2 * gait.patience);
             *gait = Gait { stiff, patience, changes: true, ..Gait::START };

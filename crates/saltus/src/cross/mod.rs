@@ -115,16 +115,17 @@ pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) ->
     Search::new(&mut guard, span, 0.0, 0.0).first_fall(start, None)
 }
 
-/// The same for a guard along an arc, where times are `tick` apart; on the dense output of a step
-/// it bends by `bend`.
+/// The same for a guard of this `value` at the start of a stretch of an arc, where times are `tick`
+/// apart; on the dense output of a step it bends by `bend`.
 pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
+    value: f64,
     span: f64,
     start: Start,
     bend: f64,
     tick: f64,
 ) -> Result<Searched, Undefined> {
-    Search::new(guard, span, bend, tick).first_fall(start, None)
+    Search::new(guard, span, bend, tick).at_start(value).first_fall(start, None)
 }
 
 /// The same for a guard on a step that is the polynomial `p(s / span)` to within

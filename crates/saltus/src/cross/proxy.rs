@@ -11,26 +11,22 @@ impl Search<'_> {
     pub(super) fn sampled(&mut self, a: f64, b: f64) -> Result<Samples, Undefined> {
         let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
         let mut values = [0.0; 9];
-        for (value, x) in values.iter_mut().zip(chebyshev::NODES) {
-            let s = if x == -1.0 {
-                a
-            } else if x == 1.0 {
-                b
-            } else {
-                centre + radius * x
-            };
-            *value = self.value(s)?;
+        values[0] = if a == 0.0 { self.start()? } else { self.value(a)? };
+        for (value, x) in values[1..8].iter_mut().zip(&chebyshev::NODES[1..8]) {
+            *value = self.value(centre + radius * x)?;
         }
+        values[8] = self.value(b)?;
         let series = chebyshev::series(&values);
         let mut off = 0.0_f64;
         for x in CHECKS {
             off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
         }
         let off = (series[7].abs() + series[8].abs()).max(off);
+        let varies = series[1..].iter().map(|c| c.abs()).sum();
         // The nodes themselves are rounded, and the state at them likewise.
         let least = values.into_iter().fold(f64::INFINITY, f64::min);
         let spacing = (b.next_up() - b) / (b - a);
-        Ok(Samples { series, off, spacing, start: values[0], end: values[8], least, values })
+        Ok(Samples { series, varies, off, spacing, start: values[0], end: values[8], least, values })
     }
 }
 
@@ -43,6 +39,8 @@ const UNCHECKED: f64 = 8.0;
 /// A guard sampled at the Chebyshev points of an interval.
 pub(super) struct Samples {
     series: [f64; 9],
+    /// What its interpolant varies by at most, to each side of its first coefficient.
+    varies: f64,
     /// How far the guard is from its interpolant, by its checks.
     off: f64,
     /// The spacing of numbers, as a part of the interval.
@@ -60,8 +58,7 @@ impl Samples {
     /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is
     /// at an end or clear of zero: above a half of what the interpolant varies by.
     pub(super) fn turn(&self) -> Option<[f64; 2]> {
-        let varies: f64 = self.series[1..].iter().map(|c| c.abs()).sum();
-        if self.series[0] > 2.0 * varies {
+        if self.series[0] > 2.0 * self.varies {
             return None;
         }
         // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
@@ -81,14 +78,14 @@ impl Samples {
     /// Whether the guard is positive on the whole interval for the size of the series alone
     /// (|`T_k`| ≤ 1, and its slope ≤ k²).
     pub(super) fn stay_above(&self) -> bool {
-        let (mut most, mut steepest, mut square) = (0.0, 0.0, 1.0);
+        let (mut steepest, mut square) = (0.0, 1.0);
         for (k, c) in self.series.iter().enumerate().skip(1) {
-            most += c.abs();
             steepest += 2.0 * square * c.abs();
             square += (2 * k + 1) as f64;
         }
-        let scale = self.series[0].abs() + most;
-        self.series[0] > most + UNCHECKED * (self.off + steepest * self.spacing) + 2.0 * SUMMED * f64::EPSILON * scale
+        let scale = self.series[0].abs() + self.varies;
+        self.series[0]
+            > self.varies + UNCHECKED * (self.off + steepest * self.spacing) + 2.0 * SUMMED * f64::EPSILON * scale
     }
 
     pub(super) fn proxy(&self) -> Proxy {

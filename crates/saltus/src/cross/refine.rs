@@ -109,7 +109,7 @@ impl Search<'_> {
             return self.narrowed(inside, outside);
         }
         let (mut a, mut b) = (a, b);
-        let start = self.value(0.0)?;
+        let start = self.start()?;
         if a == 0.0 && !self.spent && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
             b = self.span * AT_START;
             if start == 0.0 {

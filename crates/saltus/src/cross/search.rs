@@ -47,7 +47,9 @@ pub(super) struct Search<'a> {
     pub(super) tick: f64,
     /// Whether the root at the start is spent.
     pub(super) spent: bool,
-    /// The guard's value at a spent start.
+    /// The guard's value at the start, once it was asked.
+    start: Option<f64>,
+    /// That at a spent start.
     pub(super) base: f64,
     /// How the guard leaves a spent root at the start, as far as its samples have shown.
     pub(super) departure: Option<Departure>,
@@ -148,6 +150,7 @@ impl<'a> Search<'a> {
             span,
             tick,
             spent: false,
+            start: None,
             base: 0.0,
             departure: None,
             rough: ROUGH * bend,
@@ -159,6 +162,22 @@ impl<'a> Search<'a> {
             evidence: Evidence::Excluded,
             turn: None,
         }
+    }
+
+    /// The same, where the guard has this `value` at the start.
+    pub(super) fn at_start(self, value: f64) -> Self {
+        Self { start: Some(value), largest: value.abs(), ..self }
+    }
+
+    /// The guard at the start.
+    pub(super) fn start(&mut self) -> Result<f64, Undefined> {
+        let value = match self.start {
+            Some(value) if value.is_nan() => return Err(Undefined(0.0)),
+            Some(value) => value,
+            None => self.value(0.0)?,
+        };
+        self.start = Some(value);
+        Ok(value)
     }
 
     pub(super) fn value(&mut self, s: f64) -> Result<f64, Undefined> {
@@ -199,7 +218,7 @@ impl<'a> Search<'a> {
 
     /// On which side the search starts.
     fn side_at(&mut self, start: Start) -> Result<Side, Undefined> {
-        let value = self.value(0.0)?;
+        let value = self.start()?;
         Ok(match start {
             Start::Spent => {
                 (self.spent, self.base) = (true, value);
