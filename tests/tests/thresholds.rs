@@ -12,29 +12,76 @@ const SOURCES: [&str; 4] = ["certainty.rs", "cross", "advance", "zeno.rs"];
 const HEAD: &str = "# Thresholds
 
 The named numbers by which the engine decides whether, where and how a guard falls, what a step may
-be, and when jumps accumulate: the value of each and what it is for. For whoever changes the engine. The table
-is written from the sources by `SALTUS_BLESS=1 cargo test -p saltus-tests --test thresholds`, and the
-same test holds it to them.
+be, and when jumps accumulate. For whoever changes the engine. The page is written from the sources
+by `SALTUS_BLESS=1 cargo test -p saltus-tests --test thresholds`, and the same test holds it to
+them.
 
-The first four are one scale of certainty, in multiples of a value's noise: what one rounding of each
-number that it is made from changes it by. A comparison of a guard, a slope, a time or a duration
-with its noise is to use one of them; time.rs keeps a 4 of its own, whose derivation is its own.
-
+Two scales carry the decisions. Of *certainty*, in multiples of a value's noise: what one rounding of
+each number that it is made from changes it by. Of *nearness*, in parts of a whole. A comparison with
+a noise, or of a part with its whole, is to use one of them; three numbers more decide on guards.
+time.rs keeps a 4 of its own, whose derivation is its own.
 ";
+
+/// What a threshold decides, and the most that there may be of a kind, where that is limited.
+struct Kind {
+    title: &'static str,
+    text: &'static str,
+    most: usize,
+    holds: fn(&Constant) -> bool,
+}
+
+const KINDS: [Kind; 3] = [
+    Kind {
+        title: "Between a step and a jump",
+        text: "",
+        most: 12,
+        holds: |it| !it.is_count() && !it.is_of_steps() && it.file != "advance/closed.rs" && !it.is_derived(),
+    },
+    Kind {
+        title: "Counts",
+        text: "How often something is done at most, or looked at. More would cost time, fewer would leave more doubts.\n\n",
+        most: usize::MAX,
+        holds: Constant::is_count,
+    },
+    Kind {
+        title: "Steps, methods, and what is derived",
+        text: "How long steps and pieces are, when the method changes, numbers of published methods and formats, and\nwhat is made of the thresholds above.\n\n",
+        most: usize::MAX,
+        holds: |_| true,
+    },
+];
 
 const LIMITS: &str = "
 ## Limits
 
-The table says what a number is for, not that its value could not be another: most could be several
-times larger or smaller, and no test would tell. Lists of places to look at, numbers without a name
-and the coefficients of steppers are not listed.
+The tables say what a number is for, not that its value could not be another: most could be several
+times larger or smaller, and no test would tell. Lists of places to look at, halves and doubles in
+formulas and the coefficients of steppers are not listed.
 ";
 
 struct Constant {
     name: String,
     file: String,
+    kind: String,
     value: String,
     what: String,
+}
+
+impl Constant {
+    fn is_count(&self) -> bool {
+        self.kind != "f64"
+    }
+
+    /// Whether it decides on the size of a step or of the method, or belongs to one.
+    fn is_of_steps(&self) -> bool {
+        ["advance/series.rs", "advance/stiff.rs", "advance/stepped.rs"].contains(&&*self.file)
+            || self.name == "TRUNCATION"
+    }
+
+    /// Whether it is made of others alone, or a power of two that scales numbers without rounding.
+    fn is_derived(&self) -> bool {
+        self.file != "certainty.rs" && (self.value.contains(" * ") || self.value.contains("<<"))
+    }
 }
 
 fn files(path: &Path, found: &mut Vec<PathBuf>) {
@@ -69,8 +116,9 @@ fn constants(source: &str, file: &str) -> Vec<Constant> {
             && number(&kind)
         {
             assert!(!comment.is_empty(), "{file}: {name} has no comment");
-            let (name, value, file) = (name.to_owned(), value.trim_end_matches(';').to_owned(), file.to_owned());
-            found.push(Constant { name, file, value, what: sentence(&comment) });
+            let [name, kind, file] = [name, kind, file].map(str::to_owned);
+            let value = value.trim_end_matches(';').to_owned();
+            found.push(Constant { name, file, kind, value, what: sentence(&comment) });
         }
         comment.clear();
     }
@@ -83,7 +131,7 @@ fn the_page_lists_every_threshold() {
     let source = root.join("crates/saltus/src");
     let mut paths = Vec::new();
     SOURCES.iter().for_each(|name| files(&source.join(name), &mut paths));
-    let all: Vec<Constant> = paths
+    let mut all: Vec<Constant> = paths
         .iter()
         .flat_map(|path| {
             let file = path.strip_prefix(&source).unwrap().display().to_string();
@@ -92,9 +140,15 @@ fn the_page_lists_every_threshold() {
         .collect();
     assert!(all.len() > 20 && all[0].name == "FEW");
     let mut page = HEAD.to_owned();
-    page.push_str("| constant | value | what it is for | file |\n|---|---|---|---|\n");
-    for Constant { name, file, value, what } in &all {
-        writeln!(page, "| `{name}` | `{value}` | {what} | `{file}` |").unwrap();
+    for Kind { title, text, most, holds } in KINDS {
+        let (of, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(holds);
+        all = rest;
+        assert!(of.len() <= most, "{title}: {}, and {most} at most", of.len());
+        write!(page, "\n## {title}\n\n{text}| constant | value | what it is for | file |\n|---|---|---|---|\n")
+            .unwrap();
+        for Constant { name, file, value, what, .. } in &of {
+            writeln!(page, "| `{name}` | `{value}` | {what} | `{file}` |").unwrap();
+        }
     }
     page.push_str(LIMITS);
     let path = root.join("docs/thresholds.md");

@@ -1,4 +1,4 @@
-//! One scale of certainty, in multiples of a value's noise.
+//! Two scales: of certainty, in multiples of a value's noise, and of nearness, in parts of a whole.
 //!
 //! The noise of a value is what one rounding of each number that it is made from changes it by, or
 //! what its samples scatter by. A value of a few times that may be nothing else, one of many more
@@ -18,3 +18,20 @@ pub(crate) const SURELY: f64 = ROUNDINGS * FEW;
 /// Over a way on which a value changes by so many times its noise, three digits of the change are
 /// right.
 pub(crate) const FAR: f64 = SURELY * ROUNDINGS;
+
+/// Two estimates of one value agree if they differ by no more than this part of it; a part of a
+/// stretch no larger is near its end.
+pub(crate) const ROUGHLY: f64 = 0.125;
+
+/// A part of a whole of which three digits stand beside it.
+pub(crate) const SMALL: f64 = 1.0 / (1_u64 << 10) as f64;
+
+/// A part beside which six digits stand: midway between the whole and its rounding, and so the
+/// length of differences, and what a smooth curve may be off a promised or an interpolated one.
+pub(crate) const TINY: f64 = SMALL * SMALL;
+
+/// A part beside which nine digits stand: its square is below rounding.
+pub(crate) const MINUTE: f64 = SMALL * TINY;
+
+/// A part that may be what rounding has left of the whole, after jumps and cancellation.
+pub(crate) const NOTHING: f64 = TINY * TINY;

@@ -1,6 +1,6 @@
 //! Zeno: jumps accumulate where the times between them *and* what they change contract to nothing.
 
-use crate::certainty::{FAR, ROUNDINGS};
+use crate::certainty::{FAR, ROUNDINGS, SMALL, TINY};
 use crate::state::State;
 use crate::time::resolution;
 
@@ -8,13 +8,6 @@ use crate::time::resolution;
 const MEMORY: usize = 16;
 /// The longest repeating pattern of jumps looked for.
 const LONGEST_CYCLE: usize = 4;
-
-/// A ratio of durations that rounding has not brought below one.
-const CLEARLY_BELOW_ONE: f64 = 0.995;
-
-/// Ratios of durations are of one contraction if they differ by no more than this: one that is far
-/// below the others is of jumps that rounding keeps from being at one time.
-const ALIKE: f64 = 1e-3;
 
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
@@ -129,7 +122,7 @@ impl<S: State> Contraction<S> {
         if self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden {
             None
         } else if hidden {
-            self.certified(f64::INFINITY, CLEARLY_BELOW_ONE)
+            self.certified(f64::INFINITY, 1.0 - SMALL)
         } else {
             self.certified(resolution(elapsed), 1.0)
         }
@@ -143,7 +136,8 @@ impl<S: State> Contraction<S> {
             }
             let ratios = (0..4.max(cycle)).filter(|i| i + cycle < known).map(|i| self.last(i) / self.last(i + cycle));
             let (least, ratio) = ratios.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
-            if least < ALIKE * ratio {
+            // One far below the others is of jumps that rounding keeps from being at one time.
+            if least < SMALL * ratio {
                 return None;
             }
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
@@ -173,9 +167,6 @@ pub(crate) struct Cascade {
 
 /// How many jumps are the first ones of a cascade: two of the longest cycles.
 const FIRST: usize = 2 * LONGEST_CYCLE;
-/// The part of the first ways of jumps that contract to which the ways have shrunk by the end; a
-/// harmonic series, which has no limit, would still be larger after a million jumps.
-const SHRUNK: f64 = 1e-6;
 
 impl Cascade {
     pub(crate) const NONE: Self = Self { jumps: 0, first: 0.0, late: 0.0 };
@@ -197,7 +188,8 @@ impl Cascade {
     /// Whether the jumps moved the state, and hardly do so any more: so many that no more are
     /// looked at, or by no more than rounding leaves of the first ones.
     pub(crate) fn contracts(&self, most: usize) -> bool {
-        let to = if self.jumps >= most { SHRUNK } else { f64::EPSILON };
+        // A harmonic series, which has no limit, would still be larger after a million jumps.
+        let to = if self.jumps >= most { TINY } else { f64::EPSILON };
         self.jumps > FIRST && self.first > 0.0 && self.late <= to * to * self.first
     }
 }

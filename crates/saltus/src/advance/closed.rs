@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Formula;
-use crate::certainty::FEW;
+use crate::certainty::{FEW, NOTHING, TINY};
 use crate::cross::{Undefined, chebyshev};
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
@@ -18,13 +18,8 @@ use super::crossing::Close;
 use super::exact::natural;
 use super::{Advance, ArcEnd};
 
-/// How far a piece may be from the solution, relative to the largest coefficient of each
-/// coordinate.
-const AS_GOOD_AS_EXACT: f64 = 1e-12;
 /// The longest first piece of an arc, in times in which its solution changes by its own size.
 const FIRST: f64 = 16.0;
-/// The shortest piece, as a part of its arc, or of the time in which its solution changes.
-const SHORTEST: f64 = 1.0 / (1_u64 << 20) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn closed(
@@ -92,7 +87,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let natural = natural(&[*x, self.automaton.flow(mode, now.seconds(), x)]);
         // Of a long arc the first piece is as long as the solution takes to change.
-        let shortest = SHORTEST * if natural > 0.0 { span.min(natural) } else { span };
+        // A solution that no polynomial follows over so short a piece is followed by none.
+        let shortest = TINY * if natural > 0.0 { span.min(natural) } else { span };
         let mut pieces = 0;
         let (mut from, mut length) = (0.0, if natural > 0.0 { span.min(FIRST * natural) } else { span });
         while from < span {
@@ -131,7 +127,7 @@ fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
             // nor than the smallest numbers can say.
             let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
             let hidden = f64::MIN_POSITIVE + FEW * f64::EPSILON * rate * late / h;
-            (exact.get(i) - fit.get(i)).abs() <= AS_GOOD_AS_EXACT * most + hidden
+            (exact.get(i) - fit.get(i)).abs() <= NOTHING * most + hidden
         })
     })
 }

@@ -1,9 +1,9 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
-use crate::certainty::{FAR, FEW, SURELY};
+use crate::certainty::{FAR, FEW, MINUTE, ROUGHLY, SURELY, TINY};
 use crate::cross::{
-    Crossing, FirstFall, Powers, ROUGH, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
+    Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
 use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::Inspection;
@@ -19,11 +19,6 @@ use super::Advance;
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
-/// A guard that rises by less than so many of its roundings on a short arc spoils its duration.
-const SHOWN: f64 = FAR * SURELY;
-/// How far aside of a fall its guard is looked at, in the length at which the rounding of time and
-/// what a guard bends by weigh alike: (ulp(t) T²)^⅓.
-const ASIDE: f64 = 0.3;
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
     /// were searched.
@@ -54,7 +49,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (value, bend) = if unclear && p.is_none() {
                 self.memory.stats.guards += 1;
                 let value = self.guard(edge, now.seconds(), &c[0]) - level;
-                // How far it bends tells what it is rough by near a zero at the start, and only there.
+                // How far it bends tells what it is rough by near a zero at the start alone.
                 let at_zero = start == Start::Spent || value == 0.0;
                 (value, if at_zero { self.bend(edge, now, c) } else { 0.0 })
             } else {
@@ -197,7 +192,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.guard(edge, t, end);
         let moved = (self.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);
-        rise < SHOWN * self.guard_rounding(edge, t, end, g, end) + SURELY * by_time
+        rise < FAR * SURELY * self.guard_rounding(edge, t, end, g, end) + SURELY * by_time
     }
 
     /// Whether the guard rises through its fall at `root`, looked at from so far on both sides that
@@ -208,7 +203,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += 2;
         // So that the rounding of time and what the guard bends by weigh alike.
         let (longest, t) = (self.memory.longest_duration, now.seconds());
-        let far = ASIDE * longest * (resolution(t) / longest).cbrt();
+        let far = ROUGHLY * longest * (resolution(t) / longest).cbrt();
         let [before, after] = [root - far, root + far].map(|s| self.guard(edge, now.after(s).seconds(), &at(s)));
         after > before
     }
@@ -336,9 +331,6 @@ pub(super) struct Near<S> {
     pub(super) slope: S,
 }
 
-/// How near, as a part of the time.
-const NEAR: f64 = 1e-10;
-
 impl<S: State> Near<S> {
     #[inline(never)] // once for each kind of state, not for each model and stepper
     pub(super) fn around(c: &[S], scale: f64, s: f64) -> Self {
@@ -356,7 +348,7 @@ impl<S: State> Near<S> {
     #[inline]
     pub(super) fn at(&self, c: &[S], scale: f64, s: f64) -> S {
         let by = s - self.s;
-        if by.abs() > NEAR * self.s {
+        if by.abs() > MINUTE * self.s {
             return Self::far(c, s / scale);
         }
         self.state.with(|i| self.state.get(i) + by * self.slope.get(i))
@@ -427,7 +419,7 @@ impl Along<'_> {
         let margin = powers.rounding();
         // From a wall, be it spent or not, only the change counts.
         if start == Start::Spent || powers.coefficients()[0].abs() <= self.rounding() + margin {
-            powers.first_fall(1, ROUGH * powers.bend() + margin)
+            powers.first_fall(1, TINY * powers.bend() + margin)
         } else {
             powers.first_fall(0, self.rounding() + margin)
         }

@@ -4,7 +4,8 @@ use std::cell::Cell;
 
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
-use crate::certainty::{FAR, ROUNDINGS, SURELY};
+use crate::certainty::{FAR, NOTHING, ROUGHLY, ROUNDINGS, SURELY, TINY};
+use crate::cross::AT_START;
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
@@ -12,18 +13,8 @@ use crate::time::{Time, resolution};
 
 use super::Advance;
 
-/// A guard no larger than this part of the state may be zero but for rounding.
-const SMALL: f64 = 1e-12;
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
-
-/// The longest time over which a guard's slope is looked at, as a part of the last arc's duration,
-/// or in s where there was none.
-const GLANCE: f64 = 1e-6;
-/// Each look is so many times as long as the one before.
-const LONGER: f64 = 8.0;
-/// The change of a guard doubles with time if it differs from that by no more than this part.
-const DOUBLES: f64 = 0.1;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
@@ -44,7 +35,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if self.memory.idle.is_empty() || !self.is_driven(mode, edge, t, &{ *x }, g) {
                     continue;
                 }
-            } else if spent.is_none() && g > SMALL * size(x) {
+            } else if spent.is_none() && g > NOTHING * size(x) {
                 continue;
             }
             let x = &{ *x };
@@ -114,7 +105,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// no root to be spent, unless the state has stayed where it leaps.
     #[inline]
     pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
-        if self.memory.slack > 0.0 && self.memory.slack > SMALL * size(before) {
+        if self.memory.slack > 0.0 && self.memory.slack > NOTHING * size(before) {
             let (before, after) = (*before, *after); // else both would be kept in memory
             self.has_leapt(edge, &before, (to, t, &after));
         }
@@ -153,9 +144,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0, 0.0) < 0.0).unwrap_or(edge)
     }
 
-    /// The longest time over which a guard's slope is looked at.
+    /// The longest time over which a guard's slope is looked at: a part of the last arc's duration,
+    /// or of a second where there was none.
     fn glance(&self) -> f64 {
-        if self.memory.last_duration > 0.0 { self.memory.last_duration * GLANCE } else { GLANCE }
+        if self.memory.last_duration > 0.0 { TINY * self.memory.last_duration } else { TINY }
     }
 
     /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is
@@ -195,17 +187,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A guard that moves changes by no less than some roundings of time.
         guards.set(guards.get() + 1);
         let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
-        let shortest = (longest / (1_u64 << 60) as f64).max(FAR * tick).min(longest);
+        let shortest = (AT_START * longest).max(FAR * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
             while h < longest && h > 0.0 {
                 let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
                 let doubles =
-                    (far - by * half).abs() < DOUBLES * far.abs() && (half - by * quarter).abs() < DOUBLES * half.abs();
+                    (far - by * half).abs() < ROUGHLY * far.abs() && (half - by * quarter).abs() < ROUGHLY * half.abs();
                 if doubles && far.abs() > ROUNDINGS * rounding {
                     return far / h;
                 }
-                h *= LONGER;
+                h /= ROUGHLY;
             }
         }
         change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
@@ -214,7 +206,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
 /// Whether a coordinate differs by more than roundings.
 fn is_moved<S: State>(x: &S, y: &S) -> bool {
-    x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > SMALL * x.get(i).abs())
+    x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > NOTHING * x.get(i).abs())
 }
 
 /// The sum of a state's coordinates, all taken as positive.

@@ -4,6 +4,7 @@ use std::cell::LazyCell;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Polynomial;
+use crate::certainty::SMALL;
 use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
 use crate::ending::Stop;
 use crate::error::Error;
@@ -165,9 +166,6 @@ fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> 
     }
 }
 
-/// The shortest of its time scales that counts, as a part of the longest.
-const FASTEST: f64 = 1e-3;
-
 /// The time in which the fastest coordinate of a polynomial changes by its own size, but no less
 /// than a part of that of the slowest one.
 pub(super) fn natural<S: State>(c: &[S]) -> f64 {
@@ -181,7 +179,8 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     };
     let times = || (0..c[0].len()).map(of).filter(|&time| time > 0.0);
     let slowest = times().fold(0.0, f64::max);
-    times().fold(slowest, f64::min).max(FASTEST * slowest)
+    // One that is faster still says nothing of how the guard moves.
+    times().fold(slowest, f64::min).max(SMALL * slowest)
 }
 
 /// The state at the end of a piece that may last for ever.

@@ -2,20 +2,12 @@
 //! falls.
 
 use crate::automaton::Automaton;
+use crate::certainty::{ROUGHLY, ROUNDINGS, SMALL, SURELY};
 use crate::cross::{Doubt, Evidence};
 use crate::step::Stepper;
 
 use super::Advance;
 use super::crossing::Step;
-use super::noise::{PROBE, STEP_ERROR};
-
-/// A guard that turns farther from zero than this part of the way by which it moves on the step is
-/// no grazing one, at any tolerance that a step can be taken with.
-const CLOSE: f64 = 0.1;
-
-/// The size of a guard beside what the absolute tolerance leaves open of it, from which a run has
-/// two digits of it.
-const RESOLVED: f64 = 100.0;
 
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
 /// below what the tolerance allows off by the square of 0.618⁴⁰.
@@ -36,7 +28,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let ends = turn.map(|s| self.on(edge, step, s));
         let (s, least) = self.least(edge, step, turn);
         let rise = ends[0].max(ends[1]) - least;
-        if !(least >= 0.0 && least <= CLOSE * rise) {
+        if !(least >= 0.0 && least <= ROUGHLY * rise) {
             return None;
         }
         let room = self.error_of(edge, step, s, least) - least;
@@ -50,7 +42,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// and when.
     #[inline]
     pub(super) fn dips(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
-        let by = PROBE * step.scale;
+        let by = SMALL * step.scale;
         if root < by {
             return None;
         }
@@ -58,7 +50,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
         let (slope, bend) = ((after - before) / (2.0 * by), (before + after) / (by * by));
         let turn = -slope / bend;
-        (bend > 0.0 && turn < CLOSE * step.scale).then(|| self.shallow(edge, step, root, (turn, bend)))?
+        (bend > 0.0 && turn < ROUGHLY * step.scale).then(|| self.shallow(edge, step, root, (turn, bend)))?
     }
 
     #[cold]
@@ -85,8 +77,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let middle = 0.5 * root;
         let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
         let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
-        let off = self.moved(edge, step.time(middle), &x, half, |_| STEP_ERROR * absolute);
-        self.memory.resolved = start.abs().max(half.abs()) > RESOLVED * off;
+        let off = self.moved(edge, step.time(middle), &x, half, |_| ROUNDINGS * absolute);
+        self.memory.resolved = start.abs().max(half.abs()) > SURELY * off;
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 

@@ -1,6 +1,6 @@
 //! What is kept from arc to arc.
 
-use crate::certainty::FEW;
+use crate::certainty::{FEW, SMALL};
 use crate::control::Controller;
 use crate::ending::Stats;
 use crate::state::State;
@@ -33,6 +33,10 @@ pub(super) struct Wall<E> {
 /// How many edges at a time are remembered as idle, or at their walls: with more, the oldest are
 /// taken for new ones.
 const MOST: usize = 16;
+
+/// So many arcs in a row whose durations rounding spoils have accumulated: one may be short by
+/// chance.
+const IN_A_ROW: u32 = 3;
 
 /// A list of so few that it is kept in place: a run, and a checkpoint at each frame, allocate
 /// nothing.
@@ -96,9 +100,6 @@ impl<T: Copy> Few<T> {
         self.count = kept;
     }
 }
-
-/// An arc this small a part of the longest one is short.
-const SHORT: f64 = 1e-4;
 
 /// What is kept from arc to arc.
 #[derive(Clone)]
@@ -222,7 +223,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// on it.
     #[inline]
     pub(crate) fn is_short(&self, duration: f64) -> bool {
-        duration < SHORT * self.longest_duration
+        duration < SMALL * self.longest_duration
     }
 
     /// Whether a time after a jump is so short that rounding cannot tell it from that jump's.
@@ -231,10 +232,9 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         since <= FEW * f64::EPSILON * self.last_duration
     }
 
-    /// Whether the rounding of a guard spoils the durations of the last arcs: of three in a row,
-    /// for one may be short by chance.
+    /// Whether the rounding of a guard spoils the durations of the last arcs.
     pub(crate) fn hides_durations(&self) -> bool {
-        self.hidden >= 3
+        self.hidden >= IN_A_ROW
     }
 
     /// Whether the last jump took this very edge.

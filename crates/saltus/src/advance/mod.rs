@@ -24,6 +24,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::solution::Solution;
 use crate::automaton::{Automaton, Entry};
+use crate::certainty::FEW;
 use crate::cross::{Doubt, Evidence, Start};
 use crate::ending::{Options, Stop};
 use crate::error::{Error, ErrorKind, Place};
@@ -207,7 +208,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(Begun::Crossing(edge));
         }
         // What is left of the span may be the rounding of the jumps' times.
-        if remaining <= 2.0 * f64::EPSILON * elapsed {
+        if remaining <= FEW * f64::EPSILON * elapsed {
             return Ok(Begun::Over);
         }
         Ok(Begun::Open { exact: !self.options.stepped && (smooth || self.smooth == Smooth::ALWAYS) })

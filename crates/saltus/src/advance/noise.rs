@@ -2,7 +2,7 @@
 //! of the steps.
 
 use crate::automaton::Automaton;
-use crate::certainty::{FAR, ROUNDINGS};
+use crate::certainty::{FAR, ROUGHLY, ROUNDINGS, SMALL, TINY};
 use crate::cross::{AT_START, Crossing};
 use crate::state::State;
 use crate::step::Stepper;
@@ -11,24 +11,14 @@ use crate::time::{Time, resolution};
 use super::crossing::Step;
 use super::{Advance, Spent, Wall};
 
-/// How many times what the tolerance allows in a step a state on its dense output may be off.
-///
-/// The error estimate is that of a step's end, to the order below the method's own; within the step
-/// and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
-pub(super) const STEP_ERROR: f64 = 16.0;
-
-/// The part of a step over which the slope of a guard is taken: short enough that what four powers
-/// of it leave out is below every tolerance, long enough that roundings stay below it.
-pub(super) const PROBE: f64 = 1e-3;
-
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place,
     /// with the size sᵢ that the coordinate was summed up from.
+    ///
+    /// Each is moved by a part of its size that is large beside rounding and small beside what a
+    /// guard bends over.
     pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
-        /// By this part of its size a coordinate is moved: large beside rounding, small beside what
-        /// a guard bends over.
-        const NUDGE: f64 = 1.0 / (1 << 20) as f64;
-        self.moved(edge, t, x, g, |i| NUDGE * sizes.get(i).abs()) * (f64::EPSILON / NUDGE)
+        self.moved(edge, t, x, g, |i| TINY * sizes.get(i).abs()) * (f64::EPSILON / TINY)
     }
 
     /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc,
@@ -69,9 +59,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance
     /// allows.
+    ///
+    /// The error estimate is that of a step's end, to the order below the method's own; within the
+    /// step and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
     pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let tolerance = self.options.tolerance;
-        STEP_ERROR * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
+        ROUNDINGS * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
     /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all
@@ -104,7 +97,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             && self.memory.wall(edge).is_none()
             && self.has(mode, edge)
         {
-            let (t, x, by) = (step.now.seconds(), &step.c[0], PROBE * step.scale);
+            let (t, x, by) = (step.now.seconds(), &step.c[0], SMALL * step.scale);
             self.memory.stats.guards += 2;
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
             // A guard that moves by more than a million times what rounding leaves of it has left
@@ -126,15 +119,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             |memory| &mut memory.walls,
             |this, wall| {
                 let edge = wall.edge;
-                let rate = this.guard_rate(mode, edge, t, x, PROBE * scale);
-                let flat = rate.abs() <= this.rate_rounding(edge, t, x, PROBE * scale);
+                let rate = this.guard_rate(mode, edge, t, x, SMALL * scale);
+                let flat = rate.abs() <= this.rate_rounding(edge, t, x, SMALL * scale);
                 let mut along = |part: f64| {
                     let s = part * scale;
                     this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
                 };
                 // A guard that falls or rises as a power of time does so within a small part of
                 // the step.
-                wall.stays = flat && (along(1.0) || along(EARLY));
+                wall.stays = flat && (along(1.0) || along(ROUGHLY));
                 wall.stays || this.memory.spent_as(edge).is_none()
             },
         );
@@ -152,11 +145,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ///
     /// What the dense output does is not asked: along a surface that the flow keeps, it drifts.
     fn carried(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> Carried {
-        let by = PROBE * h;
+        let by = SMALL * h;
         let rate = self.guard_rate(mode, edge, t, x, by);
         let mut noise = self.rate_rounding(edge, t, x, by);
         for k in 0..x.len() {
-            let off = STEP_ERROR * self.options.tolerance.allowed(x.get(k), x.get(k));
+            let off = ROUNDINGS * self.options.tolerance.allowed(x.get(k), x.get(k));
             let nudged = x.with(|i| if i == k { x.get(i) + off } else { x.get(i) });
             let change = (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
             noise += if change.is_finite() { change } else { 0.0 };
@@ -172,7 +165,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// dg/dt along the flow at `x`, by differences over `by` and half of it to both sides, from
     /// which the square of the distance is taken out (L. F. Richardson, Phil. Trans. A 210 (1911)
-    /// 307).
+    /// 307). Over a small part of a step, what four powers of it leave out is below every
+    /// tolerance, and roundings are below that.
     fn guard_rate(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
         let slope = self.flow(mode, t, x);
         self.memory.stats.guards += 4;
@@ -224,9 +218,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         );
     }
 }
-
-/// The part of a step within which a guard leaves its wall that leaves it at once.
-const EARLY: f64 = 1.0 / 16.0;
 
 /// Where the flow carries a guard.
 #[derive(Clone, Copy, PartialEq, Eq)]

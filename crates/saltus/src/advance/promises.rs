@@ -2,13 +2,12 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
-use crate::certainty::ROUNDINGS;
+use crate::certainty::{ROUNDINGS, TINY};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
-use super::series::OTHER;
 use super::{Advance, ArcEnd};
 
 /// The first arcs of a run are all looked at: as many as modes follow each other in a cycle of most
@@ -18,10 +17,6 @@ const FIRST: u64 = 8;
 /// The parts of the states at both ends of an arc whose sum is looked at: neither on the line
 /// through the ends nor on that through zero.
 const PARTS: [f64; 2] = [0.37, 0.41];
-
-/// A sum of the guard's values may be off by this part of them: more than the digits that guards
-/// lose to cancellation, less than what bends.
-const OFF: f64 = 1e-6;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks, now and then, at the promises of the guards of `mode` on the arc from `x` to its
@@ -52,7 +47,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let flow = self.automaton.flow(mode, self.smooth.within(t), x);
         let is = |one: &A::State, other: &A::State| {
             let most = (0..other.len()).map(|i| other.get(i).abs()).fold(0.0, f64::max);
-            !other.is_finite() || (0..other.len()).all(|i| (one.get(i) - other.get(i)).abs() <= OTHER * most)
+            !other.is_finite() || (0..other.len()).all(|i| (one.get(i) - other.get(i)).abs() <= TINY * most)
         };
         match self.automaton.solution(mode, t, x) {
             Solution::Polynomial(solution) => {
@@ -89,7 +84,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let [a, b] = PARTS;
         let sum = zero + a * (here - zero) + b * (there - zero);
         let off = g(time, &y.with(|i| a * x.get(i) + b * y.get(i))) - sum;
-        if off.abs() <= OFF * (zero.abs() + here.abs() + there.abs()) {
+        // More than the digits that guards lose to cancellation, less than what bends.
+        if off.abs() <= TINY * (zero.abs() + here.abs() + there.abs()) {
             return None;
         }
         let rounding = self.guard_rounding(edge, time, x, here, x) + self.guard_rounding(edge, time, y, there, y);

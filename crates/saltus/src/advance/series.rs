@@ -3,6 +3,7 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Flow;
+use crate::certainty::TINY;
 use crate::control::Tolerance;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
@@ -18,7 +19,7 @@ use crate::time::{Span, Time, resolution};
 use super::crossing::{Near, OnStep, Step};
 use super::exact::natural;
 use super::smooth::Arrival;
-use super::stepped::{evened, remaining, searched, wrong_dimension};
+use super::stepped::{SHORTEST, evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd};
 
 /// The lowest order.
@@ -35,9 +36,6 @@ const SAFETY: f64 = 0.85;
 const SHORTER: f64 = 0.5;
 /// How often a step is shortened for a kink that may be on it.
 const MOST_HALVINGS: usize = 4;
-/// How much of a slope may be missing at the start of a series before it is taken for that of
-/// another flow.
-pub(super) const OTHER: f64 = 1e-6;
 /// How many of its natural times a step takes whose series ends.
 const LONGEST: f64 = 16.0;
 
@@ -73,7 +71,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 ahead = self.ahead(&expansion, &c, longest);
             }
             if let Some(place) = ahead.kink
-                && ahead.step <= 2.0 * resolution(clock.now.seconds())
+                && ahead.step <= SHORTEST * resolution(clock.now.seconds())
             {
                 self.tape.turn(place); // at once: no step is that short
                 continue;
@@ -197,7 +195,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// step.
     fn believed(&mut self, way: &Way<A>, c: &[A::State], unit: f64, mut h: f64) -> Result<Option<Believed<A>>, Error> {
         let &Way { mode, now, since, remaining, first } = way;
-        while h > 2.0 * resolution(now.seconds()) && h.is_finite() {
+        while h > SHORTEST * resolution(now.seconds()) && h.is_finite() {
             let limit = searched(h, remaining, since, now.after(remaining));
             let mut held = std::mem::take(&mut self.held);
             held.0.clear();
@@ -241,7 +239,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn same_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, first: &A::State, unit: f64) -> Result<(), Error> {
         let flow = self.slope(mode, now, x)?;
         let most = (0..flow.len()).map(|i| flow.get(i).abs()).fold(0.0, f64::max);
-        if !flow.is_finite() || (0..flow.len()).all(|i| (first.get(i) / unit - flow.get(i)).abs() <= OTHER * most) {
+        if !flow.is_finite() || (0..flow.len()).all(|i| (first.get(i) / unit - flow.get(i)).abs() <= TINY * most) {
             return Ok(());
         }
         Err(Error::new(ErrorKind::Series, Place::new(now.seconds(), mode, None::<A::Edge>, x)))

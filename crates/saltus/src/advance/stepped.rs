@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::certainty::{FEW, ROUNDINGS};
+use crate::certainty::{FEW, MINUTE, ROUGHLY, ROUNDINGS, SMALL, TINY};
 use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
 use crate::ending::Stop;
@@ -17,27 +17,12 @@ use crate::step::{Stepper, Trial};
 use crate::time::{LAST, Span, Time, grace, resolution};
 
 use super::crossing::{OnStep, Step, exceeds, is_rounding, less_constant};
-use super::noise::PROBE;
 use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
 
 /// The shortest step, in spacings of time.
-const SHORTEST: f64 = 2.0;
+pub(super) const SHORTEST: f64 = 2.0;
 
-/// The part of the way to a crossing, some spacings of time long, at which a state is inside beyond
-/// rounding.
-const INSIDE: f64 = 0.875;
-
-/// A first step that contradicts the flow is tried again at this part of its size.
-const RETRIED: f64 = 0.1;
-/// A crossing within this part of a step of its start is where the dense output is exact.
-const EXACT: f64 = 1e-9;
-/// How far before a crossing its guard is looked at for its slope, as a part of the step.
-const BESIDE: f64 = 1e-3;
-/// A correction of a crossing by more than this part of the step is none.
-const TOO_FAR: f64 = 0.1;
-/// A correction this small leaves an error of its square only.
-const NEAR_ENOUGH: f64 = 1e-5;
 /// A last step is lengthened by up to this factor rather than followed by a tiny one.
 const STRETCHED: f64 = 1.01;
 /// With no more coordinates than these a guard is probed in each of them.
@@ -88,7 +73,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                     self.memory.stats.steps -= 1;
                     self.memory.stats.rejected += 1;
-                    self.memory.step = Some(RETRIED * h);
+                    self.memory.step = Some(ROUGHLY * h); // far shorter, for a motion that is far slower
                     continue;
                 }
                 if first {
@@ -263,7 +248,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if here >= 0.0 && there < 0.0 {
                 let root = by * here / (here - there);
                 // A state a little inside where rounding leaves the nearest one outside.
-                let s = [root, INSIDE * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
+                let s = [root, (1.0 - ROUGHLY) * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
                 self.memory.slack = FEW * (here - there);
                 return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
             }
@@ -313,12 +298,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (rate, told, told < 0.0 && !is_rounding(&guard, constant, c1, &mut self.memory.stats.guards))
             } else {
                 self.memory.stats.guards += 5;
-                let s = PROBE * h;
+                let s = SMALL * h;
                 let rise = |rate: &A::State, by: f64| {
                     let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
                     self.guard(edge, t + s, &at(by)) - self.guard(edge, t - s, &at(-by))
                 };
-                let (rate, told) = (rise(slope, s), rise(c1, PROBE));
+                let (rate, told) = (rise(slope, s), rise(c1, SMALL));
                 let g = self.guard(edge, t, x);
                 (rate, told, told < 0.0 && -told > ROUNDINGS * self.guard_rounding(edge, t, x, g, x))
             };
@@ -385,10 +370,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<Closer<M::Dense<A::State>>> {
         let Step { now, scale, .. } = step;
         let mut h = crossing.outside;
-        if h <= scale * EXACT {
-            return None; // at the start, where the dense output is exact
+        // So close to the start the dense output is exact.
+        if h <= MINUTE * scale {
+            return None;
         }
-        let near = (crossing.inside - scale * BESIDE).max(0.0);
+        let near = (crossing.inside - SMALL * scale).max(0.0);
         let mut guard = |s: f64| {
             self.memory.stats.guards += 1;
             self.guard(edge, step.time(s), &step.at(s))
@@ -403,10 +389,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let dense = self.dense(mode, now.seconds(), x, h, &trial);
             self.memory.stats.guards += 1;
             let shift = self.guard(edge, now.after(h).seconds(), &trial.end) / fall;
-            if shift.is_nan() || shift.abs() > TOO_FAR * h {
+            if shift.is_nan() || shift.abs() > ROUGHLY * h {
                 return None;
             }
-            if shift.abs() <= NEAR_ENOUGH * h {
+            // A correction this small leaves an error of its square only.
+            if shift.abs() <= TINY * h {
                 let ahead = (h + 2.0 * shift.abs() + ROUNDINGS * f64::EPSILON * h).min(limit);
                 return Some(Closer { dense, h, ahead });
             }

@@ -85,7 +85,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.gait.left = self.memory.gait.left.saturating_sub(1);
         if self.memory.gait.left == 0 {
             let change = x.with(|i| trial.slope.get(i) - slope.get(i));
-            let (end, slope) = (trial.end, trial.slope); // copies: what others refer to is kept in memory
+            // Copies: what others refer to is kept in memory.
+            let (end, slope) = (trial.end, trial.slope);
             self.look_at_stiffness(mode, t + h, (&end, &slope), change, h / limit);
         }
     }

@@ -1,7 +1,7 @@
 //! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a
 //! long stretch shows to more digits than a short one.
 
-use crate::certainty::{FAR, FEW, SURELY};
+use crate::certainty::{FAR, FEW, ROUGHLY, SURELY};
 use crate::poly::{Bernstein, DIVIDED};
 
 use super::Undefined;
@@ -29,21 +29,10 @@ pub(super) struct Departure {
     order: Option<f64>,
 }
 
-/// A guard no larger than this many times its rounding may be hidden by it, where it was seen to
-/// rise on a longer stretch.
-const HIDDEN: f64 = SURELY * FEW;
 /// A slope up counts from this part of what it may be off by, which is taken with room: of ten
 /// million guards with clustered roots, two that fall at once seem to rise with 0.27 and 0.30 of
 /// it, by chance.
 const SURE: f64 = 0.4;
-/// A margin that keeps more than this part of itself, while a stretch is halved, is rounding.
-const STAYS: f64 = 0.125;
-/// The part of a stretch on which rounding is to show if it hides all of it.
-const EARLY: f64 = 0.25;
-/// A fall as tᵐ with m below this has speed: rounding may add a quarter to m = 1.
-const LINEAR: f64 = 1.25;
-/// How far apart times beside a hidden fall are looked at, as a part of the time to it.
-const NEARBY: f64 = 1.0 / 64.0;
 
 impl Departure {
     /// The guard with its root at the start of `0..=length` divided out, whose values are exact to
@@ -69,7 +58,7 @@ impl Departure {
     /// Whether no slope stands out of the rounding for sure, and the guard falls as the square of
     /// time: the jump at a touch may change the slope's sign, and it is not to be lost then.
     pub(super) fn touches(&self) -> bool {
-        self.slope > -SURELY * self.doubt && self.order.is_some_and(|order| (order - 2.0).abs() < 0.5)
+        self.slope > -SURELY * self.doubt && self.order.is_some_and(|order| order.round() == 2.0)
     }
 
     /// The steepest fall that the slope allows.
@@ -104,11 +93,11 @@ impl Search<'_> {
         }
         // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
         // number by number its steps have an order.
-        let stays = |then: f64| STAYS * then < margin && margin < SURELY * then;
+        let stays = |then: f64| ROUGHLY * then < margin && margin < SURELY * then;
         Ok(self.rise.is_some_and(stays)
             && nowhere_below
-            && p.end() < HIDDEN * margin
-            && self.is_rough(0.0, EARLY * b)?)
+            && p.end() < SURELY * FEW * margin
+            && self.is_rough(0.0, ROUGHLY * b)?)
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =
@@ -128,7 +117,7 @@ impl Search<'_> {
         {
             return Part::Hidden(root * it.length);
         }
-        let linear = order.is_some_and(|order| order < LINEAR);
+        let linear = order.is_some_and(|order| order.round() <= 1.0);
         let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
         if touched { Part::AtStart } else { Part::None(Side::Outside) }
     }
@@ -137,7 +126,8 @@ impl Search<'_> {
     /// guard inside; or the fall, if there is none.
     pub(super) fn inside_near(&mut self, fall: f64) -> Result<f64, Undefined> {
         for k in 0..=16 {
-            for s in [fall * (1.0 + f64::from(k) * NEARBY), fall * (1.0 - f64::from(k) * NEARBY)] {
+            for s in [fall * (1.0 + f64::from(k) * ROUGHLY * ROUGHLY), fall * (1.0 - f64::from(k) * ROUGHLY * ROUGHLY)]
+            {
                 if self.value(s)? >= 0.0 {
                     return Ok(s);
                 }

@@ -3,7 +3,7 @@
 
 use super::search::{Part, Search, Side};
 use super::{Doubt, Evidence, Undefined};
-use crate::certainty::FEW;
+use crate::certainty::{FEW, ROUGHLY};
 
 /// How many samples are taken of a guard that seems to be nothing but rounding.
 const LOOKS: usize = 128;
@@ -14,8 +14,6 @@ const PER_STEP: usize = 4;
 const MOST_TURNS: usize = 8;
 /// Where on a stretch two neighbouring samples are compared, to see whether the guard stands still.
 const STANDS_AT: [f64; 2] = [0.3, 0.6];
-/// A fall of which the slope explains less than this part has no speed.
-const SLOW: f64 = 0.25;
 impl Search<'_> {
     /// Number by number.
     pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
@@ -106,7 +104,7 @@ impl Search<'_> {
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));
             // The slope that it allows is too small for this fall: two steps, one twice as far as
             // the other, are not its sign.
-            let without_speed = far.is_some_and(|it| it.steepest() * b < SLOW * (self.base - last));
+            let without_speed = far.is_some_and(|it| it.steepest() * b < ROUGHLY * (self.base - last));
             let slow = slow || far.is_some() && turns > 0 || without_speed && of_value;
             let order = if slow && without_speed {
                 2.0

@@ -15,8 +15,8 @@ use crate::poly::{Bernstein, Shape};
 pub use evidence::{Doubt, Evidence};
 pub(crate) use powers::{FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
+pub(crate) use search::AT_START;
 use search::Search;
-pub(crate) use search::{AT_START, ROUGH};
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and
 /// negative at `outside`.

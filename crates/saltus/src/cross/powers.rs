@@ -1,15 +1,10 @@
 //! The first fall of a polynomial by its powers, where they show it to be the only one up to there.
 
-use crate::certainty::SURELY;
+use crate::certainty::{MINUTE, SURELY, TINY};
 use crate::poly::MAX_DEGREE;
 
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
 const DEEPEST: u32 = 4;
-/// Where the last correction is this part of the root, and the bend's part of the correction as
-/// small, what is left is rounding: their squares' product.
-const CLOSE: f64 = 1e-6;
-/// Closer than this a root is left to the search if it may be two.
-const CLOSEST: f64 = 1e-8;
 /// Corrections after which the root is given up.
 const MOST_CORRECTIONS: usize = 40;
 
@@ -206,7 +201,8 @@ fn root(a: &[f64], end: f64) -> Option<f64> {
         let bent = by * (bend / slope);
         let next = u - by * (1.0 + bent);
         let off = (next - u).abs();
-        if off <= CLOSEST * u || off <= CLOSE * u && bent.abs() <= CLOSE {
+        // What is left is the square of the correction, and so no more than rounding.
+        if off <= MINUTE * u || off <= TINY * u && bent.abs() <= TINY {
             return (next <= 1.0).then_some(next);
         }
         u = if next > low && next < high { next } else { 0.5 * (low + high) };

@@ -1,8 +1,8 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
-use super::search::{AT_START, ROUNDING, Search};
+use super::search::{AT_START, Search};
 use super::{Crossing, Doubt, Evidence, Undefined};
-use crate::certainty::FAR;
+use crate::certainty::{FAR, FEW, MINUTE};
 
 /// The fall close to `near`, a root exact but for rounding, between neighbouring numbers.
 pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Crossing> {
@@ -61,14 +61,8 @@ pub(super) enum Passage {
     Leap,
 }
 
-/// What a guard grows or shrinks by where it is looked at `FAR` times farther from its change of
-/// sign.
-const CLEARLY: f64 = 4.0;
-
 /// How often a fall is looked for around its guess.
 const TRIES: usize = 4;
-/// Each time so much farther, and at first so many numbers away.
-const WIDER: f64 = 4.0;
 
 /// κ₁ of the ITP method, in parts of the interval: its authors' choice.
 const TRUNCATION: f64 = 0.2;
@@ -78,7 +72,7 @@ impl Search<'_> {
     /// noted.
     pub(super) fn passage(&mut self, &Crossing { inside, outside, .. }: &Crossing) -> Result<Passage, Undefined> {
         let near = self.value(inside)?.abs() + self.value(outside)?.abs();
-        if near.is_finite() && near <= ROUNDING * self.largest {
+        if near.is_finite() && near <= MINUTE * self.largest {
             return Ok(Passage::Root);
         }
         // A root of up to the fourth order has grown fourfold there, and what comes from a pole of
@@ -86,10 +80,10 @@ impl Search<'_> {
         let by = FAR * (outside - inside).max(self.tick);
         let (before, after) = ((inside - by).max(0.0), outside + by);
         let far = (self.guard)(before).abs() + (self.guard)(after).abs();
-        let passage = if near == f64::INFINITY || CLEARLY * far < near && self.largest < CLEARLY * near {
+        let passage = if near == f64::INFINITY || FEW * far < near && self.largest < FEW * near {
             // Nowhere near its largest, what shrinks so fast is rounding.
             Passage::Pole
-        } else if far > CLEARLY * near {
+        } else if far > FEW * near {
             Passage::Root
         } else {
             Passage::Leap
@@ -144,7 +138,7 @@ impl Search<'_> {
         let mut near = (guess, self.value(guess)?);
         let end = self.value(b)?;
         let towards = if near.1 >= 0.0 { 1.0 } else { -1.0 };
-        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(WIDER * (guess.next_up() - guess));
+        let mut by = (2.0 * near.1 * (b - guess) / end).abs().max(FEW * (guess.next_up() - guess));
         for _ in 0..TRIES {
             let s = guess + towards * by;
             if s <= a || s >= b {
@@ -155,7 +149,7 @@ impl Search<'_> {
                 return Ok(Some(if towards > 0.0 { [near, next] } else { [next, near] }));
             }
             near = next;
-            by *= WIDER;
+            by *= FEW;
         }
         Ok(None)
     }

@@ -1,6 +1,6 @@
 //! Halving an interval until bounds exclude a fall in each part, or show one.
 
-use crate::certainty::{FAR, ROUNDINGS, SURELY};
+use crate::certainty::{FAR, MINUTE, NOTHING, ROUGHLY, ROUNDINGS, SMALL, SURELY, TINY};
 use crate::poly::{Bernstein, DIVIDED, Shape};
 
 use super::departure::Departure;
@@ -12,30 +12,13 @@ use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, settle};
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
 /// A fall within this fraction of the interval from its start is at its start.
-pub(crate) const AT_START: f64 = 1.0 / (1_u64 << 60) as f64;
-/// Rounding is smaller than this fraction of the guard's largest magnitude.
-pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
-/// The roughness of a guard on a step, as a part of how far it bends there: a dense output starts
-/// with the exact slope, but its higher powers carry the error of the step and the rounding of its
-/// stages.
-pub(crate) const ROUGH: f64 = 1e-6;
+pub(crate) const AT_START: f64 = NOTHING * TINY;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
-/// An interpolant whose error is this small beside its size shows the shape of the guard.
-const SHAPED: f64 = 1e-4;
-/// An error that halving a stretch does not bring below this part of what it was is the guard's own
-/// rounding: that of a smooth guard shrinks by hundreds.
-const STUCK: f64 = 0.1;
-/// From this part of the guard's size on an error may come from a guard that goes in steps.
-const IN_STEPS: f64 = 1e-3;
-/// A slope over a half and over a quarter of a stretch is that over the whole, if it differs by no
-/// more than this part of it.
-const SAME: f64 = 0.2;
-/// A rise from a spent start is looked for at so many times, down to 2⁻³² of the stretch.
-const LOOKS_BACK: usize = 8;
-/// Each of them is this part of the one before.
-const NEARER: f64 = 1.0 / 16.0;
+/// A rise from a spent start is looked for at so many times, each nearer by the same part, down to
+/// 2⁻³³ of the stretch.
+const LOOKS_BACK: usize = 11;
 
 /// Compiled once for every guard: it is much code, and a call through a table costs little beside a
 /// guard on a dense output.
@@ -153,7 +136,9 @@ impl<'a> Search<'a> {
             start: None,
             base: 0.0,
             departure: None,
-            rough: ROUGH * bend,
+            // A dense output starts with the exact slope, but its higher powers carry the error of
+            // the step and the rounding of its stages.
+            rough: TINY * bend,
             falls_smoothly: false,
             rise: None,
             evaluations: 0,
@@ -232,7 +217,7 @@ impl<'a> Search<'a> {
     /// On which side the guard was shortly before it became zero at the start: at the last time
     /// that differs from it.
     fn side_before(&mut self) -> Side {
-        let mut back = self.span * ROUNDING;
+        let mut back = self.span * MINUTE;
         while back < self.span {
             match Side::of((self.guard)(-back), Side::Wall) {
                 Side::Wall => back *= 2.0,
@@ -323,7 +308,7 @@ impl<'a> Search<'a> {
         }
         // Halving shrinks the error of a smooth guard by hundreds; what does not shrink is the
         // guard's own rounding.
-        let resolved = known.is_some() || margin <= SHAPED * scale || margin >= STUCK * whole;
+        let resolved = known.is_some() || margin <= SMALL * scale || margin >= ROUGHLY * whole;
         let from = self.flat.unwrap_or(a);
         if leaving
             && !self.spent
@@ -384,8 +369,9 @@ impl<'a> Search<'a> {
     /// or goes in steps.
     fn by_looks(&mut self, stretch: &Stretch, scale: f64, side: Side, margin: f64) -> Result<Part, Undefined> {
         let &Stretch { a, b, ref known, .. } = stretch;
-        let rounding = scale <= ROUNDINGS * margin && (known.is_some() || margin <= ROUNDING * self.largest);
-        if rounding || margin > IN_STEPS * scale && self.stands(a, b)? {
+        let rounding = scale <= ROUNDINGS * margin && (known.is_some() || margin <= MINUTE * self.largest);
+        // So large an error may come from a guard that goes in steps.
+        if rounding || margin > SMALL * scale && self.stands(a, b)? {
             match self.looked(a, b, side)? {
                 Look::Steps(part) => return Ok(part),
                 Look::Rounding(part) if rounding => return Ok(part),
@@ -431,7 +417,7 @@ impl<'a> Search<'a> {
     fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
         let mut s = b;
         for _ in 0..LOOKS_BACK {
-            s *= NEARER;
+            s *= ROUGHLY;
             if self.value(s)? - self.base > self.roughness(s) {
                 return Ok(true);
             }
@@ -444,7 +430,7 @@ impl<'a> Search<'a> {
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {
             let shorter = self.sampled(0.0, part * b)?.proxy().p.without_root_at_start().start();
-            if (shorter - part * change).abs() > SAME * part * change.abs() {
+            if (shorter - part * change).abs() > ROUGHLY * part * change.abs() {
                 return Ok(false);
             }
         }

@@ -13,10 +13,11 @@ use crate::state::State;
 /// down to 1e-9.
 ///
 /// After 32 steps, and then after a quarter more each time, the largest eigenvalue λ of the flow's
-/// Jacobian is estimated, for two evaluations: a run of n steps pays for log n of them, and
-/// notices that it has become stiff within a quarter of its steps. If steps h are so long time and again that h |λ| is as large as the explicit method
-/// is stable to, stability limits them, the flow is stiff, and [`Rodas5P`] goes on; and the other
-/// way round. [`Stats::stiff`](crate::Stats::stiff) counts its steps.
+/// Jacobian is estimated, for two evaluations: a run of n steps pays for log n of them, and notices
+/// that it has become stiff within a quarter of its steps. If steps h are so long time and again
+/// that h |λ| is as large as the explicit method is stable to, stability limits them, the flow is
+/// stiff, and [`Rodas5P`] goes on; and the other way round. [`Stats::stiff`](crate::Stats::stiff)
+/// counts its steps.
 ///
 /// ```
 /// use saltus::{Hybrid, Simulation};
