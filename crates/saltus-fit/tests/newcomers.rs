@@ -16,7 +16,7 @@ fn fit(text: &str) -> Report {
 fn sheets_are_read_as_they_are() {
     for text in [
         // A telephone's stopwatch.
-        "Lap,Lap time,Total time\n1,00:00:03.200,00:00:03.200\n2,00:00:00.723,00:00:03.923\n3,00:00:00.578,00:00:04.501\n\
+        "Bouncing ball\nLap,Lap time,Total time\n1,00:00:03.200,00:00:03.200\n2,00:00:00.723,00:00:03.923\n3,00:00:00.578,00:00:04.501\n\
          4,00:00:00.462,00:00:04.963\n5,00:00:00.370,00:00:05.333\n",
         // Labels of a sound program, and places of a film.
         "3.2000\t3.2000\tbounce 1\n3.9225\t3.9225\tbounce 2\n4.5005\t4.5005\t\n4.9629\t4.9629\tx\n5.3328\t5.3328\t\n",

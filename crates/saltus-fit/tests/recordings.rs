@@ -146,7 +146,7 @@ fn a_rebound_that_is_not_in_the_table_is_named() {
 /// together do so by chance.
 #[test]
 fn contacts_of_which_many_do_not_follow_are_doubted() {
-    let text = "trial,t1 (s),t2 (s),t3 (s),t4 (s),t5 (s)\n0,0.70,1.26,1.74,1.92,2.18\n1,0.72,1.24,1.65,2.02,2.21\n\
+    let text = "# a bouncing ball\ntrial,t1 (s),t2 (s),t3 (s),t4 (s),t5 (s)\n0,0.70,1.26,1.74,1.92,2.18\n1,0.72,1.24,1.65,2.02,2.21\n\
                 2,0.68,1.19,1.61,2.00,2.15\n3,0.71,1.33,1.69,2.00,2.14\n4,0.68,1.33,1.71,2.04,2.17\n";
     let report = fit(text);
     assert_eq!(report.verdict(), Verdict::Doubtful, "{report}");

@@ -27,6 +27,18 @@ pub enum Doubt {
         /// Its number.
         line: u64,
     },
+    /// Nothing in the table says that something bounces, and the readings may be of anything.
+    Unsaid {
+        /// A column of the readings.
+        column: String,
+    },
+    /// Releases and rebounds are in different units, and their numbers are those of one.
+    Units {
+        /// The column of the releases.
+        drop: String,
+        /// The column of the rebounds.
+        rebound: String,
+    },
     /// The COR follows from the time until the ball rests, and the last contacts are not those of a
     /// ball in flight.
     UntilRest,
@@ -42,6 +54,16 @@ impl fmt::Display for Doubt {
                 f,
                 "line {line} says '{text}', a length that no reading takes in: if the scale does not begin at the floor, state what it reads there \
                  (--zero); if the ball was dropped from there, --drop; else take the line out"
+            ),
+            Self::Unsaid { column } => write!(
+                f,
+                "nothing in the table says that something bounces, and '{column}' may be of anything: say so in a heading or in a line above it \
+                 ('Ball dropped on wood'), or give the names by --header"
+            ),
+            Self::Units { drop, rebound } => write!(
+                f,
+                "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \
+                 them wrong?"
             ),
             Self::UntilRest => f.write_str(
                 "the COR follows from the time until the ball rests, as if it bounced ever smaller; its last contacts are no bounces, and rolling \

@@ -15,7 +15,7 @@ use super::text::text;
 use super::title::{self, Stated};
 use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
-use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool};
+use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
 use crate::quantity::Ball;
 
@@ -165,9 +165,14 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let rows = sifted(region, &columns)?;
     region.rows = rows.rows.iter().map(|row| row.at).collect();
     columns.measure(region, options, metadata.frame_rate)?;
+    columns.losses(metadata.drop);
+    said::released(region, &columns)?;
+    let doubts = [said::unsaid(region, &columns, options), said::mixed_units(region, &columns)];
     // A sound is sampled far more finely than a contact is heard.
     let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
-    assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })
+    let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
+    table.doubts.extend(doubts.into_iter().flatten());
+    Ok(table)
 }
 
 /// Places without a clock are a film, a row a frame, if the frame rate is known.

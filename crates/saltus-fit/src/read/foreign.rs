@@ -114,7 +114,8 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
 
 /// How many columns, or rows, a cell spans.
 fn span(tag: &quick_xml::events::BytesStart<'_>, of: &str) -> usize {
-    let value = tag.try_get_attribute(of).ok().flatten();
+    // In a page of the web a value needs no quotes.
+    let value = tag.html_attributes().with_checks(false).flatten().find(|a| a.key.as_ref().eq_ignore_ascii_case(of));
     let number = value.and_then(|attribute| attribute.value.trim().parse::<usize>().ok());
     number.unwrap_or(1).clamp(1, COLUMNS)
 }

@@ -1,5 +1,7 @@
 //! From text to cells: delimiter, comments, and the place of every cell for messages.
 
+mod unfold;
+
 use csv::{ReaderBuilder, StringRecord};
 use saltus_bounce::units::Quantity;
 
@@ -23,6 +25,11 @@ pub(super) struct Grid<'a> {
     cells: String,
     ends: Vec<u32>,
     rows: Vec<RowAt>,
+    /// The column of the text that each column stands in, where cells of several readings were
+    /// parted.
+    origin: Vec<usize>,
+    /// Commas within cells are decimal ones, though commas part the cells.
+    decimal: bool,
 }
 
 /// A row: its first cell, where it starts in the text, its line.
@@ -42,8 +49,11 @@ impl<'a> Grid<'a> {
                 .help("the first line names the columns, such as 'bounce,height_cm'"));
         }
         let delimiter = if tab.is_some() { b'\t' } else { delimiter(lines.take(40)) };
-        let mut grid = Self { name, tab, text, delimiter, cells: String::new(), ends: Vec::new(), rows: Vec::new() };
+        let (cells, ends, rows, origin) = (String::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false };
         grid.fill()?;
+        grid.decimal = grid.comma() && grid.decimal_commas();
+        grid.unfold();
         Ok(grid)
     }
 
@@ -91,6 +101,35 @@ impl<'a> Grid<'a> {
         self.delimiter == b','
     }
 
+    /// Whether numbers in cells have decimal commas: some have one, which cannot part thousands,
+    /// and none has a point.
+    fn decimal_commas(&self) -> bool {
+        let mut ends = self.ends.iter().map(|end| *end as usize);
+        let mut start = 0;
+        let mut cells = std::iter::from_fn(|| {
+            let end = ends.next()?;
+            Some(self.cells.get(std::mem::replace(&mut start, end)..end).unwrap_or_default())
+        });
+        let plain = |cell: &str| {
+            cell.starts_with(|c: char| c.is_ascii_digit())
+                && cell.chars().all(|c| c.is_ascii_digit() || ",.".contains(c))
+        };
+        let (mut decimal, mut other) = (false, false);
+        cells.by_ref().filter(|cell| plain(cell)).for_each(|cell| match cell.split_once(',') {
+            Some((whole, part)) => {
+                decimal |= part.len() != 3 || whole == "0";
+                other |= part.contains([',', '.']);
+            }
+            None => other |= cell.contains('.'),
+        });
+        decimal && !other
+    }
+
+    /// Whether a comma within a number may part its thousands.
+    pub(super) fn thousands(&self) -> bool {
+        self.comma() && !self.decimal
+    }
+
     pub(super) fn rows(&self) -> usize {
         self.rows.len()
     }
@@ -129,6 +168,7 @@ impl<'a> Grid<'a> {
     /// An error at a cell.
     pub(super) fn error(&self, row: usize, column: usize, message: impl Into<String>) -> TableError {
         let (start, line) = self.rows.get(row).map_or((self.text.len(), 1), |r| (r.start as usize, u64::from(r.line)));
+        let column = self.origin.get(column).copied().unwrap_or(column);
         TableError::new(self.name, message).at(self.place(start, line, column))
     }
 
@@ -170,6 +210,11 @@ impl<'a> Grid<'a> {
             text: self.text.get(line_start..line_end).unwrap_or("").to_owned(),
             cell: self.tab.map(|tab| (tab.to_owned(), index)),
         }
+    }
+
+    /// The lines that are comments.
+    pub(super) fn comments(&self) -> impl Iterator<Item = &str> {
+        self.text.lines().filter_map(|line| line.strip_prefix('#'))
     }
 
     /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`,
@@ -279,7 +324,7 @@ impl View<'_> {
 
     /// What a cell holds.
     pub(super) fn read(&self, row: usize, column: usize) -> Cell {
-        cell::read(self.cell(row, column), self.grid.comma())
+        cell::read(self.cell(row, column), self.grid.thousands())
     }
 
     /// Whether a cell holds a number, a stopwatch's time, or what is meant as one.

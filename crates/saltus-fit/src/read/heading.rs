@@ -6,7 +6,7 @@ mod meaning;
 
 use super::aside::Why;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::{Atom, folded, narrow};
+use super::vocabulary::{Atom, folded, misspelt, narrow};
 use super::words::{Kind, Word, split};
 pub(super) use inside::{DropHeight, Of, rate, release, released};
 
@@ -110,6 +110,8 @@ pub(super) struct Heading {
     pub(super) meaning: Meaning,
     /// The words that are not understood; with any, the column is not used unless it is asked for.
     pub(super) unknown: Vec<String>,
+    /// Words that are spelt wrong by one letter, and what they were read as.
+    pub(super) misspelt: Vec<(String, &'static str)>,
     /// The place of its readings beside the bounce of their row: `h_n` is 0, `h_n+1` is 1.
     pub(super) place: Option<i8>,
     /// It names the COR, worked out from other columns.
@@ -139,6 +141,7 @@ impl Heading {
             spread: None,
             meaning: Meaning::Empty,
             unknown: Vec::new(),
+            misspelt: Vec::new(),
             place: None,
             cor: false,
             share: None,
@@ -171,6 +174,7 @@ impl Heading {
         if before.is_some() {
             heading.unit = Unit::parse("%");
         }
+        heading.respell(&mut words);
         heading.take_unit_word(&mut words);
         heading.of_trials(&mut words);
         heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
@@ -198,6 +202,16 @@ impl Heading {
         }
         heading.energy = heading.of_energy(&words, run);
         heading
+    }
+
+    /// Words that are not known and differ from one that is by a letter are that one.
+    fn respell(&mut self, words: &mut [Word]) {
+        for word in words.iter_mut().filter(|word| matches!(word.kind, Kind::Unknown)) {
+            if let Some((meant, atoms)) = misspelt(&folded(&word.text)) {
+                self.misspelt.push((word.text.clone(), meant));
+                word.kind = Kind::Known(atoms);
+            }
+        }
     }
 
     /// `T1 (cm)`: a length is of a trial and no time.

@@ -174,14 +174,14 @@ pub(super) fn layout(
     }
     // One height of release for several rows is that of a drop of several bounces; else each row is
     // a drop.
-    let constant = numbered && (!sure || released) && one_release(region, rows, tracks);
+    let constant = numbered && (!sure || released) && one_release(region, columns, rows, tracks);
     if numbered && rowed && (!released || constant) {
         return Ok(Layout::Numbered);
     }
     // Heights that fall below one another are the bounces of one drop.
     let stated = tracks.iter().all(|t| t.drop.is_some() && t.release.is_none());
     let keyed = columns.columns.iter().any(|c| matches!(c.kind, Kind::Trial | Kind::Setting));
-    let listed = stated && !key && !keyed && tracks.iter().all(|track| falling(region, rows, track));
+    let listed = stated && !key && !keyed && tracks.iter().all(|track| falling(region, columns, rows, track));
     if released && any(|t| t.height.is_some() || t.interval.is_some()) {
         return Ok(if listed { Layout::Listed } else { Layout::Pairs });
     }
@@ -267,7 +267,7 @@ fn dates(region: &Region<'_>, column: &Column, index: usize, rows: &Rows) -> boo
 
 /// Whether bounces are counted up beside one height of release, and the count is of bounces rather
 /// than of drops: their heights fall.
-fn one_release(region: &Region<'_>, rows: &Rows, tracks: &[Track]) -> bool {
+fn one_release(region: &Region<'_>, columns: &Columns, rows: &Rows, tracks: &[Track]) -> bool {
     tracks.iter().all(|track| {
         if !track.released() {
             return true;
@@ -282,7 +282,7 @@ fn one_release(region: &Region<'_>, rows: &Rows, tracks: &[Track]) -> bool {
             several |= goes_on && same;
             !goes_on || same
         });
-        several && alike && falling(region, rows, track)
+        several && alike && falling(region, columns, rows, track)
     })
 }
 
@@ -298,10 +298,11 @@ fn falling_throughout(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
 
 /// Whether the readings of numbered rows fall from bounce to bounce, as those of one drop do and
 /// those of several drops do not.
-fn falling(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
+fn falling(region: &Region<'_>, columns: &Columns, rows: &Rows, track: &Track) -> bool {
     let Some(column) = track.height.or(track.interval) else { return true };
+    let Column { zero, sign, .. } = columns.columns[column];
     let number = |row: usize| match region.view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
+        Cell::Number(m) => Some(sign * (m.value - zero)),
         _ => None,
     };
     let follows = |pair: &&[Row]| pair[1].bounce > pair[0].bounce || pair[1].bounce.or(pair[0].bounce).is_none();

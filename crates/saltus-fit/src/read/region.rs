@@ -2,7 +2,7 @@
 
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
-use super::columns::of_samples;
+use super::columns::{LEVEL, of_samples};
 use super::grid::{View, shown};
 use super::heading::{Heading, Meaning};
 use super::units::{Dimension, Unit};
@@ -251,14 +251,28 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
         return None;
     }
     let first = Heading::parse(view.cell(row, 0));
+    let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
     let names: Vec<String> = (0..width)
         .map(|c| match view.cell(row, c) {
-            cell if (named..named + count).contains(&c) => format!("trial {cell}"),
+            cell if (named..named + count).contains(&c) => format!("{of} {cell}"),
             cell => cell.to_owned(),
         })
         .collect();
     let score = score(&names);
     first.understood().then_some(Header { names, at: row, below: row + 1, score })
+}
+
+/// Whether numbers fall from column to column in every row that has any, each to less than `LEVEL`
+/// of the one before: bounces one after the other, and no repeats.
+fn falling(view: View<'_>, rows: std::ops::Range<usize>, first: usize, count: usize) -> bool {
+    let number = |row: usize, column: usize| match view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let mut pairs = rows
+        .flat_map(|row| (first + 1..first + count).filter_map(move |c| number(row, c - 1).zip(number(row, c))))
+        .peekable();
+    pairs.peek().is_some() && pairs.all(|(before, after)| after < LEVEL * before)
 }
 
 /// `Rebound (cm)` over `1,2,3`: the columns that a name spans are counted in the line below it.

@@ -29,7 +29,7 @@ impl Columns {
     }
 
     /// Means, errors, extremes and losses, each beside the readings it belongs to.
-    pub(super) fn statistics(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+    pub(super) fn statistics(&mut self, region: &Region<'_>, released: bool) -> Result<(), TableError> {
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
         let same = |a: &Value, b: &Value| a.what == b.what || a.what == What::Unsaid || b.what == What::Unsaid;
         let placed = |a: &Value, b: &Value| (a.at == At::Release) == (b.at == At::Release);
@@ -67,6 +67,9 @@ impl Columns {
                         self.leave(*index, Why::Derived);
                     } else if drop && (!self.number().is_some_and(|(_, sure)| sure) || self.own_drops(region)) {
                         self.columns[*index].kind = Kind::Lost;
+                    } else if released && self.of_bounces(*index) && self.add_up(region, *index) {
+                        self.columns[*index].kind =
+                            Kind::Value(Value { role: Role::Reading, at: At::Row, ..value.clone() });
                     } else {
                         let name = shown(&self.columns[*index].heading.text);
                         let message =
@@ -80,6 +83,30 @@ impl Columns {
             }
         }
         Ok(())
+    }
+
+    /// Whether the numbers of a column rise from row to row.
+    fn add_up(&self, region: &Region<'_>, index: usize) -> bool {
+        let number = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(m) => Some(m.value),
+            _ => None,
+        };
+        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        numbers.len() > 1 && numbers.windows(2).all(|pair| pair[1] > pair[0])
+    }
+
+    /// Losses that add up from bounce to bounce are how far below the release, at `drop`, the ball
+    /// came to: a scale that counts downwards from there.
+    pub(super) fn losses(&mut self, drop: Option<f64>) {
+        let lost = |c: &&mut super::columns::Column| c.heading.has(Atom::Lost) && c.holds(What::Height);
+        for column in self.columns.iter_mut().filter(lost) {
+            if let (Some(drop), Some(unit)) = (drop, column.unit) {
+                (column.zero, column.sign) = (drop / unit.si(1.0), -1.0);
+                let name = shown(&column.heading.text);
+                self.notes
+                    .push(format!("'{name}' adds up from bounce to bounce: heights are what it leaves of the release"));
+            }
+        }
     }
 
     /// Whether the height of release is another in every row, so that each is a drop of its own.

@@ -140,7 +140,7 @@ pub(super) fn names_floor(text: &str) -> bool {
 /// The event that a cell names.
 pub(super) fn event(cell: &str) -> Option<Event> {
     match cell.to_lowercase().as_str() {
-        "release" | "released" | "drop" | "dropped" | "start" => return Some(Event::Release),
+        "release" | "released" | "drop" | "dropped" | "start" | "let go" | "lets go" => return Some(Event::Release),
         "contact" | "impact" | "bounce" | "floor" | "hit" | "touch" | "touchdown" | "ground" => {
             return Some(Event::Contact);
         }
@@ -152,13 +152,14 @@ pub(super) fn event(cell: &str) -> Option<Event> {
     match heading.unknown.is_empty() {
         true if heading.has(Atom::Release) => Some(Event::Release),
         true if contact => Some(Event::Contact),
+        true if heading.has(Atom::Top) => Some(Event::Apex),
         _ => None,
     }
 }
 
 /// The first of two bounces, one after the other, that a cell names: `1-2`, `1 → 2`, `bounce 1 to
 /// bounce 2`. What lies between the release and the first is no flight.
-fn between(cell: &str) -> Option<usize> {
+pub(super) fn between(cell: &str) -> Option<usize> {
     let numbers: Vec<&str> = cell.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty()).collect();
     let &[first, second] = numbers.as_slice() else { return None };
     let (first, second): (usize, usize) = (first.parse().ok()?, second.parse().ok()?);

@@ -12,6 +12,9 @@ use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
 
+/// How long a ball bounces that is dropped and timed, s: from one short flight to a minute.
+const BOUNCES: (f64, f64) = (0.1, 60.0);
+
 impl Columns {
     /// The unit of every column of numbers.
     pub(super) fn scales(&mut self, region: &Region<'_>, options: &ReadOptions) -> Result<(), TableError> {
@@ -78,7 +81,10 @@ impl Columns {
             return Ok(unit);
         }
         // A film needs no scale.
-        let filmed = region.frames || self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Frame));
+        let moving = self.columns[index].value().is_some_and(|v| v.position) && self.any(What::Time, Some(At::Row));
+        let filmed = moving
+            || region.frames
+            || self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Frame));
         if dimension == Dimension::Length && filmed {
             self.notes
                 .push(format!("'{name}' has no unit: taken as pixels of unknown size, which a COR does not need"));
@@ -90,7 +96,32 @@ impl Columns {
         if let Some(unit) = self.adopted(region, index, dimension) {
             return Ok(Some(unit));
         }
+        if let Some(unit) = self.by_size(region, index).filter(|_| dimension == Dimension::Time) {
+            return Ok(Some(unit));
+        }
         Err(self.no_unit(region, index, dimension))
+    }
+
+    /// The unit of times that bear none, where only one of seconds and milliseconds makes them last
+    /// as long as a ball bounces. A COR from times needs none.
+    fn by_size(&mut self, region: &Region<'_>, index: usize) -> Option<Unit> {
+        let number = |row: &usize| match region.view.read(*row, index) {
+            Cell::Number(m) => Some(m.value),
+            _ => None,
+        };
+        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        if numbers.len() < 3 {
+            return None;
+        }
+        let (low, high) = numbers.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &n| (l.min(n), h.max(n)));
+        let between = self.columns[index].holds(What::Interval);
+        let lasts = if between { high } else { high - low };
+        let (unit, spelt) = [(Unit::SECOND, "s"), (Unit::parse("ms")?, "ms")]
+            .into_iter()
+            .find(|(unit, _)| (BOUNCES.0..BOUNCES.1).contains(&unit.si(lasts)))?;
+        let name = shown(&self.columns[index].heading.text);
+        self.notes.push(format!("'{name}' has no unit: taken as {spelt}, since it lasts as long as a ball bounces"));
+        Some(unit)
     }
 
     /// The unit that the cells of a column bear: none where each bears its own; nothing where they

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::cell::{self, Cell};
+use super::forms;
 use crate::error::TableError;
 
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
@@ -31,7 +32,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         counted.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
         Cow::Owned(text)
     };
-    let text = latex(&text).or_else(|| listed(&text)).map_or(text, Cow::Owned);
+    let text = forms::table(&text).map_or(text, Cow::Owned);
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }
@@ -48,55 +49,6 @@ fn numeros(text: &str) -> Vec<usize> {
     let mut found: Vec<usize> = first.into_iter().chain(starts).filter(cell).collect();
     found.dedup();
     found
-}
-
-/// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
-/// tabs between them; words may be read of some, `Ball: golf`. `None` if any is something else.
-fn listed(text: &str) -> Option<String> {
-    let line = |line: &str| {
-        let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
-        let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
-        let (name, values) = line.split_once(": ").or(line.split_once('=')).or_else(dash)?;
-        let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
-        let values: Vec<&str> = values.split(", ").map(str::trim).collect();
-        let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
-        // Words are a remark.
-        let read = values.iter().all(number);
-        let spelt = if read { format!("{}\t{}", name.trim(), values.join("\t")) } else { format!("#{line}") };
-        plain.then_some((read, spelt))
-    };
-    let lines = || text.lines().filter(|line| !line.trim().is_empty());
-    let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
-    let numbers = found.iter().filter(|(number, _)| *number).count();
-    if numbers < 2 || 2 * numbers < found.len() {
-        return None;
-    }
-    // A blank line stays one, so that lines keep their numbers.
-    let mut found = found.into_iter().map(|(_, line)| line);
-    let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
-    Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
-}
-
-/// A table of LaTeX, whose rows end in `\\` and whose cells are parted by `&`, with tabs in their
-/// place; `None` if it is none. A line stays a line.
-fn latex(text: &str) -> Option<String> {
-    let row = |line: &str| {
-        let (cells, after) = line.rsplit_once(r"\\")?;
-        let ends = after.trim().is_empty() || after.trim_start().starts_with('\\');
-        (ends && cells.contains('&')).then(|| cells.replace('&', "\t"))
-    };
-    if text.lines().filter(|line| row(line).is_some()).count() < 2 {
-        return None;
-    }
-    let plain = |line: &str| match row(line) {
-        Some(cells) => {
-            let spelt = cells.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ");
-            spelt.replace(['$', '{', '}'], "").replace(r"\textbf", "").replace(r"\mathrm", "")
-        }
-        None if line.trim_start().starts_with('\\') => String::new(),
-        None => line.to_owned(),
-    };
-    Some(text.lines().map(plain).collect::<Vec<_>>().join("\n") + "\n")
 }
 
 /// A text whose columns are made by runs of spaces, with a tab at the end of each run in their
@@ -116,6 +68,9 @@ fn aligned(text: &str) -> Option<String> {
         return None;
     }
     let width = if of_numbers { width } else { 0 };
+    // Names that begin beyond the first cells of the rows leave the first column without a name.
+    let ends = lines().filter(|line| numbers(line)).map(first_end);
+    let beyond = ends.max().filter(|_| of_numbers).unwrap_or(usize::MAX);
     let mut found = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
         if drawn(line) {
@@ -125,7 +80,9 @@ fn aligned(text: &str) -> Option<String> {
         // A name may hold single spaces, unless there are as many words as columns.
         let least = if line.split_whitespace().count() == width { 1 } else { 2 };
         let indent = line.len() - line.trim_start().len();
-        found.push_str(&line[..indent]);
+        let unnamed = indent >= beyond && !numbers(line.trim());
+        found.push_str(&line[..indent - usize::from(unnamed)]);
+        found.push_str(if unnamed { "\t" } else { "" });
         let (inner, end) = line[indent..].split_at(line.trim().len());
         let mut run = 0;
         for c in inner.chars() {
@@ -143,6 +100,12 @@ fn aligned(text: &str) -> Option<String> {
         found.push_str(end);
     }
     Some(found)
+}
+
+/// Where the first cell of a line ends, in bytes.
+fn first_end(line: &str) -> usize {
+    let start = line.len() - line.trim_start_matches(' ').len();
+    line[start..].find(' ').map_or(line.len(), |end| start + end)
 }
 
 /// Whether a line is drawn, and holds nothing: `-----  ------`, `=====`.

@@ -52,7 +52,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         return found;
     }
     let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);
-    found.fps = headings.into_iter().next().map(|fps| (fps, region.view.line(region.header_row, 0)));
+    let of_column = || (0..region.header.len()).find_map(|column| of_column(region, column));
+    found.fps = headings.into_iter().next().or_else(of_column).map(|fps| (fps, region.view.line(region.header_row, 0)));
     // Below a table as well, where a line stands alone.
     let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
@@ -99,6 +100,28 @@ pub(super) fn frame_rate(text: &str) -> Option<f64> {
         RATES.contains(&before).then_some(value)
     };
     rate(text).map(|(value, _)| value).or_else(named)
+}
+
+/// Whether a heading names a rate of frames or samples, `fps`, `Frame rate (Hz)`.
+pub(super) fn names_rate(name: &str) -> bool {
+    let name = folded(name);
+    let bare = name.split(['(', '[', '/']).next().unwrap_or_default().replace('_', " ");
+    RATES.contains(&bare.trim().trim_end_matches(" hz"))
+}
+
+/// The rate that a column of its own states, the same in all of its cells.
+fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
+    if !names_rate(&region.header[column]) {
+        return None;
+    }
+    let factor = if folded(&region.header[column]).contains("khz") { 1000.0 } else { 1.0 };
+    let number = |row: &usize| match region.view.read(*row, column) {
+        Cell::Number(m) => Some(m.value * factor),
+        _ => frame_rate(region.view.cell(*row, column)),
+    };
+    let mut rates = region.rows.iter().filter_map(number);
+    let first = rates.next().filter(|rate| *rate > 0.0)?;
+    rates.all(|rate| rate == first).then_some(first)
 }
 
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the

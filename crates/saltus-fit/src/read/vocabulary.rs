@@ -130,6 +130,43 @@ pub(super) fn nearest(word: &str) -> Option<&'static str> {
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
 
+/// Words of fewer letters may well be others.
+const MISSPELT: usize = 6;
+
+/// The word that a misspelt one is meant to be: it begins with the same letter, and one letter is
+/// missing, too many, another, or has changed places with its neighbour. `None` where words of
+/// different meanings are as near.
+pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
+    let letters = word.chars().count();
+    if letters < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
+        return None;
+    }
+    let near = |known: &&str| {
+        let long = known.chars().count();
+        long >= MISSPELT
+            && known.chars().next() == word.chars().next()
+            && letters.abs_diff(long) < 2
+            && slip(word, known)
+    };
+    let mut found = entries().map(|(known, _)| known).filter(near).filter_map(|known| Some((known, meanings(known)?)));
+    let first = found.next()?;
+    found.all(|(_, atoms)| atoms == first.1).then_some(first)
+}
+
+/// Whether a slip of one letter makes one word of the other.
+fn slip(a: &str, b: &str) -> bool {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let head = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
+    let (a, b) = (&a[head..], &b[head..]);
+    match (a, b) {
+        ([_, rest @ ..], b) if rest == b => true,
+        (a, [_, rest @ ..]) if rest == a => true,
+        ([_, one @ ..], [_, other @ ..]) if one == other => true,
+        ([x, y, one @ ..], [v, w, other @ ..]) => x == w && y == v && one == other,
+        _ => false,
+    }
+}
+
 /// No word is longer, in letters; longer ones are compared by their beginning.
 const LONGEST: usize = 32;
 
@@ -234,6 +271,23 @@ mod tests {
             assert!(!names.is_empty() && names.iter().all(|name| Atom::of(name).is_some()), "{word}: {names:?}");
         }
         assert!(seen.len() > 400);
+    }
+
+    #[test]
+    fn a_slip_of_one_letter_is_read() {
+        for (word, meant) in [
+            ("droped", Some("dropped")),
+            ("bouced", Some("bounced")),
+            ("heigth", Some("height")),
+            ("hieght", Some("height")),
+            ("rebuond", None),
+            ("predcted", Some("predicted")),
+            ("weight", None),
+            ("wobble", None),
+            ("sped", None),
+        ] {
+            assert_eq!(misspelt(word).map(|(known, _)| known), meant, "{word}");
+        }
     }
 
     #[test]

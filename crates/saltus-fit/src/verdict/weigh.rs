@@ -11,8 +11,6 @@ use crate::statistics::{CLEAR, NORMAL, REJECT, WEAK};
 const SAME: f64 = 0.002;
 /// A COR that changes by less over all speeds may be called one.
 const LEVEL: f64 = 0.02;
-/// An error of reading so many times the scatter about the best model is out of the question.
-const WORSE: f64 = 5.0;
 
 /// Models that suppose the same kind of thing: the best of them speaks for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,10 +167,6 @@ pub(crate) fn error_decides(
         return;
     };
     let scattered = sigma.source == Source::Scatter;
-    // Nobody reads so much worse than it seems.
-    if scattered && left.scatter() > WORSE * misfit.scatter() {
-        return;
-    }
     // With an error as large as the scatter about one COR, no other model is to be better by so
     // much.
     if scattered != doubted || list.iter().any(|m| by_errors(m) < -CLEAR) {

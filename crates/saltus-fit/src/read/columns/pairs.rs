@@ -5,7 +5,7 @@ use super::{Columns, Kind, plain};
 use crate::error::TableError;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Role, What};
+use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::rows::bounce;
 use crate::read::units::{Dimension, Scale};
@@ -64,7 +64,7 @@ impl Columns {
     pub(super) fn capital(&mut self, region: &Region<'_>) {
         let letter = |text: &str| text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
         let called = |name: &str| {
-            let of = |(_, c, v): &(usize, &super::Column, &super::Value)| {
+            let of = |(_, c, v): &(usize, &super::Column, &Value)| {
                 letter(&c.heading.text) == name && v.what == What::Height && v.at == At::Row && v.role == Role::Reading
             };
             let mut found = self.values().filter(of).map(|(n, _, _)| n);
@@ -80,7 +80,7 @@ impl Columns {
                 let rebounds = !c.heading.has(Atom::Height) || sprung;
                 c.heading.unknown.is_empty() && if bounced { rebounds } else { plain && !other }
             };
-            let row = |v: &super::Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading;
+            let row = |v: &Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading;
             let mut found = self.values().filter(|(_, c, v)| row(v) && is(c)).map(|(n, _, _)| n);
             found.next().filter(|_| found.next().is_none())
         };
@@ -135,7 +135,9 @@ impl Columns {
             let named = !c.heading.has(Atom::Height) || c.heading.has(Atom::Rebound);
             let counted = matches!(v.what, What::Height | What::Interval | What::Unsaid) && named;
             let bare = counted && c.unit.is_none() && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
-            let rows = region.rows.iter().filter(|&&row| !region.cell(row, *n).is_empty());
+            // Words below the table are remarks.
+            let rows =
+                region.rows.iter().filter(|&&row| !matches!(region.view.read(row, *n), Cell::Empty | Cell::Words));
             let first =
                 rows.clone().next().and_then(|&row| region.cell(row, *n).parse::<usize>().ok()).filter(|n| *n < 2);
             let count = rows.clone().count();
@@ -211,7 +213,9 @@ impl Columns {
                 _ => continue,
             };
             if of_one && cells.iter().filter(|cell| unit(cell).is_some()).count() > 1 {
-                self.columns[column].kind = Kind::Value(plain(what));
+                // Of cells that held several readings each column is a trial.
+                let run = self.columns[column].heading.text.split_once(':').map(|(run, _)| run.to_owned());
+                self.columns[column].kind = Kind::Value(Value { trial: run.unwrap_or_default(), ..plain(what) });
             }
         }
     }

@@ -119,7 +119,10 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
 pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     let at = words.iter().position(|w| w.is(Atom::Percent))?;
     let of = words.get(at + 1).is_some_and(|w| {
-        matches!(&*folded(&w.text), "of" | "von" | "der" | "des" | "du" | "de" | "di" | "del" | "van")
+        matches!(
+            &*folded(&w.text),
+            "of" | "von" | "der" | "des" | "du" | "de" | "di" | "del" | "dell" | "della" | "van"
+        )
     });
     let content =
         words[at..].iter().any(|w| w.is(Atom::Derived) || w.is(Atom::Lost) || matches!(w.kind, Kind::Unknown));

@@ -29,7 +29,9 @@ impl Heading {
         // Of two bodies that meet: the speed of one as the other sees it, and no ratio.
         let met = (has(Atom::Before) || has(Atom::After)) && has(Atom::Speed);
         let relative = met && words.iter().all(|w| !w.is(Derived) || folded(&w.text).starts_with("relativ"));
-        if has(Derived) && !intervals && !relative {
+        // What is lost adds up: `cumulative loss`.
+        let summed = has(Atom::Lost) && words.iter().all(|w| !w.is(Derived) || folded(&w.text).starts_with("cumul"));
+        if has(Derived) && !intervals && !relative && !summed {
             return Meaning::Aside(Why::Derived);
         }
         let setting = has(Group)
@@ -40,7 +42,7 @@ impl Heading {
         if setting && !has(Label) {
             return Meaning::Setting;
         }
-        let flown = has(Distance) && has(Between) || has(Height) && has(Total);
+        let flown = has(Distance) && has(Between) || has(Height) && has(Total) && !has(Atom::Lost);
         if has(Other) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
             return Meaning::Aside(Why::Other);
         }

@@ -1,0 +1,275 @@
+//! Forms of tables that are no cells side by side: lines of a name and a number, tables of LaTeX
+//! and of `MediaWiki`, lines that differ in their numbers only. Each becomes cells parted by tabs,
+//! and a line stays a line.
+
+use super::cell::{self, Cell};
+use super::units::{Dimension, Unit};
+
+/// The text with tabs between the cells of such a table; `None` if it holds none.
+pub(super) fn table(text: &str) -> Option<String> {
+    latex(text).or_else(|| wiki(text)).or_else(|| listed(text)).or_else(|| patterned(text))
+}
+
+/// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
+/// tabs between them; words may be read of some, `Ball: golf`. `None` if any is something else.
+fn listed(text: &str) -> Option<String> {
+    let line = |line: &str| {
+        let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
+        let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
+        // Words by themselves are a title.
+        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ',' | ';' | '\t' | '|' | ':' | '=')) {
+            return Some((false, format!("#{line}")));
+        }
+        let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash);
+        let (name, values) = parted.or_else(|| measured(line))?;
+        let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
+        let values: Vec<&str> = values.split(", ").map(str::trim).collect();
+        let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
+        // Words are a remark.
+        let read = values.iter().all(number);
+        let spelt = if read { format!("{}\t{}", name.trim(), values.join("\t")) } else { format!("#{line}") };
+        plain.then_some((read, spelt))
+    };
+    let lines = || text.lines().filter(|line| !line.trim().is_empty());
+    let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
+    let numbers = found.iter().filter(|(number, _)| *number).count();
+    // A line by itself is a list of several.
+    let several = found.iter().any(|(number, line)| *number && line.matches('\t').count() >= LIST);
+    if numbers < 2 && !(numbers == 1 && several) || 2 * numbers < found.len() {
+        return None;
+    }
+    // A blank line stays one, so that lines keep their numbers.
+    let mut found = found.into_iter().map(|(_, line)| line);
+    let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
+    Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// A name in a line by itself stands before at least so many numbers.
+const LIST: usize = 3;
+
+/// A line of words and, at its end, a number with its unit, `2nd bounce 1.15 m`, parted before the
+/// number.
+fn measured(line: &str) -> Option<(&str, &str)> {
+    let (found, rest) = parts(line);
+    let last = found.last().filter(|_| rest.is_empty())?;
+    let name = line.trim_end().strip_suffix(last.number)?;
+    let unit = matches!(cell::read(last.number, false), Cell::Number(m) if m.unit.is_some());
+    let chained = ARROWS.iter().any(|arrow| name.contains(arrow));
+    let words =
+        !chained && found.len() < 3 && name.contains(char::is_alphabetic) && !name.contains([',', ';', '|', '\t']);
+    (unit && words).then_some((name, last.number))
+}
+
+/// A table of LaTeX, whose rows end in `\\` and whose cells are parted by `&`, with tabs in their
+/// place; `None` if it is none. A line stays a line.
+fn latex(text: &str) -> Option<String> {
+    let row = |line: &str| {
+        let (cells, after) = line.rsplit_once(r"\\")?;
+        let ends = after.trim().is_empty() || after.trim_start().starts_with('\\');
+        (ends && cells.contains('&')).then(|| cells.replace('&', "\t"))
+    };
+    if text.lines().filter(|line| row(line).is_some()).count() < 2 {
+        return None;
+    }
+    let plain = |line: &str| match row(line) {
+        Some(cells) => {
+            let spelt = cells.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ");
+            spelt.replace(['$', '{', '}'], "").replace(r"\textbf", "").replace(r"\mathrm", "")
+        }
+        None if line.trim_start().starts_with('\\') => String::new(),
+        None => line.to_owned(),
+    };
+    Some(text.lines().map(plain).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A table of `MediaWiki`: rows parted by `|-`, cells behind `!` and `|`; `None` if it is none.
+fn wiki(text: &str) -> Option<String> {
+    let begins = |mark: &str| text.lines().any(|line| line.trim_start().starts_with(mark));
+    if !begins("{|") || !begins("|-") {
+        return None;
+    }
+    let mut lines: Vec<String> = Vec::new();
+    // The line that the cells of the row stand in, and whether a table is open.
+    let (mut row, mut open): (Option<usize>, bool) = (None, false);
+    for (n, line) in text.lines().enumerate() {
+        let bare = line.trim();
+        lines.push(String::new());
+        match bare {
+            _ if bare.starts_with("{|") => (row, open) = (None, true),
+            _ if !open => lines[n].push_str(line),
+            _ if bare.starts_with("|}") => (row, open) = (None, false),
+            _ if bare.starts_with("|-") => row = None,
+            _ if bare.starts_with("|+") => lines[n].push_str(contents(&bare[2..])),
+            _ => {
+                let Some(cells) = bare.strip_prefix(['|', '!']) else { continue };
+                for cell in cells.split("||").flat_map(|cells| cells.split("!!")) {
+                    let at = *row.get_or_insert(n);
+                    if !lines[at].is_empty() {
+                        lines[at].push('\t');
+                    }
+                    lines[at].push_str(contents(cell));
+                }
+            }
+        }
+    }
+    Some(lines.join("\n") + "\n")
+}
+
+/// What a cell of it holds, without the attributes before it and without quotes of
+/// bold letters.
+fn contents(cell: &str) -> &str {
+    let cell = cell.rsplit_once('|').filter(|(before, _)| before.contains('=')).map_or(cell, |(_, cell)| cell);
+    cell.trim().trim_matches('\'').trim()
+}
+
+/// Marks between one height and the next.
+const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
+
+/// A number of a line with its unit, and the words before it.
+struct Part<'a> {
+    words: &'a str,
+    number: &'a str,
+}
+
+/// The numbers of a line, each with the words before it, and the words behind the last.
+fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
+    let (mut found, mut from, mut at) = (Vec::new(), 0, 0);
+    while let Some(start) = line[at..].find(|c: char| c.is_ascii_digit()).map(|n| at + n) {
+        let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',');
+        let run = line[start..].find(|c: char| !digits(c)).map_or(line.len(), |n| start + n);
+        let end = start + line[start..run].trim_end_matches(['.', ',']).len();
+        at = end;
+        // `h1`, `2nd` are words.
+        let letter = |c: Option<char>| c.is_some_and(|c| c.is_alphabetic() || c == '_');
+        if letter(line[..start].chars().next_back()) {
+            continue;
+        }
+        let blank = line[end..].len() - line[end..].trim_start_matches(' ').len();
+        let spelt = &line[end + blank..];
+        let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
+        let unit = (stop > 0 && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
+        if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
+            continue;
+        }
+        let end = unit.unwrap_or(end);
+        found.push(Part { words: line[from..start].trim(), number: &line[start..end] });
+        (from, at) = (end, end);
+    }
+    (found, line[from..].trim())
+}
+
+/// Lines that are the same but for their numbers, `dropped from 1 m, came back to 64 cm`: a row
+/// each, the words before a number being its name; arrows stand between a height and the next,
+/// `100 cm -> 64 cm -> 41 cm`. `None` if most lines are something else.
+fn patterned(text: &str) -> Option<String> {
+    if text.contains(['\t', '|', ';']) {
+        return None;
+    }
+    let lines: Vec<&str> = text.lines().collect();
+    let patterns: Vec<Option<Vec<String>>> = lines.iter().map(|line| pattern(line)).collect();
+    let first = patterns.iter().flatten().next()?;
+    let alike = |n: usize| patterns[n].as_ref() == Some(first);
+    let rows: Vec<usize> = (0..lines.len()).filter(|&n| alike(n)).collect();
+    let filled = lines.iter().filter(|line| !line.trim().is_empty()).count();
+    // Names in a line of their own, as many as there are cells, make a table of it.
+    let commas = |line: &str| line.matches(',').count();
+    let named = |n: usize| commas(lines[n]) > 0 && commas(lines[n]) == commas(lines[rows[0]]);
+    let titled = (0..rows[0]).any(|n| parts(lines[n]).0.is_empty() && named(n));
+    let chained = parts(lines[rows[0]]).0.iter().any(|part| ARROWS.contains(&part.words));
+    if rows.len() < 2 && !chained || 2 * rows.len() < filled || titled {
+        return None;
+    }
+    let longest = *rows.iter().max_by_key(|&&n| parts(lines[n]).0.len())?;
+    let names = names(&parts(lines[longest]).0)?;
+    let spelt = |n: usize| {
+        let cells = || parts(lines[n]).0.iter().map(|part| part.number).collect::<Vec<_>>().join("\t");
+        match n {
+            // A lone carriage return ends a row, and no line.
+            n if n == rows[0] => format!("{}\r{}", names.join("\t"), cells()),
+            n if alike(n) => cells(),
+            n => lines[n].to_owned(),
+        }
+    };
+    Some((0..lines.len()).map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// The words of a line around its numbers, without arrows; `None` where no words part them, as
+/// none do in cells that commas part.
+fn pattern(line: &str) -> Option<Vec<String>> {
+    let (found, rest) = parts(line);
+    let arrow = |part: &Part<'_>| ARROWS.contains(&part.words);
+    let between = |part: &Part<'_>| arrow(part) || part.words.ends_with(char::is_alphabetic);
+    let fits = found.len() > 1 && found.iter().skip(1).any(between);
+    let names = found.iter().filter(|part| !arrow(part)).map(|part| part.words.to_lowercase());
+    fits.then(|| names.chain([rest.to_lowercase()]).collect())
+}
+
+/// What the numbers of a line are called; `None` where arrows stand between anything but heights.
+fn names(parts: &[Part<'_>]) -> Option<Vec<String>> {
+    let arrow = |n: usize| parts.get(n).is_some_and(|part| ARROWS.contains(&part.words));
+    let mut bounce = 0;
+    let name = |(n, part): (usize, &Part<'_>)| {
+        if !arrow(n) && !arrow(n + 1) {
+            return Some(part.words.trim_matches(|c: char| !c.is_alphanumeric()).to_owned());
+        }
+        bounce = if arrow(n) { bounce + 1 } else { 0 };
+        let height = match cell::read(part.number, false) {
+            Cell::Number(m) => m.unit.is_none_or(|unit| unit.dimension == Dimension::Length),
+            _ => false,
+        };
+        height.then(|| if bounce == 0 { "drop height".to_owned() } else { format!("bounce {bounce} height") })
+    };
+    parts.iter().enumerate().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_differ_in_their_numbers_are_rows() {
+        for (text, expected) in [
+            (
+                "100 cm -> 64 cm -> 41 cm\n80 cm -> 51 cm\n",
+                "drop height\tbounce 1 height\tbounce 2 height\r100 cm\t64 cm\t41 cm\n80 cm\t51 cm\n",
+            ),
+            ("in cm\n100→64\n80→51\n", "in cm\ndrop height\tbounce 1 height\r100\t64\n80\t51\n"),
+            (
+                "Dropped from 1.0 m, came back to 64 cm.\nDropped from 2.0 m, came back to 1.3 m.\n",
+                "Dropped from\tcame back to\r1.0 m\t64 cm\n2.0 m\t1.3 m\n",
+            ),
+        ] {
+            assert_eq!(patterned(text).as_deref(), Some(expected), "{text}");
+        }
+        for text in [
+            "Trial,Ball,Drop,Rebound\n1,golf,100,70\n2,golf,80,56\n",
+            "bounce,height_cm\n0,100\n1,64\n",
+            "0.45 s -> 1.17 s\n0.44 s -> 1.16 s\n",
+            "100\n64\n41\n",
+            "Drop 1 m\n1st bounce 64 cm\n2nd bounce 41 cm\n",
+            "The 2 balls are 5 cm wide.\nWe had 3 m of tape.\n100,64\n80,51\n60,38\n40,26\n",
+        ] {
+            assert_eq!(patterned(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_may_hold_a_name_and_what_was_read() {
+        for (text, expected) in [
+            ("Drop 1 m\n1st bounce 64 cm\n\nbounce 2 41 cm\n", "Drop\t1 m\n1st bounce\t64 cm\n\nbounce 2\t41 cm\n"),
+            ("Golf ball\nDrop 1 m\nrebound 64 cm\n", "#Golf ball\nDrop\t1 m\nrebound\t64 cm\n"),
+            ("Bounce times (s): 0.5, 1.2, 1.8\n", "Bounce times (s)\t0.5\t1.2\t1.8\n"),
+        ] {
+            assert_eq!(listed(text).as_deref(), Some(expected), "{text}");
+        }
+        for text in ["Ball 58 g\n", "height_cm\n100\n64\n", "drop,100 cm\nbounce,64 cm\n", "Class: 7, 8\n"] {
+            assert_eq!(listed(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn tables_of_a_wiki_have_rows() {
+        let text = "{| class=\"wikitable\"\n|+ Bounces\n! Bounce !! Height (cm)\n|-\n| 0 || 100\n|-\n| 1\n| align=\"right\" | '''64'''\n|}\n";
+        assert_eq!(wiki(text).as_deref(), Some("\nBounces\nBounce\tHeight (cm)\n\n0\t100\n\n1\t64\n\n\n"));
+    }
+}

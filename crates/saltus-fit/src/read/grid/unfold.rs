@@ -1,0 +1,127 @@
+//! Cells that hold several readings, `64/65/63`: a column for each.
+
+use super::super::cell::{self, Cell};
+use super::super::heading::Heading;
+use super::super::units::{Dimension, Unit};
+use super::Grid;
+
+/// What stands between readings of one cell; blanks last, since units stand behind them.
+const MARKS: [&str; 7] = [";", "/", ", ", ",", " & ", "\n", " "];
+
+/// Readings of one event agree to this factor, as those of a range do.
+const ALIKE: f64 = 1.5;
+
+/// A cell holds no more readings: more are a table.
+const MOST: usize = 100;
+
+/// The readings of a cell that is no number itself and whose parts are, alike in size; the unit of
+/// the last is that of all.
+fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
+    let digits = cell.starts_with(|c: char| c.is_ascii_digit());
+    if !digits || matches!(cell::read(cell, comma), Cell::Number(_) | Cell::Empty) || cell::clock(cell).is_some() {
+        return None;
+    }
+    let (numbers, unit) = cell.split_at(cell.rfind(|c: char| c.is_ascii_digit())? + 1);
+    if !unit.is_empty() && Unit::parse(unit.trim()).is_none() {
+        return None;
+    }
+    MARKS.iter().find_map(|mark| {
+        let parts: Vec<&str> = numbers.split(mark).map(str::trim).filter(|part| !part.is_empty()).collect();
+        let number = |part: &&str| match cell::read(part, false) {
+            Cell::Number(measured) => Some(measured),
+            _ => None,
+        };
+        let found = parts.iter().map(number).collect::<Option<Vec<_>>>()?;
+        let (low, high) = found.iter().fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m.value), h.max(m.value)));
+        // Two numbers with a comma between them are one, whose thousands it parts.
+        let least = if *mark == "," { 3 } else { 2 };
+        let alike = low > 0.0 && high <= ALIKE * low && (least..=MOST).contains(&found.len());
+        let whole = |(part, m): (&&'_ str, &cell::Measured)| match m.unit {
+            None if !unit.is_empty() => format!("{part}{unit}"),
+            _ => (*part).to_owned(),
+        };
+        alike.then(|| parts.iter().zip(&found).map(whole).collect())
+    })
+}
+
+impl Grid<'_> {
+    /// Parts columns whose cells hold several readings into one for each, named as trials.
+    pub(super) fn unfold(&mut self) {
+        let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
+        // Of each column the row of its name, and how many readings its cells hold at most.
+        let parted: Vec<Option<(usize, usize)>> = (0..width).map(|column| self.several(column)).collect();
+        if parted.iter().all(Option::is_none) {
+            return;
+        }
+        let (mut cells, mut ends) = (String::new(), Vec::new());
+        let mut rows: Vec<u32> = Vec::new();
+        for row in 0..self.rows() {
+            rows.push(u32::try_from(ends.len()).unwrap_or(u32::MAX));
+            for (column, parted) in parted.iter().enumerate().take(self.width(row)) {
+                let cell = self.cell(row, column);
+                let count = parted.map_or(1, |(_, count)| count);
+                let named = parted.is_some_and(|(name, _)| name == row);
+                let found = if named { None } else { readings(cell, self.thousands()).filter(|_| count > 1) };
+                for n in 0..count {
+                    match &found {
+                        Some(found) => cells.push_str(found.get(n).map_or("", |part| part)),
+                        None if named => cells.push_str(&format!("trial {}: {cell}", n + 1)),
+                        None if n == 0 => cells.push_str(cell),
+                        None => {}
+                    }
+                    ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+                }
+            }
+        }
+        self.origin =
+            (0..width).flat_map(|n| std::iter::repeat_n(n, parted[n].map_or(1, |(_, count)| count))).collect();
+        for (row, first) in self.rows.iter_mut().zip(rows) {
+            row.first = first;
+        }
+        (self.cells, self.ends) = (cells, ends);
+    }
+
+    /// Whether cells of a column hold several readings below a name that is understood: the row of
+    /// the name, and the most that a cell holds.
+    fn several(&self, column: usize) -> Option<(usize, usize)> {
+        let found = |row: usize| readings(self.cell(row, column), self.thousands()).map(|found| found.len());
+        let first = (1..self.rows()).find(|&row| found(row).is_some())?;
+        let most = (first..self.rows()).filter_map(found).max()?;
+        let words = |row: &usize| cell::read(self.cell(*row, column), self.thousands()) == Cell::Words;
+        let name = (0..first).rev().find(words)?;
+        let heading = Heading::parse(self.cell(name, column));
+        let one = heading.value().is_some_and(|value| value.trial.is_empty());
+        // Names that may only count hold readings where these bear units.
+        let measured = || {
+            readings(self.cell(first, column), self.thousands()).is_some_and(|found| {
+            matches!(cell::read(&found[0], false), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension != Dimension::Other))
+        })
+        };
+        (heading.understood() && (one || measured())).then_some((name, most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_may_hold_several_readings() {
+        for (cell, expected) in [
+            ("64/65/63", &["64", "65", "63"][..]),
+            ("64; 65; 63 cm", &["64 cm", "65 cm", "63 cm"]),
+            ("64, 65, 63", &["64", "65", "63"]),
+            ("64 65 63", &["64", "65", "63"]),
+            ("64 65 cm", &["64 cm", "65 cm"]),
+            ("64 cm / 65 cm", &["64 cm", "65 cm"]),
+            ("0,64 / 0,66", &["0,64", "0,66"]),
+        ] {
+            assert_eq!(readings(cell, false).unwrap_or_default(), expected, "{cell}");
+        }
+        for cell in
+            ["64", "40 1/2", "12/03/2024", "5/11", "1:02.5", "64 ± 1", "1 500", "5' 3\"", "62 wobbles", "-", "1,001"]
+        {
+            assert_eq!(readings(cell, false), None, "{cell}");
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Whether a table says that something bounces: before and after, speeds, energies and durations
+//! are of many things.
+
+use super::cell::Cell;
+use super::columns::{Column, Columns, Kind as Of};
+use super::grid::shown;
+use super::heading::{At, Heading, Role, What};
+use super::region::Region;
+use super::units::{Dimension, Scale};
+use super::vocabulary::{Atom, folded, misspelt};
+use super::words::{Kind, split};
+use super::{Doubt, ReadOptions};
+use crate::error::TableError;
+use crate::statistics::median;
+
+/// Words of bounces that are of races, waves, jumpers, carts and markets too.
+const LOOSE: [&str; 56] = [
+    "lap",
+    "laps",
+    "collision",
+    "collisions",
+    "colisao",
+    "colisoes",
+    "choque",
+    "choques",
+    "botsing",
+    "botsingen",
+    "hit",
+    "hits",
+    "strike",
+    "strikes",
+    "struck",
+    "striking",
+    "tap",
+    "taps",
+    "touch",
+    "touched",
+    "landing",
+    "landings",
+    "landed",
+    "landung",
+    "spike",
+    "spikes",
+    "pulse",
+    "pulses",
+    "blip",
+    "blips",
+    "hop",
+    "jump",
+    "jumped",
+    "sprung",
+    "sprunge",
+    "salto",
+    "saltos",
+    "skok",
+    "up",
+    "return",
+    "returned",
+    "returns",
+    "rise",
+    "rises",
+    "rose",
+    "risen",
+    "ascent",
+    "attained",
+    "achieved",
+    "reached",
+    "recoil",
+    "kickback",
+    "hf",
+    "event",
+    "events",
+    "what",
+];
+
+/// Words of a release that say no more than that something begins.
+const BEGINS: [&str; 27] = [
+    "initial",
+    "initially",
+    "start",
+    "starting",
+    "started",
+    "begin",
+    "begins",
+    "beginning",
+    "original",
+    "origin",
+    "anfang",
+    "anfangs",
+    "anfangswert",
+    "ausgang",
+    "ursprung",
+    "depart",
+    "debut",
+    "initiale",
+    "iniziale",
+    "iniziali",
+    "partenza",
+    "inicial",
+    "iniciales",
+    "inicio",
+    "partida",
+    "kezdeti",
+    "initiales",
+];
+
+/// What a word that names a ball is, or ends in.
+const BALLS: [&str; 16] = [
+    "ball",
+    "balls",
+    "balle",
+    "ballon",
+    "kugel",
+    "palla",
+    "pallina",
+    "pelota",
+    "bola",
+    "stuiterbal",
+    "boll",
+    "pallo",
+    "pilka",
+    "labda",
+    "мяч",
+    "球",
+];
+
+/// More rows than these are not looked through for words, nor comments.
+const ROWS: usize = 200;
+
+/// Whether a text says that something bounces, or is dropped.
+fn says(text: &str) -> bool {
+    if Heading::parse(text).cor {
+        return true;
+    }
+    split(text).iter().any(|word| {
+        let spelt = folded(&word.text);
+        let (plain, atoms) = match word.kind {
+            Kind::Known(atoms) => (spelt.as_str(), atoms),
+            Kind::Unknown => misspelt(&spelt).unwrap_or((&spelt, &[])),
+            _ => return false,
+        };
+        let bounces = [Atom::Impact, Atom::Rebound, Atom::Release].iter().any(|atom| atoms.contains(atom));
+        let loose = LOOSE.contains(&plain) || BEGINS.contains(&plain) || atoms.contains(&Atom::Top) && plain != "apex";
+        bounces && !loose || BALLS.iter().any(|ball| plain.ends_with(ball))
+    })
+}
+
+/// Whether a table says anywhere that something bounces: in a heading, a title, a remark, the name
+/// of a row or of its sheet.
+fn said(region: &Region<'_>) -> bool {
+    let grid = region.view.grid;
+    let numbers = |cell: &str| cell.parse::<f64>().is_ok();
+    let cells = (0..grid.rows().min(ROWS)).flat_map(|row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
+    cells.filter(|cell| !cell.is_empty() && !numbers(cell)).any(says)
+        || grid.comments().take(ROWS).any(says)
+        || grid.tab.is_some_and(says)
+        || says(&region.label)
+}
+
+/// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights
+/// one below the other fall as a ball does or do not fit, but a pair of before and after, speeds,
+/// energies and times may be of anything. What was chosen by an option is answered for.
+pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
+    let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
+    if answered || region.given || region.chosen {
+        return None;
+    }
+    let length = |c: &Column| {
+        c.unit.is_none_or(|unit| unit.dimension == Dimension::Length && !matches!(unit.scale, Scale::Energy { .. }))
+    };
+    let read = || columns.values().filter(|(_, _, v)| v.role != Role::Error);
+    let high = read().any(|(_, c, v)| v.what == What::Height && length(c));
+    let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
+    let open = read().find(|(_, c, v)| if high { pair(c, v.at) } else { v.at != At::Release || pair(c, v.at) });
+    let parts = || columns.columns.iter().find(|c| c.kind == Of::Share && c.heading.has(Atom::Energy));
+    let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !said(region))?;
+    Some(Doubt::Unsaid { column: shown(&column.heading.text) })
+}
+
+/// CORs of balls that people drop to see them bounce.
+const USUAL: std::ops::Range<f64> = 0.3..0.95;
+
+/// The doubt whether releases and rebounds, in different units, are: where their numbers say a COR
+/// that is usual if the units were the same, and one that is not as they are stated.
+pub(super) fn mixed_units(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
+    let column = |release: bool| {
+        columns.values().find(|(_, c, v)| {
+            let fits = v.what == What::Height && v.role == Role::Reading && (v.at == At::Release) == release;
+            fits && c.unit.is_some_and(|unit| matches!(unit.scale, Scale::Si { .. }))
+        })
+    };
+    let ((drop, of_drop, _), (rebound, of_rebound, _)) = (column(true)?, column(false)?);
+    let (Some(one), Some(other)) = (of_drop.unit.filter(|_| of_drop.unit != of_rebound.unit), of_rebound.unit) else {
+        return None;
+    };
+    let number = |row: usize, n: usize| match region.view.read(row, n) {
+        Cell::Number(m) if m.unit.is_none() => Some(m.value),
+        _ => None,
+    };
+    let pairs = region.rows.iter().filter_map(|&row| Some(number(row, rebound)? / number(row, drop)?));
+    let bare = median(&mut pairs.collect::<Vec<f64>>())?.sqrt();
+    let stated = bare * (other.si(1.0) / one.si(1.0)).sqrt();
+    (USUAL.contains(&bare) && !USUAL.contains(&stated))
+        .then(|| Doubt::Units { drop: shown(&of_drop.heading.text), rebound: shown(&of_rebound.heading.text) })
+}
+
+/// Hundredths are of the release, so that releases are no hundredths of each other.
+pub(super) fn released(region: &Region<'_>, columns: &Columns) -> Result<(), TableError> {
+    let percent = |c: &Column| c.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+    let Some((index, column, _)) = columns
+        .values()
+        .find(|(_, c, v)| v.what == What::Height && v.at == At::Release && v.role == Role::Reading && percent(c))
+    else {
+        return Ok(());
+    };
+    let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+    let first = cells.next();
+    if cells.all(|cell| Some(cell) == first) {
+        return Ok(());
+    }
+    let name = shown(&column.heading.text);
+    Err(region
+        .header_error(index, format!("'{name}' holds hundredths: of what, where a ball was dropped from?"))
+        .question()
+        .help("give the heights of release in a unit of length; the rebounds may be hundredths of them"))
+}
