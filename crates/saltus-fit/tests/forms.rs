@@ -252,4 +252,35 @@ proptest! {
             prop_assert_eq!(sound.verdict(), Verdict::Trusted, "{}", sound);
         }
     }
+
+    /// Letters, or numbers, before a colon count columns, where no two hold the same.
+    #[test]
+    fn columns_that_are_counted(e in 0.5f64..0.9, letters: bool) {
+        let [one, two] = if letters { ["A", "B"] } else { ["1", "2"] };
+        let rows: String = [60.0, 80.0, 100.0].map(|h| format!("{h},{:.2}\n", h * e * e)).concat();
+        let (cor, _) = trusted(&format!("{one}: height dropped (cm),{two}: height bounced (cm)\n{rows}"));
+        prop_assert!((cor - e).abs() < 2e-3);
+    }
+
+    /// A table that speaks of another motion, in which heights and speeds fall alike, is doubted,
+    /// wherever it says so.
+    #[test]
+    fn another_motion_is_doubted(e in 0.5f64..0.9, list: bool, said in 0usize..3, motion in prop::sample::select(vec![
+        "Pendulum with a steel ball", "Ball rolling down and up a ramp", "Bungee jump", "Two carts collide", "Pendel", "Swinging ball",
+    ])) {
+        let rows: String = if list {
+            (0..5).map(|n| format!("{n},{:.2}\n", 100.0 * e.powi(2 * n))).collect()
+        } else {
+            [60.0, 80.0, 100.0].map(|h| format!("{h},{:.2}\n", h * e * e)).concat()
+        };
+        let table = format!("{}\n{rows}", if list { "n,Height (cm)" } else { "Drop (cm),Rebound (cm)" });
+        prop_assert_eq!(fit(&table).verdict(), Verdict::Trusted, "{}", table);
+        let text = match said {
+            0 => format!("{motion}\n{table}"),
+            1 => format!("# {motion}\n{table}"),
+            _ => format!("{table}\n{motion}\n"),
+        };
+        let report = fit(&text);
+        prop_assert!(report.verdict() == Verdict::Doubtful && report.reason().contains("another motion"), "{}{}", text, report);
+    }
 }

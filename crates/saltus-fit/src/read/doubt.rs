@@ -32,6 +32,11 @@ pub enum Doubt {
         /// A column of the readings.
         column: String,
     },
+    /// A heading, a title or a remark speaks of another motion than a bounce.
+    Motion {
+        /// What it says.
+        text: String,
+    },
     /// Releases and rebounds are in different units, and their numbers are those of one.
     Units {
         /// The column of the releases.
@@ -60,6 +65,9 @@ impl fmt::Display for Doubt {
                 "nothing in the table says that something bounces, and '{column}' may be of anything: say so in a heading or in a line above it \
                  ('Ball dropped on wood'), or give the names by --header"
             ),
+            Self::Motion { text } => {
+                write!(f, "'{text}' speaks of another motion than a bounce: are the readings those of a ball that bounces?")
+            }
             Self::Units { drop, rebound } => write!(
                 f,
                 "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \

@@ -263,7 +263,12 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
         let header = header.iter().enumerate().map(|(n, c)| if mine(n) { c.clone() } else { String::new() });
         Region { label, header: header.collect(), ..region.clone() }
     };
-    if runs.len() > 1 {
+    // `A: drop`, `B: rebound` only count the columns: runs hold the same things.
+    let things: Vec<(&str, &str)> = header.iter().filter_map(|cell| cell.split_once(':')).collect();
+    let alike = things.iter().enumerate().any(|(n, (run, name))| {
+        things[..n].iter().any(|(other, same)| other.trim() != run.trim() && same.trim() == name.trim())
+    });
+    if runs.len() > 1 && alike {
         let turned = |name: &String| Heading::parse(name).turns();
         let regions = runs.iter().filter(|name| !turned(name)).map(|name| {
             let mut region = part(name.clone(), &|n| {

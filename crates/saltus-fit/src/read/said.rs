@@ -104,26 +104,6 @@ const BEGINS: [&str; 27] = [
     "initiales",
 ];
 
-/// What a word that names a ball is, or ends in.
-const BALLS: [&str; 16] = [
-    "ball",
-    "balls",
-    "balle",
-    "ballon",
-    "kugel",
-    "palla",
-    "pallina",
-    "pelota",
-    "bola",
-    "stuiterbal",
-    "boll",
-    "pallo",
-    "pilka",
-    "labda",
-    "мяч",
-    "球",
-];
-
 /// More rows than these are not looked through for words, nor comments.
 const ROWS: usize = 200;
 
@@ -141,20 +121,24 @@ fn says(text: &str) -> bool {
         };
         let bounces = [Atom::Impact, Atom::Rebound, Atom::Release].iter().any(|atom| atoms.contains(atom));
         let loose = LOOSE.contains(&plain) || BEGINS.contains(&plain) || atoms.contains(&Atom::Top) && plain != "apex";
-        bounces && !loose || BALLS.iter().any(|ball| plain.ends_with(ball))
+        bounces && !loose
     })
 }
 
-/// Whether a table says anywhere that something bounces: in a heading, a title, a remark, the name
-/// of a row or of its sheet.
-fn said(region: &Region<'_>) -> bool {
+/// The words of a table: in headings, titles, remarks, comments, names of rows and of its sheet.
+fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
     let grid = region.view.grid;
     let numbers = |cell: &str| cell.parse::<f64>().is_ok();
-    let cells = (0..grid.rows().min(ROWS)).flat_map(|row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
-    cells.filter(|cell| !cell.is_empty() && !numbers(cell)).any(says)
-        || grid.comments().take(ROWS).any(says)
-        || grid.tab.is_some_and(says)
-        || says(&region.label)
+    let cells = (0..grid.rows().min(ROWS)).flat_map(move |row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
+    let cells = cells.filter(move |cell| !cell.is_empty() && !numbers(cell));
+    cells.chain(grid.comments().take(ROWS)).chain(grid.tab).chain([region.label.as_str()])
+}
+
+/// The doubt whether a table is of a bounce that speaks of another motion in which heights, or
+/// speeds, fall alike: a pendulum, a ramp, a jump on a rope.
+pub(super) fn of_another_motion(region: &Region<'_>) -> Option<Doubt> {
+    let other = |text: &&str| split(text).iter().any(|word| word.is(Atom::Motion));
+    texts(region).find(other).map(|text| Doubt::Motion { text: shown(text) })
 }
 
 /// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights
@@ -173,7 +157,7 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
     let open = read().find(|(_, c, v)| if high { pair(c, v.at) } else { v.at != At::Release || pair(c, v.at) });
     let parts = || columns.columns.iter().find(|c| c.kind == Of::Share && c.heading.has(Atom::Energy));
-    let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !said(region))?;
+    let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(says))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
 }
 

@@ -55,6 +55,8 @@ pub(super) enum Atom {
     /// A rebound at its top, or the top itself.
     Top,
     Other,
+    /// A motion that is none of a bounce, though heights or speeds fall in it alike.
+    Motion,
     Note,
     /// The word says nothing.
     Filler,
@@ -104,6 +106,7 @@ impl Atom {
             "sample" => Self::Sample,
             "top" => Self::Top,
             "other" => Self::Other,
+            "motion" => Self::Motion,
             "note" => Self::Note,
             "filler" => Self::Filler,
             _ => match name.split_once(':')? {

@@ -15,7 +15,6 @@ use super::cell::{Cell, dated};
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::region::Region;
-use super::rows::between;
 use super::title;
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
@@ -97,6 +96,7 @@ impl Columns {
         for text in &region.header {
             found.push(Heading::parse(text));
         }
+        found.enumerated();
         found.spans(region);
         found.counted(region);
         found.measured(region);
@@ -202,20 +202,6 @@ impl Columns {
     pub(super) fn leave(&mut self, index: usize, why: Why) {
         self.columns[index].kind = Kind::Aside;
         self.aside.push(LeftAside::new(Part::Column, shown(&self.columns[index].heading.text), why));
-    }
-
-    /// What names flights by the two bounces that each lies between counts bounces, whatever stands
-    /// above it.
-    fn spans(&mut self, region: &Region<'_>) {
-        for index in 0..self.columns.len() {
-            let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
-            let open = self.columns[index].unit.is_none() && !self.columns[index].heading.turns();
-            let first = cells.next().and_then(between);
-            if open && first.is_some() && cells.clone().count() > 1 && cells.all(|cell| between(cell).is_some()) {
-                self.columns[index].heading.unknown.clear();
-                self.columns[index].kind = Kind::Number { sure: true };
-            }
-        }
     }
 
     /// Events that are only counted.

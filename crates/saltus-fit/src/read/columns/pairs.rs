@@ -7,7 +7,7 @@ use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
-use crate::read::rows::bounce;
+use crate::read::rows::{between, bounce};
 use crate::read::units::{Dimension, Scale};
 use crate::read::vocabulary::Atom;
 
@@ -119,6 +119,40 @@ impl Columns {
         self.columns[before].kind = Kind::Value(plain(What::Speed));
         self.place(before, At::Before, String::new());
         self.place(after, At::After, String::new());
+    }
+
+    /// `A: drop (cm)` beside `B: rebound (cm)`: what stands before a colon counts columns, and tells
+    /// no runs apart, where no two of them are of the same quantity and event.
+    pub(super) fn enumerated(&mut self) {
+        let runs: Vec<(usize, String, (What, At))> = self
+            .values()
+            .filter(|(_, c, v)| c.heading.text.contains(':') && !v.trial.is_empty())
+            .map(|(n, _, v)| (n, v.trial.clone(), (v.what, v.at)))
+            .collect();
+        let apart = |(n, (_, run, of)): (usize, &(usize, String, (What, At)))| {
+            runs[..n].iter().all(|(_, other, same)| other != run && same != of)
+        };
+        if runs.len() > 1 && runs.iter().enumerate().all(apart) {
+            for (index, _, _) in &runs {
+                if let Kind::Value(value) = &mut self.columns[*index].kind {
+                    value.trial.clear();
+                }
+            }
+        }
+    }
+
+    /// What names flights by the two bounces that each lies between counts bounces, whatever stands
+    /// above it.
+    pub(super) fn spans(&mut self, region: &Region<'_>) {
+        for index in 0..self.columns.len() {
+            let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+            let open = self.columns[index].unit.is_none() && !self.columns[index].heading.turns();
+            let first = cells.next().and_then(between);
+            if open && first.is_some() && cells.clone().count() > 1 && cells.all(|cell| between(cell).is_some()) {
+                self.columns[index].heading.unknown.clear();
+                self.columns[index].kind = Kind::Number { sure: true };
+            }
+        }
     }
 
     /// A column without a unit that counts its rows, beside others that are measured: `Peak,Peak

@@ -6,7 +6,7 @@ use super::super::units::{Dimension, Unit};
 use super::Grid;
 
 /// What stands between readings of one cell; blanks last, since units stand behind them.
-const MARKS: [&str; 7] = [";", "/", ", ", ",", " & ", "\n", " "];
+const MARKS: [&str; 12] = [";", "/", ", ", ",", " & ", " and ", " und ", " et ", " y ", " e ", "\n", " "];
 
 /// Readings of one event agree to this factor, as those of a range do.
 const ALIKE: f64 = 1.5;

@@ -43,7 +43,7 @@ impl Heading {
             return Meaning::Setting;
         }
         let flown = has(Distance) && has(Between) || has(Height) && has(Total) && !has(Atom::Lost);
-        if has(Other) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
+        if has(Other) || has(Atom::Motion) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
             return Meaning::Aside(Why::Other);
         }
         let what = if intervals { What::Interval } else { self.what() };
