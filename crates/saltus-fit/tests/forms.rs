@@ -273,7 +273,7 @@ proptest! {
         } else {
             [60.0, 80.0, 100.0].map(|h| format!("{h},{:.2}\n", h * e * e)).concat()
         };
-        let table = format!("{}\n{rows}", if list { "n,Height (cm)" } else { "Drop (cm),Rebound (cm)" });
+        let table = format!("{}\n{rows}", if list { "Bounce,Height (cm)" } else { "Drop (cm),Rebound (cm)" });
         prop_assert_eq!(fit(&table).verdict(), Verdict::Trusted, "{}", table);
         let text = match said {
             0 => format!("{motion}\n{table}"),

@@ -21,7 +21,7 @@ fn sheets_are_read_as_they_are() {
         // Labels of a sound program, and places of a film.
         "3.2000\t3.2000\tbounce 1\n3.9225\t3.9225\tbounce 2\n4.5005\t4.5005\t\n4.9629\t4.9629\tx\n5.3328\t5.3328\t\n",
         "Start height (m),Height after 1st bounce (m),Height after 2nd bounce (m)\n1.2,0.769,0.492\n1,0.641,0.410\n0.8,0.511,0.328\n",
-        "n,Ball height (±0.5 cm)\n0,100\n1,64.1\n2,41.0\n3,26.2\n",
+        "n,Rebound height (±0.5 cm)\n0,100\n1,64.1\n2,41.0\n3,26.2\n",
         // A name that looks like the beginning of a comment.
         "#,time between bounces (ms)\n1,722\n2,578\n3,463\n4,370\n5,296\n",
         "# Ana\n\nBounce,Air time (s)\n1,0.722\n2,0.578\n3,0.463\n4,0.370\n5,0.296\n",

@@ -61,6 +61,8 @@ const ANYTHING: &[(&str, i32, bool)] = &[
     ("n,T (s)", 1, false),
     ("Interval,Duration (s)", 1, false),
     ("n,Energy (J)", 2, false),
+    ("n,h (cm)", 2, false),
+    ("#,Height (cm)", 2, false),
 ];
 
 /// Where a table may say that something bounces: above it, in a comment, in the name of a column

@@ -233,6 +233,10 @@ impl Columns {
             headings.filter_map(|h| Some((h.value()?.what, h.unit?))).find(|(what, _)| *what != What::Unsaid)
         });
         for index in silent {
+            if region.rows.iter().all(|&row| region.cell(row, index).is_empty()) {
+                self.leave(index, Why::Empty);
+                continue;
+            }
             let own = region.rows.iter().find_map(|&row| match region.view.read(row, index) {
                 Cell::Number(m) => m.unit.map(|unit| unit.dimension),
                 _ if clock(region.cell(row, index)).is_some() => Some(Dimension::Time),

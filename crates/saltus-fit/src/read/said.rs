@@ -4,7 +4,7 @@
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
-use super::heading::{At, Heading, Role, What};
+use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded, misspelt};
@@ -141,9 +141,10 @@ pub(super) fn of_another_motion(region: &Region<'_>) -> Option<Doubt> {
     texts(region).find(other).map(|text| Doubt::Motion { text: shown(text) })
 }
 
-/// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights
-/// one below the other fall as a ball does or do not fit, but a pair of before and after, speeds,
-/// energies and times may be of anything. What was chosen by an option is answered for.
+/// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights,
+/// speeds, energies and times may be of anything, but heights beside times, which fall as a ball
+/// does or do not fit. Answered for is what was chosen by an option, and a name that is spelt as
+/// the documentation spells it, `height_cm`; `h0` beside `h1` are signs of a bounce.
 pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
     if answered || region.given || region.chosen {
@@ -155,7 +156,11 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let read = || columns.values().filter(|(_, _, v)| v.role != Role::Error);
     let high = read().any(|(_, c, v)| v.what == What::Height && length(c));
     let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
-    let open = read().find(|(_, c, v)| if high { pair(c, v.at) } else { v.at != At::Release || pair(c, v.at) });
+    let timed = read().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval) && v.at == At::Row);
+    let spelt = |c: &Column| c.heading.text.contains('_');
+    let released = read().any(|(_, _, v)| v.at == At::Release);
+    let list = |c: &Column, v: &Value| v.what == What::Height && v.at == At::Row && !(timed || released || spelt(c));
+    let open = read().find(|(_, c, v)| pair(c, v.at) || if high { list(c, v) } else { v.at != At::Release });
     let parts = || columns.columns.iter().find(|c| c.kind == Of::Share && c.heading.has(Atom::Energy));
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(says))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
