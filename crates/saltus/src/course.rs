@@ -45,7 +45,7 @@ pub struct Course<'a, A: Automaton, M = Auto> {
 }
 
 /// Where a run stands just after a jump, handed on to the next arc: read back from where it is
-/// kept, it would be waited for, by a fifth of a ball's impact.
+/// kept, it would be waited for.
 #[derive(Clone, Copy)]
 struct Stand<M, S> {
     mode: M,
@@ -296,8 +296,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 let (kind, note) = wrong(automaton, to, now, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &{ before })).noting(Some(note)));
             }
-            // From where it was computed, not by way of the jump, which lies in memory: that copy
-            // alone took a fifth of a ball's impact.
+            // From where it was computed, not by way of the jump, which lies in memory.
             (at.span.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
             let jump = Jump { time: instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {

@@ -6,8 +6,8 @@
 const PART: u64 = 4;
 /// No record takes more than this without being allowed to: 4 GiB.
 const MOST: u64 = 4 << 30;
-/// Records smaller than this, 16 MiB, do not ask how much is free: that takes a fifth of a
-/// millisecond.
+/// Records smaller than this, 16 MiB, do not ask how much is free: that takes as long as to write
+/// a good part of them.
 const FIRST: usize = 16 << 20;
 /// A record asks again when it has grown by this part, since others may have grown beside it: with
 /// n of them each ends at 1/(n + 3) of what was free, so that up to 48, each a sixteenth beyond,

@@ -321,7 +321,7 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
 }
 
 /// log₂ x to within 0.09, read off the number's exponent and mantissa (N. Schraudolph, Neural
-/// Computation 11 (1999) 853): all that a step's size needs, at a tenth of the time.
+/// Computation 11 (1999) 853): all that a step's size needs.
 fn binary_logarithm(x: f64) -> f64 {
     x.to_bits().cast_signed() as f64 / MANTISSA - EXPONENT
 }

@@ -165,8 +165,8 @@ fn difference<S: State>(y: &S, x: &S) -> S {
 /// The differences of so many coordinates are all in registers. There the optimiser packs them as
 /// it finds them, such that those that are ready wait for those that are not: places, known from
 /// the speeds of an earlier stage, for speeds. To look at each by itself, whether it is finite,
-/// keeps them apart, and costs less than that wait: on the Arenstorf orbit a fifth of the run. One
-/// or two are best packed, and more are in memory.
+/// keeps them apart, and costs less than that wait (`cargo bench -p saltus --bench steps`). One or
+/// two are best packed, and more are in memory.
 const APART: RangeInclusive<usize> = 3..=6;
 
 /// The stages of an explicit step, kept as differences dₖ from the slope at its start.
