@@ -54,3 +54,31 @@ fn heights_that_hardly_differ_are_no_speeds() {
     assert!(compared([90.0, 97.0, 105.0]), "a thirteenth");
     assert!(!compared([98.0, 100.0, 102.0]), "a fiftieth");
 }
+
+/// Means hide how far the COR differs from drop to drop: where the table says that its readings are
+/// means, the interval allows for a twentieth of it, over the root of as many as are said.
+#[test]
+fn means_do_not_hide_how_far_drops_differ() {
+    let mut noise = Noise(3);
+    let mut held = [0; 2];
+    let mut longer = 0;
+    for _ in 0..200 {
+        let mut heights = [0.0; 4];
+        for _ in 0..5 {
+            let e = 0.7 * (1.0 + noise.normal(0.05));
+            for (n, height) in (1..).zip(&mut heights) {
+                *height += 200.0 * e.powi(2 * n) / 5.0;
+            }
+        }
+        let rows: String = (1..).zip(heights).map(|(n, h)| format!("{n},{:.1}\n", h + noise.normal(0.3))).collect();
+        let table = format!("bounce,height_cm\n0,200\n{rows}");
+        // The zero and the air are known.
+        let fit = |text: &str| Fit::new().drag(0.0).sigma_zero(1e-4).sigma_height(0.003).run(&read(text)).unwrap();
+        let both = [fit(&table), fit(&format!("Means of five drops\n{table}"))].map(|report| *report.cor().unwrap());
+        for (held, cor) in held.iter_mut().zip(&both) {
+            *held += usize::from((cor.low..=cor.high).contains(&0.7));
+        }
+        longer += usize::from(both[1].high - both[1].low > both[0].high - both[0].low);
+    }
+    assert!(held[0] < 120 && held[1] > 180 && longer == 200, "{held:?} {longer}");
+}

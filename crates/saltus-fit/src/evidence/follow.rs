@@ -15,7 +15,7 @@ use crate::statistics::{CLEAR, NORMAL, SCATTER, WEAK, median};
 const APART: usize = 3;
 /// The COR of one ball on one floor scatters from bounce to bounce by this part of it, as a
 /// standard deviation: of rough marbles the most.
-const BOUNCES: f64 = 0.05;
+pub(crate) const BOUNCES: f64 = 0.05;
 /// The CORs that are tried, and how many: neighbours are nearer than [`BOUNCES`].
 const CORS: (f64, f64, u32) = (0.05, 1.25, 70);
 /// Runs of more contacts tell no more of how to read them.

@@ -1,6 +1,6 @@
 //! What the readings of a table say, trial by trial, in the form the models ask for.
 
-mod follow;
+pub(crate) mod follow;
 
 use follow::{Repair, Run, Step, Way};
 

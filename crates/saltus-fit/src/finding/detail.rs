@@ -255,6 +255,13 @@ pub enum Widening {
         #[serde(default)]
         ball: Option<Ball>,
     },
+    /// Readings that are means, which hide how far the COR scatters from drop to drop.
+    Averages {
+        /// Of how many readings each is the mean, as far as that is said.
+        drops: f64,
+        /// By how much the COR may be off.
+        share: f64,
+    },
     /// The bend of the lens, which the samples do not show.
     Lens {
         /// By how much the COR may be off.

@@ -167,11 +167,13 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     columns.measure(region, options, metadata.frame_rate)?;
     columns.losses(metadata.drop);
     said::released(region, &columns)?;
+    let averaged = said::averaged(region, &columns);
     let doubts =
         [said::unsaid(region, &columns, options), said::mixed_units(region, &columns), said::of_another_motion(region)];
     // A sound is sampled far more finely than a contact is heard.
     let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
+    table.metadata.averaged = averaged;
     table.doubts.extend(doubts.into_iter().flatten());
     Ok(table)
 }

@@ -168,6 +168,8 @@ pub(crate) struct Metadata {
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only
     /// ratios mean anything.
     pub(crate) pixels: bool,
+    /// Each reading is the mean of so many.
+    pub(crate) averaged: Option<f64>,
     /// Times are sums of times between contacts.
     pub(crate) intervals: bool,
     /// Which way the heights count was stated, and is not to be recognised.

@@ -88,6 +88,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
     let larger = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::max);
     let smaller = |x: Option<f64>, y: Option<f64>| x.into_iter().chain(y).reduce(f64::min);
     Ok(Metadata {
+        averaged: a.averaged.zip(b.averaged).map(|(one, other)| one.min(other)),
         frame_rate: smaller(a.frame_rate, b.frame_rate),
         gravity: a.gravity.or(b.gravity),
         drop: None,

@@ -193,6 +193,31 @@ pub(super) fn mixed_units(region: &Region<'_>, columns: &Columns) -> Option<Doub
         .then(|| Doubt::Units { drop: shown(&of_drop.heading.text), rebound: shown(&of_rebound.heading.text) })
 }
 
+/// Nobody calls fewer readings than these a mean.
+const AVERAGED: f64 = 2.0;
+
+/// Of how many readings each is the mean, where a line above the table, its name or the name of a
+/// column says that they are, and no column states how far they scatter; at least two where nothing
+/// says how many.
+pub(super) fn averaged(region: &Region<'_>, columns: &Columns) -> Option<f64> {
+    let stated = columns.columns.iter().any(|c| matches!(c.kind, Of::Error(_)));
+    let of_column = columns.values().filter(|(_, c, v)| v.role == Role::Reading && c.heading.has(Atom::Mean));
+    let names = of_column.map(|(_, c, _)| c.heading.text.as_str());
+    let above = region.aside.iter().map(|aside| aside.name.as_str()).chain([region.view.grid.name]);
+    let other = |text: &str| {
+        [Atom::Group, Atom::Other, Atom::Derived, Atom::Speed].iter().any(|a| split(text).iter().any(|w| w.is(*a)))
+    };
+    let says = |text: &str| split(text).iter().any(|word| word.is(Atom::Mean)) && !other(text);
+    let text = above.filter(|text| says(text)).chain(names).next().filter(|_| !stated)?;
+    let count = |word: &str| {
+        let spelt = ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"];
+        let named = spelt.iter().zip(2u32..).find(|(name, _)| **name == word).map(|(_, n)| f64::from(n));
+        named.or(word.parse().ok().filter(|n: &f64| n.fract() == 0.0 && *n >= AVERAGED))
+    };
+    let lower = folded(text);
+    Some(lower.split(|c: char| !c.is_alphanumeric()).find_map(count).unwrap_or(AVERAGED))
+}
+
 /// Hundredths are of the release, so that releases are no hundredths of each other.
 pub(super) fn released(region: &Region<'_>, columns: &Columns) -> Result<(), TableError> {
     let percent = |c: &Column| c.unit.is_some_and(|unit| unit.scale == Scale::Percent);

@@ -7,13 +7,14 @@
 use super::judgement::{Cor, Judgement, NAMED};
 use super::whole;
 use crate::error::FitError;
+use crate::evidence::follow::BOUNCES;
 use crate::evidence::{Evidence, TrialEvidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
 use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, lowered_at_most, missed, raised, released_higher, telling, without_air};
 use crate::quantity::{Ball, Readings, Source};
 use crate::read::Table;
 use crate::solve::fits::{Fits, Known};
-use crate::statistics::{CLEAR, NORMAL, student};
+use crate::statistics::{CLEAR, NORMAL, REPLICATED, student};
 
 /// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule
 /// without naming where on it.
@@ -131,6 +132,11 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     {
         let ball = stated.named;
         shares.push(([(-share).max(0.0), share.max(0.0)], Widening::Air { most_per_m, share, ball }));
+    }
+    let trials = fits.evidence.trials.len();
+    if let Some(drops) = fits.table.metadata.averaged.filter(|_| trials < REPLICATED) {
+        let share = NORMAL * BOUNCES * cor.value / (drops * trials.max(1) as f64).sqrt();
+        shares.push(([share; 2], Widening::Averages { drops, share }));
     }
     let side = |n: usize, own: f64| shares.iter().fold(own, |all, (share, _)| all.hypot(share[n]));
     let (below, above) = (side(0, cor.value - cor.low), side(1, cor.high - cor.value));

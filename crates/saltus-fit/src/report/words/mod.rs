@@ -98,6 +98,10 @@ pub(super) fn widening(widening: &Widening) -> String {
             "which ball it was is not stated, and the air may move the COR by {share:+.3} (if it is light: k = {most_per_m:.3} /m): name the ball (--ball \
              tennis) or its drag (--drag)"
         ),
+        Widening::Averages { drops, share } => format!(
+            "means, of {drops} readings each as far as it is said, do not show how far drops differ, which may move the COR by {share:.3}: give \
+             the drops one by one"
+        ),
         Widening::Lens { share } => format!(
             "a lens that bends the picture by a few hundredths may move the COR by {share:.3}: film from further away, with the path in the middle"
         ),
