@@ -86,10 +86,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return (ControlFlow::Continue(()), span);
         }
         let natural = natural(&[*x, self.automaton.flow(mode, now.seconds(), x)]);
-        // Of a long arc the first piece is as long as the solution takes to change.
         // A solution that no polynomial follows over so short a piece is followed by none.
         let shortest = TINY * if natural > 0.0 { span.min(natural) } else { span };
         let mut pieces = 0;
+        // Of a long arc the first piece is as long as the solution takes to change.
         let (mut from, mut length) = (0.0, if natural > 0.0 { span.min(FIRST * natural) } else { span });
         while from < span {
             let last = from + length >= span;
@@ -116,6 +116,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
 /// Where on a piece it is compared with the solution: between the nodes of its interpolant.
 const FITS_AT: [f64; 3] = [0.221_324_6, 0.635_914_1, 0.97];
+
 /// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as
 /// the exact state `at` it.
 fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {

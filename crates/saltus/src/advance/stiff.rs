@@ -9,7 +9,7 @@ use super::Advance;
 
 /// A step is looked at after this many at the earliest, as long as nothing speaks for a change.
 ///
-/// A look costs three evaluations of the flow: with one in 32 steps and ever fewer a flow that is
+/// A look costs two evaluations of the flow: with one in 32 steps and ever fewer a flow that is
 /// not stiff loses less than two percent (tests/stiffness.rs, `what_is_not_stiff_loses_little`);
 /// after twice as many a short stiff arc would be over (`no_more_than_twice_the_best_choice`).
 const SELDOM: u64 = 32;

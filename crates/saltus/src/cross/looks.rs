@@ -14,6 +14,7 @@ const PER_STEP: usize = 4;
 const MOST_TURNS: usize = 8;
 /// Where on a stretch two neighbouring samples are compared, to see whether the guard stands still.
 const STANDS_AT: [f64; 2] = [0.3, 0.6];
+
 impl Search<'_> {
     /// Number by number.
     pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
