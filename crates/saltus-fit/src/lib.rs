@@ -37,11 +37,13 @@ mod word;
 
 pub use compare::explain::{Agreement, Conflict, Generous, Hypothesis, ImpliedGravity, TotalTime};
 pub use error::{FitError, TableError};
-pub use finding::{Air, At, Basis, By, Cause, Finding, FindingKind, Gives, Missing, Need, Severity, Untried, Widening};
+pub use finding::{
+    Air, At, Basis, By, Cause, Doubt, Finding, FindingKind, Gives, Missing, Need, Severity, Untried, Widening,
+};
 pub use fit::Fit;
 pub use plan::Expected;
 pub use quantity::{Ball, CorModel, Explanation, Loss, Measured, Method, Readings, Source, Sourced};
-pub use read::{Doubt, Event, LeftAside, Part, ReadOptions, Reading, Table, Trial, Why};
+pub use read::{Event, LeftAside, Part, ReadOptions, Reading, Table, Trial, Why};
 pub use report::{Arc, Difference, Group, Mark, Measure, Motion, Plan, Planned, Point, Report, Residual, Way};
 pub use solve::bootstrap::Bootstrap;
 pub use solve::bounces::BounceCor;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::detail::{Basis, By, Cause, Gives, Missing, Untried};
+use super::doubt::Doubt;
 use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 
 /// What was found, with its numbers: SI units, but for recordings of unknown scale.
@@ -22,7 +23,7 @@ pub enum FindingKind {
         text: String,
     },
     ReadDoubt {
-        text: String,
+        doubt: Doubt,
     },
     /// The table holds several balls or surfaces, each with a fit of its own.
     Groups {

@@ -2,11 +2,13 @@
 //! `report/words.rs` alone.
 
 mod detail;
+mod doubt;
 mod kind;
 
 use serde::{Deserialize, Serialize};
 
 pub use detail::{Air, Basis, By, Cause, Gives, Missing, Need, Untried, Widening};
+pub use doubt::Doubt;
 pub use kind::FindingKind;
 
 use crate::word::words;

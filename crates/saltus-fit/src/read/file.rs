@@ -8,6 +8,7 @@ use super::columns::Columns;
 use super::foreign;
 use super::grid::{Grid, View};
 use super::heading::Heading;
+use super::json;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
@@ -15,8 +16,9 @@ use super::text::text;
 use super::title::{self, Stated};
 use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
-use super::{Doubt, Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
+use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
+use crate::finding::Doubt;
 use crate::quantity::Ball;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
@@ -24,6 +26,9 @@ const MOVES: f64 = 0.5;
 
 /// Reads `bytes` into a table that is not yet checked.
 pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
+    if let Some(parts) = json::parts(bytes) {
+        return sheets(name, parts, options).map(|table| Table { name: name.to_owned(), ..table });
+    }
     if let Some(error) = foreign::refused(name, bytes) {
         return Err(error);
     }

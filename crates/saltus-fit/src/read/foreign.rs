@@ -40,7 +40,11 @@ const KINDS: [(&[&str], &str, &str); 13] = [
         "type the numbers into a spreadsheet and save it as CSV",
     ),
     (&["numbers"], "a sheet of Numbers", "in Numbers: File, Export To, CSV or Excel; give that file"),
-    (&["json"], "JSON", "write its numbers as a table, a name above each column, and save it as CSV"),
+    (
+        &["json"],
+        "JSON without records of numbers, or longer than 16 MB",
+        "write its numbers as a table, a name above each column, and save it as CSV",
+    ),
     (&["xml"], "XML", "export the table as CSV; give that file"),
     (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];

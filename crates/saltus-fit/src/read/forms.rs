@@ -7,6 +7,10 @@ use super::units::{Dimension, Unit};
 
 /// The text with tabs between the cells of such a table; `None` if it holds none.
 pub(super) fn table(text: &str) -> Option<String> {
+    // A page of the web is read as such.
+    if text.trim_start().starts_with('<') {
+        return None;
+    }
     latex(text).or_else(|| wiki(text)).or_else(|| listed(text)).or_else(|| patterned(text))
 }
 
@@ -123,7 +127,7 @@ fn contents(cell: &str) -> &str {
 }
 
 /// Marks between one height and the next.
-const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
+const ARROWS: [&str; 11] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜", "vs", "vs."];
 
 /// A number of a line with its unit, and the words before it.
 struct Part<'a> {
@@ -159,13 +163,15 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
 }
 
 /// Lines that are the same but for their numbers, `dropped from 1 m, came back to 64 cm`: a row
-/// each, the words before a number being its name; arrows stand between a height and the next,
-/// `100 cm -> 64 cm -> 41 cm`. `None` if most lines are something else.
+/// each, the words before a number being its name, `h0 = 1 m, h1 = 64 cm`; arrows stand between a
+/// height and the next, `100 cm -> 64 cm -> 41 cm`. `None` if most lines are something else.
 fn patterned(text: &str) -> Option<String> {
-    if text.contains(['\t', '|', ';']) {
+    let lines: Vec<&str> = text.lines().collect();
+    // A semicolon parts `h1 = 64 cm; h2 = 41 cm`, and cells without such names.
+    let cells = |line: &str| line.contains(['\t', '|']) || line.contains(';') && !line.contains('=');
+    if lines.iter().any(|line| cells(line)) {
         return None;
     }
-    let lines: Vec<&str> = text.lines().collect();
     let patterns: Vec<Option<Vec<String>>> = lines.iter().map(|line| pattern(line)).collect();
     let first = patterns.iter().flatten().next()?;
     let alike = |n: usize| patterns[n].as_ref() == Some(first);
@@ -175,8 +181,8 @@ fn patterned(text: &str) -> Option<String> {
     let commas = |line: &str| line.matches(',').count();
     let named = |n: usize| commas(lines[n]) > 0 && commas(lines[n]) == commas(lines[rows[0]]);
     let titled = (0..rows[0]).any(|n| parts(lines[n]).0.is_empty() && named(n));
-    let chained = parts(lines[rows[0]]).0.iter().any(|part| ARROWS.contains(&part.words));
-    if rows.len() < 2 && !chained || 2 * rows.len() < filled || titled {
+    let alone = parts(lines[rows[0]]).0.iter().any(|part| ARROWS.contains(&part.words) || part.words.ends_with('='));
+    if rows.len() < 2 && !alone || 2 * rows.len() < filled || titled {
         return None;
     }
     let longest = *rows.iter().max_by_key(|&&n| parts(lines[n]).0.len())?;
@@ -198,7 +204,8 @@ fn patterned(text: &str) -> Option<String> {
 fn pattern(line: &str) -> Option<Vec<String>> {
     let (found, rest) = parts(line);
     let arrow = |part: &Part<'_>| ARROWS.contains(&part.words);
-    let between = |part: &Part<'_>| arrow(part) || part.words.ends_with(char::is_alphabetic);
+    let named = |part: &Part<'_>| part.words.ends_with('=') && part.words.contains(char::is_alphabetic);
+    let between = |part: &Part<'_>| arrow(part) || named(part) || part.words.ends_with(char::is_alphabetic);
     let fits = found.len() > 1 && found.iter().skip(1).any(between);
     let names = found.iter().filter(|part| !arrow(part)).map(|part| part.words.to_lowercase());
     fits.then(|| names.chain([rest.to_lowercase()]).collect())
@@ -217,7 +224,8 @@ fn names(parts: &[Part<'_>]) -> Option<Vec<String>> {
             Cell::Number(m) => m.unit.is_none_or(|unit| unit.dimension == Dimension::Length),
             _ => false,
         };
-        height.then(|| if bounce == 0 { "drop height".to_owned() } else { format!("bounce {bounce} height") })
+        // Names that say nothing of a bounce: no line does.
+        height.then(|| if bounce == 0 { "height before".to_owned() } else { format!("height {bounce}") })
     };
     parts.iter().enumerate().map(name).collect()
 }
@@ -231,9 +239,9 @@ mod tests {
         for (text, expected) in [
             (
                 "100 cm -> 64 cm -> 41 cm\n80 cm -> 51 cm\n",
-                "drop height\tbounce 1 height\tbounce 2 height\r100 cm\t64 cm\t41 cm\n80 cm\t51 cm\n",
+                "height before\theight 1\theight 2\r100 cm\t64 cm\t41 cm\n80 cm\t51 cm\n",
             ),
-            ("in cm\n100→64\n80→51\n", "in cm\ndrop height\tbounce 1 height\r100\t64\n80\t51\n"),
+            ("in cm\n100→64\n80→51\n", "in cm\nheight before\theight 1\r100\t64\n80\t51\n"),
             (
                 "Dropped from 1.0 m, came back to 64 cm.\nDropped from 2.0 m, came back to 1.3 m.\n",
                 "Dropped from\tcame back to\r1.0 m\t64 cm\n2.0 m\t1.3 m\n",

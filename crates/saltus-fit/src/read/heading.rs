@@ -329,7 +329,7 @@ impl Heading {
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
             } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
-            } else if !(argument && matches!(inside, "t" | "x")) {
+            } else if !(argument && matches!(inside, "t" | "x") || of_units(inside)) {
                 // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
                 left.push_str(match inside {
                     "h" | "H" if !left.trim().is_empty() => "height",
@@ -382,6 +382,15 @@ impl Heading {
             words.clear();
         }
     }
+}
+
+/// Whether a text lists units of one kind, `ft, in`: each cell names its own.
+fn of_units(text: &str) -> bool {
+    let units = text.split([',', '/', '&', ' ']).filter(|word| !matches!(*word, "" | "and"));
+    let mut found = units.map(|word| Unit::parse(word).map(|unit| unit.dimension));
+    let first = found.next().flatten();
+    let mut rest = found.peekable();
+    first.is_some() && rest.peek().is_some() && rest.all(|dimension| dimension == first)
 }
 
 /// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.

@@ -10,6 +10,7 @@ use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::region::Region;
 use super::rows::{Row, Rows};
 use super::vocabulary::Atom;
+use super::words::split;
 use crate::error::TableError;
 use crate::statistics::median;
 
@@ -157,10 +158,15 @@ pub(super) fn layout(
     }
     // The time until rest tells more than that of the first contact.
     let rests = |t: &Track| t.total.is_some() && t.release.is_some() && t.nth.len() == 1;
-    if any(|t| !t.nth.is_empty()) && !tracks.iter().all(rests) {
+    let arrives = tracks.iter().all(|track| arrives(columns, track));
+    if any(|t| !t.nth.is_empty()) && !arrives && !tracks.iter().all(rests) {
         return Ok(Layout::Wide);
     }
-    if any(|t| t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.share.is_some() || t.total.is_some()) {
+    if arrives
+        || any(|t| {
+            t.before.is_some() && t.after.is_some() || t.lost.is_some() || t.share.is_some() || t.total.is_some()
+        })
+    {
         return Ok(Layout::Pairs);
     }
     let released = any(Track::released);
@@ -195,6 +201,19 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// Whether a track holds the time from release to one contact, the second or a later one, and says
+/// that it lasts until then.
+fn arrives(columns: &Columns, track: &Track) -> bool {
+    let until = |index: usize| {
+        let column = &columns.columns[index];
+        let timed = column.value().is_some_and(|v| {
+            matches!(v.what, What::Time | What::Total) && matches!(v.at, At::Nth(contact) if contact > 1)
+        });
+        timed && (column.heading.has(Atom::Rest) || split(&column.heading.text).iter().any(|word| word.text == "to"))
+    };
+    track.release.is_some() && matches!(track.nth.as_slice(), [index] if until(*index))
 }
 
 /// No column holds readings of bounces.

@@ -5,12 +5,13 @@ mod assemble;
 mod cell;
 mod check;
 mod columns;
-mod doubt;
+mod drops;
 mod file;
 mod foreign;
 mod forms;
 mod grid;
 mod heading;
+mod json;
 mod layout;
 mod old_workbook;
 mod options;
@@ -35,10 +36,10 @@ use std::io::Read;
 use std::path::Path;
 
 pub use aside::{LeftAside, Part, Why};
-pub use doubt::Doubt;
 pub use options::ReadOptions;
 
 use crate::error::TableError;
+use crate::finding::Doubt;
 use crate::quantity::Ball;
 
 /// What a reading was taken of.
@@ -102,10 +103,21 @@ pub struct Trial {
     pub(crate) beside: Vec<(String, String)>,
 }
 
-/// The time of the only flight, or that from release to rest, s.
+/// What a time from which a rebound follows lasts from and to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Span {
+    /// The only flight.
+    Flight,
+    /// From release to this contact, the second or a later one.
+    Until(usize),
+    /// From release to rest.
+    UntilRest,
+}
+
+/// The time of a span, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Timed {
-    pub(crate) until_rest: bool,
+    pub(crate) span: Span,
     pub(crate) time: f64,
     pub(crate) sigma: Option<f64>,
     pub(crate) line: u64,

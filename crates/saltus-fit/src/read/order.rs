@@ -4,6 +4,7 @@
 use super::region::Region;
 use super::{Event, Reading, Trial};
 use crate::error::TableError;
+use crate::statistics::median;
 
 /// Trials whose numbers restart are split; a reading given twice alike is counted once; contacts
 /// count from 1.
@@ -151,4 +152,11 @@ pub(super) fn summed(region: &Region<'_>, trial: Trial) -> Result<Trial, TableEr
         readings.push(Reading { bounce: n + 2, time: Some(time), ..*interval });
     }
     Ok(Trial { readings, ..trial })
+}
+
+/// Whether the heights of a trial rise from bounce to bounce, for the most part.
+pub(super) fn rise(trial: &Trial) -> bool {
+    let heights: Vec<f64> = trial.readings.iter().filter_map(|r| r.height).collect();
+    let mut ratios: Vec<f64> = heights.windows(2).map(|pair| pair[1] / pair[0]).collect();
+    median(&mut ratios).is_some_and(|ratio| ratio > 1.0)
 }

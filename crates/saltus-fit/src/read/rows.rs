@@ -9,6 +9,7 @@ use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning};
 use super::region::Region;
+use super::units::Unit;
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind as WordKind, Word, split};
 use crate::error::TableError;
@@ -164,6 +165,10 @@ pub(super) fn between(cell: &str) -> Option<usize> {
     let &[first, second] = numbers.as_slice() else { return None };
     let (first, second): (usize, usize) = (first.parse().ok()?, second.parse().ok()?);
     let words = split(cell);
+    let number = |w: &Word| matches!(w.kind, WordKind::Number(_) | WordKind::Ordinal(_));
+    let (from, to) = (words.iter().position(number)?, words.iter().rposition(number)?);
+    // A word of a letter or two between them is an `and`.
+    let joins = |n: usize| (from..to).contains(&n) && words[n].text.len() < 4 && Unit::parse(&words[n].text).is_none();
     let of_bounces = |w: &Word| match w.kind {
         WordKind::Known(_) => {
             w.is(Atom::Impact) || w.is(Atom::Rebound) || w.is(Atom::Between) || w.is(Atom::Filler) || w.is(Atom::Number)
@@ -172,7 +177,7 @@ pub(super) fn between(cell: &str) -> Option<usize> {
         _ => false,
     };
     let signs = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#' | '.');
-    let named = cell.chars().all(signs) && words.iter().all(of_bounces);
+    let named = cell.chars().all(signs) && words.iter().enumerate().all(|(n, word)| joins(n) || of_bounces(word));
     (named && first > 0 && second == first + 1).then_some(first)
 }
 

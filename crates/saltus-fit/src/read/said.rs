@@ -1,6 +1,7 @@
 //! Whether a table says that something bounces: before and after, speeds, energies and durations
 //! are of many things.
 
+use super::ReadOptions;
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
@@ -9,8 +10,8 @@ use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded, misspelt};
 use super::words::{Kind, split};
-use super::{Doubt, ReadOptions};
 use crate::error::TableError;
+use crate::finding::Doubt;
 use crate::statistics::median;
 
 /// Words of bounces that are of races, waves, jumpers, carts and markets too.

@@ -27,7 +27,7 @@ fn begun(fits: &Fits<'_>) -> Judgement {
     let notes = table.notes.iter().map(|text| FindingKind::ReadNote { text: text.clone() });
     let repairs = table.repairs.iter().map(|text| FindingKind::ReadRepair { text: text.clone() });
     let warnings = table.warnings.iter().map(|text| FindingKind::ReadWarning { text: text.clone() });
-    let doubts = table.doubts.iter().map(|doubt| Finding::doubt(FindingKind::ReadDoubt { text: doubt.to_string() }));
+    let doubts = table.doubts.iter().cloned().map(|doubt| Finding::doubt(FindingKind::ReadDoubt { doubt }));
     let findings = notes.chain(repairs).chain(warnings).map(Finding::note).chain(doubts);
     Judgement { findings: findings.chain(fits.evidence.repairs.iter().cloned()).collect(), ..Judgement::default() }
 }

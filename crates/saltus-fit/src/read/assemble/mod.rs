@@ -12,7 +12,7 @@ use super::columns::{Columns, Kind};
 use super::grid::{lines, shown};
 use super::heading::{At, What};
 use super::layout::{Layout, Track, layout, tracks};
-use super::order::{in_order, renumbered, summed};
+use super::order::{in_order, renumbered, rise, summed};
 use super::region::Region;
 use super::rows::{Row, Rows};
 use super::samples;
@@ -20,6 +20,7 @@ use super::stray;
 use super::units::{Scale, Unit};
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
+use crate::finding::Doubt;
 
 /// Gravity by which speeds become heights: any would do, since only their ratios count, m/s².
 const GRAVITY: f64 = 9.81;
@@ -334,6 +335,10 @@ impl Builder<'_> {
         percent(region, columns, &mut table)?;
         energies(columns, &mut table.trials);
         stray::warn(region, columns, &table.trials, &mut table.warnings);
+        if layout == Layout::Listed && table.trials.len() > 1 {
+            let against = table.trials.iter().find(|trial| rise(trial));
+            table.doubts.extend(against.map(|trial| Doubt::Order { trial: shown(&trial.label) }));
+        }
         Ok(table)
     }
 }

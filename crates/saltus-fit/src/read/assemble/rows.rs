@@ -13,7 +13,7 @@ use crate::read::region::Region;
 use crate::read::rows::{Row, event};
 use crate::read::units::Scale;
 use crate::read::vocabulary::Atom;
-use crate::read::{Event, Reading, Timed, Trial};
+use crate::read::{Event, Reading, Span, Timed, Trial};
 
 impl Builder<'_> {
     pub(super) fn row(&mut self, n: usize, row: &Row, track: &Track, flights: bool) -> Result<(), TableError> {
@@ -244,7 +244,8 @@ impl Builder<'_> {
 
     /// A drop and its rebound.
     pub(super) fn pair(&mut self, row: &Row, track: &Track) -> Result<(), TableError> {
-        let rebound = track.height.or(track.after).or(track.lost).or(track.share).or(track.interval).or(track.total);
+        let timed = track.interval.or(track.total).or(track.nth.first().copied());
+        let rebound = track.height.or(track.after).or(track.lost).or(track.share).or(timed);
         let before = track.release.or(track.before);
         if let Some(share) = track.share.filter(|_| before.is_none() && track.drop.is_none()) {
             return self.rebound(row, track, share, (1.0, None));
@@ -293,10 +294,16 @@ impl Builder<'_> {
         if !track.released() {
             self.apex(trial, 0, (drop, sigma), line);
         }
-        if Some(rebound) == track.interval || Some(rebound) == track.total {
+        let at = self.columns.columns[rebound].value().map(|v| v.at);
+        let span = match at {
+            Some(At::Nth(contact)) => Some(Span::Until(contact)),
+            _ if Some(rebound) == track.interval => Some(Span::Flight),
+            _ if Some(rebound) == track.total => Some(Span::UntilRest),
+            _ => None,
+        };
+        if let Some(span) = span {
             let (time, sigma) = self.required(row.at, rebound)?;
-            let until_rest = Some(rebound) == track.total;
-            self.trials[trial].timed = Some(Timed { until_rest, time, sigma, line });
+            self.trials[trial].timed = Some(Timed { span, time, sigma, line });
             return Ok(());
         }
         let (mut height, sigma) = if Some(rebound) == track.share {

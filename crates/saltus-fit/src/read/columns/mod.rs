@@ -105,6 +105,7 @@ impl Columns {
         found.naming(region);
         found.spanning(region);
         found.placed();
+        found.deltas(region);
         found.capital(region);
         found.letters();
         found.unnamed(region)?;
@@ -214,16 +215,14 @@ impl Columns {
         }
     }
 
-    /// Times that are written in words, such as the date of a form, are remarks beside readings.
+    /// What is written in words, such as the date of a form, is a remark beside readings.
     fn wordy(&mut self, region: &Region<'_>) {
         let numbers = |n: usize| {
             region.rows.iter().any(|&row| region.view.is_number(row, n) && dated(region.cell(row, n)).is_none())
         };
         let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
-        let of: Vec<(usize, What)> = self.values().map(|(n, _, v)| (n, v.what)).collect();
-        let others = of.iter().any(|(n, what)| *what != What::Time && numbers(*n));
-        for (index, _) in of.into_iter().filter(|(n, what)| *what == What::Time && others && !numbers(*n) && words(*n))
-        {
+        let (read, wordy): (Vec<usize>, Vec<usize>) = self.values().map(|(n, _, _)| n).partition(|n| numbers(*n));
+        for index in wordy.into_iter().filter(|n| !read.is_empty() && words(*n)) {
             self.leave(index, Why::Note);
         }
     }
@@ -376,8 +375,14 @@ impl Columns {
         let mut seen: Vec<(usize, Value)> = Vec::new();
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
         for (index, value) in values {
-            let same =
-                |v: &Value| (v.what, v.at, &v.trial, &v.group) == (value.what, value.at, &value.trial, &value.group);
+            // A place on a scale and a height above the floor are not told apart by the name of a
+            // ball that only one of them bears.
+            let named = |v: &Value| !(v.trial.is_empty() && v.group.is_empty());
+            let apart = |v: &Value| named(v) == named(&value) || v.position == value.position;
+            let same = |v: &Value| {
+                let alike = (&v.trial, &v.group) == (&value.trial, &value.group) || !apart(v);
+                (v.what, v.at) == (value.what, value.at) && alike
+            };
             let Some((before, _)) = seen.iter().find(|(_, v)| same(v)) else {
                 seen.push((index, value));
                 continue;

@@ -1,7 +1,7 @@
 //! Columns that are what they are beside others: drops with their own rebounds, counts of rows,
 //! measured cells under the name of a key.
 
-use super::{Columns, Kind, plain};
+use super::{Columns, Kind, constant, plain};
 use crate::error::TableError;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
@@ -95,6 +95,28 @@ impl Columns {
         let pairs = region.rows.iter().filter_map(|&row| Some((number(row, release)?, number(row, rebound)?)));
         if self.values().count() == 2 && pairs.clone().count() > 0 && pairs.clone().all(|(high, low)| high > low) {
             self.place(release, At::Release, String::new());
+        }
+    }
+
+    /// `dh` beside `h`, the same number in every row: its error, as differences of a ball's heights
+    /// cannot be.
+    pub(super) fn deltas(&mut self, region: &Region<'_>) {
+        let bare = |text: &str| text.split(['(', '[', ',', '/']).next().unwrap_or_default().replace([' ', '_'], "");
+        let names: Vec<String> = self.columns.iter().map(|c| bare(&c.heading.text)).collect();
+        for index in 0..names.len() {
+            let of = ["d", "Δ", "∆", "δ", "u"].iter().find_map(|mark| names[index].strip_prefix(mark));
+            let reading = |n: &usize| {
+                let column = &self.columns[*n];
+                of == Some(names[*n].as_str()) && column.holds(What::Height) && column.heading.unknown.is_empty()
+            };
+            let one_unit = |n: &usize| self.columns[*n].heading.unit == self.columns[index].heading.unit;
+            let Some(of) = (0..names.len()).find(reading).filter(one_unit).filter(|_| constant(region, index)) else {
+                continue;
+            };
+            let name = shown(&self.columns[index].heading.text);
+            self.aside.retain(|aside| aside.name != name);
+            self.columns[index].heading.unknown.clear();
+            self.columns[index].kind = Kind::Error(of);
         }
     }
 

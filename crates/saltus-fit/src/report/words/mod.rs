@@ -6,6 +6,7 @@
 mod models;
 mod names;
 mod plan;
+mod reading;
 mod repairs;
 mod verdict;
 

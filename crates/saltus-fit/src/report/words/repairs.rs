@@ -1,5 +1,6 @@
 //! What was left out or mended, and why a recording gives no motion.
 
+use super::reading;
 use crate::finding::{Finding, FindingKind};
 
 pub(super) fn words(finding: &Finding) -> Option<String> {
@@ -7,8 +8,8 @@ pub(super) fn words(finding: &Finding) -> Option<String> {
         FindingKind::ReadNote { text }
         | FindingKind::ReadRepair { text }
         | FindingKind::ReadWarning { text }
-        | FindingKind::ReadDoubt { text }
         | FindingKind::FallsUpwards { text } => text.clone(),
+        FindingKind::ReadDoubt { doubt } => reading::words(doubt),
         FindingKind::Groups { groups, trusted, .. } if trusted == groups => format!("{groups} groups, a COR each"),
         FindingKind::Groups { groups, refused, .. } if refused == groups => {
             format!("none of {groups} groups determines a COR")

@@ -1,0 +1,50 @@
+//! What speaks against trusting the readings of a table.
+
+use serde::{Deserialize, Serialize};
+
+/// What speaks against trusting the readings, as far as the file tells.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Doubt {
+    /// A title speaks of numbers that were not measured.
+    Title {
+        /// The title.
+        text: String,
+        /// Its line.
+        line: u64,
+    },
+    /// A line speaks of heights and states a length that no reading takes in.
+    Length {
+        /// The line, as it stands.
+        text: String,
+        /// Its number.
+        line: u64,
+    },
+    /// Nothing in the table says that something bounces, and the readings may be of anything.
+    Unsaid {
+        /// A column of the readings.
+        column: String,
+    },
+    /// A heading, a title or a remark speaks of another motion than a bounce.
+    Motion {
+        /// What it says.
+        text: String,
+    },
+    /// Releases and rebounds are in different units, and their numbers are those of one.
+    Units {
+        /// The column of the releases.
+        drop: String,
+        /// The column of the rebounds.
+        rebound: String,
+    },
+    /// Rows are taken for the bounces of one drop, one after the other, and in one trial of them
+    /// the heights rise.
+    Order {
+        /// The trial.
+        trial: String,
+    },
+    /// The COR follows from the time until the ball rests, and the last contacts are not those of a
+    /// ball in flight.
+    UntilRest,
+}

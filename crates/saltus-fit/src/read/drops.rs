@@ -1,0 +1,93 @@
+//! Groups of trials, and rebounds that follow from a time only with gravity.
+
+use std::borrow::Cow;
+
+use super::{Event, Reading, Span, Table};
+use crate::finding::Doubt;
+
+impl Table {
+    /// The balls, surfaces or sheets of the table, each with a COR of its own; a single one,
+    /// without a name, where nothing tells any apart.
+    #[must_use]
+    pub fn groups(&self) -> Vec<&str> {
+        let mut found: Vec<&str> = Vec::new();
+        for trial in &self.trials {
+            if !found.contains(&trial.group.as_str()) {
+                found.push(&trial.group);
+            }
+        }
+        found
+    }
+
+    /// The trials of one group.
+    pub(crate) fn of_group(&self, group: &str) -> Self {
+        let trials = self.trials.iter().filter(|trial| trial.group == group).cloned().collect();
+        Self { trials, ..self.clone() }
+    }
+
+    /// The table with the rebounds that follow from times where gravity is `g`; `sigma` is the
+    /// error of a time that states none.
+    ///
+    /// The rebound after the only flight, of time T, is g T²/8. From release at h to rest a ball
+    /// takes T = t (1 + e)/(1 - e) with the time of fall t = √(2h/g), so that e = (T - t)/(T + t),
+    /// and it rebounds to e² h. To contact n it takes t (1 + 2e + … + 2eⁿ⁻¹).
+    pub(crate) fn at_gravity(&self, g: f64, sigma: f64) -> Cow<'_, Self> {
+        if self.trials.iter().all(|trial| trial.timed.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let mut table = self.clone();
+        for trial in &mut table.trials {
+            let Some(timed) = trial.timed.take() else { continue };
+            let Some(drop) = trial.readings.iter().find(|r| r.event == Event::Release).and_then(|r| r.height) else {
+                continue;
+            };
+            let (time, error) = (timed.time, timed.sigma.unwrap_or(sigma));
+            let fall = (2.0 * drop / g).sqrt();
+            // The rebound, and what a second more adds to it.
+            let (height, slope) = match timed.span {
+                Span::Flight => (g * time * time / 8.0, g * time / 4.0),
+                Span::Until(contact) => {
+                    let (e, slope) = arrival(time / fall, contact);
+                    (e * e * drop, 2.0 * e * drop * slope / fall)
+                }
+                Span::UntilRest => {
+                    let e = ((time - fall) / (time + fall)).max(0.0);
+                    (e * e * drop, 2.0 * e * drop * 2.0 * fall / (time + fall).powi(2))
+                }
+            };
+            if !height.is_finite() {
+                continue;
+            }
+            let sigma_height = Some(slope * error).filter(|s| *s > 0.0 && s.is_finite());
+            let apex = Reading { height: Some(height), sigma_height, ..Reading::new(Event::Apex, 1, timed.line) };
+            trial.readings.push(apex);
+            let doubt = Doubt::UntilRest;
+            if timed.span == Span::UntilRest && !table.doubts.contains(&doubt) {
+                table.doubts.push(doubt);
+            }
+        }
+        table.notes.push(format!("rebounds follow from their times, with g = {g} m/s²"));
+        Cow::Owned(table)
+    }
+}
+
+/// The COR of a ball that touches the floor for the n-th time after `times` the time of its fall,
+/// and what one such time more adds to it.
+fn arrival(times: f64, contact: usize) -> (f64, f64) {
+    /// A bisection of [0, 2] leaves nothing of a double after so many halvings.
+    const HALVINGS: usize = 54;
+    // No one counts further, and a sum of more flights is that until rest.
+    let flights = contact.min(100);
+    let sum = |e: f64| {
+        (1..flights).fold((1.0, 0.0, 1.0), |(sum, slope, power), k| {
+            #[allow(clippy::cast_precision_loss)] // up to a hundred
+            (sum + 2.0 * power * e, slope + 2.0 * k as f64 * power, power * e)
+        })
+    };
+    let (mut low, mut high) = (0.0, 2.0);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        if sum(middle).0 < times { low = middle } else { high = middle }
+    }
+    (low, 1.0 / sum(low).1)
+}

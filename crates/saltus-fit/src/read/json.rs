@@ -1,0 +1,208 @@
+//! Records in JSON as tables: a list of objects is a row each, a list a member is a column each.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+
+use super::workbook::{Content, Part};
+
+/// A longer text is none of records; a value of it takes some ten times its length, bytes.
+const LONGEST: usize = 16 << 20;
+/// A name or a text of more letters is cut short, and lines above a table of more bytes are left
+/// out: neither says what its numbers are.
+const WORDS: usize = 1000;
+/// More tables than these are not looked for, nor more columns in one.
+const TABLES: usize = 100;
+const COLUMNS: usize = 1000;
+
+/// A value, its members in the order in which they stand.
+enum Node {
+    /// A number, a text or a truth value as a cell; nothing for null.
+    Cell(String),
+    List(Vec<Self>),
+    Record(Vec<(String, Self)>),
+}
+
+impl Node {
+    fn cell(&self) -> Option<&str> {
+        match self {
+            Self::Cell(cell) => Some(cell),
+            _ => None,
+        }
+    }
+
+    /// The records of a list that holds nothing else.
+    fn records(&self) -> Option<Vec<&[(String, Self)]>> {
+        let Self::List(list) = self else { return None };
+        let record = |node: &Self| node.members().iter().all(|(_, cell)| cell.cell().is_some());
+        let found = list.iter().map(|node| Some(node.members()).filter(|m| !m.is_empty() && record(node)));
+        found.collect::<Option<Vec<_>>>().filter(|records| !records.is_empty())
+    }
+
+    fn members(&self) -> &[(String, Self)] {
+        match self {
+            Self::Record(members) => members,
+            _ => &[],
+        }
+    }
+
+    /// The cells of a list that holds nothing else.
+    fn cells(&self) -> Option<Vec<&str>> {
+        let Self::List(list) = self else { return None };
+        list.iter().map(Self::cell).collect()
+    }
+}
+
+impl<'de> Deserialize<'de> for Node {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+/// Makes nodes of what is read.
+struct Reader;
+
+/// What no cell can hold.
+fn plain(text: &str) -> String {
+    text.chars().take(WORDS).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect()
+}
+
+impl<'de> Visitor<'de> for Reader {
+    type Value = Node;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a value")
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Node, E> {
+        Ok(Node::Cell(value.to_string()))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Node, E> {
+        Ok(Node::Cell(value.to_string()))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Node, E> {
+        Ok(Node::Cell(value.to_string()))
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Node, E> {
+        Ok(Node::Cell(value.to_string()))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Node, E> {
+        Ok(Node::Cell(plain(value)))
+    }
+
+    fn visit_unit<E>(self) -> Result<Node, E> {
+        Ok(Node::Cell(String::new()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Node, A::Error> {
+        let mut found = Vec::new();
+        while let Some(node) = list.next_element()? {
+            found.push(node);
+        }
+        Ok(Node::List(found))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Node, A::Error> {
+        let mut found = Vec::new();
+        while let Some((name, node)) = map.next_entry::<String, Node>()? {
+            found.push((plain(&name), node));
+        }
+        Ok(Node::Record(found))
+    }
+}
+
+/// The tables of a text in JSON, or of records a line each; `None` if it holds none.
+pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
+    let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}').trim_start();
+    if !text.starts_with(['{', '[']) || text.len() > LONGEST {
+        return None;
+    }
+    let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
+    let mut values: Vec<Node> = values.collect::<Result<_, _>>().ok()?;
+    let whole = if values.len() == 1 { values.pop()? } else { Node::List(values) };
+    let mut found = Vec::new();
+    tables("", &whole, "", &mut found);
+    (!found.is_empty()).then_some(found)
+}
+
+/// Gathers the tables in a value called `name`; `above` are lines that what encloses it states.
+fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
+    if found.len() >= TABLES {
+        return;
+    }
+    let mut push = |rows: Option<String>| {
+        let Some(rows) = rows else { return };
+        let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
+        found.push(Part { name, hidden: false, content: Content::Cells(format!("{above}{rows}")) });
+    };
+    if let Some(records) = node.records() {
+        return push(rows(&records));
+    }
+    let columns = node.members().iter().filter_map(|(name, list)| Some((name.as_str(), list.cells()?)));
+    let columns: Vec<(&str, Vec<&str>)> = columns.filter(|(_, cells)| !cells.is_empty()).collect();
+    let stated = node.members().iter().filter_map(|(name, node)| Some((name, node.cell()?)));
+    let stated: String = stated.map(|(name, cell)| format!("{name}: {cell}\n")).collect();
+    let stated = if above.len() + stated.len() > WORDS { String::new() } else { stated };
+    if !columns.is_empty() {
+        push(side_by_side(&columns).map(|rows| format!("{stated}{rows}")));
+    }
+    for (name, member) in node.members().iter().filter(|(_, node)| node.cells().is_none()) {
+        tables(name, member, &format!("{above}{stated}"), found);
+    }
+    // Lists of the same names are trials, or are called by their first words.
+    let Node::List(list) = node else { return };
+    for (n, member) in list.iter().enumerate() {
+        let words = |cell: &&str| cell.contains(char::is_alphabetic);
+        let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
+        tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
+    }
+}
+
+/// Records as rows below all of their names; `None` where these are too many, or hardly any record
+/// has most of them.
+fn rows(records: &[&[(String, Node)]]) -> Option<String> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in records.iter().flat_map(|record| record.iter()) {
+        if names.len() <= COLUMNS && !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let filled = records.iter().map(|record| record.len()).sum();
+    let mut text = begun(&names, records.len(), filled)?;
+    for record in records {
+        let own = |n: usize, name: &str| {
+            let same = |(own, _): &&(String, Node)| own == name;
+            record.get(n).filter(same).or_else(|| record.iter().find(same)).and_then(|(_, node)| node.cell())
+        };
+        let cells = names.iter().enumerate().map(|(n, name)| own(n, name).unwrap_or_default());
+        text.push_str(&cells.collect::<Vec<_>>().join("\t"));
+        text.push('\n');
+    }
+    Some(text)
+}
+
+/// The line of names, where rows are worth writing: a table has no fewer than one cell in so many
+/// filled.
+fn begun(names: &[&str], rows: usize, filled: usize) -> Option<String> {
+    const SPARSE: usize = 20;
+    let fits = names.len() <= COLUMNS && rows.saturating_mul(names.len()) <= filled.saturating_mul(SPARSE);
+    fits.then(|| names.join("\t") + "\n")
+}
+
+/// Lists as columns below their names; `None` where they are too many, or one is far longer than
+/// the others.
+fn side_by_side(columns: &[(&str, Vec<&str>)]) -> Option<String> {
+    let longest = columns.iter().map(|(_, cells)| cells.len()).max().unwrap_or(0);
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    let mut text = begun(&names, longest, columns.iter().map(|(_, cells)| cells.len()).sum())?;
+    for row in 0..longest {
+        let cells = columns.iter().map(|(_, cells)| cells.get(row).copied().unwrap_or_default());
+        text.push_str(&cells.collect::<Vec<_>>().join("\t"));
+        text.push('\n');
+    }
+    Some(text)
+}

@@ -1,0 +1,31 @@
+//! What speaks against trusting the readings of a table.
+
+use crate::finding::Doubt;
+
+pub(super) fn words(doubt: &Doubt) -> String {
+    match doubt {
+        Doubt::Title { text, line } => format!("line {line} says '{text}': were the readings below it measured?"),
+        Doubt::Length { text, line } => format!(
+            "line {line} says '{text}', a length that no reading takes in: if the scale does not begin at the floor, state what it reads there \
+             (--zero); if the ball was dropped from there, --drop; else take the line out"
+        ),
+        Doubt::Unsaid { column } => format!(
+            "nothing in the table says that something bounces, and '{column}' may be of anything: say so in a heading or in a line above it \
+             ('Ball dropped on wood'), or give the names by --header"
+        ),
+        Doubt::Motion { text } => {
+            format!("'{text}' speaks of another motion than a bounce: are the readings those of a ball that bounces?")
+        }
+        Doubt::Units { drop, rebound } => format!(
+            "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \
+             them wrong?"
+        ),
+        Doubt::Order { trial } => format!(
+            "the rows are taken for bounces one after the other, and the heights of '{trial}' rise along them: if they are, number them in a \
+             column 'bounce'"
+        ),
+        Doubt::UntilRest => "the COR follows from the time until the ball rests, as if it bounced ever smaller; its last contacts are no \
+                             bounces, and rolling or ringing lengthens the time"
+            .to_owned(),
+    }
+}

@@ -1,0 +1,178 @@
+//! What is written as records, as a line of names and numbers, with errors beside readings, or as a
+//! time from the release: each says what the plain table of the same numbers says. Columns that are
+//! no readings of the same thing are not told apart by the name of a ball.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+use proptest::prelude::*;
+use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
+
+fn read(text: &str) -> Result<Table, TableError> {
+    Table::parse("t.txt", text.as_bytes(), &ReadOptions::default())
+}
+
+fn fit(text: &str) -> Report {
+    Fit::new().run(&read(text).unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
+}
+
+/// The COR of a table, which is trusted.
+fn trusted(text: &str) -> f64 {
+    let report = fit(text);
+    assert_eq!(report.verdict(), Verdict::Trusted, "{text}{report}");
+    report.cor().unwrap().value
+}
+
+fn doubted(report: &Report, words: &str) -> bool {
+    report.verdict() == Verdict::Doubtful && report.reason().contains(words)
+}
+
+fn drops(e: f64) -> [(f64, f64); 4] {
+    [60.0, 80.0, 100.0, 120.0].map(|h| (h, h * e * e))
+}
+
+fn joined<T>(all: impl IntoIterator<Item = T>, mark: &str, text: impl Fn(T) -> String) -> String {
+    all.into_iter().map(text).collect::<Vec<_>>().join(mark)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// An object a row, a line each or in a list, or a list a column: the same COR as in a table.
+    #[test]
+    fn records_are_rows_and_lists_are_columns(e in 0.4f64..0.9, inside: bool) {
+        let record = |(h, r): (f64, f64)| format!("{{\"drop (cm)\": {h}, \"rebound (cm)\": {r}, \"by\": \"Ann\"}}");
+        let (list, lines) = (joined(drops(e), ",\n", record), joined(drops(e), "\n", record));
+        let columns = [("drop_cm", joined(drops(e), ",", |d| d.0.to_string())), ("rebound_cm", joined(drops(e), ",", |d| d.1.to_string()))];
+        let columns = joined(columns, ", ", |(name, list)| format!("\"{name}\": [{list}]"));
+        let whole = |value: String| if inside { format!("{{\"made by\": \"an app\", \"data\": {value}}}") } else { value };
+        for text in [whole(format!("[{list}]")), whole(format!("{{{columns}}}")), lines] {
+            prop_assert!((trusted(&text) - e).abs() < 2e-3, "{}", text);
+        }
+    }
+
+    /// Objects within an object, or a list, are balls by their names.
+    #[test]
+    fn records_within_records_are_groups(e in 0.4f64..0.85, listed: bool) {
+        let of = |name: &str, e: f64| {
+            let drop = joined(drops(e), ",", |d| d.0.to_string());
+            let rebound = joined(drops(e), ",", |d| d.1.to_string());
+            let lists = format!("\"drop_cm\": [{drop}], \"rebound_cm\": [{rebound}]");
+            if listed { format!("{{\"ball\": \"{name}\", {lists}}}") } else { format!("\"{name}\": {{{lists}}}") }
+        };
+        let both = format!("{}, {}", of("tennis", e), of("golf", e + 0.1));
+        let report = fit(&if listed { format!("[{both}]") } else { format!("{{{both}}}") });
+        let found: Vec<(&str, f64)> = report.groups().iter().map(|g| (g.name.as_str(), g.report.cor().unwrap().value)).collect();
+        prop_assert!(matches!(found.as_slice(), [("tennis", a), ("golf", b)] if (a - e).abs() < 2e-3 && (b - e - 0.1).abs() < 2e-3), "{:?}", found);
+    }
+
+    /// Names and numbers of one drop in a line, however they are parted.
+    #[test]
+    fn one_drop_in_a_line(
+        e in 0.5f64..0.9, apart in prop::sample::select(vec![", ", "; ", "  ", " "]), sign in prop::sample::select(vec!["=", " = "]), lines in 1usize..4,
+    ) {
+        let line = |n: usize| joined(0..5, apart, |k| format!("h{k}{sign}{:.4} m", (1.0 + 0.2 * n as f64) * e.powi(2 * k)));
+        let text = joined(0..lines, "\n", line);
+        prop_assert!((trusted(&text) - e).abs() < 2e-3, "{}", text);
+    }
+
+    /// An arrow, or a word, between two heights says nothing of a bounce: a line beside them does.
+    #[test]
+    fn what_stands_between_heights_says_nothing_of_a_bounce(
+        e in 0.5f64..0.9, mark in prop::sample::select(vec!["->", "→", "=>", "vs", "vs."]), chain: bool,
+    ) {
+        let line = |(h, r): (f64, f64)| {
+            let next = if chain { format!(" {mark} {:.2} cm", r * e * e) } else { String::new() };
+            format!("{h} cm {mark} {r:.2} cm{next}")
+        };
+        let text = joined(drops(e), "\n", line);
+        let report = fit(&text);
+        prop_assert!((report.cor().unwrap().value - e).abs() < 2e-3, "{}{}", text, report);
+        prop_assert!(doubted(&report, "something bounces"), "{}{}", text, report);
+        let found = trusted(&format!("Ball dropped on wood\n{text}"));
+        prop_assert!((found - e).abs() < 2e-3);
+    }
+
+    /// The time from release to one contact tells the COR where it says that it lasts until then.
+    #[test]
+    fn times_from_release_to_a_contact(e in 0.5f64..0.9, contact in 2i32..5, until in prop::sample::select(vec!["to", "until"])) {
+        let fall = |h: f64| (2.0 * h / 9.81f64).sqrt();
+        let time = |h: f64| fall(h) * (1.0 + 2.0 * (1..contact).map(|k| e.powi(k)).sum::<f64>());
+        let nth = ["second", "3rd", "4th"][contact as usize - 2];
+        let rows = joined([0.5, 0.8, 1.1, 1.5, 2.0], "\n", |h| format!("{h},{:.5}", time(h)));
+        let found = trusted(&format!("Drop height (m),Time {until} {nth} bounce (s)\n{rows}\n"));
+        prop_assert!((found - e).abs() < 2e-3);
+    }
+
+    /// `dh` beside `h`, the same in every row, is its error; what differs from row to row is asked.
+    #[test]
+    fn a_constant_beside_heights_is_their_error(e in 0.6f64..0.9, mark in prop::sample::select(vec!["d", "Δ", "δ", "u"])) {
+        let rows = |error: &dyn Fn(f64) -> f64| joined(drops(e), "\n", |(h, r)| format!("{h},0.5,{r:.2},{:.2}", error(r)));
+        let header = format!("H (cm),{mark}H (cm),h (cm),{mark}h (cm)\n");
+        let text = format!("{header}{}\nRubber ball dropped\n", rows(&|_| 0.7));
+        prop_assert!((trusted(&text) - e).abs() < 2e-3);
+        let sigmas = read(&text).unwrap().trials()[0].readings().iter().map(|r| r.sigma_height).collect::<Vec<_>>();
+        prop_assert!(matches!(sigmas.as_slice(), [Some(a), Some(b)] if (a - 0.005).abs() < 1e-9 && (b - 0.007).abs() < 1e-9), "{:?}", sigmas);
+        let other = read(&format!("{header}{}\n", rows(&|r| 100.0 - r)));
+        let used = other.is_ok_and(|t| t.trials()[0].readings()[1].sigma_height.is_some());
+        prop_assert!(!used);
+    }
+
+    /// Several units of one kind above cells that name theirs; flights named by their ends, in any
+    /// language.
+    #[test]
+    fn cells_that_name_their_units_and_their_ends(e in 0.6f64..0.9, and in prop::sample::select(vec!["and", "e", "y", "et", "und", "en", "och"])) {
+        let cell = |inches: f64| format!("\"{}' {:.2}\"\"\"", (inches / 12.0).floor(), inches % 12.0);
+        let rows = joined(drops(e), "\n", |(h, r)| format!("{},{}", cell(h), cell(r)));
+        let found = trusted(&format!("\"Dropped from (ft, in)\",\"Came back to (ft, in)\"\n{rows}\n"));
+        prop_assert!((found - e).abs() < 2e-3);
+        let rows = joined(1..6, "\n", |n| format!("bounce {n} {and} {},{:.4}", n + 1, 0.9 * e.powi(n)));
+        let found = trusted(&format!("Interval,Duration (s)\n{rows}\n"));
+        prop_assert!((found - e).abs() < 2e-3);
+    }
+
+    /// A place and a height are not told apart by the name of a ball that one of them bears: which
+    /// is read is a question.
+    #[test]
+    fn a_place_beside_heights_is_no_other_ball(
+        e in 0.5f64..0.9, rises: bool, place in prop::sample::select(vec!["Distance (m)", "Position (m)"]), ball in prop::sample::select(vec!["Light", "Tennis", "Golf ball"]),
+    ) {
+        let at = |n: i32| if rises { f64::from(n + 1) } else { 3.0 * 0.8f64.powi(n) };
+        let rows = joined(0..4, "\n", |n| format!("{:.3},{:.2}", at(n), 100.0 * e.powi(2 * n)));
+        let error = read(&format!("Bouncing ball\n{place},{ball} height (cm)\n{rows}\n")).unwrap_err().to_string();
+        prop_assert!(error.contains("hold the same quantity"), "{}", error);
+    }
+
+    /// Where rows are bounces only because one follows another, a trial that rises along them
+    /// speaks against it, and so against the others.
+    #[test]
+    fn rows_that_rise_in_one_column_are_no_bounces(e in 0.5f64..0.9, rise in 1.02f64..1.4, first: bool) {
+        let rows = |other: f64| joined(0..5, "\n", |n| {
+            let cells = [100.0 * e.powi(2 * n), 90.0 * other.powi(n)].map(|h| format!("{h:.2}"));
+            if first { cells.join(",") } else { [cells[1].as_str(), &cells[0]].join(",") }
+        });
+        let names = if first { "Tennis height (cm),Golf height (cm)" } else { "Golf height (cm),Tennis height (cm)" };
+        let (sound, risen) = (fit(&format!("Balls dropped\n{names}\n{}\n", rows(0.7))), fit(&format!("Balls dropped\n{names}\n{}\n", rows(rise))));
+        prop_assert!(sound.groups().iter().all(|g| g.report.verdict() == Verdict::Trusted), "{}", sound);
+        let order = risen.groups().iter().all(|g| g.report.verdict() == Verdict::Doubtful);
+        prop_assert!(risen.groups().len() == 2 && order && risen.to_string().contains("rise along them"), "{}", risen);
+    }
+}
+
+/// What is JSON and no table of numbers is an error that says so; what declares more cells than it
+/// has makes no table.
+#[test]
+fn what_holds_no_records_is_named() {
+    let wide: String = (0..3000).map(|n| format!("{{\"a{n}\": 1}},")).collect();
+    let long = vec!["1"; 20_000].join(",");
+    let thin = (0..900).map(|n| format!("\"b{n}\": [1]")).collect::<Vec<_>>().join(",");
+    for text in [
+        "{\"name\": \"an app\", \"version\": \"1.2\"}".to_owned(),
+        "{\"h\": [[1, 2], {\"a\": null}]}".to_owned(),
+        format!("[{}{{\"a\": 1}}]", wide),
+        format!("{{\"h\": [{long}], {thin}}}"),
+        "[".repeat(5000),
+    ] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(!error.is_empty() && error.len() < 1000, "{error}");
+    }
+}
