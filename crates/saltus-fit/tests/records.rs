@@ -130,6 +130,45 @@ proptest! {
         prop_assert!((found - e).abs() < 2e-3);
     }
 
+    /// A height above all others of its row is where the ball was dropped: those are bounces, or
+    /// repeats where they are level.
+    #[test]
+    fn a_plain_height_above_the_others_is_the_release(
+        e in 0.5f64..0.9, name in prop::sample::select(vec!["H", "Height"]), repeats: bool, trials: bool,
+    ) {
+        let other = |n: i32| if trials && repeats { format!("Try {n} (cm)") } else if repeats { format!("Bounce {n} (cm)") } else { format!("h{n} (cm)") };
+        let rows = joined(drops(e), "\n", |(h, _)| {
+            let cell = |n: i32| format!("{:.2}", if repeats { h * e * e * (1.0 + 0.004 * f64::from(n - 2)) } else { h * e.powi(2 * n) });
+            format!("{h},{}", joined(1..4, ",", cell))
+        });
+        let table = format!("Ball dropped on wood\n{name} (cm),{}\n{rows}\n", joined(1..4, ",", other));
+        let found = trusted(&table);
+        prop_assert!((found - e).abs() < 4e-3, "{} {}", found, table);
+        let (readings, trials) = (read(&table).unwrap(), if repeats { 12 } else { 4 });
+        prop_assert_eq!(readings.trials().len(), trials, "{}", table);
+    }
+
+    /// A letter behind a condition is its unit, and no ball whose rebounds stand below it; of COR
+    /// and its square the COR is that which is worked out.
+    #[test]
+    fn conditions_and_squares_are_no_readings(e in 0.5f64..0.9, letter in prop::sample::select(vec!["C", "F", "K"])) {
+        let rows = joined(0..6, "\n", |n| format!("{n},21,36,{:.2},{:.3},{:.3}", 36.0 * e * e * (1.0 + 0.002 * f64::from(n)), e * e, e));
+        let report = fit(&format!("Test #,Temp ({letter}),Drop (in),Bounce (in),e^2,e\n{rows}\n"));
+        prop_assert!(report.groups().is_empty() && report.verdict() == Verdict::Trusted, "{}", report);
+        prop_assert!((report.cor().unwrap().value - e).abs() < 5e-3);
+    }
+
+    /// A title or a remark may hold a comma, whatever parts the cells below it.
+    #[test]
+    fn titles_may_hold_commas(e in 0.5f64..0.9, title in prop::sample::select(vec!["Ball bounce lab, group 4", "Ann, Bob: bounces", "Bounces, in the gym"])) {
+        let rows = joined(0..5, "\n", |n| format!("{n:<9} {:.3}", 1.5 * e.powi(2 * n)));
+        let found = trusted(&format!("{title}\n\nBounce #   Height [m]\n---------------------\n{rows}\n"));
+        prop_assert!((found - e).abs() < 4e-3);
+        let lines = joined(0..5, "\n", |n| format!("h{n} = {:.3} m", 1.5 * e.powi(2 * n)));
+        let found = trusted(&format!("{lines}\nBouncing ball, all by eye\n"));
+        prop_assert!((found - e).abs() < 4e-3);
+    }
+
     /// A place and a height are not told apart by the name of a ball that one of them bears: which
     /// is read is a question.
     #[test]

@@ -21,7 +21,7 @@ fn listed(text: &str) -> Option<String> {
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         // Words by themselves are a title.
-        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ',' | ';' | '\t' | '|' | ':' | '=')) {
+        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|' | ':' | '=')) {
             return Some((false, format!("#{line}")));
         }
         let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash);

@@ -319,7 +319,15 @@ impl Heading {
             rest = &rest[open + close + 1..];
             let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
             let timed = || split(&left).iter().any(|w| w.is(Atom::Time) || w.is(Atom::Interval));
-            if inside == "h" && timed() {
+            // A letter behind a condition is its unit, and names no ball: `Temp (C)`.
+            let of_condition = || {
+                let words = split(&left);
+                words.iter().any(|w| w.is(Atom::Group)) && !words.iter().any(|w| w.is(Atom::Label) || w.is(Atom::Trial))
+            };
+            let letter = inside.chars().count() == 1 && inside.chars().all(char::is_alphabetic);
+            if letter && Unit::parse(inside).is_none() && of_condition() {
+                self.unit = self.unit.or(Some(Unit::OTHER));
+            } else if inside == "h" && timed() {
                 self.unit = self.unit.or(Some(Unit::HOUR));
             } else if of_a_clock(inside) {
                 left.push_str("time ");

@@ -181,7 +181,8 @@ impl Columns {
         let nth: Vec<usize> = nth.into_iter().map(|(_, n)| n).collect();
         let drop = self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading);
         // A release that bears the number 0 is of the same count: `h0,h1,h2` are bounces.
-        let counted = drop.is_some_and(|(_, c, _)| !c.heading.has(Atom::Release));
+        let counted =
+            drop.is_some_and(|(_, c, _)| !c.heading.has(Atom::Release) && c.heading.text.contains(['0', '₀']));
         let drop = drop.map(|(n, _, _)| n);
         if nth.len() < 2 || counted {
             return;

@@ -122,11 +122,12 @@ fn parted(line: &str) -> impl Iterator<Item = &str> {
 /// Whether two blanks or more part the cells of lines, some of them words: as many in most lines,
 /// and in two of these a number; a comma is a decimal one.
 fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> bool {
-    let decimal = |(at, _): (usize, &str)| {
+    let decimal = |line: &str| {
         let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
-        digit(text[..at].chars().next_back()) && digit(text[at + 1..].chars().next())
+        let inside = |(at, _)| digit(line[..at].chars().next_back()) && digit(line[at + 1..].chars().next());
+        line.match_indices(',').all(inside)
     };
-    if text.contains(['\t', ';', '|', '&']) || !text.match_indices(',').all(decimal) {
+    if text.contains(['\t', ';', '|', '&']) {
         return false;
     }
     let number = |line: &&str| parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)));
@@ -135,7 +136,8 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> boo
     };
     let alike = |line: &&str| parted(line).count() == width;
     let rows = lines.clone().filter(alike).filter(number).count();
-    rows > 1 && 3 * lines.clone().filter(alike).count() >= 2 * lines.count()
+    // A title may hold any comma.
+    rows > 1 && lines.clone().filter(alike).all(decimal) && 3 * lines.clone().filter(alike).count() >= 2 * lines.count()
 }
 
 fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {

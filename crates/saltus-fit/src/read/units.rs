@@ -74,6 +74,7 @@ pub(super) struct Unit {
 }
 
 impl Unit {
+    pub(super) const OTHER: Self = Self { dimension: Dimension::Other, scale: Scale::Si { times: 1.0, over: 1.0 } };
     pub(super) const SECOND: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 1.0, over: 1.0 } };
     pub(super) const HOUR: Self = Self { dimension: Dimension::Time, scale: Scale::Si { times: 3600.0, over: 1.0 } };
     pub(super) const WHOLE: Self = Self { dimension: Dimension::Length, scale: Scale::Whole };
@@ -150,7 +151,7 @@ impl Unit {
         }
         let other = Quantity::ALL.iter().any(|quantity| quantity.scale(text).or(quantity.scale(symbol)).is_some())
             || ["n", "w", "°c", "°f", "k", "db", "psi", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
-        other.then_some(Self { dimension: Dimension::Other, scale: Scale::Si { times: 1.0, over: 1.0 } })
+        other.then_some(Self::OTHER)
     }
 }
 

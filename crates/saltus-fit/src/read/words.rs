@@ -152,6 +152,7 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
             c => spelt.push(c),
         }
     }
+    spelt = spelt.replace("^2", " squared ");
     for number in ["N°", "n°", "N.º", "n.º", "Nº", "nº"] {
         spelt = spelt.replace(number, " number ");
     }

@@ -59,41 +59,39 @@ impl Columns {
         }
     }
 
-    /// `H` beside `h`: the height of release and that of the rebound, where each is above the
-    /// other.
+    /// `H` beside `h`, a plain `Height` beside rebounds: where the ball was dropped, if it is above
+    /// all others of its row.
     pub(super) fn capital(&mut self, region: &Region<'_>) {
-        let letter = |text: &str| text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
-        let called = |name: &str| {
-            let of = |(_, c, v): &(usize, &super::Column, &Value)| {
-                letter(&c.heading.text) == name && v.what == What::Height && v.at == At::Row && v.role == Role::Reading
-            };
-            let mut found = self.values().filter(of).map(|(n, _, _)| n);
-            found.next().filter(|_| found.next().is_none())
+        let letter =
+            |c: &super::Column| c.heading.text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
+        let has = |c: &super::Column, atoms: &[Atom]| atoms.iter().any(|atom| c.heading.has(*atom));
+        let high = |v: &Value| v.what == What::Height && v.role == Role::Reading;
+        let plain = |c: &super::Column, v: &Value| {
+            let other = [Atom::Release, Atom::Before, Atom::After, Atom::Top, Atom::Rebound, Atom::Impact];
+            let named = c.heading.has(Atom::Height) && c.heading.unknown.is_empty() && !has(c, &other);
+            high(v) && v.at == At::Row && v.trial.is_empty() && v.group.is_empty() && (named || letter(c) == "H")
         };
-        let of = |bounced: bool| {
-            let is = |c: &super::Column| {
-                let other =
-                    [Atom::Release, Atom::Before, Atom::After, Atom::Top].iter().any(|atom| c.heading.has(*atom));
-                let plain =
-                    c.heading.has(Atom::Height) && !c.heading.has(Atom::Rebound) && !c.heading.has(Atom::Impact);
-                let sprung = [Atom::Rebound, Atom::Impact, Atom::After].iter().any(|atom| c.heading.has(*atom));
-                let rebounds = !c.heading.has(Atom::Height) || sprung;
-                c.heading.unknown.is_empty() && if bounced { rebounds } else { plain && !other }
-            };
-            let row = |v: &Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading;
-            let mut found = self.values().filter(|(_, c, v)| row(v) && is(c)).map(|(n, _, _)| n);
-            found.next().filter(|_| found.next().is_none())
+        let rebound = |c: &super::Column, v: &Value| {
+            let sprung = has(c, &[Atom::Rebound, Atom::Impact, Atom::After]) || !c.heading.has(Atom::Height);
+            let of_row = v.at == At::Row && (sprung || !v.trial.is_empty() || !v.group.is_empty());
+            high(v) && c.heading.unknown.is_empty() && (of_row || matches!(v.at, At::Nth(n) if n > 0))
+        };
+        let of = |name: Option<&str>| {
+            let mut found = self.values().filter(|(_, c, v)| plain(c, v) && name.is_none_or(|name| letter(c) == name));
+            found.next().map(|(n, _, _)| n).filter(|_| found.next().is_none())
         };
         let counted = self.number().is_some_and(|(_, sure)| sure);
-        let letters = called("H").zip(called("h"));
-        // `Height (cm)` beside `Bounce (cm)`, a drop a row.
-        let Some((release, rebound)) = letters.or_else(|| of(false).zip(of(true)).filter(|_| !counted)) else { return };
+        let Some(release) = of(Some("H")).or_else(|| of(None).filter(|_| !counted)) else { return };
+        let lower =
+            |(n, c, v): (usize, &super::Column, &Value)| n == release || rebound(c, v) || high(v) && letter(c) == "h";
+        let others: Vec<usize> = self.values().map(|(n, _, _)| n).filter(|n| *n != release).collect();
         let number = |row: usize, column: usize| match region.view.read(row, column) {
             Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
             _ => None,
         };
-        let pairs = region.rows.iter().filter_map(|&row| Some((number(row, release)?, number(row, rebound)?)));
-        if self.values().count() == 2 && pairs.clone().count() > 0 && pairs.clone().all(|(high, low)| high > low) {
+        let pairs = region.rows.iter().flat_map(|&row| others.iter().map(move |&n| (row, n)));
+        let mut pairs = pairs.filter_map(|(row, n)| Some((number(row, release)?, number(row, n)?))).peekable();
+        if self.values().all(lower) && pairs.peek().is_some() && pairs.all(|(above, below)| above > below) {
             self.place(release, At::Release, String::new());
         }
     }
