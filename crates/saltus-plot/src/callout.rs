@@ -41,6 +41,27 @@ impl Rect {
     }
 }
 
+/// Words wider than this part of the panel stand in several lines: one line of them finds no place
+/// near its point.
+const WIDEST: f64 = 0.4;
+/// From one line of them to the next, in sizes of type.
+const LEADING: f64 = 1.25;
+
+/// Words in lines no wider than `most`, but for a word that is.
+fn lines(text: &str, most: f64, b: f64) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match found.last_mut().map(|line| format!("{line} {word}")).filter(|line| room(line, b, false) <= most) {
+            Some(longer) => {
+                found.pop();
+                found.push(longer);
+            }
+            None => found.push(word.to_owned()),
+        }
+    }
+    found
+}
+
 /// Draws every callout of the chart; the panel reaches from left to right and from top to bottom.
 pub(crate) fn draw(
     place: &Place<'_>,
@@ -58,7 +79,11 @@ pub(crate) fn draw(
         let data = format!("M{x0} {cy}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z");
         area.draw(&Trace { data, ink: Ink::Text, width: ty.rule(), dash: Dash::Solid, alpha: 1.0 }).map_err(failed)?;
         taken.extend([(x - r, y), (x + r, y), (x, y - r), (x, y + r)]);
-        let spot = freest((x, y), (room(text, b, false), CAPITAL * b), frame.wider(-0.3 * b), &taken, b);
+        let lines = lines(text, WIDEST * (right - left), b);
+        let width = lines.iter().map(|line| room(line, b, false)).fold(0.0, f64::max);
+        let below = |line: usize| lines[line + 1..].iter().map(|_| LEADING * b).sum::<f64>();
+        let size = (width, CAPITAL * b + if lines.is_empty() { 0.0 } else { below(0) });
+        let spot = freest((x, y), size, frame.wider(-0.3 * b), &taken, b);
         if place.chart.background != Background::None {
             // The grid does not run through words.
             let Rect { left, top, right, bottom } = spot.wider(0.25 * b);
@@ -66,7 +91,9 @@ pub(crate) fn draw(
             area.draw(&Rectangle::new(corners, Ink::Paper.wash(1.0))).map_err(failed)?;
         }
         let style = words(Ink::Text, b, FontStyle::Normal, HPos::Left, VPos::Bottom);
-        area.draw_text(text, &style, (grains(spot.left), grains(spot.bottom))).map_err(failed)?;
+        for (n, line) in lines.iter().enumerate() {
+            area.draw_text(line, &style, (grains(spot.left), grains(spot.bottom - below(n)))).map_err(failed)?;
+        }
         taken.extend([(spot.left, spot.bottom), (spot.right, spot.top)]);
     }
     Ok(())
@@ -123,6 +150,15 @@ mod tests {
     fn words_stand_to_the_right_where_nothing_else_does() {
         let rect = freest((100.0, 100.0), (80.0, 12.0), FRAME, &[], 16.0);
         assert!(rect.left > 110.0 && rect.top < 100.0 && rect.bottom > 100.0, "{rect:?}");
+    }
+
+    #[test]
+    fn long_words_stand_in_lines_that_are_short() {
+        let text = "Polished concrete floor of the school gymnasium, east side";
+        let found = lines(text, 200.0, 16.0);
+        assert!(found.len() > 1 && found.iter().all(|line| room(line, 16.0, false) <= 200.0), "{found:?}");
+        assert_eq!(found.join(" "), text);
+        assert_eq!((lines("grass", 20.0, 16.0), lines("", 20.0, 16.0).len()), (vec!["grass".to_owned()], 0));
     }
 
     #[test]

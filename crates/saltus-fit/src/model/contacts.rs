@@ -58,15 +58,33 @@ impl Sums {
         Self { power: 1.0, ..Self::default() }
     }
 
-    #[allow(clippy::cast_precision_loss)]
+    /// The sums over these flights and `next` ones that go on from them.
+    #[allow(clippy::cast_precision_loss)] // a table of 2⁵³ flights is none
+    fn then(self, e: f64, next: Self) -> Self {
+        let before = self.flights as f64;
+        // Of m + j flights there are m (m - 1)/2 + m j + j (j - 1)/2 pairs.
+        let pairs = next.sum * (0.5 * before * (before - 1.0)) + before * e * next.sum_slope + next.trend;
+        Self {
+            flights: self.flights + next.flights,
+            power: self.power * next.power,
+            slope: self.slope * next.power + self.power * next.slope,
+            sum: self.sum + self.power * next.sum,
+            sum_slope: self.sum_slope + self.slope * next.sum + self.power * next.sum_slope,
+            trend: self.trend + self.power * pairs,
+            position: self.position,
+        }
+    }
+
+    /// Goes on to a flight by sums over one, two, four flights and so on, as its number is written
+    /// in binary: a great one takes no more than its digits.
     fn advance(&mut self, e: f64, to: usize) {
-        while self.flights < to {
-            let k = self.flights as f64;
-            self.trend += self.power * (k * (k - 1.0) / 2.0);
-            self.sum += self.power;
-            self.sum_slope += self.slope;
-            (self.power, self.slope) = (self.power * e, self.slope * e + self.power);
-            self.flights += 1;
+        let mut step = Self { flights: 1, power: e, slope: 1.0, sum: 1.0, ..Self::default() };
+        let mut left = to.saturating_sub(self.flights);
+        while left > 0 {
+            if left % 2 == 1 {
+                *self = self.then(e, step);
+            }
+            (step, left) = (step.then(e, step), left / 2);
         }
     }
 
@@ -116,5 +134,42 @@ impl Model for Contacts {
                 row -= before;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_one_flight_after_the_other() {
+        for e in [0.0, 0.3, 0.81, 0.9985, 1.0] {
+            let (mut single, mut together) = (Sums::new(), Sums::new());
+            for to in [1, 2, 3, 7, 8, 40, 41, 1000, 30_000] {
+                while single.flights < to {
+                    single = single.then(e, Sums { flights: 1, power: e, slope: 1.0, sum: 1.0, ..Sums::default() });
+                }
+                together.advance(e, to);
+                let of = |s: Sums| [s.power, s.slope, s.sum, s.sum_slope, s.trend];
+                let near = |(a, b): (f64, f64)| (a - b).abs() <= 1e-11 * a.abs().max(1e-300);
+                assert!(of(single).into_iter().zip(of(together)).all(near), "{e} {to} {single:?} {together:?}");
+                let [sum, pairs] = [0.0, 1.0].map(|weigh: f64| {
+                    (0..u32::try_from(to).unwrap_or(0))
+                        .map(f64::from)
+                        .fold(0.0, |sum, k| sum + e.powf(k) * (0.5 * k * (k - 1.0)).powf(weigh))
+                });
+                assert!(
+                    near((sum, together.sum)) && near((pairs, together.trend)),
+                    "{e} {to} {sum} {pairs} {together:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_great_number_of_flights_is_a_few_sums() {
+        let mut sums = Sums::new();
+        sums.advance(1.0, usize::MAX >> 12);
+        assert_eq!((sums.flights, sums.sum), (usize::MAX >> 12, (usize::MAX >> 12) as f64));
     }
 }
