@@ -112,6 +112,12 @@ proptest! {
         prop_assert!((report.cor().unwrap().value - e).abs() < 4e-3, "{}{}", text, report);
         prop_assert_eq!(report.verdict(), Verdict::Doubtful, "{}{}", text, report);
         prop_assert!(report.reason().contains("something bounces"), "{}", report);
+        // The name of the file says it too, that of its folder does not.
+        for (name, named) in [("bouncing-ball.csv", true), ("a/Drop 3.txt", true), ("drops/run3.csv", false)] {
+            let table = Table::parse(name, text.as_bytes(), &ReadOptions::default()).unwrap();
+            let report = Fit::new().run(&table).unwrap();
+            prop_assert_eq!(!report.reason().contains("something bounces"), named, "{} {}", name, report);
+        }
         let said = fit(&SAYS[says](&text));
         prop_assert!((said.cor().unwrap().value - e).abs() < 4e-3, "{}{}", text, said);
         prop_assert!(!said.reason().contains("something bounces"), "{}", said);

@@ -1,6 +1,8 @@
 //! Whether a table says that something bounces: before and after, speeds, energies and durations
 //! are of many things.
 
+use saltus_bounce::units::Quantity;
+
 use super::ReadOptions;
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind as Of};
@@ -126,13 +128,20 @@ fn says(text: &str) -> bool {
     })
 }
 
-/// The words of a table: in headings, titles, remarks, comments, names of rows and of its sheet.
+/// The name of a file without its folder and ending.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.split('.').next().unwrap_or(file)
+}
+
+/// The words of a table: in headings, titles, remarks, comments, names of rows, of its sheet and of
+/// its file.
 fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
     let grid = region.view.grid;
     let numbers = |cell: &str| cell.parse::<f64>().is_ok();
     let cells = (0..grid.rows().min(ROWS)).flat_map(move |row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
     let cells = cells.filter(move |cell| !cell.is_empty() && !numbers(cell));
-    cells.chain(grid.comments().take(ROWS)).chain(grid.tab).chain([region.label.as_str()])
+    cells.chain(grid.comments().take(ROWS)).chain(grid.tab).chain([region.label.as_str(), stem(grid.name)])
 }
 
 /// The doubt whether a table is of a bounce that speaks of another motion in which heights, or
@@ -155,7 +164,9 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
         c.unit.is_none_or(|unit| unit.dimension == Dimension::Length && !matches!(unit.scale, Scale::Energy { .. }))
     };
     let read = || columns.values().filter(|(_, _, v)| v.role != Role::Error);
-    let high = read().any(|(_, c, v)| v.what == What::Height && length(c));
+    // A sheet may name the height of release.
+    let named = region.view.grid.tab.is_some_and(|tab| Quantity::Length.parse(tab).is_ok());
+    let high = named || read().any(|(_, c, v)| v.what == What::Height && length(c));
     let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
     let timed = read().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval) && v.at == At::Row);
     let spelt = |c: &Column| c.heading.text.contains('_');

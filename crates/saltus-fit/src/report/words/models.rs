@@ -75,6 +75,11 @@ fn recordings(kind: &FindingKind) -> Option<String> {
              would come out as {cor_without:.3}",
             measured(1e3 * contact_s.value, 1e3 * contact_s.standard_error)
         ),
+        FindingKind::ModelsAlike { bic, model, cor, other, other_cor } if *bic < 0.0 => format!(
+            "{} would fit the samples better (BIC {bic:.1}) and give a COR of {other_cor:.3}, but they do not hold it; {} gives one of {cor:.3}",
+            about(*other, None),
+            about(*model, None)
+        ),
         FindingKind::ModelsAlike { bic, model, cor, other, other_cor } => format!(
             "two models fit the samples alike (BIC apart by {bic:.1}): {} gives a COR of {cor:.3}, {} one of {other_cor:.3}",
             about(*model, None),
