@@ -42,6 +42,16 @@ impl Error {
         Self::new(format!("cannot write '{}': {error}", path.display()))
     }
 
+    /// What it says.
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Its kind, place and advice, where they are known.
+    pub(crate) fn as_data(&self) -> Value {
+        self.data.clone().unwrap_or_else(|| json!({ "kind": "command", "message": self.message }))
+    }
+
     /// Says it on standard error; `json`: as an object on standard output, where the report would
     /// have been.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
@@ -49,8 +59,7 @@ impl Error {
             return ExitCode::SUCCESS;
         }
         if json {
-            let error = self.data.clone().unwrap_or_else(|| json!({ "kind": "command", "message": self.message }));
-            let text = format!("{:#}\n", json!({ "schema": 1, "error": error }));
+            let text = format!("{:#}\n", json!({ "schema": 1, "error": self.as_data() }));
             let mut out = io::stdout().lock();
             let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
             return if written.is_ok() { ExitCode::from(2) } else { ExitCode::FAILURE };

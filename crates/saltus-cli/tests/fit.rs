@@ -38,6 +38,46 @@ fn film(drop: f64) -> String {
     text
 }
 
+/// Every file by itself: a line for each group, in the order of the files, as a table and as JSON;
+/// what cannot be read is a line too.
+#[test]
+fn files_are_fitted_each_by_itself() {
+    let folder = TempDir::new().unwrap();
+    let mut names: Vec<String> = (0..20).map(|n| format!("t{n}.csv")).collect();
+    for (n, name) in names.iter().enumerate() {
+        let e = 0.5 + 0.02 * f64::from(u8::try_from(n).unwrap());
+        let rows: String = (0..5).map(|k| format!("{k},{:.3}\n", 100.0 * e.powi(2 * k))).collect();
+        fs::write(folder.path().join(name), format!("bounce,height_cm\n{rows}")).unwrap();
+    }
+    for (name, text) in
+        [("two.csv", "ball,drop_cm,rebound_cm\nA,100,55\nA,100,54\nB,100,25\nB,100,26\n"), ("none.csv", "a,b\n1,2\n")]
+    {
+        fs::write(folder.path().join(name), text).unwrap();
+        names.push(name.to_owned());
+    }
+    let run = |more: &[&str]| {
+        let arguments: Vec<&str> =
+            ["fit", "--each"].iter().chain(more).copied().chain(names.iter().map(String::as_str)).collect();
+        let done = saltus(folder.path(), &arguments);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        (text(&done.stdout).lines().map(str::to_owned).collect::<Vec<_>>(), text(&done.stderr).to_owned())
+    };
+    let (lines, said) = run(&[]);
+    assert_eq!(lines.len(), 1 + 20 + 2 + 1, "{lines:?}");
+    for (n, line) in lines[1..21].iter().enumerate() {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (e, cor): (f64, f64) = (0.5 + 0.02 * f64::from(u8::try_from(n).unwrap()), cells[2].parse().unwrap());
+        assert!(cells[0] == format!("t{n}.csv") && (cor - e).abs() < 2e-3, "{line}");
+    }
+    assert!(lines[21].starts_with("two.csv,A,0.7") && lines[22].starts_with("two.csv,B,0.5"), "{lines:?}");
+    assert!(lines[23].starts_with("none.csv,,,,,,not read,"), "{lines:?}");
+    assert!(said.contains("22 tables in ") && said.contains(" a second: ") && said.contains("1 not read"), "{said}");
+    let (objects, _) = run(&["--format", "json"]);
+    let objects: Vec<serde_json::Value> = objects.iter().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(objects.len(), 22);
+    assert!(objects[0]["report"]["cor"]["value"].is_f64() && objects[21]["error"]["kind"].is_string(), "{objects:?}");
+}
+
 /// Every trial has its curve and its rungs, and groups have one picture that compares them.
 #[test]
 fn trials_and_groups_are_all_drawn() {

@@ -49,6 +49,9 @@ pub(crate) struct Fit {
     /// unless it is stated.
     #[arg(long, value_name = "LENGTH", conflicts_with = "values", value_parser = small(Quantity::Length, "m"))]
     pub(crate) drop: Option<f64>,
+    /// Take every file as an experiment of its own: a line for each, as a table or as JSON.
+    #[arg(long, requires = "tables", conflicts_with_all = ["values", "want", "plot", "plot_cor", "plot_ladder", "plot_profile", "scene"])]
+    pub(crate) each: bool,
     /// Draw height against time, with the fitted motion and the residuals, as SVG.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,

@@ -1,6 +1,7 @@
 //! `saltus fit`: a table in, a report and pictures out.
 
 mod args;
+mod each;
 mod pictures;
 mod values;
 
@@ -30,6 +31,10 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     one_to_standard_output(args)?;
     if let Some(want) = args.want.filter(|_| args.tables.is_empty() && args.values.is_none()) {
         return plan(args, want);
+    }
+    if args.each {
+        silence_workbooks();
+        return each::run(args, &options(args), &fit(args), quiet);
     }
     let table = read(args)?;
     say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
