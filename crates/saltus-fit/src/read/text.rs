@@ -12,6 +12,9 @@ pub(super) struct Text<'a> {
     pub(super) encoding: Option<&'static str>,
 }
 
+/// Nobody types more than this by hand, bytes: a longer text is of cells side by side.
+const TYPED: usize = 1 << 20;
+
 /// The bytes as text, or the reason why they are none.
 pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableError> {
     let (text, encoding) = decoded(bytes);
@@ -32,7 +35,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         counted.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
         Cow::Owned(text)
     };
-    let text = forms::table(&text).map_or(text, Cow::Owned);
+    let text = if text.len() > TYPED { text } else { forms::table(&text).map_or(text, Cow::Owned) };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }
@@ -130,8 +133,10 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> boo
     if text.contains(['\t', ';', '|', '&']) {
         return false;
     }
-    let number = |line: &&str| parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)));
-    let Some(width) = lines.clone().find(number).map(|line| parted(line).count()).filter(|width| *width > 1) else {
+    let number = |line: &&str| {
+        parted(line).nth(1).is_some() && parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)))
+    };
+    let Some(width) = lines.clone().find(number).map(|line| parted(line).count()) else {
         return false;
     };
     let alike = |line: &&str| parted(line).count() == width;
