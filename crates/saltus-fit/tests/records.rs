@@ -158,6 +158,29 @@ proptest! {
         prop_assert!((report.cor().unwrap().value - e).abs() < 5e-3);
     }
 
+    /// A column of words under the name of a ball or a surface tells groups apart; under another
+    /// name, what differs by it is a doubt.
+    #[test]
+    fn words_under_the_name_of_a_ball_tell_apart(
+        e in 0.4f64..0.75, name in prop::sample::select(vec!["Tennis ball", "Golf ball", "Ball", "Wooden floor"]), parts in prop::sample::select(vec![["new", "old"], ["wet", "dry"]]),
+    ) {
+        let row = |part: &str, e: f64| joined([40.0, 60.0, 80.0, 100.0], "\n", |h| format!("{part},{h},{:.2}", h * e * e));
+        let rows = format!("{}\n{}", row(parts[0], e), row(parts[1], e + 0.1));
+        let report = fit(&format!("{name},Drop (in),Rebound (in)\n{rows}\n"));
+        let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        prop_assert!(matches!(found.as_slice(), [a, b] if (a - e).abs() < 4e-3 && (b - e - 0.1).abs() < 4e-3), "{}", report);
+        let other = fit(&format!("By,Drop (in),Rebound (in)\n{rows}\n"));
+        prop_assert_eq!(other.verdict(), Verdict::Doubtful, "{}", other);
+    }
+
+    /// Names and numbers that colons part, several in a line.
+    #[test]
+    fn names_and_colons_in_a_line(e in 0.4f64..0.9, unit in prop::sample::select(vec!["cm", " cm"])) {
+        let text = joined(drops(e), "\n", |(h, r)| format!("Drop: {h}{unit} Bounce: {r:.2}{unit}"));
+        let found = trusted(&text);
+        prop_assert!((found - e).abs() < 2e-3);
+    }
+
     /// A title or a remark may hold a comma, whatever parts the cells below it.
     #[test]
     fn titles_may_hold_commas(e in 0.5f64..0.9, title in prop::sample::select(vec!["Ball bounce lab, group 4", "Ann, Bob: bounces", "Bounces, in the gym"])) {

@@ -204,7 +204,7 @@ fn patterned(text: &str) -> Option<String> {
 fn pattern(line: &str) -> Option<Vec<String>> {
     let (found, rest) = parts(line);
     let arrow = |part: &Part<'_>| ARROWS.contains(&part.words);
-    let named = |part: &Part<'_>| part.words.ends_with('=') && part.words.contains(char::is_alphabetic);
+    let named = |part: &Part<'_>| part.words.ends_with(['=', ':']) && part.words.contains(char::is_alphabetic);
     let between = |part: &Part<'_>| arrow(part) || named(part) || part.words.ends_with(char::is_alphabetic);
     let fits = found.len() > 1 && found.iter().skip(1).any(between);
     let names = found.iter().filter(|part| !arrow(part)).map(|part| part.words.to_lowercase());

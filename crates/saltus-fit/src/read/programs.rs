@@ -331,6 +331,7 @@ fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<R
             _ => {
                 return Err(view
                     .error(0, 0, "the list has no header: are these heights or times, and in which unit?")
+                    .question()
                     .help("put a name above it, such as 'height_cm' or 'time_s', or give either --height-unit cm or --time-unit s"));
             }
         };

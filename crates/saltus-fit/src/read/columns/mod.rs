@@ -215,7 +215,8 @@ impl Columns {
         }
     }
 
-    /// What is written in words, such as the date of a form, is a remark beside readings.
+    /// What is written in words beside readings is none: the date of a form is a remark, and what a
+    /// ball or a surface names tells them apart, `Tennis ball` above `new` and `old`.
     fn wordy(&mut self, region: &Region<'_>) {
         let numbers = |n: usize| {
             region.rows.iter().any(|&row| region.view.is_number(row, n) && dated(region.cell(row, n)).is_none())
@@ -223,7 +224,13 @@ impl Columns {
         let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
         let (read, wordy): (Vec<usize>, Vec<usize>) = self.values().map(|(n, _, _)| n).partition(|n| numbers(*n));
         for index in wordy.into_iter().filter(|n| !read.is_empty() && words(*n)) {
-            self.leave(index, Why::Note);
+            let heading = &self.columns[index].heading;
+            if heading.has(Atom::Group) || heading.has(Atom::Label) {
+                self.columns[index].kind = Kind::Setting;
+            } else {
+                let dated = self.columns[index].holds(What::Time);
+                self.leave(index, if dated { Why::Note } else { Why::Other });
+            }
         }
     }
 
