@@ -401,7 +401,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 #[cold]
 #[inline(never)]
 fn refused<X: State>(refusal: Refusal, t: f64, mode: impl fmt::Debug, edge: impl fmt::Debug, x: X) -> Error {
-    refusal.at(Place::new(t, mode, Some(edge), &x))
+    refusal.at("reset", Place::new(t, mode, Some(edge), &x))
 }
 
 /// What is wrong with a mode and a state that a jump led to and that cannot be gone on from.

@@ -112,7 +112,7 @@ pub enum ErrorKind {
     Promise,
     /// The reset gave a state that is not finite.
     Reset,
-    /// The reset refused, with a reason: see [`Refusal`].
+    /// The flow, a guard or a reset refused, with a reason: see [`Refusal`].
     Refused,
     /// A guard is already negative as its mode is entered, and its edge refuses that.
     Entry,
@@ -178,6 +178,7 @@ impl fmt::Display for Error {
                 return asked(f, *kind, note.unwrap_or("?"));
             }
             ErrorKind::Model if place.edge.is_none() => return f.write_str(note.unwrap_or("?")),
+            ErrorKind::Refused => f.write_str(note.unwrap_or("?"))?,
             ErrorKind::InitialState
             | ErrorKind::Dimension
             | ErrorKind::Series
@@ -261,7 +262,6 @@ fn of_edge(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, edge
                 "{by} gave {given}, which is not finite: check it for division by zero or roots of negative numbers at this state"
             )
         }
-        ErrorKind::Refused => write!(f, "the reset of edge {by} refused: {given}"),
         ErrorKind::Entry if note.is_some() => write!(
             f,
             "the guard of edge {by} {given}: let the reset turn the motion round or lead to another mode, or let About::entry or Hybrid::entry say Wait, for an edge that counts passages"
@@ -287,8 +287,11 @@ impl fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// Why a reset gives no state: what [`Automaton::reset`](crate::Automaton::reset) answers in place
-/// of one. The run fails with an [`Error`] that says it, with time, mode, edge and state.
+/// Why a reset gives no state, or a flow or a guard no number: what
+/// [`Automaton::reset`](crate::Automaton::reset) answers in place of a state,
+/// [`Automaton::refusal`](crate::Automaton::refusal) where it is asked, and the closures of
+/// [`Hybrid::fallible`](crate::Hybrid::fallible) and [`Edge::fallible`](crate::Edge::fallible). The
+/// run fails with an [`Error`] that says it, with time, mode, edge and state.
 ///
 /// Any error becomes one by `?`.
 ///
@@ -324,7 +327,7 @@ impl std::error::Error for Error {}
 pub struct Refusal(Box<(ErrorKind, String)>);
 
 impl Refusal {
-    /// With what keeps the reset from a state, as the end of a sentence.
+    /// With what keeps it from an answer, as the end of a sentence.
     #[cold]
     #[must_use]
     pub fn new(why: impl fmt::Display) -> Self {
@@ -338,11 +341,12 @@ impl Refusal {
         Self(Box::new((kind, String::new())))
     }
 
-    /// The failure of a run.
+    /// The failure of a run whose flow, guard or reset (`what`) refused at this place.
     #[cold]
-    pub(crate) fn at(self, place: Place) -> Error {
+    pub(crate) fn at(self, what: &str, place: Place) -> Error {
         let (kind, why) = *self.0;
-        Error::new(kind, place).noting(Some(why))
+        let by = place.edge.as_ref().map_or(String::new(), |edge| format!(" of edge {edge}"));
+        Error::new(kind, place).noting(Some(format!("the {what}{by} refused: {why}")))
     }
 }
 

@@ -4,7 +4,10 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus::{About, Automaton, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Signal, Simulation, Solution, Stop};
+use saltus::{
+    About, Automaton, Dop853, Edge, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Rodas5P, Signal, Simulation,
+    Solution, Stop, Tsit5,
+};
 
 /// A rising line with a mark at each integer, watched by as many edges, listed in one of three
 /// ways.
@@ -178,6 +181,59 @@ fn modes_are_validated() {
     let error = fails(2);
     let expected = "Automaton::beyond leads to mode 9: 9 is too high";
     assert_eq!((error.kind(), error.to_string()), (ErrorKind::Model, expected.into()));
+}
+
+/// A flow that answers up to 2, a guard that answers up to 3, and a reset that answers up to 4.
+fn gauge<'a>(ends: f64, marks: f64) -> Hybrid<'a, f64> {
+    let up_to = |most: f64, x: f64, value: f64| {
+        if x <= most { Ok(value) } else { Err(Refusal::new(format!("{x:.9} is above {most}"))) }
+    };
+    Hybrid::new()
+        .fallible("sure", move |_t, x: &f64| up_to(2.0, *x, 1.0))
+        .mode("free", |_t, _x| 1.0)
+        .edge_with("sure", "free", Edge::new(move |_t, x| ends - x, |_t, x| *x))
+        .edge_with("free", "free", Edge::fallible(move |_t, x| up_to(3.0, *x, 100.0), |_t, x| Ok(*x)))
+        .edge_with("free", "free", Edge::fallible(move |_t, x| Ok(marks - x), move |_t, x| up_to(4.0, *x, 0.0)))
+}
+
+/// What a run over 2.5 s ends at, or the edge and the words that it fails with, by every stepper.
+fn refused(hybrid: &Hybrid<'_, f64>, x: f64) -> [Result<f64, (Option<String>, String)>; 4] {
+    let (mode, span) = (if x < 2.0 { "sure" } else { "free" }, x..x + 2.5);
+    let run = Simulation::of(hybrid);
+    let failures = [
+        run.run(mode, x, span.clone()).map(|run| run.end.state),
+        run.stepper(Tsit5).run(mode, x, span.clone()).map(|run| run.end.state),
+        run.stepper(Dop853).run(mode, x, span.clone()).map(|run| run.end.state),
+        run.stepper(Rodas5P::default()).run(mode, x, span).map(|run| run.end.state),
+    ];
+    failures.map(|outcome| {
+        outcome.map_err(|failed| {
+            assert_eq!(failed.error.kind(), ErrorKind::Refused);
+            (failed.error.edge().map(str::to_owned), failed.error.to_string())
+        })
+    })
+}
+
+proptest! {
+    /// A closure that may fail fails the run with its own words where the run cannot do without it,
+    /// and nowhere else.
+    #[test]
+    fn closures_refuse_in_their_own_words(start in 0.0..1.9_f64, marks in 2.1..2.9_f64) {
+        for outcome in refused(&gauge(f64::INFINITY, marks), start) {
+            let (edge, said) = outcome.unwrap_err();
+            prop_assert_eq!(edge, None);
+            prop_assert!(said.starts_with("the flow refused: 2.0") && said.contains("is above 2 (t = "), "{}", said);
+        }
+        // An edge where the flow's domain ends is taken.
+        for outcome in refused(&gauge(2.0, marks), start) {
+            prop_assert_eq!(outcome.map(|x| x < 3.0), Ok(true));
+        }
+        for outcome in refused(&gauge(2.0, f64::INFINITY), 2.0 + start) {
+            let (edge, said) = outcome.unwrap_err();
+            prop_assert_eq!(edge.as_deref(), Some("free -> free (edge 0)"));
+            prop_assert!(said.starts_with("the guard of edge free -> free (edge 0) refused: 3."), "{}", said);
+        }
+    }
 }
 
 #[cfg(feature = "num-dual")]

@@ -1,7 +1,10 @@
 //! A flow that is no number beyond its guard: the run comes to the crossing from inside.
 
 use proptest::prelude::*;
-use saltus::{Dop853, ErrorKind, FailedOf, Hybrid, Rodas5P, RunOf, Simulation, Stop, Tsit5};
+use saltus::{
+    About, Automaton, Dop853, Edges, ErrorKind, FailedOf, Hybrid, Refusal, Rodas5P, RunOf, Simulation, Solution, Stop,
+    Tsit5,
+};
 
 type Ball<'a> = Hybrid<'a, [f64; 2]>;
 
@@ -61,4 +64,64 @@ fn a_flow_that_ends_without_a_guard_is_an_error() {
     assert_eq!(failed.error.kind(), ErrorKind::Flow);
     // x^1.5 = 1 - 1.5 t
     assert!((failed.error.t() - 2.0 / 3.0).abs() < 1e-6, "{}", failed.error);
+}
+
+/// A line with two edges: one ends the run at `mark`, the other's guard is no number beyond `end`.
+struct Line {
+    way: usize,
+    watched_first: bool,
+    mark: f64,
+    end: f64,
+}
+
+impl Automaton for Line {
+    type Mode = ();
+    type State = [f64; 2];
+    type Edge = bool;
+
+    fn flow(&self, (): (), _t: f64, &[_, v]: &[f64; 2]) -> [f64; 2] {
+        [v, 0.0]
+    }
+    fn edges(&self, (): ()) -> Edges<'_, bool> {
+        Edges::from([self.watched_first, !self.watched_first])
+    }
+    fn guard(&self, watched: bool, _t: f64, &[x, _]: &[f64; 2]) -> f64 {
+        if watched { 1.0 + (self.end - x).sqrt() } else { self.mark - x }
+    }
+    fn about(&self, _: bool) -> About {
+        About::new().terminal()
+    }
+    fn reset(&self, (): (), _: bool, _t: f64, x: &[f64; 2]) -> Result<((), [f64; 2]), Refusal> {
+        Ok(((), *x))
+    }
+    fn solution(&self, (): (), _t: f64, &[x, v]: &[f64; 2]) -> Solution<Self> {
+        match self.way {
+            0 => Solution::Steps,
+            1 => Solution::Polynomial([[x, v], [v, 0.0]].into()),
+            2 => Solution::Formula(|_, (), _, &[x, v]: &[f64; 2], s| [x + v * s, v]),
+            _ => Solution::Series(|_, (), series| series.flow(|_t, [_, v]| [v, v * 0.0])),
+        }
+    }
+}
+
+proptest! {
+    /// A guard that is no number beyond another's fall does not matter, in whatever order they are
+    /// listed; before it the run fails there, with the edge.
+    #[test]
+    fn a_guard_is_to_be_a_number_up_to_the_first_fall(
+        way in 0..4_usize,
+        watched_first: bool,
+        mark in 0.1..9.0_f64,
+        end in 0.1..9.0_f64,
+    ) {
+        prop_assume!((mark - end).abs() > 1e-9);
+        let run = Simulation::of(&Line { way, watched_first, mark, end }).run((), [0.0, 1.0], 0.0..10.0);
+        if mark < end {
+            prop_assert!((run.unwrap().end.state[0] - mark).abs() < 1e-12);
+        } else {
+            let error = run.unwrap_err().error;
+            prop_assert_eq!((error.kind(), error.edge()), (ErrorKind::Guard, Some("true")));
+            prop_assert!(error.t() > end - 1e-12, "{error}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crate::automaton::Automaton;
 use crate::automaton::solution::Formula;
 use crate::certainty::{FEW, NOTHING, TINY};
-use crate::cross::{Undefined, chebyshev};
+use crate::cross::chebyshev;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
@@ -37,9 +37,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let remaining = clock.end.since(now);
         let search = |this: &mut Self, edge, limit, start| {
             let natural = natural(&[*x, this.flow(mode, t, x)]);
-            this.fall_in_windows(edge, now, natural, at, limit, start)
-                .map(|searched| (searched, false))
-                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+            this.fall_in_windows(edge, now, natural, at, limit, start).map(|searched| (searched, false))
         };
         let first = self.first_on_solution(mode, x, now, remaining, at, search, observer)?;
         let cut = self.cut_before(first.as_ref());

@@ -1,11 +1,13 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
 use crate::automaton::Automaton;
+use crate::automaton::refusal::guard_undefined;
 use crate::certainty::{FAR, FEW, MINUTE, ROUGHLY, SURELY, TINY};
 use crate::cross::{
-    Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
+    AT_START, Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc,
+    settle,
 };
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::Error;
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
@@ -21,7 +23,7 @@ const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
-    /// were searched.
+    /// were searched. A guard that is no number beyond it does not matter.
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,
@@ -32,11 +34,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
+        let mut undefined: Option<(f64, A::Edge)> = None;
         let Step { now, c, scale } = step;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge));
-            if !self.memory.walls.is_empty() && self.memory.wall(edge).is_some_and(|wall| wall.stays) {
-                if let Some(crossing) = self.leaves(mode, edge, step, limit) {
+            if !self.memory.walls.is_empty()
+                && let Some(wall) = self.memory.wall(edge).filter(|wall| wall.stays || wall.falls)
+            {
+                let at_start = wall.falls.then(|| Crossing::at_start(limit * AT_START));
+                if let Some(crossing) = at_start.or_else(|| self.leaves(mode, edge, step, limit)) {
                     found = earlier(found, OnStep { edge, crossing, near: None });
                 }
                 continue;
@@ -76,9 +82,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     first_fall_on_arc(&mut above, value, limit, start, bend, tick)
                 }
             };
-            let searched = searched.map(|searched| unlevelled(searched, level, &mut guard));
-            let Searched { fall, mut evidence, turn } =
-                searched.map_err(|Undefined(s)| self.undefined(mode, edge, now, s, &horner(c, s / scale)))?;
+            let Searched { fall, mut evidence, turn } = match searched {
+                Ok(searched) => unlevelled(searched, level, &mut guard),
+                Err(Undefined(s)) => {
+                    undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
+                    continue;
+                }
+            };
             if start == Start::Spent && fall.is_none() {
                 self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
             }
@@ -100,7 +110,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 found = earlier(found, OnStep { edge, crossing, near });
             }
         }
-        Ok(found)
+        let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
+        match undefined.filter(|&(s, _)| s < first) {
+            Some((s, edge)) => Err(self.undefined(mode, edge, now, s, &horner(c, s / scale))),
+            None => Ok(found),
+        }
     }
 
     /// How far the guard bends along a polynomial: by its powers from the second on.
@@ -210,7 +224,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// The guard of `edge` is not a number a time `s` after `now`.
     pub(super) fn undefined(&self, mode: A::Mode, edge: A::Edge, now: Time, s: f64, x: &A::State) -> Error {
-        Error::new(ErrorKind::Guard, Place::new(now.after(s).seconds(), mode, Some(edge), x))
+        guard_undefined(self.automaton, mode, edge, now.after(s).seconds(), x)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use crate::automaton::refusal::guard_undefined;
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
 use crate::certainty::{FAR, NOTHING, ROUGHLY, ROUNDINGS, SURELY, TINY};
@@ -12,6 +13,7 @@ use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
+use super::crossing::Step;
 
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 const DRIVEN: f64 = 2.0;
@@ -60,7 +62,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         zero: &mut Option<A::Edge>,
     ) -> Result<bool, Error> {
         if g.is_nan() {
-            return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), x)));
+            return Err(guard_undefined(self.automaton, mode, edge, t, x));
         }
         // Within its slack a spent root is here only where it was driven on, and is then no longer
         // spent.
@@ -136,6 +138,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn is_driven(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
         let then = self.memory.idle.iter().find(|(spent, _)| spent.edge == edge).map(|&(_, slope)| slope);
         then.is_some_and(|then| self.guard_slope(mode, edge, t, x, g, 0.0) < DRIVEN * then)
+    }
+
+    /// One of the edges taken in turn at the start of a step that leads out of the mode by it, up
+    /// to `reached`: so small have their jumps become that none drives its guard up beyond
+    /// rounding, and as far as numbers resolve they have accumulated.
+    #[cold]
+    pub(super) fn chatters(&mut self, mode: A::Mode, step: Step<'_, A::State>, reached: f64) -> Option<A::Edge> {
+        let (time, x) = (step.now.after(reached), step.at(reached));
+        let left = self.automaton.edges(mode).iter().find(|&edge| {
+            self.memory.spent_as(edge).is_some()
+                && self.automaton.about(edge).entry != Entry::Wait
+                && self.clear_of_zero(edge, time, &x) < 0.0
+        });
+        self.memory.spurious = left.is_some();
+        left
     }
 
     /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if

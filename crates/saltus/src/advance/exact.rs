@@ -37,9 +37,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if c.len() <= 3 && this.automaton.about(edge).affine {
                 return Ok((this.fall_of_parabola(edge, now, c, limit, start), true));
             }
-            this.fall_in_windows(edge, now, *natural, at, limit, start)
-                .map(|searched| (searched, false))
-                .map_err(|Undefined(s)| this.undefined(mode, edge, now, s, &at(s)))
+            this.fall_in_windows(edge, now, *natural, at, limit, start).map(|searched| (searched, false))
         };
         let first = self.first_on_solution(mode, &c[0], now, remaining, at, search, observer)?;
         if let Some((cut, stop)) = self.cut_before(first.as_ref()) {

@@ -28,6 +28,8 @@ pub(super) struct Wall<E> {
     /// Whether the flow runs along the wall, as far as rounding shows: the edge stays, and is taken
     /// only where the flow carries the guard down.
     pub(super) stays: bool,
+    /// Whether the flow leads down from it, beyond what rounding shows: the edge is taken at once.
+    pub(super) falls: bool,
 }
 
 /// How many edges at a time are remembered as idle, or at their walls: with more, the oldest are
@@ -185,7 +187,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of
     /// it.
     pub(super) fn at_wall(&mut self, edge: E, g: f64) {
-        self.walls.push(Wall { edge, level: g, stays: false });
+        self.walls.push(Wall { edge, level: g, stays: false, falls: false });
     }
 
     #[cold]

@@ -306,7 +306,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (began, x): (Time, &A::State),
         (time, state): (Time, &A::State),
     ) -> Result<(), Error> {
-        if self.memory.just_took(edge) && self.automaton.about(edge).entry == Entry::Refuse {
+        let alone = self.memory.just_took(edge) && self.memory.idle.is_empty();
+        if alone && self.automaton.about(edge).entry == Entry::Refuse {
             self.memory.stats.guards += 1;
             if self.guard(edge, time.seconds(), state) < 0.0 && self.clear_of_zero(edge, time, state) < 0.0 {
                 let place = Place::new(began.seconds(), mode, Some(edge), x);

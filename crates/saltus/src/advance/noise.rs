@@ -120,7 +120,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             |this, wall| {
                 let edge = wall.edge;
                 let rate = this.guard_rate(mode, edge, t, x, SMALL * scale);
-                let flat = rate.abs() <= this.rate_rounding(edge, t, x, SMALL * scale);
+                let rounding = this.rate_rounding(edge, t, x, SMALL * scale);
+                let flat = rate.abs() <= rounding;
                 let mut along = |part: f64| {
                     let s = part * scale;
                     this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
@@ -128,7 +129,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 // A guard that falls or rises as a power of time does so within a small part of
                 // the step.
                 wall.stays = flat && (along(1.0) || along(ROUGHLY));
-                wall.stays || this.memory.spent_as(edge).is_none()
+                let spent = this.memory.spent_as(edge).is_some();
+                wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, t, x, SMALL * scale);
+                wall.stays || !spent
             },
         );
     }
@@ -175,6 +178,26 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (4.0 * near - far) / 3.0
     }
 
+    /// Whether the flow at `x`, itself rounded, carries the guard of `edge` down on the side ahead
+    /// alone as well, where a guard may bend sharply.
+    #[cold]
+    fn falls_at_once(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> bool {
+        let rate = self.guard_rate(mode, edge, t, x, by);
+        let sizes = self.sizes(x);
+        let mut off = (self.guard_rate(mode, edge, t + TINY * t.abs(), x, by) - rate).abs();
+        for k in 0..x.len() {
+            let nudged = x.with(|i| if i == k { x.get(i) + TINY * sizes.get(i) } else { x.get(i) });
+            off += (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
+        }
+        let noise = self.rate_rounding(edge, t, x, by) + ROUNDINGS * f64::EPSILON / TINY * off;
+        let slope = self.flow(mode, t, x);
+        self.memory.stats.guards += 3;
+        let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+        let start = guard(0.0);
+        let [far, near] = [by, 0.5 * by].map(|s| (guard(s) - start) / s);
+        rate < -noise && 2.0 * near - far < -noise
+    }
+
     /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins
     /// to carry its guard down, if it does so at the end of the search, after `limit`.
     #[cold]
@@ -207,7 +230,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let t = now.seconds();
         self.sift(
             |memory| &mut memory.walls,
-            |this, Wall { edge, level, stays }| {
+            |this, Wall { edge, level, stays, .. }| {
                 *stays = *stays && this.carried(mode, *edge, t, x, h) == Carried::Along;
                 if *stays {
                     this.memory.stats.guards += 1;

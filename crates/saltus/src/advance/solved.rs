@@ -2,7 +2,7 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Fall;
-use crate::cross::{Crossing, Evidence, Searched, Start, settle};
+use crate::cross::{Crossing, Evidence, Searched, Start, Undefined, settle};
 use crate::error::Error;
 use crate::inspection::Inspection;
 use crate::observe::Observer;
@@ -48,16 +48,24 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         now: Time,
         remaining: f64,
         at: impl Fn(f64) -> A::State + Copy,
-        mut search: impl FnMut(&mut Self, A::Edge, f64, Start) -> Result<(Searched, bool), Error>,
+        mut search: impl FnMut(&mut Self, A::Edge, f64, Start) -> Result<(Searched, bool), Undefined>,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<First<A>>, Error> {
         let mut found: Option<First<A>> = None;
+        let mut undefined = None;
         for edge in self.automaton.edges(mode).iter() {
-            let limit = found.as_ref().map_or(past(now, remaining), |first| first.crossing.outside);
+            let fall = found.as_ref().map_or(past(now, remaining), |first| first.crossing.outside);
+            let limit = undefined.map_or(fall, |(s, _)| fall.min(s));
             let mut arrival = None;
             let (Searched { fall, evidence, .. }, by_formula) = match self.automaton.falls(mode, edge, now.seconds(), x)
             {
-                Fall::Unknown => search(self, edge, limit, self.start(edge, true))?,
+                Fall::Unknown => match search(self, edge, limit, self.start(edge, true)) {
+                    Ok(searched) => searched,
+                    Err(Undefined(s)) => {
+                        undefined = Some((s, edge));
+                        continue;
+                    }
+                },
                 Fall::In(s, state) if self.arrives(edge, now, s, &state, limit) => {
                     arrival = Some(state);
                     (Searched::solved(Some(Crossing::after(s))), true)
@@ -74,6 +82,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     None => first(crossing),
                 }),
             };
+        }
+        if let Some((s, edge)) = undefined
+            && found.as_ref().is_none_or(|first| s < first.crossing.inside)
+        {
+            return Err(self.undefined(mode, edge, now, s, &at(s)));
         }
         Ok(found)
     }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
+use crate::automaton::refusal::flow_undefined;
 use crate::certainty::{FEW, MINUTE, ROUGHLY, ROUNDINGS, SMALL, TINY};
 use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
@@ -41,8 +42,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.stepper = self.stepper.adapted(self.memory.gait.stiff);
         let mut slope = self.slope(mode, clock.now, &x)?;
         if !slope.is_finite() {
-            let place = Place::new(clock.now.seconds(), mode, None::<A::Edge>, &x);
-            return Err(Error::new(ErrorKind::Flow, place).noting(Some(not_finite(&slope))));
+            let which = Some(not_finite(&slope));
+            return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &x, which));
         }
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
@@ -58,7 +59,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             match accepted {
                 Ok(()) => {}
                 Err(error) if error.kind() == ErrorKind::Flow => {
-                    return self.edge_of_flow(mode, clock.now, &x, &slope).ok_or(error);
+                    return self.edge_of_flow(mode, clock.now, &x, &slope, error);
                 }
                 Err(error) => return Err(error),
             }
@@ -82,6 +83,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let limit = searched(h, remaining, clock.now.since(began), clock.end);
                 let found =
                     if clear { None } else { self.first_crossing(mode, step, limit, first, Some(&mut *observer))? };
+                if first && !self.memory.idle.is_empty() {
+                    let reached = found.as_ref().map_or(limit, |found| found.crossing.inside);
+                    if let Some(edge) = self.chatters(mode, step, reached) {
+                        return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
+                    }
+                }
                 if let Some(rough) = found {
                     return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
                 }
@@ -235,9 +242,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// The crossing within rounding of a state `x` beyond which the flow is no number: of a contact
-    /// that ends where its force does, as d^1.5.
+    /// that ends where its force does, as d^1.5. Without one, the `error` or why the flow refuses.
     #[cold]
-    fn edge_of_flow(&mut self, mode: A::Mode, now: Time, x: &A::State, slope: &A::State) -> Option<ArcEnd<A>> {
+    fn edge_of_flow(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+        slope: &A::State,
+        error: Error,
+    ) -> Result<ArcEnd<A>, Error> {
         // A step is tried until it is shorter than the spacing of time; the one before failed too.
         let by = SHORTEST / Controller::SMALLEST * resolution(now.seconds());
         let ahead = |s: f64| x.with(|i| x.get(i) + s * slope.get(i));
@@ -250,10 +264,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 // A state a little inside where rounding leaves the nearest one outside.
                 let s = [root, (1.0 - ROUGHLY) * root].into_iter().find(|&s| guard(s) >= 0.0).unwrap_or(0.0);
                 self.memory.slack = FEW * (here - there);
-                return Some(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
+                return Ok(ArcEnd::Crossing { edge, time: now.after(root), before: ahead(s) });
             }
         }
-        None
+        let refusal = self.automaton.refusal(mode, None, now.after(by).seconds(), &ahead(by));
+        Err(refusal.map_or(error, |refusal| refusal.at("flow", Place::new(now.seconds(), mode, None::<A::Edge>, x))))
     }
 
     /// The flow, of as many coordinates as the state.

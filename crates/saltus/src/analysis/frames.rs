@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use crate::automaton::refusal::{flow_undefined, guard_undefined};
 use crate::automaton::{Automaton, Entry};
 use crate::ending::{Ending, Limits, Run, RunOf, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, listed};
@@ -80,7 +81,7 @@ pub fn frame_by_frame<A: Automaton>(
         run.end.stats.flows += 4;
         run.end.stats.steps += 1;
         if !end.is_finite() {
-            return Err(Error::new(ErrorKind::Flow, place(now.seconds(), mode, &x)));
+            return Err(flow_undefined(automaton, mode, now.seconds(), &x, None));
         }
         run.trajectory.push_piece(&Piece::new(now, h, h, &between(&x, &slope, &end, h)));
         let frame = Span { start, now, end: next };
@@ -147,7 +148,7 @@ fn jumps<A: Automaton>(
             run.end.stats.guards += 1;
             let g = automaton.guard(edge, t, &x);
             if g.is_nan() {
-                return Err(Error::new(ErrorKind::Guard, Place::new(t, mode, Some(edge), &x)));
+                return Err(guard_undefined(automaton, mode, edge, t, &x));
             }
             if g < 0.0 && may {
                 crossed = Some(edge);
@@ -169,7 +170,7 @@ fn jumps<A: Automaton>(
 fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut RunOf<A>) -> Result<Stop<A::Edge>, Error> {
     let (mode, x, t) = (run.end.mode, run.end.state, now.seconds());
     let place = || Place::new(t, mode, Some(edge), &x);
-    let (to, after) = automaton.reset(mode, edge, t, &x).map_err(|refusal| refusal.at(place()))?;
+    let (to, after) = automaton.reset(mode, edge, t, &x).map_err(|refusal| refusal.at("reset", place()))?;
     if !after.is_finite() {
         return Err(Error::new(ErrorKind::Reset, place()).noting(Some(listed(&after))));
     }

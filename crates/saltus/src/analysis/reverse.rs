@@ -252,6 +252,11 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
         Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { *c }))
     }
 
+    /// Of a flow: that of an image is not asked for.
+    fn refusal(&self, mode: A::Mode, edge: Option<A::Edge>, s: f64, x: &A::State) -> Option<Refusal> {
+        if edge.is_some() { None } else { self.automaton.refusal(mode, None, -s, x) }
+    }
+
     fn validate(&self, mode: A::Mode, s: f64, x: &A::State) -> Result<(), String> {
         self.automaton.validate(mode, -s, x)?;
         self.automaton.validate_backwards(mode)

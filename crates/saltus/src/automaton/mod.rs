@@ -5,6 +5,7 @@ use std::fmt::Debug;
 
 pub(crate) mod clocks;
 pub(crate) mod edges;
+pub(crate) mod refusal;
 pub(crate) mod solution;
 
 use self::clocks::{Clock, Clocks};
@@ -143,6 +144,14 @@ pub trait Automaton {
     fn stops(&self, mode: Self::Mode) -> Cow<'_, [Clock]> {
         let _ = mode;
         Cow::Borrowed(&[])
+    }
+
+    /// Why the flow in `mode`, or the guard of `edge`, is not a number at (t, x): asked where the
+    /// engine meets one that is not, so that the run fails with the reason. By default there is
+    /// none.
+    fn refusal(&self, mode: Self::Mode, edge: Option<Self::Edge>, t: f64, x: &Self::State) -> Option<Refusal> {
+        let _ = (mode, edge, t, x);
+        None
     }
 
     /// Whether a run can be in `mode` with the state `x` at time `t`: asked as a run starts, before

@@ -145,7 +145,7 @@ impl Search<'_> {
             self.weaken(Evidence::doubtful(Doubt::Rounding, from, to));
         }
         self.flat = if seen { None } else { Some(self.flat.unwrap_or(a)) };
-        if came_from == Side::Wall && side == Side::Outside && self.spent {
+        if came_from == Side::Wall && side == Side::Outside {
             return self.left(None, b);
         }
         Part::None(side)

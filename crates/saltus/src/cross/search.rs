@@ -353,6 +353,8 @@ impl<'a> Search<'a> {
             },
             Shape::Rising if resolved => match side {
                 Side::Wall if q.end().abs() <= q_margin => return Ok(Next::Looks),
+                // It falls first, and comes up again before the next sample.
+                Side::Wall if leaving && !self.spent && q.start() < -q_margin => return Ok(Next::Halves),
                 Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => return Ok(Next::Looks),
                 Side::Wall => Part::None(Side::of(q.end(), side)),
                 _ => Part::None(Side::of(end, side)),

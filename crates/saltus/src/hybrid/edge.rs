@@ -1,8 +1,9 @@
 //! An edge of an automaton of closures, and what holds of it.
 
 use std::fmt;
+use std::sync::Arc;
 
-use super::Flow;
+use super::{Flow, Refuses};
 use crate::automaton::{About, Entry};
 use crate::error::Refusal;
 use crate::state::State;
@@ -30,6 +31,8 @@ pub struct Edge<'a, S> {
     pub(super) reset: Jump<'a, S>,
     pub(super) about: About,
     pub(super) inverse: Option<(Guard<'a, S>, Flow<'a, S>)>,
+    /// Why the guard is not a number, where it may fail.
+    pub(super) refusal: Option<Refuses<'a, S>>,
 }
 
 impl<'a, S: State> Edge<'a, S> {
@@ -42,12 +45,12 @@ impl<'a, S: State> Edge<'a, S> {
         Self::of(Some(Box::new(guard)), Box::new(move |t, x| Ok(reset(t, x))))
     }
 
-    /// With a reset that may fail: the run then fails with its [`Refusal`], with time, mode, edge
-    /// and state.
+    /// With a guard and a reset that may fail: the run then fails with the [`Refusal`], with time,
+    /// mode, edge and state. A guard is asked again for its reason.
     ///
     /// ```
     /// use saltus::{Edge, ErrorKind, Hybrid, Refusal, Simulation};
-    /// let full = Edge::fallible(|_t, x: &f64| 1.0 - x, |t, _x| {
+    /// let full = Edge::fallible(|_t, x: &f64| Ok(1.0 - x), |t, _x| {
     ///     if t < 2.5 { Ok(0.0) } else { Err(Refusal::new("the valve is stuck")) }
     /// });
     /// let tank = Hybrid::new().mode("fill", |_t, _x: &f64| 1.0).edge_with("fill", "fill", full);
@@ -56,10 +59,13 @@ impl<'a, S: State> Edge<'a, S> {
     /// ```
     #[must_use]
     pub fn fallible(
-        guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
+        guard: impl Fn(f64, &S) -> Result<f64, Refusal> + Send + Sync + 'a,
         reset: impl Fn(f64, &S) -> Result<S, Refusal> + Send + Sync + 'a,
     ) -> Self {
-        Self::of(Some(Box::new(guard)), Box::new(reset))
+        let guard = Arc::new(guard);
+        let refusal = Arc::clone(&guard);
+        let edge = Self::of(Some(Box::new(move |t, x| guard(t, x).unwrap_or(f64::NAN))), Box::new(reset));
+        Self { refusal: Some(Box::new(move |t, x| refusal(t, x).err())), ..edge }
     }
 
     /// Taken by a clock.
@@ -68,7 +74,7 @@ impl<'a, S: State> Edge<'a, S> {
     }
 
     fn of(guard: Option<Guard<'a, S>>, reset: Jump<'a, S>) -> Self {
-        Self { guard, reset, about: About::new(), inverse: None }
+        Self { guard, reset, about: About::new(), inverse: None, refusal: None }
     }
 
     /// With what to do if the guard is already negative as its mode is entered; see [`Entry`].

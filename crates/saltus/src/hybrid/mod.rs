@@ -10,17 +10,19 @@ pub use link::Link;
 
 use std::borrow::Cow;
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use self::names::kept;
 use crate::automaton::Entry;
 use crate::automaton::clocks::Clock;
 use crate::automaton::solution::Polynomial;
+use crate::error::Refusal;
 use crate::series::{Jet, Series};
 use crate::state::State;
 
 type Flow<'a, S> = Box<dyn Fn(f64, &S) -> S + Send + Sync + 'a>;
 type Expand<'a, S> = Box<dyn Fn(&mut Series<'_, S>) + Send + Sync + 'a>;
+type Refuses<'a, S> = Box<dyn Fn(f64, &S) -> Option<Refusal> + Send + Sync + 'a>;
 type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 
 /// A hybrid automaton built from closures, its modes named by strings.
@@ -84,6 +86,8 @@ pub struct Hybrid<'a, S> {
 struct Mode<'a, S> {
     name: &'static str,
     flow: Option<Flow<'a, S>>,
+    /// Why the flow is not a number, where it may fail.
+    refusal: Option<Refuses<'a, S>>,
     series: Option<Expand<'a, S>>,
     exact: Option<Exact<'a, S>>,
     beyond: Option<(&'static str, Flow<'a, S>)>,
@@ -132,6 +136,32 @@ impl<'a, S: State> Hybrid<'a, S> {
         let before = self.entry_of(name).flow.replace(Box::new(flow));
         self.twice = self.twice.or(before.map(|_| ("mode", name)));
         self
+    }
+
+    /// Declares a mode whose flow may fail: it is asked for no further than it answers, and a run
+    /// that cannot end or jump before fails with the [`Refusal`].
+    ///
+    /// ```
+    /// use saltus::{ErrorKind, Hybrid, Refusal, Simulation};
+    /// // A drag coefficient that is tabulated up to 30 m/s.
+    /// let ball = Hybrid::new().fallible("fall", |_t, v: &f64| {
+    ///     if *v <= 30.0 { Ok(9.81 - 0.001 * v * v) } else { Err(Refusal::new(format!("no drag is given for {v} m/s"))) }
+    /// });
+    /// let error = Simulation::of(&ball).run("fall", 0.0, 0.0..9.0).unwrap_err().error;
+    /// assert_eq!((error.kind(), error.state()[0].round()), (ErrorKind::Refused, 30.0));
+    /// assert!(error.to_string().starts_with("the flow refused: no drag is given for 30.0"));
+    /// ```
+    #[must_use]
+    pub fn fallible(
+        self,
+        name: impl Into<Cow<'static, str>>,
+        flow: impl Fn(f64, &S) -> Result<S, Refusal> + Send + Sync + 'a,
+    ) -> Self {
+        let (name, flow) = (kept(name), Arc::new(flow));
+        let refusal = Arc::clone(&flow);
+        let mut hybrid = self.mode(name, move |t, x| flow(t, x).unwrap_or_else(|_| x.with(|_| f64::NAN)));
+        hybrid.entry_of(name).refusal = Some(Box::new(move |t, x| refusal(t, x).err()));
+        hybrid
     }
 
     /// Gives the mode's flow once more, over [`Jet`]s: steps are then taken by Taylor series, see
@@ -434,8 +464,8 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
             let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), self.everywhere.clone());
-            let (flow, series, exact, beyond) = (None, None, None, None);
-            self.modes.push(Mode { name, flow, series, exact, beyond, edges, guarded, clocks, stops });
+            let (flow, refusal, series, exact, beyond) = (None, None, None, None, None);
+            self.modes.push(Mode { name, flow, refusal, series, exact, beyond, edges, guarded, clocks, stops });
             self.modes.len() - 1
         });
         &mut self.modes[index]

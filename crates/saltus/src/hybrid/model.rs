@@ -69,6 +69,14 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         Some((to, reset(limit.t, limit.x)))
     }
 
+    fn refusal(&self, mode: &'static str, edge: Option<Link>, t: f64, x: &S) -> Option<Refusal> {
+        let refusal = match edge {
+            Some(edge) => &self.edge_of(edge)?.refusal,
+            None => &self.find(mode)?.refusal,
+        };
+        refusal.as_ref().and_then(|refusal| refusal(t, x))
+    }
+
     fn validate(&self, mode: &'static str, _t: f64, _x: &S) -> Result<(), String> {
         if !self.declares(mode) {
             return Err(format!("the automaton has no mode {mode:?}: {}", self.declare(mode)));

@@ -64,7 +64,7 @@ pub fn saltation<A: Linearize>(
     t: f64,
     x: &A::State,
 ) -> Result<Saltation, Error> {
-    let failed = |refusal: Refusal| refusal.at(Place::new(t, mode, Some(edge), x));
+    let failed = |refusal: Refusal| refusal.at("reset", Place::new(t, mode, Some(edge), x));
     let passage = Passage::of(automaton, mode, edge, t, x).map_err(failed)?;
     if passage.grazes(f64::INFINITY) {
         return Err(failed(Refusal::of(ErrorKind::Grazing)));

@@ -313,6 +313,10 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         self.automaton.stops(mode)
     }
 
+    fn refusal(&self, mode: A::Mode, edge: Option<A::Edge>, t: f64, x: &Self::State) -> Option<Refusal> {
+        self.automaton.refusal(mode, edge, t, &x.x)
+    }
+
     fn validate(&self, mode: A::Mode, t: f64, x: &Self::State) -> Result<(), String> {
         let count = self.automaton.parameters().len();
         if let Some(p) = (0..K).filter_map(|k| self.parameter(k)).find(|&p| p >= count) {
