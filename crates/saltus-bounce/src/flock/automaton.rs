@@ -8,7 +8,7 @@ use crate::cloud::meeting_of_balls;
 use crate::effects::Effect;
 use crate::flyer::{Event, Grip, Stance};
 use crate::restitution::Restitution;
-use crate::walls::{Face, Walls};
+use crate::walls::Walls;
 
 impl<const N: usize, E, W, R, G, C> Flock<N, E, W, R, G, C>
 where
@@ -52,7 +52,7 @@ where
     #[inline(never)]
     fn guard(&self, meeting: Meeting, t: f64, x: &Flying<N>) -> f64 {
         match self.happens(meeting, &x.stances()) {
-            Happens::Balls(i, j) => self.gap(i, j, x),
+            Happens::Balls(i, j) => self.gap(i, j, t, x),
             Happens::To(ball, event) => self.balls[ball].1.guard(event, t, &x.ball(ball)),
             Happens::Change | Happens::Nothing => 1.0,
         }
@@ -68,8 +68,9 @@ where
             }
             _ => false,
         };
-        // What overlaps by rounding is put right at once.
-        About::new().affine_if(affine).entry(Entry::Fire)
+        // A contact may be over where it begins, as of a ball alone.
+        let about = About::new().affine_if(affine);
+        if self.is_meeting(meeting) { about } else { about.entry(Entry::Fire) }
     }
 
     fn reset(
@@ -84,17 +85,7 @@ where
             Happens::Balls(i, j) => self.collided(i, j, &self.restitution, t, &x),
             Happens::To(ball, event) => {
                 let (flyer, moving) = (&self.balls[ball].1, x.ball(ball));
-                let parts = |face: Face| {
-                    let (normal, speed) = flyer.normal(face, t, &moving);
-                    matches!(stances.of(ball), Stance::Flight { .. })
-                        && flyer.walls().leads(face, t, &moving.position).is_none()
-                        && moving.velocity.dot(&normal) > speed
-                };
-                let (stance, moving) = match event {
-                    // Inside by its rounding, on its way out.
-                    Event::Meet(face) if parts(face) => (stances.of(ball), flyer.outside(face, t, &moving)),
-                    event => flyer.reset(stances.of(ball), event, t, &moving)?,
-                };
+                let (stance, moving) = flyer.reset(stances.of(ball), event, t, &moving)?;
                 let mut after = x;
                 after.put(ball, stance, moving);
                 after
@@ -109,7 +100,6 @@ where
             }
             Happens::Nothing => x,
         };
-        let after = self.sided(t, after);
         Ok((after.stances(), after))
     }
 
@@ -145,7 +135,7 @@ where
         };
         match (pull(i), pull(j)) {
             (Some(a), Some(b)) if a == b => {
-                let (between, change) = self.apart(i, j, x);
+                let (between, change) = self.apart(i, j, t, x);
                 let meeting = meeting_of_balls(between.into(), change.into(), self.reach(i, j));
                 meeting.map_or(Fall::Never, Fall::After)
             }

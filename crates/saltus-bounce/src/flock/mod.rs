@@ -131,6 +131,11 @@ where
         self.balls.len() * self.balls.len().saturating_sub(1) / 2
     }
 
+    /// Whether two balls meet, or a ball a face: what else there is ends a contact.
+    fn is_meeting(&self, Meeting(place): Meeting) -> bool {
+        place < self.pairs() + self.balls.len() * self.faces
+    }
+
     /// What `meeting` is where the balls do what `stances` says.
     #[must_use]
     pub fn happens(&self, meeting: Meeting, stances: &Stances<N>) -> Happens {
