@@ -19,7 +19,8 @@ them.
 Two scales carry the decisions. Of *certainty*, in multiples of a value's noise: what one rounding of
 each number that it is made from changes it by. Of *nearness*, in parts of a whole. A comparison with
 a noise, or of a part with its whole, is to use one of them; three numbers more decide on guards.
-time.rs keeps a 4 of its own, whose derivation is its own.
+time.rs keeps a 4 of its own, whose derivation is its own. Of each of the twelve the last column
+names a test that fails if the number alone is made ten times larger or ten times smaller.
 ";
 
 /// What a threshold decides, and the most that there may be of a kind, where that is limited.
@@ -55,7 +56,7 @@ const LIMITS: &str = "
 ## Limits
 
 The tables say what a number is for, not that its value could not be another: most could be several
-times larger or smaller, and no test would tell. Lists of places to look at, halves and doubles in
+times larger or smaller, and no test would tell. `TINY` and `MINUTE` are held from below alone. Lists of places to look at, halves and doubles in
 formulas and the coefficients of steppers are not listed.
 ";
 
@@ -65,6 +66,8 @@ struct Constant {
     kind: String,
     value: String,
     what: String,
+    /// The test that fails if it is ten times larger or smaller.
+    held_by: String,
 }
 
 impl Constant {
@@ -94,10 +97,25 @@ fn files(path: &Path, found: &mut Vec<PathBuf>) {
     entries.iter().for_each(|entry| files(entry, found));
 }
 
-/// The first sentence of a comment.
-fn sentence(comment: &[&str]) -> String {
+/// The first sentence of a comment, and the test that it names after "Held by".
+fn sentence(comment: &[&str]) -> [String; 2] {
     let text = comment.join(" ").replace('|', "\\|");
-    text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."))
+    let first = text.split_once(". ").map_or(text.clone(), |(first, _)| format!("{first}."));
+    let held_by = text.split_once("Held by ").map_or("", |(_, test)| test.trim_end_matches('.'));
+    [first, held_by.to_owned()]
+}
+
+/// The names of tests in the sources below a folder.
+fn names_of_tests(path: &Path) -> Vec<String> {
+    let mut paths = Vec::new();
+    files(path, &mut paths);
+    let sources = paths.iter().filter(|path| path.extension().is_some_and(|end| end == "rs"));
+    let names = |path: &PathBuf| {
+        let source = fs::read_to_string(path).unwrap();
+        let of = |line: &str| Some(line.trim().strip_prefix("fn ")?.split_once('(')?.0.to_owned());
+        source.lines().filter_map(of).collect::<Vec<_>>()
+    };
+    sources.flat_map(names).collect()
 }
 
 /// The single numbers among the constants of a source.
@@ -118,7 +136,8 @@ fn constants(source: &str, file: &str) -> Vec<Constant> {
             assert!(!comment.is_empty(), "{file}: {name} has no comment");
             let [name, kind, file] = [name, kind, file].map(str::to_owned);
             let value = value.trim_end_matches(';').to_owned();
-            found.push(Constant { name, file, kind, value, what: sentence(&comment) });
+            let [what, held_by] = sentence(&comment);
+            found.push(Constant { name, file, kind, value, what, held_by });
         }
         comment.clear();
     }
@@ -139,15 +158,28 @@ fn the_page_lists_every_threshold() {
         })
         .collect();
     assert!(all.len() > 20 && all[0].name == "FEW");
+    let tests: Vec<_> =
+        ["tests", "crates/saltus"].iter().flat_map(|folder| names_of_tests(&root.join(folder))).collect();
     let mut page = HEAD.to_owned();
     for Kind { title, text, most, holds } in KINDS {
         let (of, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(holds);
         all = rest;
         assert!(of.len() <= most, "{title}: {}, and {most} at most", of.len());
-        write!(page, "\n## {title}\n\n{text}| constant | value | what it is for | file |\n|---|---|---|---|\n")
-            .unwrap();
-        for Constant { name, file, value, what, .. } in &of {
-            writeln!(page, "| `{name}` | `{value}` | {what} | `{file}` |").unwrap();
+        let held = most < usize::MAX;
+        let [head, rule] = if held { [" held by |", "---|"] } else { ["", ""] };
+        write!(
+            page,
+            "\n## {title}\n\n{text}| constant | value | what it is for | file |{head}\n|---|---|---|---|{rule}\n"
+        )
+        .unwrap();
+        for Constant { name, file, value, what, held_by, .. } in &of {
+            write!(page, "| `{name}` | `{value}` | {what} | `{file}` |").unwrap();
+            if held {
+                let test = held_by.trim_matches('`').rsplit("::").next().unwrap();
+                assert!(tests.iter().any(|name| name == test), "{name} is held by no test: {held_by:?}");
+                write!(page, " {held_by} |").unwrap();
+            }
+            page.push('\n');
         }
     }
     page.push_str(LIMITS);

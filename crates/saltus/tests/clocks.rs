@@ -143,9 +143,11 @@ proptest! {
         prop_assert_eq!(parts, by_integers(&list, cuts[0], cuts[cuts.len() - 1]));
     }
 
-    /// A crossing at the time of a tick comes first, and costs no tick.
+    /// A crossing at the time of a tick comes first, and costs no tick. A phase far beyond it is
+    /// rounded more coarsely than the time is.
     #[test]
     fn crossings_that_coincide(list in periods(), unit in units(), at in 1_i64..300) {
+        prop_assume!(list.iter().all(|&(_, phase)| phase.is_none_or(|phase| phase.abs() <= 8 * at)));
         let mut model = Clocked::new(clocks(&list, unit));
         model.crossing = at as f64 * unit;
         let ticks = taken(&model, 0.0, 300.0 * unit);

@@ -204,7 +204,7 @@ fn refused(hybrid: &Hybrid<'_, f64>, x: f64) -> [Result<f64, (Option<String>, St
         run.run(mode, x, span.clone()).map(|run| run.end.state),
         run.stepper(Tsit5).run(mode, x, span.clone()).map(|run| run.end.state),
         run.stepper(Dop853).run(mode, x, span.clone()).map(|run| run.end.state),
-        run.stepper(Rodas5P::default()).run(mode, x, span).map(|run| run.end.state),
+        run.stepper(Rodas5P).run(mode, x, span).map(|run| run.end.state),
     ];
     failures.map(|outcome| {
         outcome.map_err(|failed| {

@@ -16,6 +16,7 @@ use super::Advance;
 use super::crossing::Step;
 
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
+/// Held by `retaken::falls_a_hair_apart_are_taken_once_each`.
 const DRIVEN: f64 = 2.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {

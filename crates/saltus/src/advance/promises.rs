@@ -2,7 +2,7 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
-use crate::certainty::{ROUNDINGS, TINY};
+use crate::certainty::{SURELY, TINY};
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
@@ -89,6 +89,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return None;
         }
         let rounding = self.guard_rounding(edge, time, x, here, x) + self.guard_rounding(edge, time, y, there, y);
-        (off.abs() > ROUNDINGS * rounding).then_some("bends")
+        (off.abs() > SURELY * rounding).then_some("bends")
     }
 }

@@ -34,6 +34,7 @@ impl Search<'_> {
 /// guard is likely to have a period of.
 const CHECKS: [f64; 2] = [-0.557_350_921, 0.271_828_183];
 /// Elsewhere a guard may be so many times as far from its interpolant.
+/// Held by `cross::tests::a_floor_that_lets_go`.
 const UNCHECKED: f64 = 8.0;
 
 /// A guard sampled at the Chebyshev points of an interval.
