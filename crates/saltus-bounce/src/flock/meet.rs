@@ -15,6 +15,7 @@ const NEAR: f64 = 1e-7;
 const SLOW: f64 = 3e-5;
 /// How strong a pull, in m/s², is more than rounding and steps leave.
 const PULL: f64 = 1e-9;
+
 type Ball = Moving<3, Vector3<f64>>;
 
 impl<E, W, R, G> Flyer<3, Vector3<f64>, E, W, R, G>

@@ -69,7 +69,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // spent.
         let spent = self.memory.spent_as(edge).is_some_and(|spent| g.abs() > spent.slack);
         if !spent || g >= 0.0 {
-            self.memory.unspend(edge); // the reset led away from the wall
+            self.unspend(edge); // the reset led away from the wall
         }
         if g >= 0.0 {
             if !spent && g == 0.0 {
@@ -98,7 +98,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {
-                self.memory.unspend(edge);
+                self.unspend(edge);
                 Ok(false)
             }
         }
@@ -127,7 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let still = self.still(edge, t, after, g);
             let slope = self.guard_slope(to, edge, t, after, g, still);
             if g > SURELY * (slope.abs() * resolution(t) + still) {
-                self.memory.unspend(edge);
+                self.unspend(edge);
             }
         }
     }

@@ -88,19 +88,6 @@ impl<T: Copy> Few<T> {
         self.items[self.count] = Some(item);
         self.count += 1;
     }
-
-    pub(super) fn retain(&mut self, mut keep: impl FnMut(&mut T) -> bool) {
-        let mut kept = 0;
-        for k in 0..self.count {
-            if let Some(mut item) = self.items[k]
-                && keep(&mut item)
-            {
-                self.items[kept] = Some(item);
-                kept += 1;
-            }
-        }
-        self.count = kept;
-    }
 }
 
 /// What is kept from arc to arc.
@@ -176,12 +163,6 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     pub(super) fn spent_as(&self, edge: E) -> Option<Spent<E>> {
         let idle = self.idle.iter().map(|(spent, _)| spent);
         self.spent.iter().chain(idle).find(|spent| spent.edge == edge).copied()
-    }
-
-    /// The guard of `edge` is away from zero: no root is spent.
-    pub(super) fn unspend(&mut self, edge: E) {
-        self.spent = self.spent.filter(|spent| spent.edge != edge);
-        self.idle.retain(|(idle, _)| idle.edge != edge);
     }
 
     /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of

@@ -142,7 +142,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let g = self.guard(last.edge, began, x);
         let slope = if g.abs() <= last.slack { self.guard_slope(mode, last.edge, began, x, g, 0.0) } else { 0.0 };
         if slope < 0.0 {
-            self.memory.idle.retain(|(idle, _)| idle.edge != last.edge);
+            self.sift(|memory| &mut memory.idle, |_, (idle, _)| idle.edge != last.edge);
             self.memory.idle.push((last, slope));
         }
     }
@@ -167,6 +167,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[cold]
     fn forget_risen(&mut self, mode: A::Mode, t: f64, x: &A::State) {
         self.sift(|memory| &mut memory.idle, |this, (spent, _)| this.is_below(mode, spent.edge, t, x));
+    }
+
+    /// The guard of `edge` is away from zero: no root is spent.
+    fn unspend(&mut self, edge: A::Edge) {
+        self.memory.spent = self.memory.spent.filter(|spent| spent.edge != edge);
+        self.sift(|memory| &mut memory.idle, |_, (idle, _)| idle.edge != edge);
     }
 
     /// Keeps of a list in memory what is to be kept, item by item where it is: a list moved out and

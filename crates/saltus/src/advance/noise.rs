@@ -119,8 +119,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             |memory| &mut memory.walls,
             |this, wall| {
                 let edge = wall.edge;
-                let rate = this.guard_rate(mode, edge, t, x, SMALL * scale);
-                let rounding = this.rate_rounding(edge, t, x, SMALL * scale);
+                let by = SMALL * scale;
+                let rate = this.guard_rate(mode, edge, t, x, by);
+                let rounding = this.rate_rounding(edge, t, x, by);
                 let flat = rate.abs() <= rounding;
                 let mut along = |part: f64| {
                     let s = part * scale;
@@ -130,7 +131,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 // the step.
                 wall.stays = flat && (along(1.0) || along(ROUGHLY));
                 let spent = this.memory.spent_as(edge).is_some();
-                wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, t, x, SMALL * scale);
+                wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, (t, x), by, (rate, rounding));
                 wall.stays || !spent
             },
         );
@@ -178,18 +179,25 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (4.0 * near - far) / 3.0
     }
 
-    /// Whether the flow at `x`, itself rounded, carries the guard of `edge` down on the side ahead
-    /// alone as well, where a guard may bend sharply.
+    /// Whether a guard that falls at this `rate` by differences over `by`, beyond their `rounding`,
+    /// does so beyond that of the flow, and on the side ahead alone as well, where a guard may bend
+    /// sharply.
     #[cold]
-    fn falls_at_once(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, by: f64) -> bool {
-        let rate = self.guard_rate(mode, edge, t, x, by);
+    fn falls_at_once(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        (t, x): (f64, &A::State),
+        by: f64,
+        (rate, rounding): (f64, f64),
+    ) -> bool {
         let sizes = self.sizes(x);
         let mut off = (self.guard_rate(mode, edge, t + TINY * t.abs(), x, by) - rate).abs();
         for k in 0..x.len() {
             let nudged = x.with(|i| if i == k { x.get(i) + TINY * sizes.get(i) } else { x.get(i) });
             off += (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
         }
-        let noise = self.rate_rounding(edge, t, x, by) + ROUNDINGS * f64::EPSILON / TINY * off;
+        let noise = rounding + ROUNDINGS * f64::EPSILON / TINY * off;
         let slope = self.flow(mode, t, x);
         self.memory.stats.guards += 3;
         let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
