@@ -3,23 +3,11 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
+mod typed;
+
 use proptest::prelude::*;
-use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
-
-fn read(text: &str) -> Result<Table, TableError> {
-    Table::parse("t.csv", text.as_bytes(), &ReadOptions::default())
-}
-
-fn fit(text: &str) -> Report {
-    Fit::new().run(&read(text).unwrap_or_else(|e| panic!("{e}\n{text}"))).unwrap()
-}
-
-/// The COR of a table, which is trusted.
-fn trusted(text: &str) -> f64 {
-    let report = fit(text);
-    assert_eq!(report.verdict(), Verdict::Trusted, "{text}{report}");
-    report.cor().unwrap().value
-}
+use saltus_fit::{Fit, ReadOptions, Table, Verdict};
+use typed::{fit, read, trusted};
 
 /// Rows below a header.
 fn table(header: &str, rows: impl IntoIterator<Item = String>) -> String {
