@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::line::impact;
+use crate::impact::impact;
 use crate::parameter::{ParameterError, between, not_negative};
 use crate::restitution::Restitution;
 use crate::sphere::Sphere;

@@ -4,13 +4,14 @@ use plotters::element::Rectangle;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use crate::chart_page::Place;
+use crate::chart::Chart;
 use crate::error::PlotError;
-use crate::height_time::Background;
+use crate::grain::grains;
 use crate::marks::Trace;
-use crate::page::{Area, failed};
-use crate::svg::{grains, number};
-use crate::theme::{CAPITAL, Dash, Ink, Type, room, words};
+use crate::panel::{Area, failed};
+use crate::place::Place;
+use crate::svg::number;
+use crate::theme::{Background, CAPITAL, Dash, Ink, Type, room, words};
 
 type Point = (f64, f64);
 
@@ -64,15 +65,16 @@ fn lines(text: &str, most: f64, b: f64) -> Vec<String> {
 
 /// Draws every callout of the chart; the panel reaches from left to right and from top to bottom.
 pub(crate) fn draw(
-    place: &Place<'_>,
+    chart: &Chart,
+    place: &Place,
     ([left, right], [top, bottom]): ([f64; 2], [f64; 2]),
     area: &Area,
     ty: Type,
 ) -> Result<(), PlotError> {
     let b = ty.base;
     let frame = Rect { left, top, right, bottom };
-    let mut taken = ink(place, frame);
-    for (text, at) in &place.chart.callouts {
+    let mut taken = ink(chart, place, frame);
+    for (text, at) in &chart.callouts {
         let (x, y) = place.at(*at);
         let r = 2.0 * ty.mark();
         let [x0, cy, r2, d] = [x - r, y, r, 2.0 * r].map(|v| number(v, 2));
@@ -84,7 +86,7 @@ pub(crate) fn draw(
         let below = |line: usize| lines[line + 1..].iter().map(|_| LEADING * b).sum::<f64>();
         let size = (width, CAPITAL * b + if lines.is_empty() { 0.0 } else { below(0) });
         let spot = freest((x, y), size, frame.wider(-0.3 * b), &taken, b);
-        if place.chart.background != Background::None {
+        if chart.background != Background::None {
             // The grid does not run through words.
             let Rect { left, top, right, bottom } = spot.wider(0.25 * b);
             let corners = [(grains(left), grains(top)), (grains(right), grains(bottom))];
@@ -100,8 +102,7 @@ pub(crate) fn draw(
 }
 
 /// Where the next words would cover something: points along every line and limit, and every dot.
-fn ink(place: &Place<'_>, frame: Rect) -> Vec<Point> {
-    let chart = place.chart;
+fn ink(chart: &Chart, place: &Place, frame: Rect) -> Vec<Point> {
     let dots = chart.dots.iter().map(|(_, at)| at).chain(&chart.marks);
     let mut ink: Vec<Point> = dots.map(|&at| place.at(at)).collect();
     let along = |from: Point, to: Point| {

@@ -1,59 +1,10 @@
 //! Any two quantities against each other: paths, phase portraits, energies, loops.
 
-use std::borrow::Cow;
-
-use crate::chart_page;
 use crate::error::{PlotError, finite, magnitude};
-use crate::height_time::Background;
 use crate::map::Map;
+use crate::measure::Measure;
 use crate::stroke::Stroke;
-
-/// What an axis measures; data are given in SI units.
-///
-/// A unit by name, `"V".into()`, gets a prefix where its numbers would be long, if it is one of the
-/// SI that takes prefixes; `bar`, `1/min` and any other stay as they are.
-///
-/// ```
-/// use saltus_plot::{Chart, Measure, Stroke};
-/// let loading = Stroke::between([0.0, 0.0], [1e-3, 230e3]);
-/// let chart = Chart::new("Charging", ("Time", Measure::Time), ("Pressure", "Pa".into())).line("", [loading]);
-/// assert!(chart.svg()?.contains("Pressure (kPa)"));
-/// # Ok::<(), saltus_plot::PlotError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Measure {
-    /// In s.
-    Time,
-    /// In m.
-    Length,
-    /// In m/s.
-    Speed,
-    /// In J.
-    Energy,
-    /// In J/kg.
-    SpecificEnergy,
-    /// In N.
-    Force,
-    /// How many: whole numbers.
-    Count,
-    /// A number without a unit.
-    Number,
-    /// In the unit of this name, in which data are given.
-    Unit(Cow<'static, str>),
-}
-
-impl From<&'static str> for Measure {
-    fn from(unit: &'static str) -> Self {
-        Self::Unit(unit.into())
-    }
-}
-
-impl From<String> for Measure {
-    fn from(unit: String) -> Self {
-        Self::Unit(unit.into())
-    }
-}
+use crate::theme::Background;
 
 /// A disc to scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -257,17 +208,8 @@ impl Chart {
         self
     }
 
-    /// The picture as an SVG document.
-    ///
-    /// # Errors
-    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
-    /// [`PlotError::Negative`] naming the number at fault.
-    pub fn svg(&self) -> Result<String, PlotError> {
-        chart_page::draw(self, self.reach()?)
-    }
-
     /// Checks every number, and gathers how far the data reach.
-    fn reach(&self) -> Result<[(f64, f64); 2], PlotError> {
+    pub(crate) fn reach(&self) -> Result<[(f64, f64); 2], PlotError> {
         let mut reach = [(f64::INFINITY, f64::NEG_INFINITY); 2];
         let least = self.least.unwrap_or(f64::NEG_INFINITY);
         let mut include = |k: usize, value: f64| {

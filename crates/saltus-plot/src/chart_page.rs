@@ -10,16 +10,18 @@ use plotters_backend::text_anchor::{HPos, VPos};
 
 use crate::axis::{Axis, MANY_DECADES};
 use crate::callout;
-use crate::chart::{Chart, Measure};
+use crate::chart::Chart;
 use crate::curve::Affine;
 use crate::error::PlotError;
+use crate::grain::grains;
 use crate::heading::{Heading, Sign};
-use crate::height_time::Background;
-use crate::marks::Trace;
-use crate::page::{Area, failed, maps, mesh};
+use crate::marks::{Trace, dot};
+use crate::measure::Measure;
+use crate::panel::{Area, failed, maps, mesh};
+use crate::place::Place;
 use crate::stroke::path;
-use crate::svg::{Canvas, Sheet, grains, number};
-use crate::theme::{CAPITAL, Dash, Ink, Type, width, words};
+use crate::svg::{Canvas, Sheet, number};
+use crate::theme::{Background, CAPITAL, Dash, Ink, Type, width, words};
 use crate::unit::Unit;
 
 /// The width of a page and its usual height, in px.
@@ -27,8 +29,19 @@ const PAGE: (f64, f64) = (800.0, 560.0);
 /// The lowest and the highest panel of a picture to scale, as parts of its width.
 const SHAPES: (f64, f64) = (0.18, 1.1);
 
+impl Chart {
+    /// The picture as an SVG document.
+    ///
+    /// # Errors
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
+    /// [`PlotError::Negative`] naming the number at fault.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        draw(self, self.reach()?)
+    }
+}
+
 /// Draws `chart`, whose data reach so far across and up.
-pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, PlotError> {
+fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, PlotError> {
     let w = PAGE.0;
     let ty = Type::for_size(PAGE.0, PAGE.1);
     let heading = Heading::of(&chart.title, &chart.captions, legend(chart), ty, w);
@@ -40,7 +53,7 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let units = [0, 1].map(|k| if chart.to_scale { longer } else { k }).map(|k| {
         // Over many powers of ten no prefix fits better than none.
         let wide = chart.logarithmic[k] && (reach[k].1 / reach[k].0).log10() > MANY_DECADES;
-        unit(&chart.axes[k].1, if wide { (0.5, 5.0) } else { reach[k] })
+        chart.axes[k].1.unit(if wide { (0.5, 5.0) } else { reach[k] })
     });
     let scaled = |k: usize| opened((reach[k].0 / units[k].size, reach[k].1 / units[k].size));
     let ranged = |k: usize| if chart.logarithmic[k] { decades(reach[k], units[k].size) } else { scaled(k) };
@@ -113,12 +126,13 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
     let (x, y) = maps(&panel);
     let edges = ([x.at(across.0), x.at(across.1)], [y.at(up.1), y.at(up.0)]);
     let [x, y] = [(x, 0), (y, 1)].map(|(map, k)| if chart.logarithmic[k] { map } else { map.per_unit(units[k].size) });
-    let place = Place { chart, x, y, sizes: [units[0].size, units[1].size] };
-    for (alpha, cells) in chart.map.iter().flat_map(|map| map.cells(&place, chart.logarithmic)) {
+    let sizes = [units[0].size, units[1].size];
+    let place = Place { x, y, sizes, logarithmic: chart.logarithmic, least: chart.least };
+    for (alpha, cells) in chart.map.iter().flat_map(|map| map.cells(&place)) {
         let mut canvas = canvas.try_borrow_mut().map_err(|e| PlotError::Drawing(e.to_string()))?;
         canvas.glaze(&cells, Ink::series(0), alpha);
     }
-    for trace in traces(&place, edges.1, ty) {
+    for trace in traces(chart, &place, edges.1, ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
     for (data, ink, full) in discs(chart, x, y) {
@@ -126,7 +140,7 @@ pub(crate) fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, Plot
         canvas.glaze(&data, ink, if full { 1.0 } else { 0.35 });
     }
     panel.draw_series([EmptyElement::at((across.0, up.0))]).map_err(failed)?;
-    callout::draw(&place, edges, &root, ty)?;
+    callout::draw(chart, &place, edges, &root, ty)?;
     let description = described(chart, &units, reach);
     let sheet =
         Sheet { title: &chart.title, description: &description, adaptive: chart.background != Background::White };
@@ -149,20 +163,6 @@ fn legend(chart: &Chart) -> Vec<(Sign, String)> {
     tones.chain(lines).chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
 }
 
-pub(crate) fn unit(measure: &Measure, (low, high): (f64, f64)) -> Unit {
-    let (largest, span) = (low.abs().max(high.abs()), high - low);
-    match measure {
-        Measure::Time => Unit::of_time(largest, span),
-        Measure::Length => Unit::of_height(None, largest, span),
-        Measure::Speed => Unit::scaled("m/s", 1.0, largest, span),
-        Measure::Energy => Unit::prefixed("J", largest, span),
-        Measure::SpecificEnergy => Unit::prefixed("J/kg", largest, span),
-        Measure::Force => Unit::prefixed("N", largest, span),
-        Measure::Count | Measure::Number => Unit { size: 1.0, label: String::new() },
-        Measure::Unit(name) => Unit::named(name, largest, span),
-    }
-}
-
 /// A reach that has a width.
 pub(crate) fn opened((low, high): (f64, f64)) -> (f64, f64) {
     let least = 1e-9 * low.abs().max(high.abs());
@@ -181,28 +181,9 @@ fn decades((low, high): (f64, f64), size: f64) -> (f64, f64) {
     if high - low < 0.3 { (low - 0.3, high + 0.3) } else { (low, high) }
 }
 
-/// Where the data of a chart stand on the page.
-pub(crate) struct Place<'a> {
-    pub(crate) chart: &'a Chart,
-    x: Affine,
-    y: Affine,
-    /// Of the units across and up.
-    sizes: [f64; 2],
-}
-
-impl Place<'_> {
-    /// In px.
-    pub(crate) fn at(&self, [a, b]: [f64; 2]) -> (f64, f64) {
-        let a = self.chart.least.map_or(a, |least| a.max(least));
-        let scaled =
-            |k: usize, value: f64| if self.chart.logarithmic[k] { (value / self.sizes[k]).log10() } else { value };
-        (self.x.at(scaled(0, a)), self.y.at(scaled(1, b)))
-    }
-}
-
 /// Everything that is drawn with a pen, back to front, in a panel with these edges above and below.
-fn traces(on: &Place<'_>, [top, bottom]: [f64; 2], ty: Type) -> Vec<Trace> {
-    let &Place { chart, x, y, .. } = on;
+fn traces(chart: &Chart, on: &Place, [top, bottom]: [f64; 2], ty: Type) -> Vec<Trace> {
+    let &Place { x, y, .. } = on;
     let place = |point: [f64; 2]| on.at(point);
     let trace = |data: String, ink: Ink, width: f64, dash: Dash, alpha: f64| Trace { data, ink, width, dash, alpha };
     let mut traces = Vec::new();
@@ -256,11 +237,6 @@ fn traces(on: &Place<'_>, [top, bottom]: [f64; 2], ty: Type) -> Vec<Trace> {
     let dots = chart.marks.iter().map(|&mark| dot(place(mark))).collect();
     traces.push(trace(dots, Ink::Text, 1.6 * ty.mark(), Dash::Solid, 1.0));
     traces
-}
-
-/// A stroke of no length with round caps is a dot.
-pub(crate) fn dot((x, y): (f64, f64)) -> String {
-    format!("M{} {}h0", number(x, 2), number(y, 2))
 }
 
 /// Discs as paths, pale ones first.

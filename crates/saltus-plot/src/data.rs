@@ -1,7 +1,7 @@
 //! What goes into a picture: arcs, measurements, residuals.
 
-use crate::curve;
 use crate::error::{PlotError, finite, magnitude};
+use crate::polynomial;
 
 /// One smooth stretch of motion: a polynomial in the time since its start.
 ///
@@ -44,7 +44,7 @@ impl Arc {
     /// The height (m) at time `t` (s); the polynomial goes on beyond the arc's ends.
     #[must_use]
     pub fn height(&self, t: f64) -> f64 {
-        curve::value(&self.coefficients, (t - self.start) / self.scale)
+        polynomial::value(&self.coefficients, (t - self.start) / self.scale)
     }
 
     pub(crate) fn start(&self) -> f64 {
@@ -70,7 +70,7 @@ impl Arc {
 
     /// The lowest and highest point, both ends included.
     pub(crate) fn extent(&self) -> (f64, f64) {
-        curve::extent(&self.coefficients, self.length())
+        polynomial::extent(&self.coefficients, self.length())
     }
 
     pub(crate) fn check(&self, name: impl Fn() -> String) -> Result<(), PlotError> {

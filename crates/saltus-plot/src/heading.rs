@@ -4,13 +4,12 @@ use plotters::element::Rectangle;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use crate::chart_page::dot;
 use crate::data::Mark;
 use crate::error::PlotError;
-use crate::height_time::HeightTime;
-use crate::marks::{Spot, Tick, Trace};
-use crate::page::{Area, failed};
-use crate::svg::{grains, number};
+use crate::grain::grains;
+use crate::marks::{Spot, Tick, Trace, dot};
+use crate::panel::{Area, failed};
+use crate::svg::number;
 use crate::theme::{CAPITAL, Dash, Ink, Type, room, words, wrapped};
 
 /// What a legend entry shows before its words.
@@ -158,29 +157,20 @@ pub(crate) struct Heading {
 }
 
 impl Heading {
-    pub(crate) fn new(picture: &HeightTime, ty: Type, page: f64) -> Self {
-        let mut wanted: Vec<(Sign, String)> = Vec::new();
-        for (i, motion) in picture.motions.iter().enumerate() {
-            if !motion.label.is_empty() {
-                wanted.push((Sign::Line(Ink::series(i), Dash::series(i)), motion.label.clone()));
-            }
-        }
-        if !picture.contacts.is_empty() {
-            let word = if picture.measured.is_empty() { "contact" } else { "model contact" };
-            wanted.push((Sign::Contact, word.to_owned()));
-        }
-        let model = wanted.len();
-        wanted.extend(measured(picture));
-        Self::divided(&picture.title, &picture.captions, (wanted, model), ty, page)
-    }
-
     /// With a title, lines under it, and the signs and words of a legend.
     pub(crate) fn of(title: &str, captions: &[String], legend: Vec<(Sign, String)>, ty: Type, page: f64) -> Self {
         let all = legend.len();
         Self::divided(title, captions, (legend, all), ty, page)
     }
 
-    fn divided(title: &str, captions: &[String], legend: (Vec<(Sign, String)>, usize), ty: Type, page: f64) -> Self {
+    /// The same; the first so many signs are of the model, the others of measurements.
+    pub(crate) fn divided(
+        title: &str,
+        captions: &[String],
+        legend: (Vec<(Sign, String)>, usize),
+        ty: Type,
+        page: f64,
+    ) -> Self {
         let inside = page - 2.0 * ty.margin();
         let title = wrapped(title, ty.title(), true, inside);
         let captions = captions.iter().flat_map(|c| wrapped(c, ty.base, false, inside)).collect();
@@ -264,24 +254,6 @@ fn sign(area: &Area, sign: Sign, (x, y): (f64, f64), ty: Type) -> Result<(), Plo
             let at = (grains(x + 0.5 * broad), grains(y - 0.5 * length));
             let tick = Tick { at, length, width: 1.5 * ty.hairline(), ink: Ink::Series(0) };
             area.draw(&tick).map_err(failed)
-        }
-    }
-}
-
-/// The legend of the marks: one kind is named in full, several share a first word.
-fn measured(picture: &HeightTime) -> Vec<(Sign, String)> {
-    let kinds: Vec<_> =
-        Mark::ALL.into_iter().filter(|&mark| picture.measured.iter().any(|point| point.mark == mark)).collect();
-    let barred = picture.measured.iter().any(|point| point.time_error > 0.0 || point.height_error > 0.0);
-    let bars = if barred { " ±1 σ" } else { "" };
-    match kinds[..] {
-        [] => Vec::new(),
-        [Mark::Sample] => vec![(Sign::Spot(Mark::Sample), format!("measured{bars}"))],
-        [mark] => vec![(Sign::Spot(mark), format!("measured {}{bars}", mark.word()))],
-        _ => {
-            let first = (Sign::Nothing, format!("measured{bars}:"));
-            let rest = kinds.iter().map(|&mark| (Sign::Spot(mark), mark.word().to_owned()));
-            std::iter::once(first).chain(rest).collect()
         }
     }
 }

@@ -2,36 +2,9 @@
 
 use crate::data::{Arc, Mark, Measured, Residual};
 use crate::error::{PlotError, finite};
-use crate::page;
-use crate::theme::{LARGEST, SMALLEST};
+use crate::residuals;
+use crate::theme::{Background, LARGEST, SMALLEST};
 use crate::unit::{HeightUnit, Unit};
-
-/// What a picture lies on.
-///
-/// # Example
-///
-/// ```
-/// use saltus_plot::{Arc, Background, HeightTime};
-///
-/// let picture = HeightTime::new("A drop").motion("model", [Arc::new(0.0, 0.4, vec![1.0, 0.0, -4.9])]);
-/// assert!(picture.clone().svg()?.contains("prefers-color-scheme"));
-/// assert!(!picture.background(Background::White).svg()?.contains("prefers-color-scheme"));
-/// # Ok::<(), saltus_plot::PlotError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[non_exhaustive]
-pub enum Background {
-    /// Nothing: the page shows through, and the colours follow the reader's light or dark scheme.
-    ///
-    /// A page that stays white for readers with a dark scheme needs [`White`](Self::White) or
-    /// [`Adaptive`](Self::Adaptive): pale ink would vanish on it.
-    #[default]
-    None,
-    /// White paper, in dark surroundings too.
-    White,
-    /// Paper of its own, white in light surroundings and nearly black in dark ones.
-    Adaptive,
-}
 
 /// One curve and what it is called.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,20 +145,7 @@ impl HeightTime {
         self
     }
 
-    /// The picture as an SVG document.
-    ///
-    /// # Errors
-    ///
-    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
-    /// [`PlotError::Negative`] naming the number at fault, [`PlotError::Size`] when a side is
-    /// shorter than 160 px or longer than 20 000 px.
-    pub fn svg(&self) -> Result<String, PlotError> {
-        let (width, height) = self.checked_size()?;
-        let bounds = self.bounds()?;
-        page::draw(self, &bounds, width, height)
-    }
-
-    fn checked_size(&self) -> Result<(f64, f64), PlotError> {
+    pub(crate) fn checked_size(&self) -> Result<(f64, f64), PlotError> {
         let default = if self.residuals.is_empty() { (800.0, 560.0) } else { (800.0, 680.0) };
         let (width, height) = self.size.unwrap_or(default);
         let fits = |side: f64| (SMALLEST..=LARGEST).contains(&side);
@@ -193,7 +153,7 @@ impl HeightTime {
     }
 
     /// Checks every number, and gathers how far the data reach.
-    fn bounds(&self) -> Result<Bounds, PlotError> {
+    pub(crate) fn bounds(&self) -> Result<Bounds, PlotError> {
         let mut time = Reach::default();
         let mut height = Reach::default();
         height.include(0.0);
@@ -268,7 +228,7 @@ impl HeightTime {
             text.push_str(&format!(" Contacts of the model: {}.", self.contacts.len()));
         }
         if !self.residuals.is_empty() {
-            text.push_str(&format!(" Below: {}.", crate::residuals::summary(&self.residuals)));
+            text.push_str(&format!(" Below: {}.", residuals::summary(&self.residuals)));
         }
         for caption in &self.captions {
             let stop = if caption.ends_with(['.', '!', '?']) { "" } else { "." };

@@ -1,10 +1,10 @@
 //! A quantity over two others, in tones.
 
 use crate::axis::{nice, typeset};
-use crate::chart::Measure;
-use crate::chart_page::{Place, unit};
 use crate::error::{PlotError, finite};
 use crate::heading::Sign;
+use crate::measure::Measure;
+use crate::place::Place;
 use crate::svg::number;
 
 /// A quantity over a grid of two others.
@@ -90,7 +90,7 @@ impl Map {
     fn tones(&self) -> Tones {
         let values = || self.values.iter().flatten().copied();
         let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        let unit = unit(&self.measure, (low, high));
+        let unit = self.measure.unit((low, high));
         let (low, high) = (low / unit.size, high / unit.size);
         let whole = self.measure == Measure::Count;
         // One class takes the value on its upper edge as well only where it is the last.
@@ -112,9 +112,9 @@ impl Map {
     }
 
     /// The cells of each tone as one path, neighbours in a row as one rectangle.
-    pub(crate) fn cells(&self, on: &Place<'_>, logarithmic: [bool; 2]) -> Vec<(f64, String)> {
+    pub(crate) fn cells(&self, on: &Place) -> Vec<(f64, String)> {
         let tones = self.tones();
-        let [across, up] = [0, 1].map(|axis| self.edges(axis, logarithmic[axis]));
+        let [across, up] = [0, 1].map(|axis| self.edges(axis, on.logarithmic[axis]));
         let columns = self.middles[0].len();
         let mut paths = vec![String::new(); tones.count];
         for (j, row) in self.values.chunks(columns).enumerate() {

@@ -7,7 +7,8 @@ use plotters::element::{Drawable, PointCollection};
 use plotters_backend::{BackendCoord, DrawingBackend, DrawingErrorKind};
 
 use crate::data::{Mark, Measured};
-use crate::svg::{Canvas, grains};
+use crate::grain::grains;
+use crate::svg::{Canvas, number};
 use crate::theme::{Dash, Ink, Type};
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
@@ -168,4 +169,9 @@ impl<C> Drawable<Canvas> for Tick<C> {
         }
         Ok(())
     }
+}
+
+/// A stroke of no length with round caps is a dot.
+pub(crate) fn dot((x, y): (f64, f64)) -> String {
+    format!("M{} {}h0", number(x, 2), number(y, 2))
 }

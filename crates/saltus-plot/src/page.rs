@@ -1,52 +1,25 @@
 //! The page: where the heading and the panels stand, and the panel of heights itself.
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
-use std::convert::Infallible;
 use std::rc::Rc;
 
-use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
-use plotters::coord::Shift;
-use plotters::coord::cartesian::Cartesian2d;
-use plotters::drawing::{DrawingArea, DrawingAreaErrorKind};
+use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::element::PathElement;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
 use crate::axis::Axis;
-use crate::curve::{self, Affine};
+use crate::curve;
 use crate::data::{Mark, Measured};
 use crate::error::PlotError;
-use crate::heading::Heading;
-use crate::height_time::{Background, Bounds, HeightTime};
+use crate::grain::grains;
+use crate::heading::{Heading, Sign};
+use crate::height_time::{Bounds, HeightTime};
 use crate::marks::{Bars, Spot, Tick, Trace};
+use crate::panel::{Area, Chart, Frame, apart, band, failed, maps, mesh};
 use crate::residuals;
-use crate::svg::{Canvas, GRAIN, Sheet, grains, number};
-use crate::theme::{CAPITAL, Dash, Ink, Type, room, width, words};
-
-pub(crate) type Area = DrawingArea<Canvas, Shift>;
-pub(crate) type Chart<'a> = ChartContext<'a, Canvas, Cartesian2d<Axis, Axis>>;
-
-/// More marks than this, and those that would cover one another are left out.
-const MANY: usize = 1500;
-
-/// plotters' own failures; drawing on text cannot fail.
-pub(crate) fn failed(error: DrawingAreaErrorKind<Infallible>) -> PlotError {
-    PlotError::Drawing(error.to_string())
-}
-
-/// What both panels share. Lengths are in grains.
-#[derive(Debug)]
-pub(crate) struct Frame {
-    pub(crate) ty: Type,
-    pub(crate) time: Axis,
-    pub(crate) time_label: String,
-    /// The size of the time axis' unit in seconds.
-    pub(crate) second: f64,
-    pub(crate) left: i32,
-    pub(crate) right: i32,
-    pub(crate) foot: i32,
-}
+use crate::svg::{Canvas, Sheet, number};
+use crate::theme::{Background, CAPITAL, Dash, Ink, Type, room, width, words};
 
 /// Heights of the page's parts from top to bottom, in px.
 #[derive(Debug, Clone, Copy)]
@@ -92,8 +65,23 @@ fn residual_row_is_double(picture: &HeightTime, ty: Type, page: f64) -> bool {
     both + ty.base > page - 2.0 * ty.margin()
 }
 
+impl HeightTime {
+    /// The picture as an SVG document.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError::Empty`] when there is nothing to draw, [`PlotError::NotFinite`] and
+    /// [`PlotError::Negative`] naming the number at fault, [`PlotError::Size`] when a side is
+    /// shorter than 160 px or longer than 20 000 px.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        let (width, height) = self.checked_size()?;
+        let bounds = self.bounds()?;
+        draw(self, &bounds, width, height)
+    }
+}
+
 /// The whole picture.
-pub(crate) fn draw(picture: &HeightTime, bounds: &Bounds, w: f64, h: f64) -> Result<String, PlotError> {
+fn draw(picture: &HeightTime, bounds: &Bounds, w: f64, h: f64) -> Result<String, PlotError> {
     let (ty, heading, parts, h) = compose(picture, w, h);
     let canvas = Rc::new(RefCell::new(Canvas::new(w, h)));
     let root = Area::from(&canvas);
@@ -116,18 +104,53 @@ fn compose(picture: &HeightTime, w: f64, h: f64) -> (Type, Heading, Parts, f64) 
     let share = if picture.residuals.is_empty() { 0.42 } else { 0.33 };
     for factor in [1.0, 0.94, 0.88, 0.82, 0.76] {
         let ty = Type { base: full.base * factor };
-        let heading = Heading::new(picture, ty, w);
+        let heading = heading(picture, ty, w);
         if let Some(parts) = Parts::divide(picture, &heading, ty, (w, h), share * h) {
             return (ty, heading, parts, h);
         }
     }
     let ty = Type { base: 0.82 * full.base };
-    let heading = Heading::new(picture, ty, w);
+    let heading = heading(picture, ty, w);
     let mut taller = h;
     loop {
         taller += 2.0 * ty.base;
         if let Some(parts) = Parts::divide(picture, &heading, ty, (w, taller), share * h) {
             return (ty, heading, parts, taller.ceil());
+        }
+    }
+}
+
+/// The title, the captions and the legend.
+fn heading(picture: &HeightTime, ty: Type, page: f64) -> Heading {
+    let mut wanted: Vec<(Sign, String)> = Vec::new();
+    for (i, motion) in picture.motions.iter().enumerate() {
+        if !motion.label.is_empty() {
+            wanted.push((Sign::Line(Ink::series(i), Dash::series(i)), motion.label.clone()));
+        }
+    }
+    if !picture.contacts.is_empty() {
+        let word = if picture.measured.is_empty() { "contact" } else { "model contact" };
+        wanted.push((Sign::Contact, word.to_owned()));
+    }
+    let model = wanted.len();
+    wanted.extend(measured(picture));
+    Heading::divided(&picture.title, &picture.captions, (wanted, model), ty, page)
+}
+
+/// The legend of the marks: one kind is named in full, several share a first word.
+fn measured(picture: &HeightTime) -> Vec<(Sign, String)> {
+    let kinds: Vec<_> =
+        Mark::ALL.into_iter().filter(|&mark| picture.measured.iter().any(|point| point.mark == mark)).collect();
+    let barred = picture.measured.iter().any(|point| point.time_error > 0.0 || point.height_error > 0.0);
+    let bars = if barred { " ±1 σ" } else { "" };
+    match kinds[..] {
+        [] => Vec::new(),
+        [Mark::Sample] => vec![(Sign::Spot(Mark::Sample), format!("measured{bars}"))],
+        [mark] => vec![(Sign::Spot(mark), format!("measured {}{bars}", mark.word()))],
+        _ => {
+            let first = (Sign::Nothing, format!("measured{bars}:"));
+            let rest = kinds.iter().map(|&mark| (Sign::Spot(mark), mark.word().to_owned()));
+            std::iter::once(first).chain(rest).collect()
         }
     }
 }
@@ -183,11 +206,6 @@ fn panels(
     Ok(())
 }
 
-/// The strip of the page from `top` px, `height` px high.
-pub(crate) fn band(root: &Area, top: f64, height: f64, width: f64) -> Area {
-    root.clone().shrink((0, grains(top)), (grains(width), grains(height)))
-}
-
 /// The time axis with a little air at both ends, and as many numbers as fit.
 fn time_axis(bounds: &Bounds, length: f64, ty: Type) -> Axis {
     let size = bounds.time_unit.size;
@@ -209,31 +227,6 @@ fn height_axis(bounds: &Bounds, length: f64, ty: Type) -> (Axis, f64) {
     let most = (length / (2.3 * ty.base)).clamp(3.0, 10.0) as usize;
     let axis = Axis::new(low - sole * scale, high + head * scale, (low, high + head * scale), most);
     (axis, if floor_is_lowest { sole } else { 0.0 })
-}
-
-/// Grid and numbers; `time_label` only where the panel has room below for it.
-pub(crate) fn mesh(chart: &mut Chart<'_>, ty: Type, time_label: Option<&str>) -> Result<(), PlotError> {
-    let numbers = words(Ink::Text, ty.base, FontStyle::Normal, HPos::Left, VPos::Top);
-    let titles = words(Ink::Muted, ty.base, FontStyle::Normal, HPos::Left, VPos::Top);
-    let mut mesh = chart.configure_mesh();
-    mesh.bold_line_style(Ink::Grid.faint(ty.hairline(), 0.26))
-        .axis_style(Ink::Grid.faint(1.0, 0.0))
-        .set_all_tick_mark_size(grains(0.275 * ty.base))
-        .label_style(numbers)
-        .axis_desc_style(titles);
-    if let Some(text) = time_label {
-        mesh.x_desc(text);
-    }
-    mesh.draw().map_err(failed)
-}
-
-/// How a chart maps its axes to px, without plotters' rounding.
-pub(crate) fn maps(chart: &Chart<'_>) -> (Affine, Affine) {
-    let px = |grain: i32| f64::from(grain) / GRAIN;
-    let area = chart.plotting_area();
-    let (across, down) = (area.get_x_axis_pixel_range(), area.get_y_axis_pixel_range());
-    let (time, height) = (area.as_coord_spec().x_spec(), area.as_coord_spec().y_spec());
-    (time.onto(px(across.start), px(across.end)), height.onto(px(down.end), px(down.start)))
 }
 
 fn heights(
@@ -290,22 +283,6 @@ fn heights(
         .map_err(failed)?;
 
     measurements(picture, bounds, &mut chart, ty, |p| (x.at(p.time), y.at(p.height)))
-}
-
-/// All of `points`, or when there are very many, one for each small square of the page.
-pub(crate) fn apart<P>(points: &[P], place: impl Fn(&P) -> (f64, f64), mark: impl Fn(&P) -> Mark) -> Vec<&P> {
-    if points.len() <= MANY {
-        return points.iter().collect();
-    }
-    let mut seen = BTreeSet::new();
-    let square = |px: f64| (0.5 * px).round() as i64;
-    points
-        .iter()
-        .filter(|p| {
-            let (x, y) = place(p);
-            seen.insert((square(x), square(y), mark(p)))
-        })
-        .collect()
 }
 
 fn measurements(

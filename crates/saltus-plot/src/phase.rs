@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use saltus::{State, Trajectory};
 
-use crate::chart::{Chart, Measure};
+use crate::chart::Chart;
 use crate::coordinate::{Coordinate, Label, place};
 use crate::error::PlotError;
-use crate::height_time::Background;
+use crate::measure::Measure;
 use crate::stroke::Stroke;
+use crate::theme::Background;
 use crate::traced::{Leap, Part, Traced, labels};
 
 /// How many arrows at most show which way a run goes.

@@ -7,7 +7,7 @@ use crate::axis::Axis;
 use crate::data::Residual;
 use crate::error::PlotError;
 use crate::marks::Spot;
-use crate::page::{Area, Frame, apart, failed, maps, mesh};
+use crate::panel::{Area, Frame, apart, failed, maps, mesh};
 use crate::theme::{Ink, Type};
 
 /// How many there are and how scattered: "5 residuals, rms 3.8 σ, 3 beyond ±2 σ".

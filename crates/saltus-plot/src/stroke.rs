@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::curve::{Affine, NARROW, TOLERANCE, derivative, extent, shifted, value};
+use crate::curve::{Affine, NARROW, TOLERANCE};
 use crate::error::{PlotError, finite, magnitude};
+use crate::polynomial::{derivative, extent, shifted, value};
 use crate::svg::number;
 
 /// One smooth stretch of a curve: x = Σ aₖ sᵏ and y = Σ bₖ sᵏ for 0 ≤ s ≤ span, in SI units.

@@ -15,17 +15,10 @@ use plotters_backend::{
     FontTransform,
 };
 
+use crate::grain::{GRAIN, grains};
 use crate::theme::{self, Dash, Ink};
 
-/// Grains per px.
-pub(crate) const GRAIN: f64 = 100.0;
-
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
-
-/// px to grains.
-pub(crate) fn grains(px: f64) -> i32 {
-    (px * GRAIN).round() as i32
-}
 
 /// A number with at most `decimals` decimals and nothing superfluous; never `-0`, never `NaN`.
 pub(crate) fn number(value: f64, decimals: usize) -> String {

@@ -13,6 +13,33 @@ pub(crate) const LARGEST: f64 = 20_000.0;
 /// seen.
 pub(crate) const FAMILY: &str = "'Helvetica Neue',Helvetica,Arial,'Liberation Sans',system-ui,sans-serif";
 
+/// What a picture lies on.
+///
+/// # Example
+///
+/// ```
+/// use saltus_plot::{Arc, Background, HeightTime};
+///
+/// let picture = HeightTime::new("A drop").motion("model", [Arc::new(0.0, 0.4, vec![1.0, 0.0, -4.9])]);
+/// assert!(picture.clone().svg()?.contains("prefers-color-scheme"));
+/// assert!(!picture.background(Background::White).svg()?.contains("prefers-color-scheme"));
+/// # Ok::<(), saltus_plot::PlotError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Background {
+    /// Nothing: the page shows through, and the colours follow the reader's light or dark scheme.
+    ///
+    /// A page that stays white for readers with a dark scheme needs [`White`](Self::White) or
+    /// [`Adaptive`](Self::Adaptive): pale ink would vanish on it.
+    #[default]
+    None,
+    /// White paper, in dark surroundings too.
+    White,
+    /// Paper of its own, white in light surroundings and nearly black in dark ones.
+    Adaptive,
+}
+
 /// What a stroke or a word is for. Each ink has a colour on light paper and one on dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Ink {
@@ -109,7 +136,7 @@ impl Ink {
 
     /// A translucent stroke.
     pub(crate) fn faint(self, width: f64, alpha: f64) -> ShapeStyle {
-        ShapeStyle { color: self.rgba(alpha), filled: false, stroke_width: crate::svg::grains(width).unsigned_abs() }
+        ShapeStyle { color: self.rgba(alpha), filled: false, stroke_width: crate::grain::grains(width).unsigned_abs() }
     }
 
     /// A translucent area.
@@ -198,7 +225,7 @@ impl Type {
 
 /// A text style in the backend's fine units.
 pub(crate) fn words(ink: Ink, size: f64, weight: FontStyle, h: HPos, v: VPos) -> TextStyle<'static> {
-    let font = FontDesc::new(FontFamily::SansSerif, size * crate::svg::GRAIN, weight);
+    let font = FontDesc::new(FontFamily::SansSerif, size * crate::grain::GRAIN, weight);
     TextStyle { font, color: BackendColor { alpha: 1.0, rgb: ink.light() }, pos: Pos::new(h, v) }
 }
 

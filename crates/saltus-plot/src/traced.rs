@@ -7,8 +7,8 @@ use std::ops::Range;
 use saltus::{Cause, State, Trajectory};
 
 use crate::coordinate::Label;
-use crate::curve::shifted;
 use crate::error::{PlotError, finite};
+use crate::polynomial::shifted;
 
 /// What follows the last jump of a run that does not end, as a part of what comes before it.
 const AFTER: f64 = 0.15;

@@ -5,6 +5,7 @@ use std::fmt;
 
 use saltus::Timing;
 
+pub use super::plan::Way;
 use super::plan::{Cost, Effect, Impact, Plan, PlanError, Record, RunError};
 use super::{Scene, Stepper};
 use saltus_bounce::effects::Gravity;
@@ -23,36 +24,6 @@ const MOST_EVALUATIONS: u64 = 10_000_000;
 const TIMES: u32 = 1000;
 /// Impacts slower than this share of the fastest are not asked for one by one.
 const SLOW: f64 = 1e-3;
-
-/// How a run is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Way {
-    /// Every flight by formula.
-    Formulas,
-    /// By a stepper to a relative tolerance.
-    Steps {
-        /// The stepper.
-        stepper: Stepper,
-        /// The tolerance.
-        tolerance: f64,
-    },
-    /// Frame by frame, contacts dealt with where frames end: as game loops do.
-    Frames {
-        /// In frames per second.
-        rate: f64,
-    },
-}
-
-impl fmt::Display for Way {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Formulas => f.write_str("formulas"),
-            Self::Steps { stepper, tolerance } => write!(f, "{} {tolerance:.0e}", stepper.name()),
-            Self::Frames { rate } => write!(f, "{rate} frames/s"),
-        }
-    }
-}
 
 /// How far one run of a scene is from another. Infinite where the other run breaks off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

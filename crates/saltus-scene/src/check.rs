@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
+use super::ball::Ball;
+use super::contact::Contact;
 use super::error::{Fault, short};
-use super::{Ball, Contact, Scene};
+use super::scene::Scene;
 
 /// How far rounding may let things overlap, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;

@@ -173,3 +173,10 @@ pub(super) fn short(value: f64) -> String {
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
+
+/// The name most like `text`, if any is like it at all.
+pub(super) fn nearest<'a>(text: &str, known: &[&'a str]) -> Option<&'a str> {
+    let text = text.trim().to_lowercase();
+    let like = |name: &&str| strsim::jaro_winkler(&text, name);
+    known.iter().copied().max_by(|a, b| like(a).total_cmp(&like(b))).filter(|name| like(name) > 0.8)
+}

@@ -10,15 +10,17 @@ use serde::de::{Deserializer, Error, Visitor};
 
 use super::air::{AirTable, DragTable, MagnusTable, SpinDecayTable, Tables};
 use super::ball::BallTable;
-use super::contact::{Body, ContactTable};
-use super::error::Fault;
+use super::check;
+use super::contact::{Body, Contact, ContactTable};
+use super::error::{Fault, nearest};
 use super::floor::FloorTable;
 use super::restitution::{self, FrictionTable, Law, RestitutionTable, Said};
 use super::run::{PictureTable, RunTable};
+use super::scene::Scene;
 use super::source::Source;
 use super::space::Space;
 use super::value::{Acceleration, At, Dimension, OneOrMany, Short};
-use super::{Contact, Scene, check};
+
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::friction::Friction;
 use saltus_bounce::materials;
@@ -96,7 +98,7 @@ impl<'de> Deserialize<'de> for GravityValue {
                     return Acceleration::QUANTITY.parse(text).map(GravityValue).map_err(E::custom);
                 }
                 let known: Vec<&str> = Gravity::NAMED.iter().map(|&(name, _)| name).collect();
-                let help = super::read::nearest(text, &known).map_or_else(
+                let help = nearest(text, &known).map_or_else(
                     || format!("write one of {}, or a number", known.join(", ")),
                     |near| format!("did you mean '{near}'?"),
                 );

@@ -1,5 +1,6 @@
 //! From bytes to a scene, and from what the TOML reader says to what a person can use.
 
+use std::fmt;
 use std::fs;
 use std::io::Read;
 use std::ops::Range;
@@ -9,33 +10,103 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::error::{Fault, SceneError};
+use super::error::{Fault, SceneError, nearest};
 use super::file::File;
+use super::run::Run;
+use super::scene::Scene;
+use super::schema;
 use super::source::Source;
-use super::{ReadError, Run, Scene, schema};
 
 /// UTF-8's byte-order mark.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-pub(super) fn from_path(path: &Path) -> Result<Scene, ReadError> {
-    let file = |error| ReadError::File { path: path.to_owned(), error };
-    let mut bytes = Vec::new();
-    // One byte too many is enough to know.
-    let most = Scene::LARGEST as u64 + 1;
-    fs::File::open(path).and_then(|source| source.take(most).read_to_end(&mut bytes)).map_err(file)?;
-    Scene::parse(&path.to_string_lossy(), &bytes).map_err(ReadError::Scene)
+impl Scene {
+    /// The largest file that is read, in bytes.
+    pub const LARGEST: usize = 1 << 20;
+
+    /// Reads a scene from TOML; `name` stands for the file in messages. A byte-order mark is passed
+    /// over.
+    ///
+    /// # Errors
+    /// [`SceneError`], with line, column and advice, when the text is no TOML or no scene: an
+    /// unknown key, a wrong unit, a number outside its domain, settings that contradict each other,
+    /// a ball inside a floor, a run without end.
+    pub fn parse(name: &str, toml: &[u8]) -> Result<Self, SceneError> {
+        Self::parse_with(name, toml, Run::default())
+    }
+
+    /// The same, where what `run` says goes before what the text says under `[run]`: so a scene
+    /// that says no end can be given one.
+    ///
+    /// ```
+    /// use saltus_scene::{Run, Scene};
+    /// let endless = b"restitution = 1\nball = { height = '1 m' }\n";
+    /// assert!(Scene::parse("drop.toml", endless).is_err());
+    /// let mut run = Run::default();
+    /// run.until = Some(5.0);
+    /// assert_eq!(Scene::parse_with("drop.toml", endless, run)?.run.until, Some(5.0));
+    /// # Ok::<(), saltus_scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn parse_with(name: &str, toml: &[u8], run: Run) -> Result<Self, SceneError> {
+        let bytes = unmarked(toml);
+        let inner = || {
+            let text = text(bytes)?;
+            let mut scene = made(text, table(text)?, run)?;
+            scene.source = Source::new(name, text);
+            Ok(scene)
+        };
+        inner().map_err(|fault| SceneError::new(name, bytes, fault))
+    }
+
+    /// Reads a scene from a file.
+    ///
+    /// # Errors
+    /// [`ReadError`]: the file cannot be read, or its content is no scene.
+    ///
+    /// ```
+    /// use saltus_scene::Scene;
+    /// let error = Scene::read("no/such/scene.toml").unwrap_err();
+    /// assert!(error.to_string().starts_with("cannot read 'no/such/scene.toml'"));
+    /// ```
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let file = |error| ReadError::File { path: path.to_owned(), error };
+        let mut bytes = Vec::new();
+        // One byte too many is enough to know.
+        let most = Self::LARGEST as u64 + 1;
+        fs::File::open(path).and_then(|source| source.take(most).read_to_end(&mut bytes)).map_err(file)?;
+        Self::parse(&path.to_string_lossy(), &bytes).map_err(ReadError::Scene)
+    }
 }
 
-pub(super) fn scene(name: &str, bytes: &[u8], run: Run) -> Result<Scene, SceneError> {
-    let bytes = unmarked(bytes);
-    let inner = || {
-        let text = text(bytes)?;
-        let mut scene = made(text, table(text)?, run)?;
-        scene.source = Source::new(name, text);
-        Ok(scene)
-    };
-    inner().map_err(|fault| SceneError::new(name, bytes, fault))
+/// A scene file that could not be read.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file itself.
+    File {
+        /// Its path.
+        path: std::path::PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// What stands in it.
+    Scene(SceneError),
 }
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File { path, error } => write!(f, "cannot read '{}': {error}", path.display()),
+            Self::Scene(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for ReadError {}
 
 /// What follows the byte-order mark.
 pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
@@ -86,13 +157,6 @@ pub(super) fn made(text: &str, table: Spanned<DeTable<'_>>, run: Run) -> Result<
         translate(text, span, &message)
     })?;
     file.scene(run)
-}
-
-/// The name most like `text`, if any is like it at all.
-pub(super) fn nearest<'a>(text: &str, known: &[&'a str]) -> Option<&'a str> {
-    let text = text.trim().to_lowercase();
-    let like = |name: &&str| strsim::jaro_winkler(&text, name);
-    known.iter().copied().max_by(|a, b| like(a).total_cmp(&like(b))).filter(|name| like(name) > 0.8)
 }
 
 /// What stands between backticks, after the first so many.

@@ -13,10 +13,6 @@ use crate::restitution::{Cor, Restitution};
 pub use parted::{Phase, Turn};
 pub use smooth::{Floor, Mode, SmoothFlight};
 
-/// Gravity on Earth by convention, 9.80665 m/s² (third General Conference on Weights and Measures,
-/// 1901).
-pub const STANDARD_GRAVITY: f64 = 9.806_65;
-
 /// A ball that flies up and down and bounces on a level floor; by default gravity and a constant
 /// [`Cor`], nothing else.
 ///

@@ -3,8 +3,11 @@
 use nalgebra::SVector;
 
 use super::{Effect, Motion, Spin};
-use crate::ball::STANDARD_GRAVITY;
 use crate::parameter::{ParameterError, not_negative};
+
+/// Gravity on Earth by convention, 9.80665 m/s² (third General Conference on Weights and Measures,
+/// 1901).
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Uniform gravity: a = -g along the last coordinate, g in m/s².
 ///

@@ -19,7 +19,7 @@ use std::fmt::Debug;
 use nalgebra::{SVector, Vector3};
 
 pub use buoyancy::{AddedMass, Buoyancy};
-pub use gravity::Gravity;
+pub use gravity::{Gravity, STANDARD_GRAVITY};
 pub use linear_drag::LinearDrag;
 pub use magnus::Magnus;
 pub use quadratic_drag::QuadraticDrag;

@@ -16,9 +16,6 @@ use crate::parameter::ParameterError;
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, MOST_FACES, Walls};
 
-/// How many edges beside the faces a stance may have: leave, stop and veer of [`Stance::Yield`].
-pub(crate) const MOST_ENDS: usize = 3;
-
 pub use grip::{Block, Grip, Keeps, Rolls};
 pub use moving::{Moving, Turning};
 pub use stance::{Event, Stance};

@@ -1,16 +1,15 @@
 //! Several balls on a line: stacked balls, Newton's cradle, chains, billiards that compute π.
 
 mod collapse;
-mod impact;
 mod row;
 mod stack;
 
 use saltus::{About, Automaton, Edges, Limit, Refusal, Solution};
 
+use crate::impact::impact;
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::restitution::{Cor, Restitution};
 
-pub(crate) use impact::impact;
 pub use row::Row;
 
 /// N balls on a line, with a floor below the first and a wall beyond the last if wanted, and

@@ -60,7 +60,7 @@ impl Preset {
     #[must_use]
     pub fn speeds(&self) -> Option<[f64; 2]> {
         match self.evidence {
-            Evidence::Rebound { drop, .. } => Some([(2.0 * crate::STANDARD_GRAVITY * drop).sqrt(); 2]),
+            Evidence::Rebound { drop, .. } => Some([(2.0 * crate::effects::STANDARD_GRAVITY * drop).sqrt(); 2]),
             Evidence::Measured { speeds, .. } => speeds,
         }
     }

@@ -104,9 +104,13 @@ pub trait Walls<const N: usize> {
     }
 }
 
+/// How many edges beside the faces a contact may have: leave, stop and veer of
+/// [`Stance::Yield`](crate::Stance::Yield).
+const MOST_ENDS: usize = 3;
+
 /// How many faces a cell may have: with what may end a contact by itself, as many as a mode may
 /// have edges that are collected; a [`Corner`](crate::Stance::Corner) has bits for more.
-pub const MOST_FACES: usize = saltus::Edges::<()>::INLINE - crate::flyer::MOST_ENDS;
+pub const MOST_FACES: usize = saltus::Edges::<()>::INLINE - MOST_ENDS;
 
 /// The earlier of two times that may be none.
 fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {

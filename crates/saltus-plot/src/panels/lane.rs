@@ -5,11 +5,11 @@ use plotters::element::Rectangle;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use super::page::Frame;
+use super::frame::Frame;
 use crate::axis::Axis;
 use crate::error::PlotError;
-use crate::page::{Area, band, failed, maps, mesh};
-use crate::svg::grains;
+use crate::grain::grains;
+use crate::panel::{Area, band, failed, maps, mesh};
 use crate::theme::{CAPITAL, Ink, Type, room, words};
 use crate::traced::Traced;
 

@@ -1,7 +1,7 @@
 //! Jumps in a panel: upright lines, and both limits of a line that breaks.
 
-use crate::chart_page::dot;
 use crate::curve::Affine;
+use crate::marks::dot;
 use crate::svg::number;
 use crate::theme::Type;
 use crate::traced::Traced;

@@ -1,5 +1,6 @@
 //! The coordinates of a run against time, one panel above the other.
 
+mod frame;
 mod lane;
 mod leaps;
 mod page;
@@ -9,10 +10,10 @@ use std::ops::Range;
 
 use saltus::{State, Trajectory};
 
-use crate::chart::Measure;
 use crate::coordinate::{Coordinate, Label, places};
 use crate::error::PlotError;
-use crate::height_time::Background;
+use crate::measure::Measure;
+use crate::theme::Background;
 use crate::traced::{Traced, labels};
 
 /// More panels than this are only drawn where they are asked for.

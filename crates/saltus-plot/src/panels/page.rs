@@ -5,21 +5,23 @@ use std::rc::Rc;
 
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 
+use super::frame::Frame;
 use super::lane::Lane;
 use super::leaps;
 use crate::axis::{Axis, typeset};
-use crate::chart::Measure;
-use crate::chart_page::{opened, unit};
+use crate::chart_page::opened;
 use crate::coordinate::Label;
-use crate::curve::{extent, path};
+use crate::curve::path;
 use crate::data::Arc;
 use crate::error::{PlotError, finite};
+use crate::grain::grains;
 use crate::heading::{Heading, Legend, Sign};
-use crate::height_time::Background;
 use crate::marks::{Trace, event};
-use crate::page::{Area, band, failed, maps, mesh};
-use crate::svg::{Canvas, Sheet, grains, number};
-use crate::theme::{CAPITAL, Dash, Ink, Type, width};
+use crate::measure::Measure;
+use crate::panel::{Area, band, failed, maps, mesh};
+use crate::polynomial::extent;
+use crate::svg::{Canvas, Sheet, number};
+use crate::theme::{Background, CAPITAL, Dash, Ink, Type, width};
 use crate::traced::Traced;
 use crate::unit::Unit;
 
@@ -42,18 +44,6 @@ pub(super) struct Content<'a> {
     pub(super) traced: &'a Traced,
     pub(super) time: &'a Measure,
     pub(super) background: Background,
-}
-
-/// What all panels share. Lengths are in px.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) ty: Type,
-    pub(super) time: Axis,
-    /// The size of the unit of time.
-    pub(super) second: f64,
-    pub(super) left: f64,
-    pub(super) right: f64,
-    pub(super) foot: f64,
 }
 
 /// One panel: its lines, their unit, how far they reach.
@@ -214,7 +204,7 @@ fn frame(content: &Content<'_>, panels: &[Panel], lane: Option<&Lane<'_>>, (w, t
     let left = ty.margin() + numbers.max(lane.map_or(0.0, Lane::words)) + 0.55 * b;
     let right = ty.margin();
     let (from, to) = content.traced.window;
-    let second = unit(content.time, (from, to));
+    let second = content.time.unit((from, to));
     let (low, high) = (from / second.size, to / second.size);
     let length = w - left - right;
     let air = (high - low) * (0.4 * b / length).min(0.1);

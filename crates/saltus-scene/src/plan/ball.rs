@@ -5,7 +5,8 @@ use saltus::{Automaton, JumpOf};
 
 use super::explain::Advance;
 use super::record::{Moment, With};
-use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
+use super::runner::{BoundModel, Runner};
+use super::view::{Collision, SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Law;
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};

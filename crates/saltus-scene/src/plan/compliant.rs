@@ -5,7 +5,8 @@ use saltus::{JumpOf, TrajectoryOf};
 
 use super::explain::Advance;
 use super::record::{Impact, Moment, Press, With};
-use super::runner::{BoundModel, Runner, SceneEvent, SceneView};
+use super::runner::{BoundModel, Runner};
+use super::view::{SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Contact;
 use saltus_bounce::Compliant;

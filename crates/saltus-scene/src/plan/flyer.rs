@@ -5,8 +5,9 @@ use saltus::JumpOf;
 
 use super::explain::Advance;
 use super::record::{Moment, With};
-use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
+use super::runner::{BoundModel, Runner};
 use super::surroundings::{Surroundings, surroundings};
+use super::view::{Collision, SceneEvent, SceneView};
 use super::{PlanError, failed, label};
 use crate::{Ball, Law, Scene};
 use saltus_bounce::effects::{

@@ -5,7 +5,8 @@ use saltus::JumpOf;
 
 use super::explain::Advance;
 use super::record::{Moment, With};
-use super::runner::{BoundModel, Collision, Runner, SceneEvent, SceneView};
+use super::runner::{BoundModel, Runner};
+use super::view::{Collision, SceneEvent, SceneView};
 use super::{MOST_BALLS, PlanError, failed};
 use crate::{Law, Scene};
 use saltus_bounce::Line;

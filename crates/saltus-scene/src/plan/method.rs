@@ -1,10 +1,42 @@
 //! The steppers of the engine as one, chosen as a plan is made: so that each model is compiled
 //! once.
 
+use std::fmt;
+
 use saltus::step::{Either, Stepper as Step, Trial};
 use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
 
 use crate::Stepper;
+
+/// How a run is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Way {
+    /// Every flight by formula.
+    Formulas,
+    /// By a stepper to a relative tolerance.
+    Steps {
+        /// The stepper.
+        stepper: Stepper,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// Frame by frame, contacts dealt with where frames end: as game loops do.
+    Frames {
+        /// In frames per second.
+        rate: f64,
+    },
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Formulas => f.write_str("formulas"),
+            Self::Steps { stepper, tolerance } => write!(f, "{} {tolerance:.0e}", stepper.name()),
+            Self::Frames { rate } => write!(f, "{rate} frames/s"),
+        }
+    }
+}
 
 /// One of the engine's methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,15 +17,16 @@ mod polyline;
 mod record;
 mod runner;
 mod surroundings;
+mod view;
 
 use std::fmt;
 use std::sync::Arc;
 
 pub use explain::{Advance, Effect, Explanation, ModePlan};
+pub use method::Way;
 pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
-use super::accuracy::Way;
 use super::source::Source;
 use super::{Contact, Floor, Law, Scene, SceneError, Shape, Stepper};
 use method::Method;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use saltus::{Automaton, EndingOf, JumpOf, Observer, Piece};
 
 use super::record::{Apex, Cost, End, Moment, Record, Tops};
-use super::runner::{SceneView, impact, moment, segment};
+use super::view::{SceneView, impact, moment, segment};
 
 /// What came of a run: what a table of many runs wants to know of each.
 ///
