@@ -68,9 +68,10 @@ impl Evidence {
     /// Sorts the readings of a table into heights and moments, and mends the contacts if that is
     /// wanted; `sigma_time` is the error stated for times, if any.
     pub(crate) fn of(table: &Table, sigma_time: Option<f64>, repair: bool) -> Self {
-        let mut evidence = Self::default();
+        let mut evidence = Self { trials: Vec::with_capacity(table.trials().len()), ..Self::default() };
         for (trial, source) in table.trials().iter().enumerate() {
-            let mut found = TrialEvidence { trial, ..TrialEvidence::default() };
+            let heights = Vec::with_capacity(source.readings().iter().filter(|r| r.height.is_some()).count());
+            let mut found = TrialEvidence { trial, heights, ..TrialEvidence::default() };
             for r in source.readings() {
                 match r.event {
                     Event::Release => {

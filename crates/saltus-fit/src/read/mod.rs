@@ -260,6 +260,7 @@ impl Table {
     /// Once all trials are together: what must not be counted is taken out, what was read is said.
     fn checked(mut self) -> Self {
         let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        self.trials.iter_mut().for_each(|trial| trial.readings.shrink_to_fit());
         self.notes.insert(0, format!("{}, {}", plural(self.rows, "row"), plural(self.trials.len(), "trial")));
         check::table(&mut self);
         self

@@ -9,6 +9,10 @@ use crate::solve::fits::Fits;
 use crate::solve::joint::Joint;
 use crate::solve::kind::Kind;
 
+/// So many readings are listed beside their motions, those of the first trials: no picture shows
+/// more.
+const LISTED: usize = 100_000;
+
 /// The free-flight motion that was fitted to a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -89,12 +93,22 @@ fn geometric(first: f64, ratio: f64, count: usize) -> Vec<f64> {
     std::iter::successors(Some(first), |d| Some(d * ratio)).take(count).collect()
 }
 
+/// How many trials there are up to [`LISTED`] readings; one at least.
+fn listed(evidence: &Evidence) -> usize {
+    let mut read = 0;
+    let fits = |trial: &&TrialEvidence| {
+        read += trial.heights.len() + trial.moments.len();
+        read <= LISTED
+    };
+    evidence.trials.iter().take_while(fits).count().max(1)
+}
+
 /// The motion of each trial that the joint fit describes.
 fn of_joint(joint: &Joint, evidence: &Evidence) -> Vec<Motion> {
-    let g = joint.model.gravity;
+    let (g, most) = (joint.model.gravity, listed(evidence));
     let e = joint.fitted.shared[0];
     let one = |(block, &place): (usize, &usize)| {
-        let trial = evidence.trials.get(place)?;
+        let trial = evidence.trials.get(place).filter(|_| place < most)?;
         let (speed, clock) = joint.model.first_contact(block, &joint.fitted.shared, &joint.fitted.own[block]);
         let release = trial.release_height.map(|_| speed * speed / (2.0 * g));
         let durations = geometric(2.0 * speed * e / g, e, contacts(trial) - 1);
@@ -113,7 +127,7 @@ fn of_times(kind: &Kind<Contacts>, evidence: &Evidence, gravity: f64) -> Vec<Mot
             Motion::of(trial.trial, [gravity, e], release, own[0], &durations)
         })
     };
-    evidence.trials.iter().zip(&kind.fitted.own).filter_map(one).collect()
+    evidence.trials.iter().zip(&kind.fitted.own).take(listed(evidence)).filter_map(one).collect()
 }
 
 /// The motion of each trial from the fit of its heights, the clock starting at the release.
@@ -127,11 +141,11 @@ fn of_heights(kind: &Kind<Heights>, evidence: &Evidence, gravity: f64) -> Vec<Mo
             Motion::of(trial.trial, [gravity, e], Some(height), fall, &durations)
         })
     };
-    evidence.trials.iter().zip(&kind.fitted.own).filter_map(one).collect()
+    evidence.trials.iter().zip(&kind.fitted.own).take(listed(evidence)).filter_map(one).collect()
 }
 
-/// The motion of each trial, by the fit that the report rests on; and whether the height of release
-/// is one of the readings fitted.
+/// The motion of each trial that is listed, by the fit that the report rests on; and whether the
+/// height of release is one of the readings fitted.
 pub(super) fn of_fits(fits: &Fits<'_>) -> (Vec<Motion>, bool) {
     let gravity = fits.gravity.value;
     match (&fits.joint, &fits.times, &fits.heights) {

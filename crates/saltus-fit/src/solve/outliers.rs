@@ -29,17 +29,18 @@ pub(crate) fn without<M: OneKind>(
     drop: impl Fn(&mut Evidence, &[(usize, usize)]),
 ) -> Result<Evidence, FitError> {
     let (sigma, stated) = (known.map_or(M::ASSUMED, |s| s.value), known.is_some());
-    let mut left = evidence.clone();
+    let (mut left, mut all) = (evidence, None);
     let mut dropped = 0;
     for _ in 0..ROUNDS {
-        let (wrong, count) = find::<M>(&left, &evidence, (sigma, stated))?;
+        let (wrong, count) = find::<M>(&left, all.as_ref().unwrap_or(&left), (sigma, stated))?;
         if wrong.is_empty() {
             break;
         }
         dropped += wrong.len();
         if dropped as f64 > MOST * (count + dropped - wrong.len()) as f64 {
-            return Ok(evidence);
+            return Ok(all.unwrap_or(left));
         }
+        all.get_or_insert_with(|| left.clone());
         drop(&mut left, &wrong);
     }
     Ok(left)

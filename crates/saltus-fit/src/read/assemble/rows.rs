@@ -84,7 +84,8 @@ impl Builder<'_> {
         }
         let mut balls = group.iter().filter_map(|name| Ball::named(name));
         let ball = balls.next().filter(|_| balls.next().is_none());
-        let mut readings = Vec::new();
+        // A drop and its rebound, of which a table may hold millions.
+        let mut readings = Vec::with_capacity(2);
         if let Some((index, (height, sigma))) = track
             .release
             .map(|n| Ok((n, self.height(self.spanning(row.at, n), n)?)))
