@@ -44,6 +44,7 @@ pub struct Fit {
     ball: Option<f64>,
     drag: Option<f64>,
     sigma_zero: Option<f64>,
+    sigma_scale: Option<f64>,
     model: Option<CorModel>,
     /// The ball that the table names.
     named: Option<Ball>,
@@ -128,6 +129,25 @@ impl Fit {
     #[must_use]
     pub fn sigma_zero(mut self, metres: f64) -> Self {
         self.sigma_zero = Some(metres);
+        self
+    }
+
+    /// By which part lengths may be wrong (a standard error): 0 where the rule, or the scale of the
+    /// picture, was checked in the plane of the ball. It matters only where heights meet times.
+    /// Without it, lengths may be wrong by a tenth, as far as the chi-square of the readings allows
+    /// that.
+    ///
+    /// ```
+    /// use saltus_fit::{Fit, ReadOptions, Table};
+    /// let text = "event,time_s,height_m\nrelease,0,1\ncontact,0.45,\napex,,0.64\ncontact,1.17,\napex,,0.41\n";
+    /// let table = Table::parse("drop.csv", text.as_bytes(), &ReadOptions::default())?;
+    /// let length = |fit: Fit| fit.run(&table).unwrap().cor().map(|cor| cor.high - cor.low).unwrap();
+    /// assert!(length(Fit::new().sigma_scale(0.0)) < length(Fit::new()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn sigma_scale(mut self, part: f64) -> Self {
+        self.sigma_scale = Some(part);
         self
     }
 
@@ -310,7 +330,13 @@ impl Fit {
 
     /// What is stated of what the readings cannot show.
     fn stated(&self) -> Stated {
-        Stated { ball: self.ball, sigma_zero: self.sigma_zero, drag: self.drag, named: self.named }
+        Stated {
+            ball: self.ball,
+            sigma_zero: self.sigma_zero,
+            sigma_scale: self.sigma_scale,
+            drag: self.drag,
+            named: self.named,
+        }
     }
 
     /// What the caller wants of the comparison with other models.
@@ -368,7 +394,12 @@ impl Fit {
             }
         }
         // None at all is as good as any.
-        for (name, value) in [("drag", self.drag), ("the error of the zero", self.sigma_zero)] {
+        let none_or_more = [
+            ("drag", self.drag),
+            ("the error of the zero", self.sigma_zero),
+            ("the error of the scale", self.sigma_scale),
+        ];
+        for (name, value) in none_or_more {
             if let Some(value) = value.filter(|v| !v.is_finite() || *v < 0.0) {
                 return Err(FitError::Option { name, value });
             }

@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use saltus_fit::{Ball, Cor, Fit, ReadOptions, Table, Verdict};
+use saltus_fit::{Ball, Cor, Fit, ReadOptions, Table, Verdict, Widening};
 
 const G: f64 = 9.81;
 /// A tennis ball, read anywhere on it.
@@ -124,4 +124,35 @@ fn a_ball_that_the_table_names_is_that_ball() {
     let both = Fit::new().run(&read(&both)).unwrap();
     let says = |n: usize| both.groups()[n].report.to_string().contains("names the ball");
     assert!(both.groups().len() == 2 && says(0) && !says(1), "{both}");
+}
+
+/// A drop as a table of heights and contact times, the heights larger by a factor.
+fn both(e: f64, factor: f64) -> Table {
+    let heights = apexes(e, 0.0, 4);
+    let mut time = (2.0 * heights[0] / G).sqrt();
+    let mut text = format!("event,time_s,height_m\nrelease,0,{}\n", factor * heights[0]);
+    for height in &heights[1..] {
+        text += &format!("contact,{time},\napex,,{}\n", factor * height);
+        time += 2.0 * (2.0 * height / G).sqrt();
+    }
+    Table::parse("both.csv", text.as_bytes(), &ReadOptions::default()).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Lengths wrong by up to a tenth, beside times that are right, do not lead out of the
+    /// interval; and no more than a tenth is allowed for.
+    #[test]
+    fn lengths_may_be_wrong_by_a_tenth(e in 0.5f64..0.9, factor in 0.91f64..1.09) {
+        let fit = Fit::new().sigma_height(0.05).sigma_time(0.05).sigma_zero(0.0).drag(0.0);
+        let report = fit.run(&both(e, factor)).unwrap();
+        let found = *report.cor().unwrap();
+        prop_assert!(found.low <= e && e <= found.high, "{e}: {found:?}");
+        let parts = report.widened().iter().filter_map(|w| if let Widening::Scale { part, .. } = w { Some(*part) } else { None });
+        let parts: Vec<f64> = parts.collect();
+        prop_assert!(parts.iter().all(|part| (0.05..=0.1).contains(part)) && !parts.is_empty(), "{parts:?}");
+        let stated = *fit.sigma_scale(0.0).run(&both(e, factor)).unwrap().cor().unwrap();
+        prop_assert!(stated.high - stated.low < found.high - found.low, "{stated:?} {found:?}");
+    }
 }

@@ -97,6 +97,10 @@ pub(crate) struct Fit {
     /// read anywhere on it.
     #[arg(long, value_name = "LENGTH", value_parser = at_least_zero(Quantity::Length, "mm"))]
     pub(crate) sigma_zero: Option<f64>,
+    /// By which part lengths may be wrong, such as `1%` (a standard error), or 0 where the rule was
+    /// checked; used only where heights meet times.
+    #[arg(long, value_name = "PART", value_parser = part)]
+    pub(crate) sigma_scale: Option<f64>,
     /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where
     /// every column names another, this one holds, with a warning.
     #[arg(long, value_name = "UNIT", value_parser = height_unit)]
@@ -237,6 +241,15 @@ fn drag(text: &str) -> Result<f64, String> {
         _ => {
             Err(format!("'{text}' is no drag coefficient: write a number in 1/m, such as 0.016 of a squash ball, or 0"))
         }
+    }
+}
+
+/// A part of one, as a number or in percent.
+fn part(text: &str) -> Result<f64, String> {
+    let (number, of) = text.trim().strip_suffix('%').map_or((text.trim(), 1.0), |number| (number.trim_end(), 100.0));
+    match number.parse::<f64>() {
+        Ok(value) if (0.0..of).contains(&value) => Ok(value / of),
+        _ => Err(format!("'{text}' is no part of one: write 0.01, 1% or 0")),
     }
 }
 

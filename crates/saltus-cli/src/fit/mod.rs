@@ -222,5 +222,8 @@ fn fit(args: &args::Fit) -> Fit {
     if let Some(sigma) = args.sigma_zero {
         fit = fit.sigma_zero(sigma);
     }
+    if let Some(part) = args.sigma_scale {
+        fit = fit.sigma_scale(part);
+    }
     fit
 }

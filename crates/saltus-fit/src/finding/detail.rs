@@ -238,6 +238,13 @@ pub enum Widening {
         /// By how much the COR may be off.
         share: f64,
     },
+    /// The scale of lengths, which ties heights to times.
+    Scale {
+        /// By which part lengths may be wrong at most.
+        part: f64,
+        /// By how much the COR may be off.
+        share: f64,
+    },
     /// The height of release, which was taken as set.
     Release {
         /// Its standard error, m.

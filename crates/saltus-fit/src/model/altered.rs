@@ -45,6 +45,16 @@ pub(crate) fn raised(evidence: &Evidence, by: f64) -> Evidence {
     altered
 }
 
+/// With all lengths read larger by this factor.
+pub(crate) fn rescaled(evidence: &Evidence, factor: f64) -> Evidence {
+    let mut altered = evidence.clone();
+    for trial in &mut altered.trials {
+        trial.heights.iter_mut().for_each(|h| h.1 *= factor);
+        trial.release_height.iter_mut().for_each(|h| h.0 *= factor);
+    }
+    altered
+}
+
 /// With one rebound missing before that of this number in every trial: the later ones count one
 /// more.
 pub(crate) fn missed(evidence: &Evidence, before: usize) -> Evidence {

@@ -13,7 +13,7 @@ mod places;
 mod problem;
 mod trajectory;
 
-pub(crate) use altered::{lowered_at_most, missed, raised, released_higher, telling, without_air};
+pub(crate) use altered::{lowered_at_most, missed, raised, released_higher, rescaled, telling, without_air};
 pub(crate) use contacts::Contacts;
 pub(crate) use drag::Air;
 pub(crate) use dual::Dual;

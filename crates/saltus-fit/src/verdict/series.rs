@@ -46,6 +46,7 @@ pub(crate) fn judge(
         impact_time(judgement, pooled, (other, tracks, *worse), contact);
     }
     single_impact(judgement, series, pooled);
+    any_ball(judgement, &series.tracks, pooled);
     varying(judgement, pooled);
     roughness(judgement, series);
     gravity_off(judgement, &series.tracks, (gravity.value, pixels));
@@ -152,6 +153,19 @@ fn single_impact(judgement: &mut Judgement, series: &Series, pooled: &Pooled) {
     let lower = series.tracks.iter().map(higher).fold(0.0, f64::max);
     if lower > 0.1 * pooled.cor.standard_error {
         judgement.reach(cor.low - lower, cor.high, Widening::SingleImpact { contact_s: LASTS, lower });
+    }
+}
+
+/// One impact does not show drag and COR both: the interval reaches out to the COR with the most
+/// drag that all samples allow.
+fn any_ball(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
+    let light: Option<Vec<(f64, f64)>> = tracks.iter().map(|track| track.unseen?.light).collect();
+    let Some((most_per_m, share)) = light.and_then(|all| all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))) else {
+        return;
+    };
+    let high = pooled.cor.value + share + pooled.quantile * pooled.cor.standard_error;
+    if let Some(cor) = judgement.cor.filter(|cor| high > cor.high) {
+        judgement.reach(cor.low, high, Widening::Air { most_per_m, share, ball: None });
     }
 }
 

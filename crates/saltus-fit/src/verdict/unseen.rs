@@ -10,7 +10,9 @@ use crate::error::FitError;
 use crate::evidence::follow::BOUNCES;
 use crate::evidence::{Evidence, TrialEvidence, has};
 use crate::finding::{Finding, FindingKind, Severity, Widening};
-use crate::model::{LIGHT_DRAG, ORDINARY_DRAG, lowered_at_most, missed, raised, released_higher, telling, without_air};
+use crate::model::{
+    LIGHT_DRAG, ORDINARY_DRAG, lowered_at_most, missed, raised, released_higher, rescaled, telling, without_air,
+};
 use crate::quantity::{Ball, Readings, Source};
 use crate::read::Table;
 use crate::solve::fits::{Fits, Known};
@@ -19,6 +21,10 @@ use crate::statistics::{CLEAR, NORMAL, REPLICATED, student};
 /// The ball whose size is not stated, m: a tennis ball, the largest that is read beside a rule
 /// without naming where on it.
 const USUAL_BALL: f64 = 0.067;
+
+/// Lengths that nobody checked are wrong by this part at most: a ball that moves 20 cm before its
+/// rule is seen from 2 m a tenth too high.
+const SCALE: f64 = 0.1;
 
 /// The COR without the air is found when it moves by less than this, a thousandth of the best error
 /// there is.
@@ -38,6 +44,8 @@ pub(crate) struct Stated {
     pub(crate) ball: Option<f64>,
     /// The standard error of the zero of the height scale, m.
     pub(crate) sigma_zero: Option<f64>,
+    /// The standard error of lengths, as a part of them.
+    pub(crate) sigma_scale: Option<f64>,
     /// Drag, 1/m: the readings come without the air where it is stated.
     pub(crate) drag: Option<f64>,
     /// The ball that the table names: its air is allowed for, and no other's.
@@ -101,6 +109,11 @@ pub(crate) fn air_shows(table: &Table, evidence: &Evidence, (known, drag): (&Kno
     Ok(still.zip(moving).is_some_and(better))
 }
 
+/// How far shifts reach down and up.
+fn range([a, b]: [f64; 2]) -> [f64; 2] {
+    [-a.min(b).min(0.0), a.max(b).max(0.0)]
+}
+
 /// Widens the interval by what the readings cannot show.
 pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated): (&Known, Stated)) {
     let Some(cor) = judgement.cor.filter(|cor| cor.standard_error.is_some()) else { return };
@@ -116,10 +129,14 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
     if zero_m > 0.0 {
         // Low heights bend the COR over the zero: both ends are fitted.
         let by = zero(fits, known, zero_m);
-        let ends = by.map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0));
-        let zero_m = by[1].max(-by[0]);
-        let (low, high) = (-ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
-        shares.push(([low, high], Widening::Zero { zero_m, share: low.max(high) }));
+        let share = range(by.map(|by| shift(&raised(fits.evidence, by)).unwrap_or(0.0)));
+        shares.push((share, Widening::Zero { zero_m: by[1].max(-by[0]), share: share[0].max(share[1]) }));
+    }
+    let part = stated.sigma_scale.map_or(SCALE, |sigma| NORMAL * sigma);
+    if fits.joint.is_some() && part > 0.0 {
+        let by = scale(fits, known, part);
+        let share = range(by.map(|by| shift(&rescaled(fits.evidence, 1.0 + by)).unwrap_or(0.0)));
+        shares.push((share, Widening::Scale { part: by[1].max(-by[0]), share: share[0].max(share[1]) }));
     }
     let sigma_m = fits.sigma_height.value;
     if let (Some(_), Some(shift)) = (&fits.joint, shift(&released_higher(fits.evidence, sigma_m))) {
@@ -235,6 +252,20 @@ fn zero(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
     match (first, seen.windows(2).find(|pair| pair[0].0 <= 0.0 && pair[1].0 >= 0.0)) {
         (None, Some(pair)) => [edge(0.0, pair[0].0), edge(0.0, pair[1].0)],
         _ => [down.min(0.0), up.max(0.0)],
+    }
+}
+
+/// By which part lengths may be smaller and larger than they were read, down and up: by `most`, or
+/// by less where the chi-square, a parabola over the scale, rules it out.
+fn scale(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
+    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let at = |by: f64| misfit(&Fits::of(fits.table, &rescaled(fits.evidence, 1.0 + by), &same, false).ok()?);
+    match (at(0.0), at(-most), at(most)) {
+        (Some(still), Some(small), Some(large)) => {
+            let above = |found: (f64, usize)| (found.0 - still.0) / unit(fits, still);
+            allowed([(-most, above(small)), (most, above(large))])
+        }
+        _ => [-most, most],
     }
 }
 

@@ -157,7 +157,11 @@ impl Ruler {
 
     /// What is known beside the table: nothing, or all of it.
     fn stated(&self, fault: Fault, fit: Fit) -> Fit {
-        if fault == Fault::Stated { fit.sigma_height(self.sigma).sigma_zero(0.0).drag(0.0) } else { fit }
+        if fault == Fault::Stated {
+            fit.sigma_height(self.sigma).sigma_zero(0.0).sigma_scale(0.0).drag(0.0)
+        } else {
+            fit
+        }
     }
 }
 

@@ -88,6 +88,11 @@ pub(super) fn widening(widening: &Widening) -> String {
              state what is left (--sigma-zero)",
             length(*zero_m)
         ),
+        Widening::Scale { part, share } => format!(
+            "lengths that are wrong by up to {:.1} % (a ball that moves before its rule, not beside it) may move the COR by {share:.3} where \
+             heights meet times: hold the rule where the ball falls, and state what is left (--sigma-scale)",
+            100.0 * part
+        ),
         Widening::Release { sigma_m, share } => format!(
             "the height of release is known to {} only, which may move the COR by {share:.3}: its own row may state its error",
             length(*sigma_m)

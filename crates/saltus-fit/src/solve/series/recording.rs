@@ -61,6 +61,9 @@ pub(crate) struct Unseen {
     pub(crate) shift: Measured,
     pub(crate) air: Measured,
     pub(crate) lens: Measured,
+    /// Of one impact, which does not show drag and COR both: the most drag that the samples allow,
+    /// up to that of the lightest ball, 1/m, and by how much the COR is higher with it.
+    pub(crate) light: Option<(f64, f64)>,
 }
 
 /// Gravity within this part of the expected means metres and seconds.

@@ -2,9 +2,10 @@
 //! misfit may hide.
 
 use super::{Candidates, Found};
-use crate::model::{BEND, Dual, GRAVITY, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
+use crate::model::{BEND, Dual, GRAVITY, LIGHT_DRAG, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
 use crate::quantity::Measured;
 use crate::solve::series::recording::Unseen;
+use crate::statistics::NORMAL;
 
 /// The likelihood over drag and bend is summed at so many values of each: the integrand is a
 /// parabola's exponential over a few of its widths.
@@ -21,6 +22,15 @@ fn middle(n: u32) -> f64 {
 /// path goes from 0 to 1.
 fn straight(height: f64, bend: f64) -> f64 {
     height - 0.5 * bend * (2.0 * height - 1.0).powi(3)
+}
+
+/// The most of something that is allowed where the loss over it is a x² + b x: until it is the
+/// square of [`NORMAL`] above its least from nothing on.
+fn most_allowed(a: f64, b: f64) -> f64 {
+    let best = (-0.5 * b / a).max(0.0);
+    let limit = (a * best + b) * best + NORMAL * NORMAL;
+    let most = 0.5 * ((b * b + 4.0 * a * limit).sqrt() - b) / a;
+    if a > 0.0 { most } else { f64::INFINITY }
 }
 
 impl Candidates {
@@ -73,6 +83,15 @@ impl Candidates {
         let (slope, tilt) = (full.1 - curve, 0.5 * (out.1 - back.1));
         let cross = both.1 - full.1 - out.1;
         let shifts = (full.0, 0.5 * (out.0 - back.0));
+        let light = if free || self.impacts() > 1 {
+            None
+        } else {
+            // What the lens may hide is the least of the loss over the bend.
+            let hidden = 0.25 / (1.0 + bent);
+            let part = most_allowed(curve - hidden * cross * cross, slope - 2.0 * hidden * tilt * cross)
+                .clamp(1.0, LIGHT_DRAG / ORDINARY_DRAG);
+            Some((part * ORDINARY_DRAG, with(part, 0.0)?.0))
+        };
         let points = (0..POINTS).flat_map(|n| (0..POINTS).map(move |m| (middle(n), BENDS * (2.0 * middle(m) - 1.0))));
         let weighed: Vec<(f64, f64, f64)> = points
             .map(|(k, b)| {
@@ -93,6 +112,7 @@ impl Candidates {
             shift: moments(|air, lens| air + lens),
             air: moments(|air, _| air),
             lens: moments(|_, lens| lens),
+            light,
         };
         (unseen.shift.value.is_finite() && unseen.shift.standard_error.is_finite()).then_some(unseen)
     }
