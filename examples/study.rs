@@ -15,7 +15,7 @@ use saltus_examples::study::stages::{Curve, Start, mark, measured};
 use saltus_examples::study::trials::{Plan, Trial, mean, of_mean_heights};
 use saltus_examples::study::{CONTACTS, DROP, EARLY, GRAVITY, MODELLED, RADIUS, REBOUNDS, keys, report};
 use saltus_fit::{Report, Verdict};
-use saltus_motion::{Export, Format, Frames, Rate, Shape, Snap, Space};
+use saltus_motion::{Export, Format, Frames, Rate, Snap};
 use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
 
 type Done = Result<(), Box<dyn Error>>;
@@ -376,10 +376,7 @@ fn keyframes() -> Done {
     let numbers: Vec<f64> = whole.iter().map(|key| frames.number(key.t)).collect();
     assert_eq!(numbers, [0.0, 14.0, 29.0, 38.0, 43.0, 46.0, 48.0, 50.0]);
     check(whole[0].place[2], 1.067, 1e-3);
-    let export = |motion, format| {
-        Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }
-            .file(format)
-    };
+    let export = |motion, format| Export::new(motion, frames).file(format);
     let (script, baked) = (export(&motion, Format::Maya)?, export(&motion, Format::CsvFrames)?);
     println!(
         "  {} keys are within {:.0e} m of the motion, {} frames within {:.1} mm; on whole frames the drop is from {:.1} cm",

@@ -2,7 +2,9 @@
 """Exports scenes in every format, reads the files by the programs they are for, and compares heights with the simulation.
 
     cargo build --release --bin saltus
-    python3 tests/readers/check.py [target/release/saltus] [--blender]
+    python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix]
+
+With --matrix every example scene at several frame rates, with and without squash, and a table for docs/motion.md at the end.
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed
 under target/readers: Pixar's USD, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender as a module (300 MB; its
@@ -29,23 +31,23 @@ SQUASH = """gravity = "9.8 m/s^2"
 restitution = 0.55
 ball = { radius = "2 cm", height = "1 m", name = "squash ball" }
 """
-SCENES = {
-    "drop": SQUASH,
-    "topspin": (ROOT / "examples/scenes/topspin.toml").read_text(),
-    "slow contact": (ROOT / "examples/scenes/slow-contact.toml").read_text(),
-}
-# Scene, options, unit and axis, and whether heights are those of the simulation at the same times.
+SCENES = {path.stem: path.read_text() for path in sorted((ROOT / "examples/scenes").glob("*.toml"))} | {"drop": SQUASH}
+# Scene, options, unit and axis.
 CASES = [
-    ("drop", [], [], True),
-    ("drop", ["--fps", "29.97", "--first-frame", "1"], [], True),
-    ("drop", ["--snap", "gravity", "--squash", "0.3", "--stretch", "0.1"], [], False),
-    ("drop", ["--loop", "--squash", "0.3"], [], False),
-    ("topspin", [], [], True),
-    ("topspin", [], ["--units", "cm", "--up", "z"], True),
-    ("topspin", [], ["--units", "in"], True),
-    ("slow contact", ["--squash", "law", "--stretch", "0.2"], [], False),
-    ("slow contact", ["--squash", "law", "--stretch", "0.2"], ["--units", "mm", "--up", "z"], False),
+    ("drop", [], []),
+    ("drop", ["--fps", "29.97", "--first-frame", "1"], []),
+    ("drop", ["--snap", "gravity", "--squash", "0.3", "--stretch", "0.1"], []),
+    ("drop", ["--loop", "--squash", "0.3"], []),
+    ("drop", ["--apexes"], []),
+    ("topspin", [], []),
+    ("topspin", [], ["--units", "cm", "--up", "z"]),
+    ("topspin", [], ["--units", "in"]),
+    ("slow-contact", ["--squash", "law", "--stretch", "0.2"], []),
+    ("slow-contact", ["--squash", "law", "--stretch", "0.2"], ["--units", "mm", "--up", "z"]),
 ]
+RATES = ["24", "29.97", "60"]
+SHAPED = ["--squash", "0.3", "--stretch", "0.1"]
+MATRIX = [(name, ["--fps", rate, *shape], []) for name in SCENES for rate in RATES for shape in ([], SHAPED)]
 # What can be in another unit, with z upwards.
 SPACES = {"usd", "usd-splines", "usdz", "blender"}
 # How exact a reader may be, beside what the export promises: single precision in Blender, glTF and on screens.
@@ -126,16 +128,17 @@ def readers(python, node, blender, folder):
     return known
 
 
+def length(line, words):
+    """A length in m that a closing line says behind some words."""
+    found = re.search(words + r" (\S+) (mm|cm|m)\b", line)
+    return float(found.group(1)) * LENGTHS[found.group(2)] if found else 0.0
+
+
 def promised(line):
-    """What an export says of itself: the worst height error in m, and the worst change of volume."""
-    number, unit = re.search(r"worst height error: (\S+) (mm|cm|m)\b", line).groups()
+    """What an export says of itself: the worst height error, how far the outline is moved, how deep the ball is in the ground, in m; the worst change of volume."""
     volume = re.search(r"volume kept within (\S+) %", line)
-    return float(number) * LENGTHS[unit], float(volume.group(1)) / 100 if volume else 0.0
-
-
-def radius(scene):
-    number, unit = re.search(r'radius = "(\S+) (\w+)"', scene).groups()
-    return float(number) * LENGTHS[unit]
+    words = ["worst height error:", "outline moved by up to", "in what it touches by up to"]
+    return [length(line, each) for each in words] + [float(volume.group(1)) / 100 if volume else 0.0]
 
 
 def closed(t):
@@ -143,55 +146,108 @@ def closed(t):
     height, speed, g, e = 1.0, 0.0, 9.8, 0.55
     while True:
         span = (speed + (speed * speed + 2 * g * height) ** 0.5) / g
+        if span < 1e-9:
+            return 0.0
         if t <= span:
             return height + speed * t - 0.5 * g * t * t
         t, height, speed = t - span, 0.0, e * (g * span - speed)
 
 
+def between(keys, t):
+    """The height at a time by cubics with places and velocities at both ends."""
+    n = max(1, sum(key["t"] <= t for key in keys[:-1]))
+    if n >= len(keys):
+        return keys[-1]["place"][2]
+    a, b = keys[n - 1], keys[n]
+    h = b["t"] - a["t"]
+    u = min(max((t - a["t"]) / h, 0.0), 1.0)
+    p, q, v, w = a["place"][2], b["place"][2], h * a["leave"][2], h * b["enter"][2]
+    return p * (1 + 2 * u) * (1 - u) ** 2 + v * u * (1 - u) ** 2 + q * u * u * (3 - 2 * u) - w * u * u * (1 - u)
+
+
+def truth(saltus, path, options, balls, name):
+    """The heights of the balls at times: those of the simulation, or, where contacts are moved or held, those of the motion as shown."""
+    end = max(ball["keys"][-1]["t"] for ball in balls)
+    if set(options) & {"--snap", "--squash", "--loop"}:
+        times = [k / 97 for k in range(int(end * 97) + 1)]
+        return {t: [between(ball["keys"], t) for ball in balls] for t in times}
+    samples = json.loads(run(saltus, "-q", "simulate", path, "--fps", "97", "--format", "json").stdout)["samples"]
+    heights = {}
+    for sample in samples:
+        if sample["t"] <= end:
+            heights.setdefault(sample["t"], [0.0] * len(balls))[sample.get("ball", 0)] = sample["height"]
+    if name == "drop":
+        worst = max(abs(closed(t) - low[0]) for t, low in heights.items())
+        assert worst < 1e-12, "the simulation is %g m off its formula" % worst
+    return heights
+
+
+def measure(found, truths, balls, start, flat):
+    """For an animation how far heights are off, in m, how far below the height 0, and how far volumes are from 1."""
+    off = below = volume = 0.0
+    for rows, heights in zip(found, truths):
+        assert len(rows) == len(balls), "%d balls instead of %d" % (len(rows), len(balls))
+        for (low, size), height, ball in zip(rows, heights, balls):
+            low = start + ball["radius"] * low if flat else low
+            off, below = max(off, abs(low - height)), max(below, -low)
+            volume = max(volume, abs(size - 1) if size is not None else 0.0)
+    return off, below, volume
+
+
+SUFFIXES = {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json", "dotlottie": "lottie"}
+
+
+def case(saltus, folder, known, name, options, space):
+    """A scene in every format: kind, animation, what is measured, what is said, issues."""
+    path = folder / "scene.toml"
+    path.write_text(SCENES[name])
+    # As exact as its keys can be: what the files are compared with.
+    shown = json.loads(run(saltus, "-q", "export", path, *options, "--tolerance", "1e-6m", "--to", "json").stdout)
+    balls, start = shown["balls"], shown["ground"][0][0][1]
+    level = all(up == 0 for line in shown["ground"] for _, up in line)
+    heights = truth(saltus, path, options, balls, name)
+    for kind, read in sorted(known.items()):
+        if space and kind not in SPACES:
+            continue
+        file = folder / ("ball." + SUFFIXES.get(kind, kind))
+        said = promised(run(saltus, "export", path, *options, *space, "--to", kind, "--force", "-o", file).stderr)
+        found = read(file, list(heights))
+        for animation, rows in found["animations"].items():
+            off, below, volume = measure(rows, heights.values(), balls, start, kind in ("svg", "lottie", "dotlottie"))
+            height, moved, sunk, kept = said
+            bad = off > height * 1.02 + moved + READER or volume > 1.05 * kept + 1e-4 or found["errors"]
+            bad = bad or (level and below > height + sunk + READER)
+            yield kind, animation, (off, below if level else 0.0, volume), said, bad, found["issues"]
+
+
 def main():
-    blender = "--blender" in sys.argv
+    flags = [argument for argument in sys.argv[1:] if argument.startswith("--")]
     named = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
     saltus = Path(named[0] if named else ROOT / "target/release/saltus").resolve()
-    python, node = install(blender)
-    wrong = 0
+    python, node = install("--blender" in flags)
+    wrong, table = 0, {}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        known = readers(python, node, blender, folder)
+        known = readers(python, node, "--blender" in flags, folder)
         for name in {"glb", "svg", "lottie", "dotlottie", "blender"} - known.keys():
             print("left out, for its reader is not here: %s" % name)
-        for scene, options, space, same in CASES:
-            path = folder / "scene.toml"
-            path.write_text(SCENES[scene])
-            samples = json.loads(run(saltus, "-q", "simulate", path, "--fps", "97", "--format", "json").stdout)["samples"]
-            keys = json.loads(run(saltus, "-q", "export", path, *options, "--to", "json").stdout)["balls"][0]["keys"]
-            end = max(key["t"] for key in keys if key["contact"] or key is keys[-1])
-            rest = [key["t"] for key in keys if key["contact"]][-1]
-            truth = {s["t"]: s["height"] for s in samples if s["t"] <= (rest if same else end)}
-            if scene == "drop" and same:
-                worst = max(abs(closed(t) - height) for t, height in truth.items())
-                assert worst < 1e-12, "the simulation is %g m off its formula" % worst
-            times = sorted(truth)
-            for kind, read in sorted(known.items()):
-                if space and kind not in SPACES:
-                    continue
-                file = folder / ("ball." + {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json", "dotlottie": "lottie"}.get(kind, kind))
-                said = run(saltus, "export", path, *options, *space, "--to", kind, "--force", "-o", file).stderr
-                height, volume = promised(said)
-                found = read(file, times)
-                for animation, rows in found["animations"].items():
-                    scale = radius(SCENES[scene]) if kind in ("svg", "lottie", "dotlottie") else 1.0
-                    lows = [scale * row[0] for row in rows]
-                    off = max(abs(low - truth[t]) for low, t in zip(lows, times)) if same else None
-                    below = max(0.0, -min(lows))
-                    volumes = [abs(row[1] - 1) for row in rows if row[1] is not None]
-                    bad = below > READER + (0 if same else 1e-4) or (off or 0) > height * 1.02 + READER or found["errors"]
-                    bad = bad or max(volumes, default=0.0) > 1.05 * volume + 1e-4
-                    wrong += bool(bad)
-                    print("%-5s %-12s %-44s %-12s %-20s height %-9s below 0 by %.1e m, volume %s" % (
-                        "WRONG" if bad else "ok", scene, " ".join(options + space), kind, animation,
-                        "-" if off is None else "%.1e" % off, below, "%.2f %%" % (100 * max(volumes)) if volumes else "-"))
-                for issue in found["issues"]:
+        for name, options, space in MATRIX if "--matrix" in flags else CASES:
+            for kind, animation, measured, said, bad, issues in case(saltus, folder, known, name, options, space):
+                wrong += bool(bad)
+                print("%-5s %-16s %-44s %-11s %-20s off %.2e of %.2e + %.2e, below 0 by %.1e of %.1e, volume %.2f %% of %.2f %%" % (
+                    "WRONG" if bad else "ok", name, " ".join(options + space), kind, animation,
+                    measured[0], said[0], said[1], measured[1], said[2], 100 * measured[2], 100 * said[3]), flush=True)
+                for issue in issues:
                     print("      %s: %s" % (kind, issue))
+                round_, row = "--squash" not in options, table.setdefault(kind, {})
+                if round_ or measured[2] >= row.get(False, (0.0, 0.0, 0))[0]:
+                    pair = (measured[0], said[0]) if round_ else (measured[2], said[3])
+                    row[round_] = max(row.get(round_, (0.0, 0.0)), pair)
+                row["count"] = row.get("count", 0) + 1
+    print("\n| format | files | worst height error, read | the line says | worst change of volume, read | the line says |\n|---|---|---|---|---|---|")
+    for kind, row in sorted(table.items()):
+        (off, height), (volume, kept) = row.get(True, (0.0, 0.0)), row.get(False, (0.0, 0.0))
+        print("| `%s` | %d | %.3f mm | %.2f mm | %.3f %% | %.2f %% |" % (kind, row["count"], 1e3 * off, 1e3 * height, 100 * volume, 100 * kept))
     print("%d wrong" % wrong)
     return 1 if wrong else 0
 

@@ -1,4 +1,4 @@
-"""What Pixar's USD makes of a .usda or .usdz: the lowest point and the volume of the ball at given times, in metres."""
+"""What Pixar's USD makes of a .usda or .usdz: the lowest point and the volume of each ball at given times, in metres."""
 import json
 import math
 import sys
@@ -9,14 +9,17 @@ path, times = sys.argv[1], json.loads(sys.argv[2])
 stage = Usd.Stage.Open(path)
 up, metres = "XYZ".index(UsdGeom.GetStageUpAxis(stage)), UsdGeom.GetStageMetersPerUnit(stage)
 fps, first = stage.GetTimeCodesPerSecond(), stage.GetStartTimeCode()
-ball = next(prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Sphere))
-radius = UsdGeom.Sphere(ball).GetRadiusAttr().Get()
-rows = []
-for t in times:
+balls = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Sphere)]
+
+
+def shown(ball, t):
     world = UsdGeom.Xformable(ball).ComputeLocalToWorldTransform(Usd.TimeCode(first + t * fps))
     # Row vectors: a place is p M.
-    reach = radius * math.sqrt(sum(world[k][up] ** 2 for k in range(3)))
-    rows.append([metres * (world[3][up] - reach), world.GetDeterminant()])
+    reach = UsdGeom.Sphere(ball).GetRadiusAttr().Get() * math.sqrt(sum(world[k][up] ** 2 for k in range(3)))
+    return [metres * (world[3][up] - reach), world.GetDeterminant()]
+
+
+rows = [[shown(ball, t) for ball in balls] for t in times]
 registry = UsdValidation.ValidationRegistry()
 found = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators()).Validate(stage)
 issues = ["%s: %s" % (error.GetName(), error.GetMessage()) for error in found]

@@ -97,14 +97,23 @@ impl Curve {
 }
 
 impl Curve {
-    /// The same curve with keys at more times, where it has none nearer than `apart` in s: they
-    /// change nothing.
-    pub(crate) fn with(mut self, times: impl Iterator<Item = f64>, apart: f64) -> Self {
-        for t in times {
+    /// The same curve with a key at the top of every flight of the track: a drawing that stands is
+    /// of a whole frame, the nearest.
+    pub(crate) fn topped(mut self, track: &Track, frames: Frames) -> Self {
+        let frame = frames.rate.frame();
+        for stretch in track.stretches.iter().filter(|stretch| stretch.flight) {
+            let top = key(stretch, stretch.top().1);
+            let t = if self.between == Between::Hold { (top.t / frame).round() * frame } else { top.t };
             let next = self.keys.partition_point(|key| key.t <= t);
-            let far = |key: Option<&Key>| key.is_some_and(|key| (key.t - t).abs() >= apart);
-            if next > 0 && far(self.keys.get(next - 1)) && far(self.keys.get(next)) {
-                self.keys.insert(next, self.key(t));
+            let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
+            let near = near.filter_map(|n| self.keys.get(n).map(|key| (n, (key.t - t).abs())));
+            match near.filter(|(_, off)| *off < APART * frame).map(|(n, _)| n).next() {
+                // What is a contact as well stays where the ball touches.
+                Some(n) if self.between != Between::Cubic && !self.keys[n].contact => self.keys[n].place = top.place,
+                Some(_) => {}
+                None if next == 0 || next == self.keys.len() => {}
+                None if self.between == Between::Cubic => self.keys.insert(next, self.key(t)),
+                None => self.keys.insert(next, Key { t, ..top }),
             }
         }
         self

@@ -32,6 +32,9 @@ pub(crate) struct Dress {
     pub(crate) aim: Vec<Turn>,
     /// Empty for a ball that does not turn.
     pub(crate) spin: Vec<Turn>,
+    /// The same turning as an angle about y in rad, from up towards x, counted on over whole turns:
+    /// of a path of cubics, for a ball that turns about y alone.
+    pub(crate) about: Option<Curve>,
 }
 
 /// How a picture departs from the motion it shows, and how exact it is.
@@ -217,6 +220,23 @@ fn keyed(
     turns(keys)
 }
 
+/// The angle about y in rad by which a ball has turned, as few cubics: of one that turns about y
+/// alone. An angle is a motion on a line, and has keys as one.
+fn angle(track: &Track, frames: Frames) -> Option<Curve> {
+    let spins = || track.stretches.iter().flat_map(|stretch| &stretch.pieces).flat_map(|piece| &piece.spin);
+    if !spins().all(|&[x, _, up]| x == 0.0 && up == 0.0) {
+        return None;
+    }
+    let mut turned = track.clone();
+    let mut from = 0.0;
+    for piece in turned.stretches.iter_mut().flat_map(|stretch| &mut stretch.pieces) {
+        let integral = piece.spin.iter().zip(1_u32..).map(|([_, y, _], k)| [y / f64::from(k), 0.0, 0.0]);
+        piece.coefficients = std::iter::once([from, 0.0, 0.0]).chain(integral).collect();
+        from = piece.at(piece.span)[0];
+    }
+    Some(turned.keys(TURNED, frames))
+}
+
 impl Dress {
     /// The form and the orientation that go with a path; `None` where neither changes.
     pub(crate) fn of(track: &Track, form: Option<&Form>, path: &Curve, frames: Frames) -> Option<Self> {
@@ -256,7 +276,10 @@ impl Dress {
         if aim.iter().all(|turn| turn.angle == 0.0 && turn.quaternion[3].abs() == 1.0) {
             aim.clear();
         }
-        Some(Self { offset, scale, aim, spin })
+        // Where the form is aimed as well, the spin is what is left to turn.
+        let about = orientation.filter(|_| path.between == Between::Cubic && aim.is_empty());
+        let about = about.and_then(|_| angle(track, frames));
+        Some(Self { offset, scale, aim, spin, about })
     }
 
     /// Whether the form changes at all.
@@ -272,7 +295,9 @@ impl Dress {
             let inside = turn.t > stretch.start() && turn.t < stretch.end();
             inside && fastest(stretch) * stretch.span() > MOST
         };
-        shown.added = self.spin.iter().filter(fast).count();
+        if self.about.is_none() {
+            shown.added = self.spin.iter().filter(fast).count();
+        }
         if !self.shaped() {
             return shown;
         }

@@ -27,7 +27,7 @@
 //! let motion = Motion::new("drop", vec![ball], Vec::new())?;
 //!
 //! let frames = Frames::new("24".parse()?);
-//! let exact = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }.file(Format::Csv)?;
+//! let exact = Export::new(&motion, frames).file(Format::Csv)?;
 //! assert_eq!(exact.keys, 3);
 //! assert!(exact.miss.height < 1e-12);
 //!
@@ -38,7 +38,7 @@
 //! // Two frames on the floor, 30 % shorter there, and 10 % longer in flight, of one volume always.
 //! let held = snapped.held(2.0 / 24.0)?;
 //! let shape = Shape { squash: 0.3, stretch: 0.1, hold: 2.0 / 24.0 };
-//! let shown = Export { motion: &held, frames, tolerance: 1e-4, shape, apexes: false, space: Space::default() }.file(Format::Glb)?.shown.unwrap_or_default();
+//! let shown = Export { shape, ..Export::new(&held, frames) }.file(Format::Glb)?.shown.unwrap_or_default();
 //! assert!(shown.least == 0.7 && shown.sunk.abs() < 1e-15);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use saltus_motion::{Export, Format, Frames, Motion, Shape, Snap, Space};
+use saltus_motion::{Export, Format, Frames, Motion, Shape, Snap};
 use serde_json::Value;
 
 mod drop;
@@ -93,14 +93,7 @@ fn files_of_a_loop_say_so_and_leave_out_the_frame_that_comes_again() {
     let hop = drop(1.0, 0.8, 3, 0.0, [0.0; 3], 0.05).looped(1).unwrap().snapped(Snap::Gravity, frames()).unwrap();
     let count = (24.0 * hop.end()).round();
     let file = |format| {
-        let export = Export {
-            motion: &hop,
-            frames: frames(),
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        };
+        let export = Export::new(&hop, frames());
         String::from_utf8_lossy(&export.file(format).unwrap().bytes).into_owned()
     };
     let lottie: Value = serde_json::from_str(&file(Format::Lottie)).unwrap();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Snap, Space, Stretch, Track};
+use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
 use serde_json::Value;
 
 const G: f64 = 9.81;
@@ -57,16 +57,7 @@ fn frames(text: &str) -> Frames {
 }
 
 fn file(motion: &Motion, format: Format) -> File {
-    Export {
-        motion,
-        frames: frames("24"),
-        tolerance: 1e-4,
-        shape: Shape::default(),
-        apexes: false,
-        space: Space::default(),
-    }
-    .file(format)
-    .unwrap()
+    Export::new(motion, frames("24")).file(format).unwrap()
 }
 
 fn text(file: &File) -> &str {
@@ -288,16 +279,7 @@ fn blender_handles_are_at_a_third_and_touch_at_zero() {
     let (motion, starts) = drop(3, SIDEWAYS);
     let rate = "23.976".parse().unwrap();
     let frames = Frames { rate, first: 1, on_twos: false };
-    let file = Export {
-        motion: &motion,
-        frames,
-        tolerance: 1e-4,
-        shape: Shape::default(),
-        apexes: false,
-        space: Space::default(),
-    }
-    .file(Format::Blender)
-    .unwrap();
+    let file = Export::new(&motion, frames).file(Format::Blender).unwrap();
     let data = data(text(&file));
     assert_eq!(data["fps"], 24);
     assert!((data["fps_base"].as_f64().unwrap() - 1.001).abs() < 1e-12);
@@ -320,17 +302,7 @@ fn blender_handles_are_at_a_third_and_touch_at_zero() {
 #[test]
 fn maya_knows_its_rates_and_refuses_others() {
     let (motion, _) = drop(3, SIDEWAYS);
-    let with = |rate: &str| {
-        Export {
-            motion: &motion,
-            frames: frames(rate),
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        }
-        .file(Format::Maya)
-    };
+    let with = |rate: &str| Export::new(&motion, frames(rate)).file(Format::Maya);
     let data = data(text(&with("29.97").unwrap()));
     assert_eq!(
         (data["time"].as_str(), data["balls"][0]["nodes"][0]["place"]["keys"].as_array().unwrap().len()),
@@ -385,27 +357,9 @@ fn on_twos_every_drawing_stands_for_two_frames() {
     for format in
         [Format::Csv, Format::Glb, Format::Svg, Format::Lottie, Format::Blender, Format::Maya, Format::UsdSplines]
     {
-        Export {
-            motion: &motion,
-            frames,
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        }
-        .file(format)
-        .unwrap();
+        Export::new(&motion, frames).file(format).unwrap();
     }
-    let file = Export {
-        motion: &motion,
-        frames,
-        tolerance: 1e-4,
-        shape: Shape::default(),
-        apexes: false,
-        space: Space::default(),
-    }
-    .file(Format::Json)
-    .unwrap();
+    let file = Export::new(&motion, frames).file(Format::Json).unwrap();
     let document: Value = serde_json::from_slice(&file.bytes).unwrap();
     assert_eq!(document["balls"][0]["between"], "hold");
     for (k, key) in document["balls"][0]["keys"].as_array().unwrap().iter().enumerate() {
@@ -432,16 +386,7 @@ fn a_motion_that_is_no_parabola_takes_few_keys_within_the_tolerance() {
     let track = Track { name: "ball".into(), radius: 0.1, stretches: vec![stretch] };
     let motion = Motion::new("curve", vec![track], Vec::new()).unwrap();
     for (tolerance, most) in [(1e-2, 4), (1e-4, 9), (1e-6, 25)] {
-        let file = Export {
-            motion: &motion,
-            frames: frames("24"),
-            tolerance,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        }
-        .file(Format::Csv)
-        .unwrap();
+        let file = Export { tolerance, ..Export::new(&motion, frames("24")) }.file(Format::Csv).unwrap();
         assert!(file.miss.height <= 1.1 * tolerance && file.keys <= most, "{tolerance}: {} {:?}", file.keys, file.miss);
     }
     let refused = motion.snapped(Snap::Gravity, frames("24")).unwrap_err().to_string();

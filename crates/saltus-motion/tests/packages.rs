@@ -5,7 +5,7 @@
 use std::io::{Cursor, Read};
 
 use drop::drop;
-use saltus_motion::{Export, Format, Frames, Motion, Shape, Space};
+use saltus_motion::{Export, Format, Frames, Motion};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
@@ -13,10 +13,7 @@ mod drop;
 
 fn written(motion: &Motion, format: Format) -> Vec<u8> {
     let frames = Frames::new("24".parse().unwrap());
-    Export { motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() }
-        .file(format)
-        .unwrap()
-        .bytes
+    Export::new(motion, frames).file(format).unwrap().bytes
 }
 
 struct Entry {
@@ -76,18 +73,7 @@ fn a_dotlottie_is_the_lottie_with_its_manifest() {
 fn a_package_is_as_exact_as_what_is_in_it() {
     let motion = drop(1.0, 0.7, 3, 0.8, [0.0; 3], 0.05);
     let frames = Frames::new("24".parse().unwrap());
-    let file = |format| {
-        Export {
-            motion: &motion,
-            frames,
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        }
-        .file(format)
-        .unwrap()
-    };
+    let file = |format| Export::new(&motion, frames).file(format).unwrap();
     for (package, plain) in [(Format::Usdz, Format::Usd), (Format::DotLottie, Format::Lottie)] {
         let (package, plain) = (file(package), file(plain));
         assert_eq!((package.keys, package.miss, package.shown), (plain.keys, plain.miss, plain.shown));

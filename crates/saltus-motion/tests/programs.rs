@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use drop::{G, drop};
-use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Space, Stretch, Track};
+use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Stretch, Track};
 use serde_json::Value;
 
 mod drop;
@@ -16,9 +16,7 @@ fn frames() -> Frames {
 }
 
 fn written(motion: &Motion, format: Format, shape: Shape) -> File {
-    Export { motion, frames: frames(), tolerance: 1e-4, shape, apexes: false, space: Space::default() }
-        .file(format)
-        .unwrap()
+    Export { shape, ..Export::new(motion, frames()) }.file(format).unwrap()
 }
 
 fn text(file: File) -> String {
@@ -187,14 +185,7 @@ fn a_motion_without_a_frame_is_refused() {
     let ball = Track { name: "ball".into(), radius: 0.05, stretches: vec![stretch] };
     let motion = Motion::new("short", vec![ball], Vec::new()).unwrap();
     for format in Format::ALL {
-        let export = Export {
-            motion: &motion,
-            frames: frames(),
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        };
+        let export = Export::new(&motion, frames());
         let error = export.file(format).unwrap_err().to_string();
         assert!(error.contains("less than a hundredth of a frame"), "{format:?}: {error}");
     }
@@ -212,14 +203,7 @@ fn a_small_ball_is_seen() {
 #[test]
 fn keys_at_apexes_leave_the_motion() {
     let motion = drop(1.0, 0.7, 3, 0.8, [0.0; 3], 0.05);
-    let export = |apexes| Export {
-        motion: &motion,
-        frames: frames(),
-        tolerance: 1e-4,
-        shape: Shape::default(),
-        apexes,
-        space: Space::default(),
-    };
+    let export = |apexes| Export { apexes, ..Export::new(&motion, frames()) };
     let (plain, with) = (export(false).file(Format::Csv).unwrap(), export(true).file(Format::Csv).unwrap());
     assert_eq!(with.keys, plain.keys + 3, "the drop starts at its top");
     assert!(with.miss.place < 1e-12, "{:?}", with.miss);
@@ -227,6 +211,60 @@ fn keys_at_apexes_leave_the_motion() {
     let level =
         |line: &&str| line.split(',').nth(8).is_some_and(|up| up.parse::<f64>().is_ok_and(|up| up.abs() < 1e-9));
     assert!(csv.lines().skip(2).filter(level).count() >= 3, "{csv}");
+}
+
+/// Tops that are keys are in every file, exact in height: also frame by frame, and in drawings that
+/// stand for two frames.
+#[test]
+fn keys_at_apexes_are_in_frames_and_drawings_too() {
+    for height in [0.31, 1.0, 1.7] {
+        let motion = drop(height, 0.7, 3, 0.8, [0.0; 3], 0.05);
+        for frames in [frames(), Frames { on_twos: true, ..frames() }] {
+            let export = Export { apexes: true, ..Export::new(&motion, frames) };
+            let csv = text(export.file(Format::CsvFrames).unwrap());
+            let row =
+                |line: &str| -> Vec<f64> { line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect() };
+            let rows: Vec<Vec<f64>> = csv.lines().skip(1).map(row).collect();
+            for stretch in motion.tracks[0].stretches.iter().filter(|stretch| stretch.flight) {
+                let (top, t) = stretch.top();
+                let shown = rows.iter().find(|row| (row[5] - top).abs() < 1e-9);
+                let shown = shown.unwrap_or_else(|| panic!("no {top} at {t} in {csv}"));
+                assert!((shown[2] - t).abs() <= 0.5 / 24.0 + 1e-9, "{top} at {} instead of {t}", shown[2]);
+            }
+        }
+    }
+}
+
+/// A ball that turns about one axis has keys as few as its spin asks for where angles are counted,
+/// however many turns it makes.
+#[test]
+fn an_angle_has_as_few_keys_as_its_spin() {
+    let rolling = |spin: Vec<[f64; 3]>| {
+        let coefficients = vec![[0.0; 3], [0.1, 0.0, 0.0]];
+        let pieces = vec![Piece { start: 0.0, span: 8.0, coefficients, spin }];
+        let stretches = vec![Stretch { contact: None, flight: false, pieces }];
+        Motion::new("rolls", vec![Track { name: "ball".into(), radius: 0.05, stretches }], Vec::new()).unwrap()
+    };
+    for spin in [
+        vec![[0.0, 50.0, 0.0]],
+        vec![[0.0, 1.0, 0.0], [0.0, 20.0, 0.0]],
+        vec![[0.0, 40.0, 0.0], [0.0, -8.0, 0.0], [0.0, 0.3, 0.0]],
+    ] {
+        let motion = rolling(spin.clone());
+        let script = text(written(&motion, Format::Blender, Shape::default()));
+        let data = script.split("json.loads(r'''").nth(1).unwrap().split("''')").next().unwrap();
+        let read: Value = serde_json::from_str(data).unwrap();
+        let about = &read["balls"][0]["nodes"][1]["about"];
+        let keys = about["keys"][0].as_array().unwrap();
+        assert_eq!((about["axes"][0].as_u64(), keys.len()), (Some(1), 2), "{spin:?}");
+        let turned: f64 = spin.iter().zip(1..).map(|(c, k)| c[1] * 8.0_f64.powi(k) / f64::from(k)).sum();
+        assert!((keys[1][1].as_f64().unwrap() - turned).abs() < 1e-9 * turned.abs());
+        // glTF has orientations, of which the shortest way is gone.
+        let file = written(&motion, Format::Glb, Shape::default());
+        assert!(file.shown.unwrap().added > 30);
+        let svg = text(written(&motion, Format::Svg, Shape::default()));
+        assert!(svg.matches("deg").count() < 12, "{svg}");
+    }
 }
 
 /// The same glTF as text: its buffer in base64 is the binary one.

@@ -7,7 +7,7 @@ use drop::{G, drop};
 use gltf::animation::util::{ReadOutputs, Rotations};
 use gltf::animation::{Interpolation, Property};
 use proptest::prelude::*;
-use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Space, Stretch, Track};
+use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};
 use serde_json::Value;
 
 mod drop;
@@ -126,7 +126,7 @@ proptest! {
         let held = motion.held(hold).unwrap();
         prop_assert!((held.end() - motion.end() - hold * contacts as f64).abs() < 1e-9);
         let shape = Shape { squash, stretch, hold };
-        let file = Export { motion: &held, frames: frames(), tolerance: 1e-4, shape, apexes: false, space: Space::default() }.file(Format::Glb).unwrap();
+        let file = Export { shape, ..Export::new(&held, frames()) }.file(Format::Glb).unwrap();
         let both = channels(&file.bytes);
         // On its keys a form is exact to single precision; between them cubics are within 0.1 %,
         // straight lines as far off as said.
@@ -160,7 +160,7 @@ proptest! {
     fn a_spin_is_kept_however_fast(rate in -400.0..400.0_f64, tilt in prop_oneof![Just(0.0), -1.0..1.0_f64]) {
         let axis = [tilt, -(1.0 - tilt * tilt).sqrt(), 0.0];
         let motion = drop(1.0, 0.6, 2, 0.5, axis.map(|c| c * rate), 0.03);
-        let export = Export { motion: &motion, frames: frames(), tolerance: 1e-4, shape: Shape::default(), apexes: false, space: Space::default() };
+        let export = Export::new(&motion, frames());
         let file = export.file(Format::Glb).unwrap();
         for animation in channels(&file.bytes) {
             let spin = animation.iter().find(|c| c.property == Property::Rotation).unwrap();
@@ -196,14 +196,7 @@ fn a_spin_that_changes_its_axis_follows_its_equation() {
     let stretch = Stretch { contact: None, flight: true, pieces: vec![piece] };
     let track = Track { name: "ball".into(), radius: 0.1, stretches: vec![stretch] };
     let motion = Motion::new("spin", vec![track], Vec::new()).unwrap();
-    let export = Export {
-        motion: &motion,
-        frames: frames(),
-        tolerance: 1e-4,
-        shape: Shape::default(),
-        apexes: false,
-        space: Space::default(),
-    };
+    let export = Export::new(&motion, frames());
     let document: Value = serde_json::from_slice(&export.file(Format::Json).unwrap().bytes).unwrap();
     let rate = |t: f64, [x, y, z, w]: [f64; 4]| {
         let [a, b, c] = [3.0, 10.0 * t, 40.0 - 20.0 * t];
@@ -265,16 +258,7 @@ fn a_contact_that_takes_time_squashes_as_its_law_has_it() {
     // puts it lower.
     for factor in [1.0, 2.0] {
         let shape = Shape { squash: factor * motion.deformation(), stretch: 0.0, hold: 0.0 };
-        let file = Export {
-            motion: &motion,
-            frames: frames(),
-            tolerance: 1e-6,
-            shape,
-            apexes: false,
-            space: Space::default(),
-        }
-        .file(Format::Glb)
-        .unwrap();
+        let file = Export { tolerance: 1e-6, shape, ..Export::new(&motion, frames()) }.file(Format::Glb).unwrap();
         let exact = &channels(&file.bytes)[1];
         let track = &motion.tracks[0];
         let contact = &track.stretches[1];
@@ -302,10 +286,7 @@ fn every_format_holds_the_squash() {
     let held = motion.held(2.0 / 24.0).unwrap();
     let shape = Shape { squash: 0.4, stretch: 0.0, hold: 2.0 / 24.0 };
     let text = |format| {
-        let file =
-            Export { motion: &held, frames: frames(), tolerance: 1e-4, shape, apexes: false, space: Space::default() }
-                .file(format)
-                .unwrap();
+        let file = Export { shape, ..Export::new(&held, frames()) }.file(format).unwrap();
         String::from_utf8(file.bytes).unwrap()
     };
     // The middle of the first hold is frame 12, where the ball is shortest: 0.6 of its height, and
@@ -373,14 +354,7 @@ fn every_format_holds_the_squash() {
 fn what_cannot_be_squashed_is_refused() {
     let motion = drop(1.0, 0.6, 2, 0.3, [0.0; 3], 0.05);
     let refused = |shape| {
-        let export = Export {
-            motion: &motion,
-            frames: frames(),
-            tolerance: 1e-4,
-            shape,
-            apexes: false,
-            space: Space::default(),
-        };
+        let export = Export { shape, ..Export::new(&motion, frames()) };
         export.file(Format::Csv).unwrap_err().to_string()
     };
     assert!(refused(Shape { squash: 1.0, ..Shape::default() }).contains("squash it by 0 to 0.9"));
@@ -393,14 +367,7 @@ fn what_cannot_be_squashed_is_refused() {
 fn a_timing_chart_has_a_tick_for_every_frame() {
     for (sideways, ends) in [(0.0, 3), (1.0, 0)] {
         let motion = drop(1.0, 0.6, 2, sideways, [0.0; 3], 0.05).snapped(Snap::Gravity, frames()).unwrap();
-        let export = Export {
-            motion: &motion,
-            frames: frames(),
-            tolerance: 1e-4,
-            shape: Shape::default(),
-            apexes: false,
-            space: Space::default(),
-        };
+        let export = Export::new(&motion, frames());
         let bytes = export.file(Format::Chart).unwrap().bytes;
         let text = String::from_utf8(bytes).unwrap();
         let document = roxmltree::Document::parse(&text).unwrap();

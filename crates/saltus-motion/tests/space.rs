@@ -26,7 +26,7 @@ const SQUASHED: Shape = Shape { squash: 0.3, stretch: 0.1, hold: 2.0 / 24.0 };
 
 fn export(motion: &Motion, shape: Shape, space: Space) -> Export<'_> {
     let frames = Frames::new("24".parse().unwrap());
-    Export { motion, frames, tolerance: 1e-4, shape, apexes: false, space }
+    Export { shape, space, ..Export::new(motion, frames) }
 }
 
 fn written(motion: &Motion, format: Format, space: Space) -> String {

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
-use saltus_motion::{Export, Format, Frames, Motion, Space};
+use saltus_motion::{Export, Format, Frames, Motion};
 use saltus_scene::{Stage, length};
 
 use self::read::Reading;
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
     // A file that cannot be read is said before a scene is run.
     let readings = read::readings(&args.file)?;
     let Stage { motion, frames, shape, .. } = args.staging.of(&args.scene, 0, quiet)?;
-    let export = Export { motion: &motion, frames, tolerance: KEYS, shape, apexes: false, space: Space::default() };
+    let export = Export { tolerance: KEYS, shape, ..Export::new(&motion, frames) };
     let [[left, right], [low, high]] = motion.reach();
     let size = (right - left).max(high - low);
     let (mut lines, mut good) = (String::new(), true);

@@ -123,7 +123,7 @@ def sphere(name, radius, bottom, stripes, rings=16, sides=32):
 def key_axes(curves, path, moves):
     """Keys of a curve for each axis; how far they are from what was asked for."""
     found = 0.0
-    for axis, (keys, checks) in enumerate(zip(moves["keys"], moves["checks"])):
+    for axis, keys, checks in zip(moves["axes"], moves["keys"], moves["checks"]):
         curve = curves.new(path, index=axis)
         curve.keyframe_points.add(len(keys))
         for point, (frame, value, left, right) in zip(curve.keyframe_points, keys):
@@ -170,7 +170,7 @@ for ball in DATA["balls"]:
     around = None
     for number, node in enumerate(ball["nodes"]):
         if number == len(ball["nodes"]) - 1:
-            item = sphere(node["name"], ball["radius"], node["bottom"], node["turns"])
+            item = sphere(node["name"], ball["radius"], node["bottom"], node["turns"] or node["about"])
         else:
             item = bpy.data.objects.new(node["name"], None)
             item.empty_display_size = ball["radius"]
@@ -178,14 +178,17 @@ for ball in DATA["balls"]:
         item.parent = around
         item.location = node["still"]
         around = item
-        if not (node["place"] or node["scale"] or node["turns"]):
+        if not (node["place"] or node["scale"] or node["turns"] or node["about"]):
             continue
         curves = curves_of(item)
         if node["place"]:
             worst = max(worst, key_axes(curves, "location", node["place"]))
         if node["scale"]:
             worst = max(worst, ball["radius"] * key_axes(curves, "scale", node["scale"]))
-        if node["turns"]:
+        if node["about"]:
+            item.rotation_mode = "XYZ"
+            worst = max(worst, ball["radius"] * key_axes(curves, "rotation_euler", node["about"]))
+        elif node["turns"]:
             key_turns(item, curves, node["turns"])
 for number, (vertices, faces) in enumerate(DATA["ground"]):
     item = mesh_object("ground" if number == 0 else "ground %d" % number, vertices, faces, False)
@@ -256,12 +259,14 @@ fn collection(title: &str) -> String {
 /// A node as the script reads it.
 fn chained(export: &Export<'_>, node: &Node<'_>, held: bool) -> Value {
     let frames = export.frames;
-    let moves = |curve: &Curve| {
-        let keys: Vec<Vec<_>> = (0..3).map(|axis| axis_keys(export, curve, axis)).collect();
+    // The axes of the curve, and what they are in Blender.
+    let moves = |curve: &Curve, axes: &[(usize, usize)]| {
+        let keys: Vec<Vec<_>> = axes.iter().map(|&(axis, _)| axis_keys(export, curve, axis)).collect();
         let middles: Vec<f64> = curve.keys.windows(2).map(|pair| 0.5 * (pair[0].t + pair[1].t)).collect();
         let check = |axis: usize| middles.iter().map(|&t| [frames.number(t), curve.at(t)[axis]]).collect::<Vec<_>>();
         json!({
-            "keys": keys, "checks": (0..3).map(check).collect::<Vec<_>>(),
+            "axes": axes.iter().map(|axis| axis.1).collect::<Vec<_>>(),
+            "keys": keys, "checks": axes.iter().map(|axis| check(axis.0)).collect::<Vec<_>>(),
             "interpolation": match curve.between {
                 Between::Cubic => "BEZIER",
                 Between::Line => "LINEAR",
@@ -272,7 +277,7 @@ fn chained(export: &Export<'_>, node: &Node<'_>, held: bool) -> Value {
     // In the plane of x and up one angle does, and may count whole turns.
     let flat = node.turns.iter().all(|turn| turn.quaternion[0] == 0.0 && turn.quaternion[2] == 0.0);
     let values = |of: &dyn Fn(&Turn) -> f64| node.turns.iter().map(of).collect::<Vec<f64>>();
-    let turns = (!node.turns.is_empty()).then(|| {
+    let turns = (!node.turns.is_empty() && node.about.is_none()).then(|| {
         json!({
             "mode": if flat { "XYZ" } else { "QUATERNION" },
             "interpolation": if held { "CONSTANT" } else { "LINEAR" },
@@ -284,8 +289,10 @@ fn chained(export: &Export<'_>, node: &Node<'_>, held: bool) -> Value {
             },
         })
     });
+    let all = |curve: &Curve| moves(curve, &[(0, 0), (1, 1), (2, 2)]);
     json!({
-        "name": node.name, "still": node.still, "place": node.place.map(moves), "scale": node.scale.map(moves), "turns": turns,
+        "name": node.name, "still": node.still, "place": node.place.map(all), "scale": node.scale.map(all), "turns": turns,
+        "about": node.about.map(|curve| moves(curve, &[(0, 1)])),
     })
 }
 

@@ -54,7 +54,10 @@ pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
         }
     }
     if let Some(dress) = &ball.dress {
-        within.push(turning("s", &dress.spin));
+        within.push(match &dress.about {
+            Some(about) => of("s", Moves::Turn, about, 0, &f64::to_degrees),
+            None => turning("s", &dress.spin),
+        });
     }
     // What does nothing is left out.
     let idle = |channel: &Channel| {

@@ -165,6 +165,11 @@ impl Format {
         }
     }
 
+    /// Whether an angle goes on over whole turns in it, along a curve.
+    const fn counts_turns(self) -> bool {
+        matches!(self, Self::Blender | Self::Svg | Self::Lottie | Self::DotLottie | Self::Html)
+    }
+
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {
@@ -186,6 +191,10 @@ pub struct File {
     pub shown: Option<Shown>,
 }
 
+/// How far keys may be from a motion, in m, unless another distance is asked for: a dot of a
+/// picture that shows 40 cm by 4000 dots.
+const TOLERANCE: f64 = 1e-4;
+
 /// A motion and how it is to be shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Export<'a> {
@@ -198,8 +207,10 @@ pub struct Export<'a> {
     pub tolerance: f64,
     /// Squash and stretch; [`Shape::default`] is a ball that stays round.
     pub shape: Shape,
-    /// Whether there is a key at the top of every flight, for those who change the motion by hand;
-    /// the motion is the same.
+    /// Whether there is a key at the top of every flight, for those who change the motion by hand.
+    ///
+    /// Cubics stay what they are; straight lines from frame to frame get the top as well; of
+    /// drawings that stand the one nearest to the top shows it.
     pub apexes: bool,
     /// The unit and the axis of the file; what is said of the file is in m all the same.
     pub space: Space,
@@ -220,6 +231,8 @@ struct Node<'a> {
     still: Point,
     place: Option<&'a Curve>,
     turns: &'a [Turn],
+    /// The same as an angle about y in rad, where that is all, in a format that counts turns.
+    about: Option<&'a Curve>,
     scale: Option<&'a Curve>,
 }
 
@@ -228,12 +241,13 @@ impl Ball<'_> {
     /// and stretch if there is any, spin.
     fn nodes(&self) -> Vec<Node<'_>> {
         let name = &self.track.name;
-        let node = |name: String| Node { name, still: [0.0; 3], place: None, turns: &[], scale: None };
+        let node = |name: String| Node { name, still: [0.0; 3], place: None, turns: &[], about: None, scale: None };
         let mut nodes = vec![Node { place: Some(&self.path), ..node(name.clone()) }];
         let mut inner = node(format!("{name} shape"));
         inner.still[2] = self.track.radius;
         if let Some(dress) = &self.dress {
             inner.turns = &dress.spin;
+            inner.about = dress.about.as_ref();
             if dress.shaped() {
                 inner.still[2] = 0.0;
                 let (place, scale) = (Some(&dress.offset), Some(&dress.scale));
@@ -250,7 +264,26 @@ impl Ball<'_> {
     }
 }
 
-impl Export<'_> {
+impl<'a> Export<'a> {
+    /// A round ball within 0.1 mm of the motion, in metres, with no keys but those it needs: change
+    /// what is to be otherwise.
+    ///
+    /// ```
+    /// use saltus_motion::{Export, Frames, Motion, Piece, Stretch, Track};
+    /// let piece = Piece { start: 0.0, span: 1.0, coefficients: vec![[0.0, 0.0, 2.0]], spin: Vec::new() };
+    /// let stretch = Stretch { contact: None, flight: true, pieces: vec![piece] };
+    /// let track = Track { name: "ball".into(), radius: 0.02, stretches: vec![stretch] };
+    /// let motion = Motion::new("still", vec![track], Vec::new())?;
+    /// let export = Export { apexes: true, ..Export::new(&motion, Frames::new("24".parse()?)) };
+    /// assert_eq!(export.tolerance, 1e-4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn new(motion: &'a Motion, frames: Frames) -> Self {
+        let (shape, space) = (Shape::default(), Space::default());
+        Self { motion, frames, tolerance: TOLERANCE, shape, apexes: false, space }
+    }
+
     /// The motion as a file.
     ///
     /// # Errors
@@ -264,7 +297,7 @@ impl Export<'_> {
     /// let track = Track { name: "ball".into(), radius: 0.02, stretches: vec![stretch] };
     /// let motion = Motion::new("still", vec![track], Vec::new())?;
     /// let (frames, space) = (Frames::new("24".parse()?), Space { unit: Unit::Centimetre, up: None });
-    /// let export = Export { motion: &motion, frames, tolerance: 1e-4, shape: Shape::default(), apexes: false, space };
+    /// let export = Export { space, ..Export::new(&motion, frames) };
     /// assert!(String::from_utf8(export.file(Format::Csv)?.bytes)?.starts_with("ball,frame,time_s,x_cm,"));
     /// assert!(export.file(Format::Glb).is_err_and(|error| error.to_string().contains("glTF is in metres")));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -295,13 +328,15 @@ impl Export<'_> {
         }
         self.shape.check().map_err(ExportError)?;
         let balls = self.balls(format, format.sampled());
+        // glTF has two animations, and what is said of the file holds for both.
+        let second = if matches!(format, Format::Glb | Format::Gltf) { self.balls(format, false) } else { Vec::new() };
         let bytes = match format {
             Format::Csv | Format::CsvFrames => table::csv(self, &balls).into_bytes(),
             Format::Json => table::json(self, &balls)?.into_bytes(),
             Format::Blender => blender::script(self, &balls).into_bytes(),
             Format::Maya => maya::script(self, &balls)?.into_bytes(),
-            Format::Glb => gltf::binary(self, &balls, &self.balls(format, false))?,
-            Format::Gltf => gltf::text(self, &balls, &self.balls(format, false))?.into_bytes(),
+            Format::Glb => gltf::binary(self, &balls, &second)?,
+            Format::Gltf => gltf::text(self, &balls, &second)?.into_bytes(),
             Format::Usd => usd::samples(self, &balls).into_bytes(),
             Format::UsdSplines => usd::splines(self, &balls).into_bytes(),
             Format::Lottie => lottie::json(self, &balls)?.into_bytes(),
@@ -313,8 +348,9 @@ impl Export<'_> {
             Format::Usdz => package::usdz(&usd::samples(self, &balls))?,
             Format::DotLottie => package::dotlottie(&lottie::json(self, &balls)?)?,
         };
-        let miss = balls.iter().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
-        let shown = balls.iter().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
+        let both = || balls.iter().chain(&second);
+        let miss = both().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
+        let shown = both().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
         let keys = balls.iter().map(|ball| ball.path.keys.len()).sum();
         Ok(File { bytes, keys, miss, shown: shown.reduce(Shown::or) })
     }
@@ -324,13 +360,18 @@ impl Export<'_> {
         let form =
             (self.shape.squash > 0.0 || self.shape.stretch > 0.0).then(|| self.motion.form(self.shape, self.frames));
         let ball = |track| {
-            let path = if sampled || (self.frames.on_twos && format != Format::Chart) {
+            let mut path = if sampled || (self.frames.on_twos && format != Format::Chart) {
                 Track::samples(track, self.frames, true)
             } else {
-                let keys = track.keys(self.tolerance, self.frames);
-                if self.apexes { keys.with(tops(track), APART * self.frames.rate.frame()) } else { keys }
+                track.keys(self.tolerance, self.frames)
             };
-            let dress = Dress::of(track, form.as_ref(), &path, self.frames);
+            if self.apexes {
+                path = path.topped(track, self.frames);
+            }
+            let mut dress = Dress::of(track, form.as_ref(), &path, self.frames);
+            if !format.counts_turns() {
+                dress.iter_mut().for_each(|dress| dress.about = None);
+            }
             Ball { track, path, dress }
         };
         self.motion.tracks.iter().map(ball).collect()
@@ -343,12 +384,6 @@ impl Export<'_> {
         let count = (self.motion.end() / self.frames.rate.frame() - 1e-6).ceil() as i64;
         [first, first + count - i64::from(self.motion.loops)]
     }
-}
-
-/// When a track is at the top of a flight, but for the ends of it.
-fn tops(track: &Track) -> impl Iterator<Item = f64> + '_ {
-    let flights = track.stretches.iter().filter(|stretch| stretch.flight);
-    flights.map(|stretch| stretch.top().1)
 }
 
 /// How far the ground reaches on both sides of the plane of x and up, in m.

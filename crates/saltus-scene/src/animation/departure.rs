@@ -73,7 +73,9 @@ impl fmt::Display for Departure {
             }
             Self::Cut { height, .. } => write!(f, "hops of up to {} left out", length(*height)),
             Self::SnappedByGravity { tops } => {
-                write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))
+                write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))?;
+                // A top that was asked for is lost, and there is a way to keep it.
+                if *tops >= 1e-4 { write!(f, " (--snap heights keeps them)") } else { Ok(()) }
             }
             Self::SnappedByHeights { end } => write!(f, "snapped by heights, the end moved by {end:.4} s"),
             Self::Squashed { to, of_law: None } => write!(f, "squashed to {to:.2} of its height by hand"),

@@ -88,7 +88,7 @@ impl Stage {
     /// [`Error`] where the format cannot hold it.
     pub fn file(&self, format: Format, tolerance: f64) -> Result<File, Error> {
         let Self { motion, frames, shape, apexes, space, .. } = self;
-        Export { motion, frames: *frames, tolerance, shape: *shape, apexes: *apexes, space: *space }
+        Export { tolerance, shape: *shape, apexes: *apexes, space: *space, ..Export::new(motion, *frames) }
             .file(format)
             .map_err(Error::new)
     }
