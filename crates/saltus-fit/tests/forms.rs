@@ -277,3 +277,31 @@ proptest! {
         prop_assert!(report.verdict() == Verdict::Doubtful && report.reason().contains("another motion"), "{}{}", text, report);
     }
 }
+
+/// A flight after each of several drops is that of its own drop, in whatever order they stand: it
+/// is no running clock where the drops grow.
+#[test]
+fn flights_of_drops_may_grow_with_them() {
+    let heights = [0.5f64, 0.75, 1.0, 1.25, 1.5];
+    for order in [[0, 1, 2, 3, 4], [4, 3, 2, 1, 0], [2, 0, 4, 1, 3]] {
+        let rows: String =
+            order.map(|n| format!("{},{:.3}\n", heights[n], 1.6 * (2.0 * heights[n] / 9.81).sqrt())).concat();
+        let cor = trusted(&format!("drop height (m),flight time (s)\n{rows}"));
+        assert!((cor - 0.8).abs() < 0.003, "{order:?}: {cor}");
+    }
+}
+
+/// What counts peaks or rebounds numbers them, and a title with a unit is the name of the numbers
+/// below it.
+#[test]
+fn peaks_are_counted_and_titles_name_what_is_below_them() {
+    for text in [
+        "Peak no.,Height of bounce (cm)\n0,100\n1,64\n2,41\n3,26.2\n",
+        "Height of bounce (cm)\ndrop 100\n1st 64\n2nd 41\n3rd 26.2\n",
+        "Bounce height [cm]\n\ndrop 100\nfirst 64\nsecond 41\nthird 26.2\n",
+        "跌落高度 (cm),反弹高度 (cm)\n100,64\n80,51.2\n60,38.4\n",
+    ] {
+        let cor = trusted(text);
+        assert!((cor - 0.8).abs() < 0.003, "{text}: {cor}");
+    }
+}

@@ -11,7 +11,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
-    latex(text).or_else(|| wiki(text)).or_else(|| listed(text)).or_else(|| patterned(text))
+    latex(text).or_else(|| wiki(text)).or_else(|| listed(text)).or_else(|| headed(text)).or_else(|| patterned(text))
 }
 
 /// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
@@ -46,6 +46,31 @@ fn listed(text: &str) -> Option<String> {
     let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// Lines of a name and a number, `1st 128`, below one that says of what and in which unit, `Height
+/// of bounce (cm)`: with a tab before that, and between the two. `None` if any is something else.
+fn headed(text: &str) -> Option<String> {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let heading = lines.next()?;
+    // Blanks beside each other, or several numbers in a line, are cells.
+    let parted = |line: &str| line.contains(['\t', ';', ',', '|', ':', '=']) || line.contains("  ");
+    let counts = |word: &str| word.parse::<f64>().is_ok();
+    let (_, unit) = heading.strip_suffix([')', ']'])?.rsplit_once(['(', '['])?;
+    let row = |line: &str| {
+        let (name, number) = line.rsplit_once(' ')?;
+        let bare = matches!(cell::read(number, false), Cell::Number(m) if m.unit.is_none());
+        let words = name.contains(char::is_alphabetic) && !name.split(' ').any(counts);
+        (bare && words && !parted(line)).then(|| format!("{}\t{number}", name.trim()))
+    };
+    let rows: Vec<String> = lines.map(row).collect::<Option<_>>()?;
+    if rows.len() < 2 || Unit::parse(unit).is_none() || parted(heading) || heading.matches(['(', '[']).count() > 1 {
+        return None;
+    }
+    // A blank line stays one, so that lines keep their numbers.
+    let mut spelt = std::iter::once(format!("\t{heading}")).chain(rows);
+    let lines = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { spelt.next() });
+    Some(lines.collect::<Option<Vec<_>>>()?.join("\n") + "\n")
 }
 
 /// A name in a line by itself stands before at least so many numbers.
@@ -272,6 +297,18 @@ mod tests {
         }
         for text in ["Ball 58 g\n", "height_cm\n100\n64\n", "drop,100 cm\nbounce,64 cm\n", "Class: 7, 8\n"] {
             assert_eq!(listed(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn names_and_numbers_may_stand_below_what_they_are() {
+        let text = "Height of bounce (cm)\n\ndrop 200\n1st 128\nsecond bounce 82\n";
+        assert_eq!(
+            headed(text).as_deref(),
+            Some("\tHeight of bounce (cm)\n\ndrop\t200\n1st\t128\nsecond bounce\t82\n")
+        );
+        for text in ["Height (cm)\n100\n64\n", "Height\ndrop 200\n1st 128\n", "Height (cm)\ndrop 200\nof a ball\n"] {
+            assert_eq!(headed(text), None, "{text}");
         }
     }
 

@@ -280,8 +280,12 @@ impl Columns {
         Ok(())
     }
 
-    /// Times between contacts that rise from row to row are a running clock: those of a ball fall.
+    /// Times between contacts that rise from row to row are a running clock: those of a ball fall,
+    /// but where every row has a height of release, and is a drop of its own.
     fn running(&mut self, region: &Region<'_>) {
+        if self.any(What::Height, Some(At::Release)) && self.number().is_none() {
+            return;
+        }
         let between: Vec<usize> = self
             .values()
             .filter(|(_, _, v)| v.what == What::Interval && v.at == At::Row && v.role == Role::Reading)

@@ -63,8 +63,8 @@ impl Heading {
     /// The quantity that words and unit name.
     fn what(&self) -> What {
         use Atom::{
-            Air, Between, Distance, Height, Impact, Interval, Percent, Position, Rebound, Release, Rest, Speed, Time,
-            Total,
+            Air, Between, Distance, Height, Impact, Interval, Number, Percent, Position, Rebound, Release, Rest, Speed,
+            Time, Total,
         };
         let has = |atom| self.has(atom);
         let of = |dimension| self.unit.is_some_and(|unit: Unit| unit.dimension == dimension);
@@ -82,7 +82,7 @@ impl Heading {
             || has(Distance)
             || of(Dimension::Length)
             || has(Percent)
-            || has(Rebound) && !has(Impact)
+            || has(Rebound) && !has(Impact) && !(has(Number) && self.unit.is_none())
             || has(Release) && !has(Atom::Trial)
         {
             What::Height
@@ -93,7 +93,7 @@ impl Heading {
 
     /// What a heading without a quantity tells apart.
     fn key(&self, numbers: &Numbers) -> Option<Meaning> {
-        use Atom::{Error, Event, Frame, Group, Impact, Mean, Number, Release, Repeat, Trial};
+        use Atom::{Error, Event, Frame, Group, Impact, Mean, Number, Rebound, Release, Repeat, Trial};
         let has = |atom| self.has(atom);
         let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
         if has(Frame) {
@@ -112,7 +112,7 @@ impl Heading {
             return Some(Meaning::Setting);
         }
         if has(Number) || has(Impact) {
-            return Some(Meaning::Number { sure: has(Impact) });
+            return Some(Meaning::Number { sure: has(Impact) || has(Rebound) });
         }
         None
     }

@@ -81,6 +81,8 @@ fn keys_trials_and_balls() {
     for (text, meaning) in [
         ("bounce", Meaning::Number { sure: true }),
         ("Bounce no.", Meaning::Number { sure: true }),
+        ("Peak no.", Meaning::Number { sure: true }),
+        ("Rebound number", Meaning::Number { sure: true }),
         ("n", Meaning::Number { sure: false }),
         ("#", Meaning::Number { sure: false }),
         ("Trial", Meaning::Trial),
