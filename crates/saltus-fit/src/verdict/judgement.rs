@@ -141,3 +141,16 @@ impl Judgement {
         self.findings.iter().position(leads)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rival outside twice the interval is another answer if it is so by more than [`SAME`].
+    #[test]
+    fn a_rival_so_near_is_no_other_answer() {
+        let cor = Cor { value: 0.8, standard_error: Some(5e-4), low: 0.799, high: 0.801 };
+        let judgement = Judgement { cor: Some(cor), ..Judgement::default() };
+        assert!(!judgement.outside(0.803) && judgement.outside(0.81) && !judgement.outside(0.801));
+    }
+}

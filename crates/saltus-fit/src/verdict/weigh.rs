@@ -259,6 +259,21 @@ mod tests {
         model
     }
 
+    /// Of a model whose COR is within the errors the interval takes in that error only if it is
+    /// better by more than [`WEAK`], and its COR another by more than [`SAME`].
+    #[test]
+    fn what_is_hardly_better_adds_its_cor_alone() {
+        let cor = Cor { value: 0.8, standard_error: Some(0.002), low: 0.796, high: 0.804 };
+        let high = |e: f64, bic: f64| {
+            let list = [model(CorModel::Drag, e, bic, &[]), model(CorModel::Constant, 0.8, 0.0, &[])];
+            let mut judgement = Judgement { cor: Some(cor), ..Judgement::default() };
+            models(&mut judgement, &list);
+            judgement.cor.map_or(0.0, |cor| cor.high)
+        };
+        assert!(high(0.8045, -1.5) < 0.805 && high(0.8045, -3.0) > 0.807);
+        assert!(high(0.8012, -3.0) < 0.805);
+    }
+
     /// Drag is clearly better than one COR, and a COR of speed within 2.4 of drag.
     #[test]
     fn what_comes_close_to_the_best_is_named_beside_it() {
