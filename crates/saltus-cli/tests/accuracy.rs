@@ -57,7 +57,7 @@ fn reasons_are_lines_without_places_in_a_scene_that_nobody_wrote() {
     let stacked = "examples/scenes/stacked.toml";
     for arguments in [&["accuracy", stacked][..], &["explain", stacked, "--cost"]] {
         let (text, _) = done(arguments);
-        assert!(text.contains("without quadratic drag: leave it out, or give them a `position` with x\n"), "{text}");
+        assert!(text.contains("its stiffness is not known: give [contact]\n"), "{text}");
         assert!(!text.contains("stacked.toml:") && !text.contains("^^^") && !text.contains("added_mass:"), "{text}");
     }
 }

@@ -45,6 +45,9 @@ pub enum Stepper {
     Dop853,
     /// Rosenbrock, for stiff contact.
     Rodas5p,
+    /// Taylor series in flights sideways, of an order that the tolerance asks for; else what the
+    /// plan would choose.
+    Series,
 }
 
 impl Stepper {
@@ -55,13 +58,14 @@ impl Stepper {
             Self::Tsit5 => "Tsit5",
             Self::Dop853 => "Dop853",
             Self::Rodas5p => "Rodas5P",
+            Self::Series => "series",
         }
     }
 
     /// The one for the tightest tolerances where this one would do.
     pub(super) const fn exact(self) -> Self {
         match self {
-            Self::Tsit5 | Self::Dop853 => Self::Dop853,
+            Self::Tsit5 | Self::Dop853 | Self::Series => Self::Dop853,
             Self::Rodas5p => Self::Rodas5p,
         }
     }

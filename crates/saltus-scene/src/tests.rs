@@ -265,7 +265,7 @@ fn an_outcome_is_what_the_record_shows() {
 fn what_no_model_can_do_is_said_where_it_stands() {
     let two = "[[ball]]\nheight = 1\nradius = 0.1\nmass = 1\n[[ball]]\nheight = 2\nradius = 0.1\nmass = 1\n";
     let cases = [
-        (format!("restitution = 0.8\nbuoyancy = true\n[run]\nuntil = 1\n[air]\ndensity = 1.2\n{two}"), (2, 1)),
+        (format!("collisions = {{ restitution = 0.9 }}\n[contact]\nlaw = 'hertz'\nstiffness = 1e8\n[run]\nuntil = 1\n{two}"), (2, 2)),
         (
             "[run]\nuntil = 1\n[[floor]]\nrestitution = 0.9\n[[floor]]\nkind = 'sine'\namplitude = 0.05\nwavelength = 0.2\n\
              restitution = 0.6\n[ball]\nheight = 0.3\nradius = 0.03\n"
@@ -282,9 +282,9 @@ fn what_no_model_can_do_is_said_where_it_stands() {
     // A scene changed by hand is no longer what stands in the text, but still says where that key
     // is.
     let mut scene = Scene::parse("s.toml", format!("restitution = 0.8\n[run]\nuntil = 1\n{two}").as_bytes()).unwrap();
-    scene.effects.buoyancy = true;
+    scene.contact = Contact::Hertz(saltus_bounce::contact::Hertz::new(1e8).unwrap());
     let error = scene.plan().unwrap_err();
-    assert!(error.in_text().is_none() && error.to_string().starts_with("buoyancy: "), "{error}");
+    assert!(error.in_text().is_none() && error.to_string().starts_with("[contact]: "), "{error}");
 }
 
 /// Workers take runs from each other, and a record is data.
@@ -302,6 +302,61 @@ fn a_record_is_sent_shared_and_serialised() {
         let here = shared(&record);
         assert_eq!(here.clone() + "\n", record.json(None).unwrap());
         assert_eq!(std::thread::spawn(move || shared(&record)).join().unwrap(), here);
+    }
+}
+
+/// Flights by Taylor series are the flights that are stepped, as near as the tolerance asks, in
+/// fewer steps.
+#[test]
+fn flights_by_series_are_those_by_steps() {
+    let scene = |run: &str| {
+        let toml = format!(
+            "restitution = 0.7\nfriction = 0.4\n\
+             ball = {{ radius = 0.033, mass = 0.058, height = 1, velocity = [12, -3, 4], spin = [5, -90, 30] }}\n\
+             drag = {{ coefficient = 0.5 }}\nmagnus = {{ slope = 1, saturation = 2 }}\nspin_decay = {{ time = 20 }}\n\
+             air = {{ wind = [1, -2, 0.5] }}\nrun = {{ until = 2{run} }}\n"
+        );
+        Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap()
+    };
+    let exact = scene(", tolerance = 1e-13, stepper = 'dop853'").run().unwrap();
+    for tolerance in [1e-6, 1e-9, 1e-11] {
+        let by = |stepper: &str| scene(&format!(", tolerance = {tolerance:e}{stepper}"));
+        let plan = by(", stepper = 'series'");
+        assert_eq!(plan.explain().modes[0].advance, plan::Advance::Series);
+        let (series, stepped) = (plan.run().unwrap(), by("").run().unwrap());
+        assert!(series.cost().steps < stepped.cost().steps);
+        let off = |record: &Record| {
+            let place = |record: &Record, k: u32| record.at(0, f64::from(k) * 0.02).unwrap().position;
+            (0..=100).map(|k| (place(record, k) - place(&exact, k)).norm()).fold(0.0, f64::max)
+        };
+        assert!(off(&series) <= 1e3 * tolerance, "{tolerance}: {} {}", off(&series), off(&stepped));
+    }
+}
+
+/// Balls above each other in air fall as each would alone until they meet, and end where one would
+/// rest upon another.
+#[test]
+fn balls_above_each_other_fall_in_air() {
+    let head = "restitution = 0.7\ndrag = { coefficient = 0.47 }\n";
+    let lower = "{ radius = '3 cm', mass = '50 g', height = 1 }";
+    let run = |balls: &str, until: &str| {
+        let toml = format!("{head}ball = [{balls}]\nrun = {{ until = {until} }}\n");
+        Scene::parse("s.toml", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap()
+    };
+    let both = run(&format!("{lower}, {{ radius = '2 cm', mass = '3 g', height = 1.2 }}"), "'5 s'");
+    let alone = run(lower, "'0.4 s'");
+    for k in 0..=40 {
+        let t = f64::from(k) * 0.01;
+        let [a, b] = [&both, &alone].map(|record| record.at(0, t).unwrap());
+        assert!((a.height() - b.height()).abs() < 1e-9, "{} {} at {t}", a.height(), b.height());
+        assert_eq!((a.position.x, a.position.y), (0.0, 0.0));
+    }
+    assert!(both.impacts().len() > 5);
+    assert!(matches!(both.end(), plan::End::Zeno { .. }), "{:?}", both.end());
+    for k in 0..=200 {
+        let t = both.until() * f64::from(k) / 200.0;
+        let [low, high] = [0, 1].map(|ball| both.at(ball, t).unwrap().height());
+        assert!(high - low > 0.06 - 1e-8, "{low} {high} at {t}");
     }
 }
 

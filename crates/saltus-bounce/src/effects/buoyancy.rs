@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::gravity::upwards;
-use super::{Effect, Gravity, Motion, Spin};
+use super::{Effect, Gravity, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative};
 use crate::sphere::Sphere;
 
@@ -52,6 +52,17 @@ impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
         upwards(self.gravity.value() * self.ratio)
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        let _ = motion;
+        sum.lift(self.gravity.value() * self.ratio);
     }
 }
 
@@ -113,5 +124,22 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
     #[inline]
     fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
         self.effects.kink(motion)
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        let mut inner = JetSum::default();
+        self.effects.series(motion, &mut inner);
+        let mut acceleration = inner.acceleration();
+        if self.share != 1.0 {
+            acceleration = acceleration.map(|a| a * self.share);
+        }
+        sum.accelerate(acceleration);
+        sum.turn(inner.spin_rate());
     }
 }

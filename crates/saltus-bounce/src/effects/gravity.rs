@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Effect, Motion, Spin};
+use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative};
 
 /// Gravity on Earth by convention, 9.80665 m/s² (third General Conference on Weights and Measures,
@@ -93,6 +93,17 @@ impl<const N: usize, S: Spin> Effect<N, S> for Gravity {
     #[inline]
     fn acceleration(&self, _motion: &Motion<N, S>) -> SVector<f64, N> {
         upwards(-self.0)
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        let _ = motion;
+        sum.lift(-self.0);
     }
 }
 

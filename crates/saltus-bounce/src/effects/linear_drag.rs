@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::SVector;
 
-use super::{Effect, Motion, Spin};
+use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
 
@@ -56,5 +56,15 @@ impl<const N: usize, S: Spin> Effect<N, S> for LinearDrag {
     #[inline]
     fn acceleration(&self, motion: &Motion<N, S>) -> SVector<f64, N> {
         motion.velocity * -self.rate
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        sum.accelerate(motion.velocity.map(|v| v * -self.rate));
     }
 }

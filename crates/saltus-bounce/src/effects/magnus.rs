@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Effect, Motion};
+use super::{Effect, JetMotion, JetSum, Motion};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
 
@@ -74,6 +74,23 @@ impl Effect<2, f64> for Magnus {
         let square = v.norm_squared();
         Vector2::new(-v[1], v[0]) * (w * self.factor(w.abs() * square.sqrt(), square))
     }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) {
+        let ([x, up], [w, ..]) = (motion.velocity, motion.spin);
+        let mut factor = w * self.slope;
+        if self.saturation > 0.0 {
+            // |w|: the spin of a flight dies away, and keeps its sign.
+            let across = w * if w.value() < 0.0 { -self.saturation } else { self.saturation };
+            factor *= motion.speed / (motion.speed + across);
+        }
+        sum.accelerate([up * -factor, x * factor]);
+    }
 }
 
 /// In space, with spin by the right-hand rule.
@@ -82,5 +99,24 @@ impl Effect<3, Vector3<f64>> for Magnus {
     fn acceleration(&self, motion: &Motion<3, Vector3<f64>>) -> Vector3<f64> {
         let cross = motion.spin.cross(&motion.velocity);
         cross * self.factor(cross.norm(), motion.velocity.norm_squared())
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, 3>, sum: &mut JetSum<'j, 3>) {
+        let ([vx, vy, vz], [wx, wy, wz]) = (motion.velocity, motion.spin);
+        let cross = [wy * vz - wz * vy, wz * vx - wx * vz, wx * vy - wy * vx];
+        let [x, y, z] = cross;
+        if self.saturation == 0.0 {
+            return sum.accelerate(cross.map(|c| c * self.slope));
+        }
+        let across = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() * self.saturation;
+        let square = motion.speed.powi(2);
+        let factor = square * self.slope / (square + across);
+        sum.accelerate(cross.map(|c| c * factor));
     }
 }

@@ -8,6 +8,7 @@
 
 mod buoyancy;
 mod gravity;
+mod jets;
 mod linear_drag;
 mod magnus;
 mod quadratic_drag;
@@ -20,6 +21,7 @@ use nalgebra::{SVector, Vector3};
 
 pub use buoyancy::{AddedMass, Buoyancy};
 pub use gravity::{Gravity, STANDARD_GRAVITY};
+pub use jets::{JetMotion, JetSum};
 pub use linear_drag::LinearDrag;
 pub use magnus::Magnus;
 pub use quadratic_drag::QuadraticDrag;
@@ -125,9 +127,57 @@ pub trait Effect<const N: usize, S: Spin = ()> {
     fn kink(&self, _motion: &Motion<N, S>) -> Option<f64> {
         None
     }
+
+    /// Whether [`series`](Self::series) says all that the effect does.
+    #[inline]
+    fn has_series(&self) -> bool {
+        false
+    }
+
+    /// The same once more over [`Jet`](saltus::Jet)s, added to a sum: flights are then advanced by
+    /// Taylor series where [`Flyer::by_series`](crate::Flyer::by_series) asks for it.
+    ///
+    /// ```
+    /// use nalgebra::vector;
+    /// use saltus::Simulation;
+    /// use saltus_bounce::effects::{Effect, Gravity, JetMotion, JetSum, Motion};
+    /// use saltus_bounce::{Cor, Flyer, Moving, Stance, walls::Plane};
+    ///
+    /// /// A force against the velocity that does not depend on the speed.
+    /// struct Rubbing(f64);
+    ///
+    /// impl Effect<2> for Rubbing {
+    ///     fn acceleration(&self, motion: &Motion<2>) -> nalgebra::Vector2<f64> {
+    ///         motion.velocity * (-self.0 / motion.velocity.norm())
+    ///     }
+    ///     fn has_series(&self) -> bool {
+    ///         true
+    ///     }
+    ///     fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) {
+    ///         sum.accelerate(motion.velocity.map(|v| v * -self.0 / motion.speed));
+    ///     }
+    /// }
+    ///
+    /// let ball = Flyer::new((Gravity::EARTH, Rubbing(0.5)), Plane::floor(0.0)?, Cor::new(0.8)?)?;
+    /// let start = Moving::new(vector![0.0, 1.0], vector![3.0, 1.0]);
+    /// let end = |ball| Simulation::of(&ball).run(Stance::FLIGHT, start, 0.0..1.0).map(|run| run.end);
+    /// let (stepped, expanded) = (end(ball)?, end(Flyer::new((Gravity::EARTH, Rubbing(0.5)), Plane::floor(0.0)?, Cor::new(0.8)?)?.by_series())?);
+    /// assert!((stepped.state.position - expanded.state.position).norm() < 1e-7);
+    /// assert!(expanded.stats.steps < stepped.stats.steps);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        let _ = (motion, sum);
+    }
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn uniform(&self) -> bool {
         true
@@ -160,6 +210,16 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Option<E> {
     fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
         self.as_ref()?.kink(motion)
     }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        self.as_ref().is_none_or(Effect::has_series)
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        self.iter().for_each(|effect| effect.series(motion, sum));
+    }
 }
 
 macro_rules! tuple_of_effects {
@@ -191,6 +251,21 @@ macro_rules! tuple_of_effects {
                 #[allow(non_snake_case)]
                 let ($first, $($other,)*) = self;
                 $first.kink(motion) $(.or_else(|| $other.kink(motion)))*
+            }
+
+            #[inline]
+            fn has_series(&self) -> bool {
+                #[allow(non_snake_case)]
+                let ($first, $($other,)*) = self;
+                $first.has_series() $(&& $other.has_series())*
+            }
+
+            #[inline]
+            fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+                #[allow(non_snake_case)]
+                let ($first, $($other,)*) = self;
+                $first.series(motion, sum);
+                $($other.series(motion, sum);)*
             }
         }
     };
@@ -241,6 +316,40 @@ mod tests {
             prop_assert_eq!(still.acceleration(&motion), Vector3::zeros());
             let calm = Wind::new(Vector3::zeros(), (lift, drag)).unwrap();
             prop_assert_eq!(calm.acceleration(&motion), (lift, drag).acceleration(&motion));
+        }
+
+        /// Over jets an effect does what it does over numbers.
+        #[test]
+        fn series(v in prop::array::uniform3(-40.0..40.0_f64), w in prop::array::uniform3(-300.0..300.0_f64), sigma in 0.0..3.0_f64, wind in -9.0..9.0_f64) {
+            let ball = Sphere::hollow(0.033, 0.058).unwrap();
+            let each = (
+                QuadraticDrag::sphere(&ball, AIR_DENSITY, 0.5).unwrap(),
+                LinearDrag::new(0.1).unwrap(),
+                Magnus::new(&ball, AIR_DENSITY, 1.0, if sigma < 0.5 { 0.0 } else { sigma }).unwrap(),
+                SpinDecay::in_flight(&ball, 0.01).unwrap(),
+            );
+            let lift = Buoyancy::new(&ball, AIR_DENSITY, Gravity::EARTH).unwrap();
+            macro_rules! agrees {
+                ($n:literal, $velocity:expr, $spin:expr, $coordinates:expr) => {{
+                    let air = Wind::new(SVector::<f64, $n>::repeat(wind), each).unwrap();
+                    let all = AddedMass::new(&ball, AIR_DENSITY, (Gravity::EARTH, Some(lift), air)).unwrap();
+                    let motion = at($velocity, $spin);
+                    let jets = JetMotion::<$n>::new(std::array::from_fn(|i| motion.velocity[i].into()), $coordinates.map(f64::into));
+                    let mut sum = JetSum::default();
+                    Effect::<$n, _>::series(&all, &jets, &mut sum);
+                    let (a, turns) = (all.acceleration(&motion), all.spin_rate(&motion));
+                    for (jet, a) in sum.acceleration().iter().zip(a.iter()) {
+                        prop_assert!((jet.value() - a).abs() <= 1e-11 * (1.0 + a.abs().max(motion.velocity.norm_squared())));
+                    }
+                    prop_assert!(Effect::<$n, _>::has_series(&all));
+                    (sum.spin_rate().map(saltus::Jet::value), turns)
+                }};
+            }
+            let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + b.abs());
+            let (flat, rate) = agrees!(2, vector![v[0], v[1]], w[0], [w[0], 0.0, 0.0]);
+            prop_assert!(close(flat[0], rate));
+            let (deep, rate) = agrees!(3, Vector3::from(v), Vector3::from(w), w);
+            prop_assert!((0..3).all(|i| close(deep[i], rate[i])));
         }
 
         /// The plane is a slice of space: the vertical plane (x, up) with spin about the axis that

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Effect, Motion, Spin};
+use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
 
@@ -78,5 +78,16 @@ impl<const N: usize, S: Spin> Effect<N, S> for QuadraticDrag {
     #[inline]
     fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
         (N == 1).then(|| motion.velocity[0])
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        let factor = motion.speed * -self.per_length;
+        sum.accelerate(motion.velocity.map(|v| v * factor));
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Effect, Motion, Spin};
+use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
 
@@ -60,6 +60,21 @@ macro_rules! decay {
             #[inline]
             fn spin_rate(&self, motion: &Motion<$n, $spin>) -> $spin {
                 motion.spin.times(-(self.steady + self.per_length * motion.velocity.norm()))
+            }
+
+            #[inline]
+            fn has_series(&self) -> bool {
+                true
+            }
+
+            #[inline]
+            fn series<'j>(&self, motion: &JetMotion<'j, $n>, sum: &mut JetSum<'j, $n>) {
+                let rate = if self.per_length == 0.0 {
+                    (-self.steady).into()
+                } else {
+                    motion.speed * -self.per_length - self.steady
+                };
+                sum.turn(motion.spin.map(|w| w * rate));
             }
         }
     };

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use super::{Effect, Motion, Spin};
+use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, finite};
 
 /// Effects in air that moves with a constant velocity w: they see v - w.
@@ -61,5 +61,19 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
     #[inline]
     fn kink(&self, motion: &Motion<N, S>) -> Option<f64> {
         self.effects.kink(&self.seen(motion))
+    }
+
+    #[inline]
+    fn has_series(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+        if self.velocity.iter().all(|&v| v == 0.0) {
+            return self.effects.series(motion, sum);
+        }
+        let velocity = std::array::from_fn(|i| motion.velocity[i] - self.velocity[i]);
+        self.effects.series(&JetMotion::new(velocity, motion.spin), sum);
     }
 }

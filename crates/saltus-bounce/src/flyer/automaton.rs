@@ -1,11 +1,11 @@
 //! The ball among walls as a hybrid automaton.
 
 use nalgebra::SVector;
-use saltus::{About, Automaton, Clocks, Edges, Entry, Limit, Refusal, Solution, Ticking};
+use saltus::{About, Automaton, Clocks, Edges, Entry, Jet, Limit, Refusal, Series, Solution, Ticking};
 
 use super::contact::{VEERS, forwards, none};
 use super::{Event, Flyer, Grip, Moving, Stance, Turning};
-use crate::effects::Effect;
+use crate::effects::{Effect, JetMotion, JetSum};
 use crate::restitution::Restitution;
 use crate::walls::{Face, Walls};
 
@@ -35,6 +35,32 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
         };
         Moving { position: x.velocity, velocity, spin }
+    }
+
+    /// The flow of a flight over jets, of as many coordinates as the state has.
+    fn expand(&self, _: Stance<N>, series: &mut Series<'_, Moving<N, S>>) {
+        match 2 * N + S::LEN {
+            4 => series.flow::<4>(|_, x| self.jets(x)),
+            5 => series.flow::<5>(|_, x| self.jets(x)),
+            6 => series.flow::<6>(|_, x| self.jets(x)),
+            9 => series.flow::<9>(|_, x| self.jets(x)),
+            _ => {}
+        }
+    }
+
+    /// x' in flight over jets.
+    #[inline]
+    fn jets<'j, const K: usize>(&self, x: [Jet<'j>; K]) -> [Jet<'j>; K] {
+        let at = |i: usize| x.get(i).copied().unwrap_or(0.0.into());
+        let motion = JetMotion::new(std::array::from_fn(|i| at(N + i)), std::array::from_fn(|i| at(2 * N + i)));
+        let mut sum = JetSum::<N>::default();
+        self.effects.series(&motion, &mut sum);
+        let (acceleration, spin) = (sum.acceleration(), sum.spin_rate());
+        std::array::from_fn(|i| match i {
+            i if i < N => at(N + i),
+            i if i < 2 * N => acceleration[i - N],
+            i => spin[i - 2 * N],
+        })
     }
 
     /// Whether forces are constant in `stance`.
@@ -198,6 +224,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             Solution::Polynomial([*x, rate, half].into())
         } else if self.ridden(stance).is_some_and(|face| self.walls.carried(face, t, t).is_some()) {
             Solution::Formula(Self::carried)
+        } else if self.expanded && matches!(stance, Stance::Flight { .. }) {
+            Solution::Series(Self::expand)
         } else {
             Solution::Steps
         }

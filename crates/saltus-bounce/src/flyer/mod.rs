@@ -71,6 +71,7 @@ pub struct Flyer<const N: usize, S, E, W, R = Cor, G = ()> {
     walls: W,
     restitution: R,
     grip: G,
+    expanded: bool,
     spin: PhantomData<S>,
 }
 
@@ -97,7 +98,18 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             const { assert!(MOST_FACES == 13) };
             return Err(ParameterError::new("a number of faces of one cell", most as f64, GIVE));
         }
-        Ok(Self { effects, walls, restitution, grip, spin: PhantomData })
+        Ok(Self { effects, walls, restitution, grip, expanded: false, spin: PhantomData })
+    }
+
+    /// Advances flights in the plane and in space by Taylor series, where forces change and every
+    /// effect has one ([`Effect::series`]): fewer steps, of an order that the tolerance asks for,
+    /// and a smaller error.
+    ///
+    /// Limits: on a line the kink of drag is stepped to; contacts are stepped.
+    #[must_use]
+    pub fn by_series(mut self) -> Self {
+        self.expanded = N > 1 && self.effects.has_series();
+        self
     }
 
     /// The walls.

@@ -43,7 +43,7 @@ pub(crate) struct Sweep {
     #[arg(long)]
     pub(crate) force: bool,
     /// On how many threads to run; as many as there are cores unless given.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, visible_alias = "jobs", value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// When to stop each run, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]

@@ -227,6 +227,8 @@ pub enum Advance {
     Exact,
     /// A formula gives the motion: no step.
     Formula,
+    /// By Taylor series, of an order that the tolerance asks for.
+    Series,
     /// By the steps of this explicit method.
     Explicit(&'static str),
     /// By the steps of this method for stiff flows.
@@ -246,6 +248,7 @@ impl fmt::Display for Advance {
         match self {
             Self::Exact => f.write_str("exact arc"),
             Self::Formula => f.write_str("closed form"),
+            Self::Series => f.write_str("Taylor series"),
             Self::Explicit(name) => write!(f, "explicit stepper {name}"),
             Self::Stiff(name) => write!(f, "stiff stepper {name}"),
         }

@@ -9,7 +9,7 @@ use super::runner::{BoundModel, Runner};
 use super::surroundings::{Surroundings, surroundings};
 use super::view::{Collision, SceneEvent, SceneView};
 use super::{PlanError, failed, label};
-use crate::{Ball, Law, Scene};
+use crate::{Ball, Law, Scene, Stepper};
 use saltus_bounce::effects::{
     AddedMass, Buoyancy, Effect, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay, Wind,
 };
@@ -109,6 +109,7 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
+    let flyer = if scene.run.stepper == Some(Stepper::Series) { flyer.by_series() } else { flyer };
     Ok(BoundModel::boxed(flyer, view, stance, start))
 }
 
@@ -123,6 +124,7 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
+    let flyer = if scene.run.stepper == Some(Stepper::Series) { flyer.by_series() } else { flyer };
     Ok(BoundModel::boxed(flyer, view, stance, start))
 }
 
@@ -336,6 +338,9 @@ impl FloorsView {
     pub(super) const fn because<const N: usize>(stance: Stance<N>, advance: Advance) -> &'static str {
         match (stance, advance) {
             (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",
+            (Stance::Flight { .. }, Advance::Series) => {
+                "the air's force depends on the velocity, and the scene asks for its Taylor series"
+            }
             (Stance::Flight { .. }, _) => "the air's force depends on the velocity, and no formula solves that",
             (_, Advance::Exact) => "forces along a plane are constant: a parabola",
             (_, Advance::Formula) => "the ball rides on a floor whose motion is known",

@@ -45,6 +45,7 @@ pub(super) struct Method(pub(super) Stepper);
 impl Method {
     /// What the scene names, or what its tolerance asks for.
     pub(super) fn of(named: Option<Stepper>, tolerance: f64) -> Self {
+        let named = named.filter(|named| *named != Stepper::Series);
         Self(named.unwrap_or(if tolerance < Auto::TIGHT { Stepper::Dop853 } else { Stepper::Tsit5 }))
     }
 
@@ -64,7 +65,7 @@ impl From<Method> for Chosen {
     fn from(method: Method) -> Self {
         match method.0 {
             Stepper::Tsit5 => Self::Loose(Either::Loose(Tsit5)),
-            Stepper::Dop853 => Self::Loose(Either::Tight(Dop853)),
+            Stepper::Dop853 | Stepper::Series => Self::Loose(Either::Tight(Dop853)),
             Stepper::Rodas5p => Self::Tight(Rodas5P),
         }
     }

@@ -336,34 +336,8 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
             return Ok((Model::Cloud, cloud::runner(scene)?, None));
         }
     }
-    // On one line they come to rest upon each other, which only `Line` says what lies beyond.
-    match beside_gravity(scene).filter(|_| scene.dimensions == 1) {
-        Some(error) => Err(error),
-        None => Ok((Model::Flock, flock::runner(scene)?, None)),
-    }
-}
-
-/// What acts on several balls that only move up and down but gravity on a floor that stands.
-fn beside_gravity(scene: &Scene) -> Option<PlanError> {
-    if let Some(owner) = scene.floors.iter().position(|floor| floor.motion.is_some()) {
-        let says = "several balls that only move up and down are simulated over floors that stand still: leave `motion` out, or give them a `position` with x";
-        return Some(PlanError::floor(owner, says));
-    }
-    let key = |effect: Effect| match effect {
-        Effect::LinearDrag | Effect::QuadraticDrag => Some("drag"),
-        Effect::Wind => Some("[air]"),
-        Effect::Buoyancy => Some("buoyancy"),
-        Effect::AddedMass => Some("added_mass"),
-        Effect::Lift => Some("magnus"),
-        Effect::SpinDecay => Some("spin_decay"),
-        Effect::Gravity | Effect::Friction | Effect::Deformation => None,
-    };
-    let named = |effect: Effect| key(effect).filter(|_| scene.names(effect)).map(|key| (key, effect));
-    let (key, effect) = Effect::ALL.into_iter().find_map(named)?;
-    let says = format!(
-        "several balls that only move up and down are simulated without {effect}: leave it out, or give them a `position` with x"
-    );
-    Some(PlanError::new(key, &says))
+    // On one line they may come to rest upon each other: there the run ends, and says so.
+    Ok((Model::Flock, flock::runner(scene)?, None))
 }
 
 /// Whether nothing acts on several balls but gravity and restitution, on floors that stand still.
@@ -400,10 +374,10 @@ fn failed(error: saltus_bounce::ParameterError) -> PlanError {
 ///
 /// ```
 /// use saltus_scene::Scene;
-/// let toml = b"restitution = 0.8\ndrag = { per_length = '0.1 1/m' }\nrun = { until = 1 }\n\
+/// let toml = b"collisions = { restitution = 0.9 }\ncontact = { law = 'hertz', stiffness = 1e8 }\nrun = { until = 1 }\n\
 ///     ball = [{ height = 1, radius = 0.1, mass = 1 }, { height = 2, radius = 0.1, mass = 1 }]\n";
 /// let error = Scene::parse("two.toml", toml)?.plan().unwrap_err();
-/// assert!(error.to_string().starts_with("two.toml:2:1: several balls that only move up and down are simulated without quadratic drag"));
+/// assert!(error.to_string().starts_with("two.toml:2:1: contact that takes time is simulated for one ball"));
 /// # Ok::<(), saltus_scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -189,6 +189,7 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
             let advance = match automaton.solution(mode, 0.0, &self.state) {
                 Solution::Polynomial(_) => Advance::Exact,
                 Solution::Formula(_) => Advance::Formula,
+                Solution::Series(_) => Advance::Series,
                 _ if method.is_stiff() => Advance::Stiff(method.name()),
                 _ => Advance::Explicit(method.name()),
             };
