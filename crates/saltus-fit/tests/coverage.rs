@@ -16,7 +16,7 @@ fn coverage(truth: f64, mut run: impl FnMut(&mut Noise) -> (Fit, Table)) -> f64 
         let (fit, table) = run(&mut noise);
         // In a vacuum and from the true zero: what is tested is what the interval makes of the
         // readings.
-        let report = fit.drag(0.0).sigma_zero(0.0).run(&table).expect("a fit");
+        let report = fit.drag(0.0).sigma_zero(0.0).sigma_scale(0.0).run(&table).expect("a fit");
         let cor = *report.cor().expect("a COR");
         cor.low <= truth && truth <= cor.high
     });
