@@ -1,4 +1,5 @@
-//! `docs/thresholds.md`: every number that decides between a step and a jump, as the sources have it.
+//! Every number that decides between a step and a jump, as the sources have it: the thresholds
+//! themselves in `docs/numerics.md`, the counts and steps beside them in `docs/thresholds.md`.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -9,19 +10,17 @@ use std::path::{Path, PathBuf};
 /// Where the engine decides.
 const SOURCES: [&str; 4] = ["certainty.rs", "cross", "advance", "zeno.rs"];
 
-const HEAD: &str = "# Thresholds
+const HEAD: &str = "# Counts and steps
 
-The named numbers by which the engine decides whether, where and how a guard falls, what a step may
-be, and when jumps accumulate. For whoever changes the engine. The page is written from the sources
-by `SALTUS_BLESS=1 cargo test -p saltus-tests --test thresholds`, and the same test holds it to
-them.
-
-Two scales carry the decisions. Of *certainty*, in multiples of a value's noise: what one rounding of
-each number that it is made from changes it by. Of *nearness*, in parts of a whole. A comparison with
-a noise, or of a part with its whole, is to use one of them; three numbers more decide on guards.
-time.rs keeps a 4 of its own, whose derivation is its own. Of each of the twelve the last column
-names a test that fails if the number alone is made ten times larger or ten times smaller.
+The named numbers beside the twelve [thresholds](numerics.md#certainty-and-nearness) by which the
+engine decides how often something is looked at, what a step may be, and when jumps accumulate. For
+whoever changes the engine. The page is written from the sources by `SALTUS_BLESS=1 cargo test -p
+saltus-tests --test thresholds`, and the same test holds it to them.
 ";
+
+/// Where the twelve stand on their page.
+const BEGIN: &str = "<!-- written by the test thresholds: begin -->\n";
+const END: &str = "<!-- end -->\n";
 
 /// What a threshold decides, and the most that there may be of a kind, where that is limited.
 struct Kind {
@@ -56,7 +55,7 @@ const LIMITS: &str = "
 ## Limits
 
 The tables say what a number is for, not that its value could not be another: most could be several
-times larger or smaller, and no test would tell. `TINY` and `MINUTE` are held from below alone. Lists of places to look at, halves and doubles in
+times larger or smaller, and no test would tell. Lists of places to look at, halves and doubles in
 formulas and the coefficients of steppers are not listed.
 ";
 
@@ -160,18 +159,19 @@ fn the_page_lists_every_threshold() {
     assert!(all.len() > 20 && all[0].name == "FEW");
     let tests: Vec<_> =
         ["tests", "crates/saltus"].iter().flat_map(|folder| names_of_tests(&root.join(folder))).collect();
-    let mut page = HEAD.to_owned();
+    let (mut twelve, mut page) = (String::new(), HEAD.to_owned());
     for Kind { title, text, most, holds } in KINDS {
         let (of, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(holds);
         all = rest;
         assert!(of.len() <= most, "{title}: {}, and {most} at most", of.len());
         let held = most < usize::MAX;
-        let [head, rule] = if held { [" held by |", "---|"] } else { ["", ""] };
-        write!(
-            page,
-            "\n## {title}\n\n{text}| constant | value | what it is for | file |{head}\n|---|---|---|---|{rule}\n"
-        )
-        .unwrap();
+        if held {
+            twelve.push_str("| constant | value | what it is for | file | held by |\n|---|---|---|---|---|\n");
+        } else {
+            let columns = "| constant | value | what it is for | file |\n|---|---|---|---|";
+            writeln!(page, "\n## {title}\n\n{text}{columns}").unwrap();
+        }
+        let page = if held { &mut twelve } else { &mut page };
         for Constant { name, file, value, what, held_by, .. } in &of {
             write!(page, "| `{name}` | `{value}` | {what} | `{file}` |").unwrap();
             if held {
@@ -183,14 +183,24 @@ fn the_page_lists_every_threshold() {
         }
     }
     page.push_str(LIMITS);
-    let path = root.join("docs/thresholds.md");
+    holds(&root.join("docs/thresholds.md"), &page);
+    let numerics = root.join("docs/numerics.md");
+    let kept = fs::read_to_string(&numerics).unwrap();
+    let (before, rest) = kept.split_once(BEGIN).unwrap();
+    let (_, after) = rest.split_once(END).unwrap();
+    holds(&numerics, &format!("{before}{BEGIN}{twelve}{END}{after}"));
+}
+
+/// The page at `path` is what is written of the sources, or becomes it.
+fn holds(path: &Path, page: &str) {
     if std::env::var_os("SALTUS_BLESS").is_some() {
-        fs::write(&path, page).unwrap();
+        fs::write(path, page).unwrap();
         return;
     }
-    let kept = fs::read_to_string(&path).unwrap_or_default();
+    let kept = fs::read_to_string(path).unwrap_or_default();
+    let differs = format!("{} differs: SALTUS_BLESS=1 rewrites it", path.display());
     for (kept, new) in kept.lines().zip(page.lines()) {
-        assert_eq!(kept, new, "docs/thresholds.md differs: SALTUS_BLESS=1 rewrites it");
+        assert_eq!(kept, new, "{differs}");
     }
-    assert_eq!(kept.len(), page.len(), "docs/thresholds.md differs: SALTUS_BLESS=1 rewrites it");
+    assert_eq!(kept.len(), page.len(), "{differs}");
 }

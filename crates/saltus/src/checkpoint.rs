@@ -74,7 +74,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 11;
+    const NUMBER: u32 = 12;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -101,7 +101,7 @@ pub type CheckpointOf<A> = Checkpoint<<A as Automaton>::Mode, <A as Automaton>::
 pub(crate) type StageOf<A> = Stage<<A as Automaton>::Mode, <A as Automaton>::Edge, <A as Automaton>::State>;
 
 impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq, S: State> Stage<M, E, S> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn start(mode: M, state: S, span: Range<f64>) -> Self {
         let start = Time::new(span.start);
         let span = Span { start, now: start, end: Time::new(span.end) };
@@ -112,7 +112,7 @@ impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq, S: State> Stage<M, E
             jumps: 0,
             instant: start,
             cascade: Cascade::NONE,
-            contraction: Contraction::new(&state),
+            contraction: Contraction::new(),
             recent: Recent::new(),
             ticks: Ticks::new(),
             limits: Limits::default(),

@@ -65,7 +65,7 @@ impl Controller {
     }
 
     /// By which factor to change the step `h` after an error of this `square`, and whether to
-    /// accept it.
+    /// accept it: never where it is no number.
     #[inline]
     pub(crate) fn judge(&mut self, square: f64, h: f64) -> (bool, f64) {
         if square <= 1.0 {

@@ -84,7 +84,7 @@ impl<A: Automaton, M> fmt::Debug for Course<'_, A, M> {
 }
 
 impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(arc: Advance<'a, A, M>, at: StageOf<A>) -> Self {
         Self { arc, at }
     }
@@ -137,11 +137,26 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// # Errors
     /// See [`Error`]; the observer has had everything before it, and the course stays
     /// where it was.
+    #[inline]
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
+        let Stand { mode, state, now } = self.stand();
+        self.finish_from(mode, &state, now, observer)
+    }
+
+    /// A loop that keeps its registers to itself, whoever calls it; what it begins with is handed
+    /// on.
+    #[inline(never)]
+    fn finish_from(
+        &mut self,
+        mode: A::Mode,
+        state: &A::State,
+        now: Time,
+        observer: &mut impl Observer<A>,
+    ) -> Result<EndingOf<A>, Error> {
         let stop = match self.stopped() {
             Some(stop) => stop,
             None => {
-                let mut stand = self.stand();
+                let mut stand = Stand { mode, state: *state, now };
                 loop {
                     if let Some(stop) = self.step(&mut stand, observer)? {
                         break stop;
@@ -284,7 +299,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let at_once = arc.memory.at_once(since);
         let instant = if at_once { at.instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
-        let stands = !ticked && duration == 0.0 && arc.memory.just_took(edge) && to == mode && same(&x, &after);
+        let stands = duration == 0.0 && !ticked && to == mode && arc.memory.just_took(edge) && same(&{ x }, &{ after });
         if !stands {
             if at_once {
                 at.cascade = at.cascade.and(x, after);
@@ -292,7 +307,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
                 at.cascade = Cascade::NONE;
             }
             at.instant = instant;
-            if !after.is_finite() || to != mode && automaton.validate(to, now, &after).is_err() {
+            if !after.is_finite() || to != mode && automaton.validate(to, now, &{ after }).is_err() {
                 let (kind, note) = wrong(automaton, to, now, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &{ before })).noting(Some(note)));
             }
@@ -316,7 +331,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.recent.push(edge);
         let elapsed = time.since(at.span.start);
         let (lapse, short) = if at_once { (0.0, true) } else { (duration, arc.memory.is_short(duration)) };
-        at.contraction.push(lapse, short, after);
+        at.contraction.push(lapse, short, &at.state);
         let remaining =
             if stands { Some(0.0) } else { at.contraction.remaining(elapsed, arc.memory.hides_durations()) };
         if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
@@ -391,7 +406,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, after, jump.j);
-        (at.contraction, at.recent, at.cascade) = (Contraction::new(&after), Recent::new(), Cascade::NONE);
+        (at.contraction, at.recent, at.cascade) = (Contraction::new(), Recent::new(), Cascade::NONE);
         arc.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))
     }
@@ -414,6 +429,8 @@ fn wrong<A: Automaton>(automaton: &A, to: A::Mode, t: f64, x: A::State) -> (Erro
 }
 
 /// Whether two states are equal coordinate by coordinate.
+#[cold]
+#[inline(never)]
 fn same<S: State>(x: &S, y: &S) -> bool {
     x.len() == y.len() && (0..x.len()).all(|i| x.get(i) == y.get(i))
 }

@@ -5,7 +5,7 @@ use crate::state::State;
 use crate::time::Time;
 
 /// Σ cₖ sᵏ, coordinate by coordinate.
-#[inline]
+#[inline(always)]
 pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
     match coefficients {
         [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),

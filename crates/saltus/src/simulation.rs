@@ -319,7 +319,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
         span: Range<f64>,
         observer: &mut impl Observer<A>,
     ) -> Result<EndingOf<A>, Error> {
-        self.start(mode, state, span)?.finish(observer)
+        self.check(mode, &state, &span)?;
+        self.course(mode, state, span).finish(observer)
     }
 
     /// Begins a run that is advanced jump by jump.
@@ -329,9 +330,15 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     #[inline]
     pub fn start(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<Course<'a, A, M>, Error> {
         self.check(mode, &state, &span)?;
+        Ok(self.course(mode, state, span))
+    }
+
+    /// A run from what has been checked.
+    #[inline(always)]
+    fn course(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Course<'a, A, M> {
         let (stepper, options) = (self.fitted(), self.options.begun());
         let memory = Memory::new(&stepper, options.first_step);
-        Ok(Course::new(Advance::new(self.automaton, stepper, options, memory), Stage::start(mode, state, span)))
+        Course::new(Advance::new(self.automaton, stepper, options, memory), Stage::start(mode, state, span))
     }
 
     /// Goes on from a checkpoint, to the bit as if there had been no pause.

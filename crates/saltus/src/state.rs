@@ -73,7 +73,7 @@ impl State for f64 {
     fn get(&self, _: usize) -> f64 {
         *self
     }
-    #[inline]
+    #[inline(always)]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         f(0)
     }
@@ -89,7 +89,7 @@ impl<const N: usize> State for [f64; N] {
         self[i]
     }
     // A loop, whose body is compiled in: `std::array::from_fn` calls a larger one.
-    #[inline]
+    #[inline(always)]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let mut of = [0.0; N];
         for (i, coordinate) in of.iter_mut().enumerate() {
@@ -108,7 +108,7 @@ impl<const N: usize> State for SVector<f64, N> {
     fn get(&self, i: usize) -> f64 {
         self[i]
     }
-    #[inline]
+    #[inline(always)]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         Self::from_fn(|i, _| f(i))
     }

@@ -9,6 +9,9 @@ const MEMORY: usize = 16;
 /// The longest repeating pattern of jumps looked for.
 const LONGEST_CYCLE: usize = 4;
 
+/// How many jumps are the first ones: two of the longest cycles.
+const FIRST: usize = 2 * LONGEST_CYCLE;
+
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
 
@@ -22,24 +25,29 @@ const STATES: usize = 2 * LONGEST_CYCLE + 1;
 pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
     count: usize,
-    states: States<S>,
+    /// Kept only while jumps come in short times: no limit is near elsewhere, and a jump by a
+    /// formula costs little more than their copy.
+    states: Option<States<S>>,
 }
 
 /// The states x⁺ after the last jumps at each of the last instants.
-///
-/// Kept only while jumps come in short times: no limit is near elsewhere, and a jump by a formula
-/// costs little more than their copy.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct States<S> {
     /// The last of them, each in its turn.
     after: [S; STATES],
     count: usize,
-    /// The square of the longest way that x⁺ went in a cycle of 1, 2, ... jumps.
-    longest: [f64; LONGEST_CYCLE],
+    /// The square of the longest way that x⁺ went at first in a cycle of 1, 2, ... jumps.
+    first: [f64; LONGEST_CYCLE],
 }
 
 impl<S: State> States<S> {
+    #[cold]
+    #[inline(never)]
+    fn from(after: &S) -> Self {
+        Self { after: [*after; STATES], count: 1, first: [0.0; LONGEST_CYCLE] }
+    }
+
     /// x⁺ at the instant `back` instants ago, 0 for the last one.
     fn last(&self, back: usize) -> &S {
         &self.after[(self.count - 1 - back) % STATES]
@@ -47,59 +55,56 @@ impl<S: State> States<S> {
 
     #[cold]
     #[inline(never)]
-    fn push(&mut self, after: S) {
-        for cycle in 1..=LONGEST_CYCLE.min(self.count) {
-            let way = square_way(&after, self.last(cycle - 1));
-            self.longest[cycle - 1] = self.longest[cycle - 1].max(way);
+    fn push(&mut self, after: &S) {
+        if self.count <= FIRST {
+            for cycle in 1..=LONGEST_CYCLE.min(self.count) {
+                let way = square_way(after, self.last(cycle - 1));
+                self.first[cycle - 1] = self.first[cycle - 1].max(way);
+            }
         }
-        self.after[self.count % STATES] = after;
+        self.after[self.count % STATES] = *after;
         self.count += 1;
     }
 
     /// The last jump went on at once, to `after`.
     #[cold]
     #[inline(never)]
-    fn replace(&mut self, after: S) {
-        self.after[(self.count - 1) % STATES] = after;
-    }
-
-    fn forget(&mut self) {
-        (self.count, self.longest) = (0, [0.0; LONGEST_CYCLE]);
+    fn replace(&mut self, after: &S) {
+        self.after[(self.count - 1) % STATES] = *after;
     }
 
     /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
-    /// that what remains of its way is less than the longest cycle's.
+    /// that what remains of its way is less than the longest of the first cycles.
     fn contract(&self, cycle: usize) -> bool {
         if self.count <= 2 * cycle {
             return false;
         }
         let way = |from: usize| square_way(self.last(from), self.last(from + cycle)).sqrt();
-        let (now, before, longest) = (way(0), way(cycle), self.longest[cycle - 1].sqrt());
-        now == 0.0 || now < before && now * now <= longest * (before - now)
+        let (now, before, first) = (way(0), way(cycle), self.first[cycle - 1].sqrt());
+        now == 0.0 || now < before && now * now <= first * (before - now)
     }
 }
 
 impl<S: State> Contraction<S> {
-    /// Before any jump; from a state of the same shape as those to come.
-    pub(crate) const fn new(start: &S) -> Self {
-        let states = States { after: [*start; STATES], count: 0, longest: [0.0; LONGEST_CYCLE] };
-        Self { durations: [0.0; MEMORY], count: 0, states }
+    /// Before any jump.
+    pub(crate) const fn new() -> Self {
+        Self { durations: [0.0; MEMORY], count: 0, states: None }
     }
 
     /// Adds a jump some time after the one at the instant before, and the state `after` it, which
     /// counts where that time was `short`; of jumps at one time the last one counts.
     #[inline]
-    pub(crate) fn push(&mut self, duration: f64, short: bool, after: S) {
+    pub(crate) fn push(&mut self, duration: f64, short: bool, after: &S) {
         if duration > 0.0 {
             self.durations[self.count % MEMORY] = duration;
             self.count += 1;
-            if short {
-                self.states.push(after);
-            } else if self.states.count > 0 {
-                self.states.forget();
+            match &mut self.states {
+                states if !short => *states = None,
+                Some(states) => states.push(after),
+                states => *states = Some(States::from(after)),
             }
-        } else if self.states.count > 0 {
-            self.states.replace(after);
+        } else if let Some(states) = &mut self.states {
+            states.replace(after);
         }
     }
 
@@ -142,8 +147,10 @@ impl<S: State> Contraction<S> {
             }
             let last_cycle: f64 = (0..cycle).map(|i| self.last(i)).sum();
             let longest = (0..cycle).map(|i| self.last(i)).fold(0.0, f64::max);
-            (ratio < most && longest * ratio < resolution && self.states.contract(cycle))
-                .then(|| last_cycle * ratio / (1.0 - ratio))
+            (ratio < most
+                && longest * ratio < resolution
+                && self.states.as_ref().is_some_and(|states| states.contract(cycle)))
+            .then(|| last_cycle * ratio / (1.0 - ratio))
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of
         // one would seem to hardly contract.
@@ -164,9 +171,6 @@ pub(crate) struct Cascade {
     first: f64,
     late: f64,
 }
-
-/// How many jumps are the first ones of a cascade: two of the longest cycles.
-const FIRST: usize = 2 * LONGEST_CYCLE;
 
 impl Cascade {
     pub(crate) const NONE: Self = Self { jumps: 0, first: 0.0, late: 0.0 };
@@ -218,11 +222,11 @@ mod tests {
 
     #[test]
     fn a_geometric_series_is_summed() {
-        let mut contraction = Contraction::new(&0.0);
+        let mut contraction = Contraction::new();
         let mut d = 1.0;
         let mut sum = 0.0;
         while contraction.remaining(LATE, false).is_none() {
-            contraction.push(d, true, d);
+            contraction.push(d, true, &d);
             sum += d;
             d *= 0.8;
         }
@@ -233,11 +237,11 @@ mod tests {
     fn jumps_that_stay_as_large_are_not_zeno() {
         for growth in [1.0, 1.01, 0.999_999] {
             for turn in [1.0, -1.0] {
-                let mut contraction = Contraction::new(&0.0);
+                let mut contraction = Contraction::new();
                 let (mut d, mut by, mut x) = (1.0, 1.0, 0.0);
                 for n in 0..400 {
                     x += by;
-                    contraction.push(d, true, if n % 2 == 0 { x } else { turn * x });
+                    contraction.push(d, true, &if n % 2 == 0 { x } else { turn * x });
                     assert_eq!(contraction.remaining(LATE, false), None);
                     (d, by) = (0.8 * d, growth * by);
                 }
@@ -247,18 +251,18 @@ mod tests {
 
     #[test]
     fn a_harmonic_series_is_not_zeno() {
-        let mut contraction = Contraction::new(&0.0);
+        let mut contraction = Contraction::new();
         for n in 1..100_000 {
-            contraction.push(1e-3 / f64::from(n), true, 0.0);
+            contraction.push(1e-3 / f64::from(n), true, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
 
     #[test]
     fn a_cascade_is_not_zeno() {
-        let mut contraction = Contraction::new(&0.0);
+        let mut contraction = Contraction::new();
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
-            contraction.push(duration, true, 0.0);
+            contraction.push(duration, true, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -266,9 +270,9 @@ mod tests {
     #[test]
     fn jumps_that_are_all_but_at_one_time_are_not_zeno() {
         // Swings of one length but for rounding, and two collisions a rounding apart.
-        let mut contraction = Contraction::new(&0.0);
+        let mut contraction = Contraction::new();
         for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
-            contraction.push(duration, true, 0.0);
+            contraction.push(duration, true, &0.0);
             assert_eq!(contraction.remaining(LATE, false), None);
         }
     }
@@ -304,12 +308,12 @@ mod tests {
 
     #[test]
     fn a_cycle_of_two_contracts_as_a_whole() {
-        let mut contraction = Contraction::new(&0.0);
+        let mut contraction = Contraction::new();
         let mut d = 1.0;
         let mut sum = 0.0;
         for _ in 0..60 {
             for part in [d, 3.0 * d] {
-                contraction.push(part, true, part);
+                contraction.push(part, true, &part);
                 sum += part;
             }
             d *= 0.5;

@@ -50,58 +50,31 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, step, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
-            let unclear = by_powers == FirstFall::Unclear;
-            let p = along.as_ref().filter(|_| unclear).and_then(Along::bernstein);
-            let (value, bend) = if unclear && p.is_none() {
-                self.memory.stats.guards += 1;
-                let value = self.guard(edge, now.seconds(), &c[0]) - level;
-                // How far it bends tells what it is rough by near a zero at the start alone.
-                let at_zero = start == Start::Spent || value == 0.0;
-                (value, if at_zero { self.bend(edge, now, c) } else { 0.0 })
+            let (searched, near) = if by_powers == FirstFall::Nowhere {
+                (Searched::solved(None), None)
             } else {
-                (0.0, 0.0)
-            };
-            let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
-            // Where the dense output is long, it is summed up once.
-            let near = match by_powers {
-                FirstFall::At(u) if c.len() > LONG => Some(Near::around(c, scale, u * limit)),
-                _ => None,
-            };
-            let mut guard = |s: f64| {
-                *count += 1;
-                automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(&near, c, scale, s))
-            };
-            let mut above = |s: f64| guard(s) - level;
-            let turn_of_powers = along.as_ref().and_then(|along| along.powers.turns()).map(|u| u.map(|u| u * limit));
-            let searched = match (by_powers, &p) {
-                (FirstFall::Nowhere, _) => Ok(Searched::solved(None)),
-                (FirstFall::At(u), _) => Ok(Searched::solved(settle(&mut above, u * limit))),
-                (_, Some((p, margin, bend))) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start),
-                _ => {
-                    let tick = resolution(now.seconds().abs() + limit);
-                    first_fall_on_arc(&mut above, value, limit, start, bend, tick)
+                match self.searched(edge, step, limit, (start, level), along.as_ref().map(|along| (along, by_powers))) {
+                    Ok(searched) => searched,
+                    Err(Undefined(s)) => {
+                        undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
+                        continue;
+                    }
                 }
             };
-            let Searched { fall, mut evidence, turn } = match searched {
-                Ok(searched) => unlevelled(searched, level, &mut guard),
-                Err(Undefined(s)) => {
-                    undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
-                    continue;
-                }
-            };
+            let Searched { fall, mut evidence, turn } = searched;
             if start == Start::Spent && fall.is_none() {
                 self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
             }
             if let Some(observer) = &mut observer {
-                let grazing = match (fall, turn.or(turn_of_powers)) {
-                    (Some(crossing), _) => {
-                        self.dips(edge, step, crossing.root).or_else(|| self.unresolved(edge, step, crossing.root))
-                    }
-                    (None, Some(turn)) => {
+                let grazing = if let Some(crossing) = fall {
+                    self.dips(edge, step, crossing.root, by_powers.derivatives(limit))
+                        .or_else(|| self.unresolved(edge, step, crossing.root))
+                } else {
+                    let by_powers = || Some(along?.powers.turns()?.map(|u| u * limit));
+                    turn.or_else(by_powers).and_then(|turn| {
                         let leaves = first && (start == Start::Spent || self.memory.wall(edge).is_some());
                         self.missed(edge, step, turn, leaves)
-                    }
-                    (None, None) => None,
+                    })
                 };
                 evidence = grazing.map_or(evidence, |grazing| evidence.and(grazing));
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
@@ -112,19 +85,75 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
         match undefined.filter(|&(s, _)| s < first) {
-            Some((s, edge)) => Err(self.undefined(mode, edge, now, s, &horner(c, s / scale))),
+            Some((s, edge)) => Err(self.undefined(mode, edge, now, s, &step.at(s))),
             None => Ok(found),
         }
     }
 
-    /// How far the guard bends along a polynomial: by its powers from the second on.
-    #[cold]
-    fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
-        self.memory.stats.guards += 2;
-        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));
-        let [bent, start] = [&bent, &c[0]].map(|x| self.guard(edge, now.seconds(), x));
-        let bend = (bent - start).abs();
-        if bend.is_finite() { bend } else { 0.0 }
+    /// Where the guard of `edge` falls on a step, by what its powers show or by its values, and the
+    /// dense output near there, if it is long.
+    #[inline(always)] // what it finds is looked at at once, and need not lie in memory
+    #[allow(clippy::type_complexity)] // a pair
+    fn searched(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        limit: f64,
+        (start, level): (Start, f64),
+        along: Option<(&Along<'_>, FirstFall)>,
+    ) -> Result<(Searched, Option<Near<A::State>>), Undefined> {
+        let Some((_, FirstFall::At(fall))) = along else {
+            let searched = self.looked_for(edge, step, limit, (start, level), along.map(|(along, _)| along))?;
+            return Ok((searched, None));
+        };
+        let Step { now, c, scale } = step;
+        // Where the dense output is long, it is summed up once.
+        let near = if c.len() > LONG { Some(Near::around(c, scale, fall.u * limit)) } else { None };
+        let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
+        let mut guard = |s: f64| {
+            *count += 1;
+            automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(&near, c, scale, s))
+        };
+        let searched = Searched::solved(settle(|s| guard(s) - level, fall.u * limit));
+        Ok((unlevelled(searched, level, &mut guard), near))
+    }
+
+    /// Where the guard of `edge` falls on a step, by its values, or by the sign of its powers in
+    /// the Bernstein basis.
+    #[inline(never)] // of promised guards few need it: what is always done stays short
+    fn looked_for(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        limit: f64,
+        (start, level): (Start, f64),
+        along: Option<&Along<'_>>,
+    ) -> Result<Searched, Undefined> {
+        let Step { now, c, scale } = step;
+        let p = along.and_then(Along::bernstein);
+        let (value, bend) = if p.is_none() {
+            self.memory.stats.guards += 1;
+            let value = self.guard(edge, now.seconds(), &c[0]) - level;
+            // How far it bends tells what it is rough by near a zero at the start alone.
+            let at_zero = start == Start::Spent || value == 0.0;
+            (value, if at_zero { self.bend(edge, now, c) } else { 0.0 })
+        } else {
+            (0.0, 0.0)
+        };
+        let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
+        let mut guard = |s: f64| {
+            *count += 1;
+            automaton.guard(edge, smooth.within(now.after(s).seconds()), &horner(c, s / scale))
+        };
+        let mut above = |s: f64| guard(s) - level;
+        let searched = match &p {
+            Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start)?,
+            None => {
+                let tick = resolution(now.seconds().abs() + limit);
+                first_fall_on_arc(&mut above, value, limit, start, bend, tick)?
+            }
+        };
+        Ok(unlevelled(searched, level, &mut guard))
     }
 
     /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ
@@ -298,6 +327,7 @@ impl<S: State> Step<'_, S> {
     }
 
     /// The state then.
+    #[inline(never)] // where guards are searched it is summed up in place
     pub(super) fn at(&self, s: f64) -> S {
         horner(self.c, s / self.scale)
     }
@@ -409,6 +439,7 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
 }
 
 /// An affine guard along a step in powers of time.
+#[derive(Clone, Copy)]
 struct Along<'p> {
     powers: &'p Powers,
     /// The guard at the start, and its constant.

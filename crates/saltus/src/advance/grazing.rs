@@ -18,6 +18,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// value is within the error of the step, and when. Of a guard that `leaves` zero at the start
     /// of the step a least value that reaches back to there is that zero.
     #[cold]
+    #[inline(never)]
     pub(super) fn missed(
         &mut self,
         edge: A::Edge,
@@ -39,21 +40,44 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
-    /// and when.
+    /// and when. Its first two derivatives there are given where its powers are.
     #[inline]
-    pub(super) fn dips(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+    pub(super) fn dips(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        root: f64,
+        derivatives: Option<[f64; 2]>,
+    ) -> Option<Evidence> {
+        match derivatives {
+            Some(derivatives) if !turns_up(step, derivatives) => None,
+            _ => self.dips_there(edge, step, root, derivatives),
+        }
+    }
+
+    #[inline(never)]
+    fn dips_there(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        root: f64,
+        derivatives: Option<[f64; 2]>,
+    ) -> Option<Evidence> {
         let by = SMALL * step.scale;
         if root < by {
             return None;
         }
-        // Zero between them.
-        let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
-        let (slope, bend) = ((after - before) / (2.0 * by), (before + after) / (by * by));
-        let turn = -slope / bend;
-        (bend > 0.0 && turn < ROUGHLY * step.scale).then(|| self.shallow(edge, step, root, (turn, bend)))?
+        let derivatives = derivatives.unwrap_or_else(|| {
+            // Zero between them.
+            let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
+            [(after - before) / (2.0 * by), (before + after) / (by * by)]
+        });
+        let [slope, bend] = derivatives;
+        turns_up(step, derivatives).then(|| self.shallow(edge, step, root, (-slope / bend, bend)))?
     }
 
     #[cold]
+    #[inline(never)]
     fn shallow(
         &mut self,
         edge: A::Edge,
@@ -71,9 +95,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// is of a size that this tolerance does not resolve.
     #[inline]
     pub(super) fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
-        if self.memory.resolved {
-            return None;
-        }
+        if self.memory.resolved { None } else { self.resolved(edge, step, root) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn resolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         let middle = 0.5 * root;
         let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
         let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
@@ -83,6 +110,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// The guard of `edge` a time `s` after the start of a step.
+    #[inline(never)]
     fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
         self.memory.stats.guards += 1;
         self.guard(edge, step.time(s), &step.at(s))
@@ -113,4 +141,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         (a.midpoint(b), values[0].min(values[1]))
     }
+}
+
+/// Whether a guard of this slope and bend, zero on a step, turns up soon after.
+#[inline]
+fn turns_up<S>(step: Step<'_, S>, [slope, bend]: [f64; 2]) -> bool {
+    bend > 0.0 && -slope < bend * (ROUGHLY * step.scale)
 }

@@ -1,5 +1,7 @@
 //! What is kept from arc to arc.
 
+use smallvec::SmallVec;
+
 use crate::certainty::{FEW, SMALL};
 use crate::control::Controller;
 use crate::ending::Stats;
@@ -32,63 +34,16 @@ pub(super) struct Wall<E> {
     pub(super) falls: bool,
 }
 
-/// How many edges at a time are remembered as idle, or at their walls: with more, the oldest are
-/// taken for new ones.
-const MOST: usize = 16;
+/// So few edges at a time lie at their walls, or go on falling, in most systems: a list of no more
+/// is kept in place, and nothing is allocated for it.
+const FEW_EDGES: usize = 4;
 
 /// So many arcs in a row whose durations rounding spoils have accumulated: one may be short by
 /// chance.
 const IN_A_ROW: u32 = 3;
 
-/// A list of so few that it is kept in place: a run, and a checkpoint at each frame, allocate
-/// nothing.
-#[derive(Clone, Copy)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Few<T> {
-    items: [Option<T>; MOST],
-    count: usize,
-}
-
-impl<T: Copy> Few<T> {
-    const NONE: Self = Self { items: [None; MOST], count: 0 };
-
-    pub(super) const fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    pub(super) const fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
-        self.items[..self.count].iter().flatten()
-    }
-
-    pub(super) const fn count(&self) -> usize {
-        self.count
-    }
-
-    pub(super) fn get(&self, k: usize) -> Option<T> {
-        self.items[k]
-    }
-
-    pub(super) fn set(&mut self, k: usize, item: T) {
-        self.items[k] = Some(item);
-    }
-
-    pub(super) const fn truncate(&mut self, count: usize) {
-        self.count = count;
-    }
-
-    pub(super) fn push(&mut self, item: T) {
-        if self.count == MOST {
-            self.items.rotate_left(1);
-            self.count -= 1;
-        }
-        self.items[self.count] = Some(item);
-        self.count += 1;
-    }
-}
+/// A list of edges, of any length.
+pub(super) type Few<T> = SmallVec<[T; FEW_EDGES]>;
 
 /// What is kept from arc to arc.
 #[derive(Clone)]
@@ -134,6 +89,7 @@ pub(crate) struct Memory<E, S> {
 }
 
 impl<E: Copy + PartialEq, S: State> Memory<E, S> {
+    #[inline(always)]
     pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
@@ -144,8 +100,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             step: first_step,
             spent: None,
             last: None,
-            idle: Few::NONE,
-            walls: Few::NONE,
+            idle: Few::new_const(),
+            walls: Few::new_const(),
             cut_at: None,
             slack: 0.0,
             last_duration: 0.0,

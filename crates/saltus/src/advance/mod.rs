@@ -81,7 +81,7 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 }
 
 impl<'a, A: Automaton, M> Advance<'a, A, M> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, memory: Memory<A::Edge, A::State>) -> Self {
         let (tape, held, smooth) = (Tape::new(), Held::default(), Smooth::ALWAYS);
         Self { automaton, stepper, options, memory, tape, held, smooth }
@@ -184,11 +184,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mut keep: impl FnMut(&mut Self, &mut T) -> bool,
     ) {
         let mut kept = 0;
-        for k in 0..list(&mut self.memory).count() {
-            if let Some(mut item) = list(&mut self.memory).get(k)
-                && keep(self, &mut item)
-            {
-                list(&mut self.memory).set(kept, item);
+        for k in 0..list(&mut self.memory).len() {
+            let mut item = list(&mut self.memory)[k];
+            if keep(self, &mut item) {
+                list(&mut self.memory)[kept] = item;
                 kept += 1;
             }
         }

@@ -89,6 +89,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if change.is_finite() { change } else { 0.0 }
     }
 
+    /// How far the guard bends along a polynomial: by its powers from the second on.
+    #[cold]
+    pub(super) fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
+        self.memory.stats.guards += 2;
+        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));
+        let [bent, start] = [&bent, &c[0]].map(|x| self.guard(edge, now.seconds(), x));
+        let bend = (bent - start).abs();
+        if bend.is_finite() { bend } else { 0.0 }
+    }
+
     /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their
     /// walls, g = 0 and n·f + ∂g/∂t = 0 to rounding.
     #[inline]

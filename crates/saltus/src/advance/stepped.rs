@@ -54,14 +54,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let ahead = remaining.min(self.smooth.ahead(clock.now));
             let (mut h, longest) = self.before_step(mode, clock.now, &x, &slope, ahead);
-            let mut trial = self.trial(mode, clock.now.seconds(), &x, &slope, evened(h, longest));
-            let accepted = self.accepted(mode, clock.now, (&x, &slope), (&mut h, longest), &mut trial);
-            match accepted {
-                Ok(()) => {}
-                Err(error) if error.kind() == ErrorKind::Flow => {
-                    return self.edge_of_flow(mode, clock.now, &x, &slope, error);
+            let mut trial;
+            loop {
+                let size = evened(h, longest);
+                trial = self.trial(mode, clock.now.seconds(), &x, &slope, size);
+                if self.is_accepted(mode, clock.now, (&x, &slope), (&mut h, size), &trial) {
+                    h = size;
+                    break;
                 }
-                Err(error) => return Err(error),
+                if h <= SHORTEST * resolution(clock.now.seconds()) {
+                    return self.too_short(mode, clock.now, (&x, &slope), size, &trial);
+                }
             }
             let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
@@ -170,44 +173,61 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (h, longest)
     }
 
-    /// Tries shorter steps than the `trial` of the size `h` until the error estimate accepts one,
-    /// whose size is then `h`.
-    ///
-    /// The trial stays where it is: moved, it would go by way of memory in other pieces than it is
-    /// read in, and be waited for.
+    /// Whether the error estimate accepts a `trial` of the size `h`, and from `wanted` the size of
+    /// the next one.
     #[inline(always)]
-    fn accepted(
+    fn is_accepted(
         &mut self,
         mode: A::Mode,
         now: Time,
         (x, slope): (&A::State, &A::State),
-        (h, longest): (&mut f64, f64),
-        trial: &mut Trial<A::State, M::Stages<A::State>>,
-    ) -> Result<(), Error> {
-        let t = now.seconds();
-        let tolerance = self.options.tolerance;
-        loop {
-            let size = evened(*h, longest);
-            let error = self.stepper.error(size, trial.as_ref(), |error| tolerance.square(error, x, &trial.end));
-            let finite = !error.is_nan() && trial.end.is_finite() && trial.slope.is_finite();
-            let (accepted, factor) = self.memory.controller.judge(if finite { error } else { f64::INFINITY }, size);
-            if accepted {
-                self.memory.stats.steps += 1;
-                self.memory.step = Some(if size < *h { (size * factor).max(*h) } else { size * factor });
-                self.notice_stiffness(mode, t, x, size, trial, slope);
-                *h = size;
-                return Ok(());
-            }
+        (wanted, h): (&mut f64, f64),
+        trial: &Trial<A::State, M::Stages<A::State>>,
+    ) -> bool {
+        let error = self.square_of_error(x, h, trial);
+        let (accepted, factor) = self.memory.controller.judge(error, h);
+        if accepted {
+            self.memory.stats.steps += 1;
+            self.memory.step = Some(if h < *wanted { (h * factor).max(*wanted) } else { h * factor });
+            self.notice_stiffness(mode, now.seconds(), x, h, trial, slope);
+        } else {
             self.memory.stats.rejected += 1;
             self.memory.gait.rejected();
-            *h = size * factor;
-            if *h <= SHORTEST * resolution(t) {
-                return Err(too_short(finite, &trial.slope, Place::new(t, mode, None::<A::Edge>, x)));
-            }
-            *trial = self.trial(mode, t, x, slope, evened(*h, longest));
+            *wanted = h * factor;
         }
+        accepted
     }
 
+    /// The square of the error of a `trial` of the size `h` from `x`, in what the tolerance allows;
+    /// no number where it leads to none.
+    #[inline(always)]
+    fn square_of_error(&self, x: &A::State, h: f64, trial: &Trial<A::State, M::Stages<A::State>>) -> f64 {
+        let tolerance = self.options.tolerance;
+        let error = self.stepper.error(h, trial.as_ref(), |error| tolerance.square(error, x, &trial.end));
+        if trial.end.is_finite() && trial.slope.is_finite() { error } else { f64::NAN }
+    }
+
+    /// The end of an arc on which no step is accepted, at a crossing where its flow ends or by an
+    /// error.
+    #[cold]
+    #[inline(never)]
+    fn too_short(
+        &mut self,
+        mode: A::Mode,
+        now: Time,
+        (x, slope): (&A::State, &A::State),
+        h: f64,
+        trial: &Trial<A::State, M::Stages<A::State>>,
+    ) -> Result<ArcEnd<A>, Error> {
+        let place = Place::new(now.seconds(), mode, None::<A::Edge>, x);
+        if !self.square_of_error(x, h, trial).is_nan() {
+            return Err(Error::new(ErrorKind::StepSize, place));
+        }
+        let which = Some(not_finite(&trial.slope)).filter(|which| !which.is_empty());
+        self.edge_of_flow(mode, now, x, slope, Error::new(ErrorKind::Flow, place).noting(which))
+    }
+
+    #[inline(always)] // else a trial would be moved, and waited for
     fn trial(
         &mut self,
         mode: A::Mode,
@@ -223,6 +243,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             automaton.flow(mode, smooth.within(t), x)
         };
         self.stepper.trial(&mut flow, t, x, slope, h)
+    }
+
+    /// Once more, for a step to a crossing.
+    #[inline(never)]
+    fn retried(
+        &mut self,
+        mode: A::Mode,
+        t: f64,
+        x: &A::State,
+        slope: &A::State,
+        h: f64,
+    ) -> Trial<A::State, M::Stages<A::State>> {
+        self.trial(mode, t, x, slope, h)
     }
 
     fn dense(
@@ -397,7 +430,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let rise = guard(near) - guard(crossing.inside);
         let fall = rise / (crossing.inside - near); // -dg/dt
         for _ in 0..3 {
-            let trial = self.trial(mode, now.seconds(), x, slope, h);
+            let trial = self.retried(mode, now.seconds(), x, slope, h);
             if !(trial.end.is_finite() && trial.slope.is_finite()) {
                 return None;
             }
@@ -457,14 +490,4 @@ pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
 pub(super) fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
     let place = Place::new(time.seconds(), mode, None::<()>, x);
     Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
-}
-
-/// No step is accepted: the shortest fails at its error, or at a slope that is no number.
-#[cold]
-fn too_short<S: State>(finite: bool, slope: &S, place: Place) -> Error {
-    if finite {
-        return Error::new(ErrorKind::StepSize, place);
-    }
-    let which = Some(not_finite(slope)).filter(|which| !which.is_empty());
-    Error::new(ErrorKind::Flow, place).noting(which)
 }

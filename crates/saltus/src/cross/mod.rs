@@ -13,7 +13,7 @@ mod search;
 use crate::poly::{Bernstein, Shape};
 
 pub use evidence::{Doubt, Evidence};
-pub(crate) use powers::{FirstFall, Powers};
+pub(crate) use powers::{Fall, FirstFall, Powers};
 pub(crate) use refine::{narrowed, settle};
 pub(crate) use search::AT_START;
 use search::Search;

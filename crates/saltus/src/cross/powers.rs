@@ -1,6 +1,6 @@
 //! The first fall of a polynomial by its powers, where they show it to be the only one up to there.
 
-use crate::certainty::{MINUTE, SURELY, TINY};
+use crate::certainty::{MINUTE, ROUGHLY, SURELY, TINY};
 use crate::poly::MAX_DEGREE;
 
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
@@ -12,11 +12,20 @@ const MOST_CORRECTIONS: usize = 40;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FirstFall {
     /// Here, to rounding.
-    At(f64),
+    At(Fall),
     /// Nowhere.
     Nowhere,
     /// The powers do not show it.
     Unclear,
+}
+
+/// A fall of a polynomial through zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fall {
+    pub(crate) u: f64,
+    /// The first derivative there, and half the second.
+    pub(crate) slope: f64,
+    pub(crate) bend: f64,
 }
 
 /// A polynomial on `0..=1` by its powers.
@@ -55,6 +64,30 @@ impl Sums {
     #[inline]
     fn below(&self) -> f64 {
         0.5 * (self.size - self.sum)
+    }
+}
+
+impl FirstFall {
+    /// The first two derivatives at a fall, by the time, which is `limit` at u = 1.
+    #[inline]
+    pub(crate) fn derivatives(self, limit: f64) -> Option<[f64; 2]> {
+        match self {
+            Self::At(Fall { slope, bend, .. }) => Some([slope / limit, 2.0 * bend / (limit * limit)]),
+            Self::Nowhere | Self::Unclear => None,
+        }
+    }
+}
+
+impl Fall {
+    /// The same of uᵏ times the polynomial.
+    #[inline]
+    fn times_power(self, k: usize) -> Self {
+        let Self { u, slope, bend } = self;
+        match k {
+            0 => self,
+            1 => Self { u, slope: u * slope, bend: slope + u * bend },
+            _ => self.times_power(1).times_power(k - 1),
+        }
     }
 }
 
@@ -110,12 +143,18 @@ impl Powers {
         self.a[0] + self.rest.sum
     }
 
-    /// Between which times it turns up, where it falls at the start and rises at the end.
+    /// Between which times it turns up, where it falls at the start and rises at the end; unless
+    /// even the sum of all terms that fall leaves it far from zero beside how much it changes.
     #[inline]
     pub(crate) fn turns(&self) -> Option<[f64; 2]> {
         let a = self.coefficients();
-        let falls = a.len() > 2 && a[1] < 0.0;
-        (falls && a.iter().zip(0..).skip(1).map(|(a, k)| f64::from(k) * a).sum::<f64>() > 0.0).then_some([0.0, 1.0])
+        let falls = a.len() > 2 && a[1] < 0.0 && a[0] - self.rest.below() <= ROUGHLY * self.change();
+        (falls && self.rises_at_end()).then_some([0.0, 1.0])
+    }
+
+    #[inline(never)]
+    fn rises_at_end(&self) -> bool {
+        self.coefficients().iter().zip(0..).skip(1).map(|(a, k)| f64::from(k) * a).sum::<f64>() > 0.0
     }
 
     /// How far it bends: by its powers from the second on.
@@ -147,7 +186,10 @@ impl Powers {
             1 => self.rest,
             _ => Sums::of(a),
         };
-        first_fall(a, sums, margin)
+        match first_fall(a, sums, margin) {
+            FirstFall::At(fall) => FirstFall::At(fall.times_power(k)),
+            other => other,
+        }
     }
 }
 
@@ -160,7 +202,7 @@ fn first_fall(a: &[f64], sums: Sums, margin: f64) -> FirstFall {
     }
     let Some(root) = root(a, sums.sum) else { return FirstFall::Unclear };
     let mut factor = [0.0; MAX_DEGREE + 1];
-    let sums = divide(a, root, &mut factor);
+    let sums = divide(a, root.u, &mut factor);
     if is_above(&factor[..a.len() - 1], sums, margin) { FirstFall::At(root) } else { FirstFall::Unclear }
 }
 
@@ -182,7 +224,7 @@ fn divide(a: &[f64], root: f64, factor: &mut [f64]) -> Sums {
 
 /// A root in `0..=1` of a polynomial that is positive at 0 and, but for rounding, not at 1, where
 /// it is `end`.
-fn root(a: &[f64], end: f64) -> Option<f64> {
+fn root(a: &[f64], end: f64) -> Option<Fall> {
     let &[start, slope, ..] = a else { return None };
     // Where the parabola with this start, slope and end falls.
     let bend = end - start - slope;
@@ -203,7 +245,7 @@ fn root(a: &[f64], end: f64) -> Option<f64> {
         let off = (next - u).abs();
         // What is left is the square of the correction, and so no more than rounding.
         if off <= MINUTE * u || off <= TINY * u && bent.abs() <= TINY {
-            return (next <= 1.0).then_some(next);
+            return (next <= 1.0).then_some(Fall { u: next, slope, bend });
         }
         u = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
@@ -317,7 +359,7 @@ mod tests {
             // The second is just beyond the end.
             let off = 0.1_f64.powi(digits);
             let a = with_roots(&[1.0 - off, 1.0 + 2.0 * off], 1.0, 0.3);
-            let u = root(&a, Sums::of(&a).sum).unwrap();
+            let u = root(&a, Sums::of(&a).sum).unwrap().u;
             assert!((u - (1.0 - off)).abs() <= within_rounding(&a, u), "{digits} {u}");
         }
     }
@@ -326,7 +368,7 @@ mod tests {
     fn what_is_clear_is_said() {
         let first_fall = |a: &[f64], margin: f64| first_fall(a, Sums::of(a), margin);
         assert_eq!(first_fall(&[1.0, -0.5], MARGIN), FirstFall::Nowhere);
-        assert_eq!(first_fall(&[1.0, 0.0, -4.0], MARGIN), FirstFall::At(0.5));
+        assert_eq!(first_fall(&[1.0, 0.0, -4.0], MARGIN), FirstFall::At(Fall { u: 0.5, slope: -4.0, bend: -4.0 }));
         // sin(s)/s on 0..=3 and on 0..=3.5
         let sine = |span: f64| -> Vec<f64> {
             let mut term = 1.0;
@@ -338,7 +380,7 @@ mod tests {
             powers
         };
         assert_eq!(first_fall(&sine(3.0), MARGIN), FirstFall::Nowhere);
-        let FirstFall::At(u) = first_fall(&sine(3.5), MARGIN) else { panic!() };
+        let FirstFall::At(Fall { u, .. }) = first_fall(&sine(3.5), MARGIN) else { panic!() };
         assert!((3.5 * u - std::f64::consts::PI).abs() < 1e-14);
     }
 
@@ -363,7 +405,19 @@ mod tests {
             let mut powers = Powers::new();
             powers.fill(a[0], &a[1..], |a| *a, 1.0);
             match powers.first_fall(0, MARGIN * a.iter().map(|a| a.abs()).sum::<f64>()) {
-                FirstFall::At(u) => prop_assert!((u - roots[0]).abs() <= within_rounding(&a, roots[0]), "{u} {roots:?}"),
+                FirstFall::At(Fall { u, slope, bend }) => {
+                    prop_assert!((u - roots[0]).abs() <= within_rounding(&a, roots[0]), "{u} {roots:?}");
+                    // And its derivatives, of that times a power as well, from just before the last
+                    // correction.
+                    for k in 0..3 {
+                        let times: Vec<_> = std::iter::repeat_n(0.0, k).chain(a.iter().copied()).collect();
+                        let [_, slope_there, bend_there] = value_slope_and_bend(&times, u);
+                        let fall = Fall { u, slope, bend }.times_power(k);
+                        let size: f64 = times.iter().zip(0..).map(|(a, k)| a.abs() * f64::from(k * k)).sum();
+                        prop_assert!((fall.slope - slope_there).abs() <= 1e-5 * size, "{k} {fall:?} {slope_there}");
+                        prop_assert!((fall.bend - bend_there).abs() <= 1e-4 * size, "{k} {fall:?} {bend_there}");
+                    }
+                }
                 FirstFall::Nowhere => prop_assert_eq!(within, 0),
                 FirstFall::Unclear => {}
             }

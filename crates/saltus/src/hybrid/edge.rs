@@ -69,8 +69,8 @@ impl<'a, S: State> Edge<'a, S> {
     }
 
     /// Taken by a clock.
-    pub(super) fn clocked(reset: impl Fn(f64, &S) -> S + Send + Sync + 'a) -> Self {
-        Self::of(None, Box::new(move |t, x| Ok(reset(t, x))))
+    pub(super) fn clocked(reset: impl Fn(f64, &S) -> Result<S, Refusal> + Send + Sync + 'a) -> Self {
+        Self::of(None, Box::new(reset))
     }
 
     fn of(guard: Option<Guard<'a, S>>, reset: Jump<'a, S>) -> Self {

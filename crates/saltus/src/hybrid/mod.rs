@@ -259,7 +259,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.edge(from, to, guard, |_t, x| *x)
     }
 
-    /// Declares an edge that was put together before, or whose reset may fail: see [`Edge`].
+    /// Declares an edge that was put together before, or that may fail: see [`Edge`].
     #[must_use]
     pub fn edge_with(
         mut self,
@@ -288,11 +288,34 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// ```
     #[must_use]
     pub fn clock(
-        mut self,
+        self,
         from: impl Into<Cow<'static, str>>,
         to: impl Into<Cow<'static, str>>,
         clock: Clock,
         reset: impl Fn(f64, &S) -> S + Send + Sync + 'a,
+    ) -> Self {
+        self.fallible_clock(from, to, clock, move |t, x| Ok(reset(t, x)))
+    }
+
+    /// Declares an edge that a clock takes and whose reset may fail: the run then fails with the
+    /// [`Refusal`], with time, mode and state.
+    ///
+    /// ```
+    /// use saltus::{Clock, ErrorKind, Hybrid, Refusal, Simulation};
+    /// let read = |_t: f64, x: &f64| if *x < 2.0 { Ok(*x) } else { Err(Refusal::new("the sensor is full")) };
+    /// let tank = Hybrid::new()
+    ///     .mode("fill", |_t, _x: &f64| 1.0)
+    ///     .fallible_clock("fill", "fill", Clock::every(0.5), read);
+    /// let error = Simulation::of(&tank).run("fill", 0.0, 0.0..9.0).unwrap_err().error;
+    /// assert_eq!((error.kind(), error.t()), (ErrorKind::Refused, 2.0));
+    /// ```
+    #[must_use]
+    pub fn fallible_clock(
+        mut self,
+        from: impl Into<Cow<'static, str>>,
+        to: impl Into<Cow<'static, str>>,
+        clock: Clock,
+        reset: impl Fn(f64, &S) -> Result<S, Refusal> + Send + Sync + 'a,
     ) -> Self {
         let (from, to) = (kept(from), kept(to));
         let mode = self.entry_of(from);
@@ -460,17 +483,6 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.find(name).filter(|mode| self.declares(mode.name)).map(|mode| mode.name)
     }
 
-    fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
-        self.flaw = OnceLock::new();
-        let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
-            let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), self.everywhere.clone());
-            let (flow, refusal, series, exact, beyond) = (None, None, None, None, None);
-            self.modes.push(Mode { name, flow, refusal, series, exact, beyond, edges, guarded, clocks, stops });
-            self.modes.len() - 1
-        });
-        &mut self.modes[index]
-    }
-
     /// What a `method` says of the guard, or of the inverse, of the edge declared last.
     fn of_last(mut self, method: &'static str, about: impl FnOnce(Edge<'a, S>) -> Edge<'a, S>) -> Self {
         let last = self.last.and_then(|name| self.modes.iter_mut().find(|mode| mode.name == name));
@@ -479,22 +491,5 @@ impl<'a, S: State> Hybrid<'a, S> {
             None => self.misplaced = self.misplaced.or(Some(method)),
         }
         self
-    }
-
-    /// Every edge of `mode`, also those of clocks.
-    fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m Edge<'a, S>)> {
-        let from = mode.name;
-        mode.edges.iter().enumerate().map(move |(place, (to, edge))| (Link { from, to, place }, edge))
-    }
-
-    /// Looks for the very name first, which is what a run mostly has, as a link's names do.
-    #[inline]
-    fn find(&self, name: &str) -> Option<&Mode<'a, S>> {
-        let same = self.modes.iter().find(|mode| std::ptr::eq(mode.name, name));
-        same.or_else(|| self.modes.iter().find(|mode| mode.name == name))
-    }
-
-    fn edge_of(&self, link: Link) -> Option<&Edge<'a, S>> {
-        self.find(link.from)?.edges.get(link.place).map(|(_, edge)| edge)
     }
 }

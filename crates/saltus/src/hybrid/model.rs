@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Hybrid, Link, Mode};
+use super::{Edge, Hybrid, Link, Mode};
 use crate::analysis::reverse::Invertible;
 use crate::automaton::clocks::{Clock, Clocks};
 use crate::automaton::edges::Edges;
@@ -11,6 +11,25 @@ use crate::automaton::{About, Automaton, Limit};
 use crate::error::Refusal;
 use crate::series::Series;
 use crate::state::State;
+
+impl<'a, S: State> Hybrid<'a, S> {
+    /// Every edge of `mode`, also those of clocks.
+    pub(super) fn links<'m>(mode: &'m Mode<'a, S>) -> impl Iterator<Item = (Link, &'m Edge<'a, S>)> {
+        let from = mode.name;
+        mode.edges.iter().enumerate().map(move |(place, (to, edge))| (Link { from, to, place }, edge))
+    }
+
+    /// Looks for the very name first, which is what a run mostly has, as a link's names do.
+    #[inline]
+    pub(super) fn find(&self, name: &str) -> Option<&Mode<'a, S>> {
+        let same = self.modes.iter().find(|mode| std::ptr::eq(mode.name, name));
+        same.or_else(|| self.modes.iter().find(|mode| mode.name == name))
+    }
+
+    pub(super) fn edge_of(&self, link: Link) -> Option<&Edge<'a, S>> {
+        self.find(link.from)?.edges.get(link.place).map(|(_, edge)| edge)
+    }
+}
 
 impl<S: State> Automaton for Hybrid<'_, S> {
     type Mode = &'static str;

@@ -3,12 +3,24 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::Hybrid;
+use super::{Hybrid, Mode};
 use crate::state::State;
 
-impl<S: State> Hybrid<'_, S> {
+impl<'a, S: State> Hybrid<'a, S> {
+    /// The mode of this name, declared by it if it was not before.
+    pub(super) fn entry_of(&mut self, name: &'static str) -> &mut Mode<'a, S> {
+        self.flaw = OnceLock::new();
+        let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
+            let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), self.everywhere.clone());
+            let (flow, refusal, series, exact, beyond) = (None, None, None, None, None);
+            self.modes.push(Mode { name, flow, refusal, series, exact, beyond, edges, guarded, clocks, stops });
+            self.modes.len() - 1
+        });
+        &mut self.modes[index]
+    }
+
     pub(super) fn declares(&self, name: &str) -> bool {
         self.find(name).is_some_and(|mode| mode.flow.is_some() || mode.exact.is_some())
     }

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 
 use super::Row;
-use crate::cross::{FirstFall, Powers};
+use crate::cross::{Fall, FirstFall, Powers};
 
 /// A number of which a flow takes the absolute value.
 struct Kink {
@@ -73,8 +73,8 @@ impl Kinks {
             match fall(kink, span) {
                 FirstFall::Nowhere => {}
                 FirstFall::Unclear => unclear = true,
-                FirstFall::At(0.0) => return NextKink::At { units: 0.0, place: kink.place },
-                FirstFall::At(u) => {
+                FirstFall::At(Fall { u: 0.0, .. }) => return NextKink::At { units: 0.0, place: kink.place },
+                FirstFall::At(Fall { u, .. }) => {
                     span *= u;
                     next = NextKink::At { units: span, place: kink.place };
                 }
@@ -100,7 +100,7 @@ impl Kink {
         // What it leaves zero by, if it starts there.
         let Some(leading) = a.iter().position(|a| a.abs() > margin) else { return FirstFall::Unclear };
         if leading > 0 && a[leading] < 0.0 && !self.turned {
-            return FirstFall::At(0.0);
+            return FirstFall::At(Fall { u: 0.0, slope: a[1], bend: a.get(2).copied().unwrap_or(0.0) });
         }
         match powers.first_fall(leading, margin) {
             // At the very end it is the next step's.
