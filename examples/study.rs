@@ -316,7 +316,7 @@ fn ten_drops() -> Done {
         Ok([plan.averaged(trials, true)?, plan.averaged(trials, false)?, plan.pooled(trials)?])
     };
     let names = ["means, timed from the release", "means, on any clock          ", "ten trials                   "];
-    let expected = [[0.566, 0.546, 0.661], [0.555, 0.534, 0.578], [0.553, 0.531, 0.577]];
+    let expected = [[0.566, 0.534, 0.661], [0.555, 0.532, 0.581], [0.553, 0.526, 0.583]];
     for ((name, report), expected) in names.iter().zip(ways(&trials)?).zip(expected) {
         let cor = report.cor().ok_or("no COR")?;
         let bounces: Vec<String> =
@@ -348,7 +348,7 @@ fn ten_drops() -> Done {
         }
     }
     println!("  of {EXPERIMENTS} such experiments the 95 % interval holds the COR of 0.55 in {held:?}");
-    assert!(held[0] < 185 && held[1] >= 190 && held[2] >= 190, "{held:?}");
+    assert!(held.iter().all(|&held| held >= 190), "{held:?}");
     Ok(())
 }
 

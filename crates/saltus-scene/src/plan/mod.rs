@@ -336,7 +336,13 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
             return Ok((Model::Cloud, cloud::runner(scene)?, None));
         }
     }
-    // On one line they may come to rest upon each other: there the run ends, and says so.
+    // On one line they may come to rest upon each other: there the run ends, and says so. What a
+    // floor that moves does to them then is more than their guards resolve.
+    let moves = scene.floors.iter().position(|floor| floor.motion.is_some()).filter(|_| scene.dimensions == 1);
+    if let Some(owner) = moves {
+        let says = "several balls that only move up and down are simulated over floors that stand still: leave `motion` out, or give them a `position` with x";
+        return Err(PlanError::floor(owner, says));
+    }
     Ok((Model::Flock, flock::runner(scene)?, None))
 }
 
