@@ -55,14 +55,9 @@ impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
-        let _ = motion;
+    fn series<'j>(&self, _motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         sum.lift(self.gravity.value() * self.ratio);
+        true
     }
 }
 
@@ -127,19 +122,15 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         let mut inner = JetSum::default();
-        self.effects.series(motion, &mut inner);
+        let all = self.effects.series(motion, &mut inner);
         let mut acceleration = inner.acceleration();
         if self.share != 1.0 {
             acceleration = acceleration.map(|a| a * self.share);
         }
         sum.accelerate(acceleration);
         sum.turn(inner.spin_rate());
+        all
     }
 }

@@ -96,14 +96,9 @@ impl<const N: usize, S: Spin> Effect<N, S> for Gravity {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
-        let _ = motion;
+    fn series<'j>(&self, _motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         sum.lift(-self.0);
+        true
     }
 }
 

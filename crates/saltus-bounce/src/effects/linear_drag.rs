@@ -59,12 +59,8 @@ impl<const N: usize, S: Spin> Effect<N, S> for LinearDrag {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         sum.accelerate(motion.velocity.map(|v| v * -self.rate));
+        true
     }
 }

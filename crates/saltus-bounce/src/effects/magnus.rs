@@ -76,12 +76,7 @@ impl Effect<2, f64> for Magnus {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) -> bool {
         let ([x, up], [w, ..]) = (motion.velocity, motion.spin);
         let mut factor = w * self.slope;
         if self.saturation > 0.0 {
@@ -90,6 +85,7 @@ impl Effect<2, f64> for Magnus {
             factor *= motion.speed / (motion.speed + across);
         }
         sum.accelerate([up * -factor, x * factor]);
+        true
     }
 }
 
@@ -102,21 +98,18 @@ impl Effect<3, Vector3<f64>> for Magnus {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, 3>, sum: &mut JetSum<'j, 3>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, 3>, sum: &mut JetSum<'j, 3>) -> bool {
         let ([vx, vy, vz], [wx, wy, wz]) = (motion.velocity, motion.spin);
         let cross = [wy * vz - wz * vy, wz * vx - wx * vz, wx * vy - wy * vx];
         let [x, y, z] = cross;
         if self.saturation == 0.0 {
-            return sum.accelerate(cross.map(|c| c * self.slope));
+            sum.accelerate(cross.map(|c| c * self.slope));
+            return true;
         }
         let across = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() * self.saturation;
         let square = motion.speed.powi(2);
         let factor = square * self.slope / (square + across);
         sum.accelerate(cross.map(|c| c * factor));
+        true
     }
 }

@@ -128,14 +128,10 @@ pub trait Effect<const N: usize, S: Spin = ()> {
         None
     }
 
-    /// Whether [`series`](Self::series) says all that the effect does.
-    #[inline]
-    fn has_series(&self) -> bool {
-        false
-    }
-
-    /// The same once more over [`Jet`](saltus::Jet)s, added to a sum: flights are then advanced by
-    /// Taylor series where [`Flyer::by_series`](crate::Flyer::by_series) asks for it.
+    /// The same once more over [`Jet`](saltus::Jet)s, added to a sum, and whether that is all that
+    /// the effect does: flights are then advanced by Taylor series where
+    /// [`Flyer::by_series`](crate::Flyer::by_series) asks for it. An effect of other effects says all
+    /// where each of them does.
     ///
     /// ```
     /// use nalgebra::vector;
@@ -150,11 +146,9 @@ pub trait Effect<const N: usize, S: Spin = ()> {
     ///     fn acceleration(&self, motion: &Motion<2>) -> nalgebra::Vector2<f64> {
     ///         motion.velocity * (-self.0 / motion.velocity.norm())
     ///     }
-    ///     fn has_series(&self) -> bool {
-    ///         true
-    ///     }
-    ///     fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) {
+    ///     fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) -> bool {
     ///         sum.accelerate(motion.velocity.map(|v| v * -self.0 / motion.speed));
+    ///         true
     ///     }
     /// }
     ///
@@ -167,14 +161,14 @@ pub trait Effect<const N: usize, S: Spin = ()> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
-        let _ = (motion, sum);
+    fn series<'j>(&self, _motion: &JetMotion<'j, N>, _sum: &mut JetSum<'j, N>) -> bool {
+        false
     }
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
     #[inline]
-    fn has_series(&self) -> bool {
+    fn series<'j>(&self, _motion: &JetMotion<'j, N>, _sum: &mut JetSum<'j, N>) -> bool {
         true
     }
 
@@ -212,13 +206,8 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Option<E> {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        self.as_ref().is_none_or(Effect::has_series)
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
-        self.iter().for_each(|effect| effect.series(motion, sum));
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
+        self.as_ref().is_none_or(|effect| effect.series(motion, sum))
     }
 }
 
@@ -254,18 +243,10 @@ macro_rules! tuple_of_effects {
             }
 
             #[inline]
-            fn has_series(&self) -> bool {
+            fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
                 #[allow(non_snake_case)]
                 let ($first, $($other,)*) = self;
-                $first.has_series() $(&& $other.has_series())*
-            }
-
-            #[inline]
-            fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
-                #[allow(non_snake_case)]
-                let ($first, $($other,)*) = self;
-                $first.series(motion, sum);
-                $($other.series(motion, sum);)*
+                $first.series(motion, sum) $(&& $other.series(motion, sum))*
             }
         }
     };
@@ -298,6 +279,25 @@ mod tests {
         assert_eq!((flat, deep), (vector![0.0, up[0]], vector![0.0, 0.0, up[0]]));
         assert!((up[0] - (-9.806_65 + 1.5 + 2.5)).abs() < 1e-15);
         assert_eq!(Effect::<2>::acceleration(&(), &at(vector![1.0, 1.0], ())), vector![0.0, 0.0]);
+    }
+
+    /// What holds an effect that is not said over jets does not say all itself.
+    #[test]
+    fn no_series_holds_less_than_all() {
+        struct Unsaid;
+        impl Effect<2> for Unsaid {
+            fn acceleration(&self, motion: &Motion<2>) -> SVector<f64, 2> {
+                -motion.velocity
+            }
+        }
+        fn says_all(effect: &impl Effect<2>) -> bool {
+            effect.series(&JetMotion::new([1.0.into(); 2], [0.0.into(); 3]), &mut JetSum::default())
+        }
+        let (ball, gust) = (Sphere::hollow(0.033, 0.058).unwrap(), vector![1.0, 0.0]);
+        assert!(!says_all(&Unsaid) && !says_all(&Some(Unsaid)) && says_all(&None::<Unsaid>) && says_all(&()));
+        assert!(!says_all(&(Gravity::EARTH, Unsaid)) && !says_all(&(Unsaid, Gravity::EARTH)));
+        assert!(!says_all(&Wind::new(gust, Unsaid).unwrap()) && says_all(&Wind::new(gust, Gravity::EARTH).unwrap()));
+        assert!(!says_all(&AddedMass::new(&ball, AIR_DENSITY, Unsaid).unwrap()));
     }
 
     proptest! {
@@ -336,12 +336,11 @@ mod tests {
                     let motion = at($velocity, $spin);
                     let jets = JetMotion::<$n>::new(std::array::from_fn(|i| motion.velocity[i].into()), $coordinates.map(f64::into));
                     let mut sum = JetSum::default();
-                    Effect::<$n, _>::series(&all, &jets, &mut sum);
+                    prop_assert!(Effect::<$n, _>::series(&all, &jets, &mut sum));
                     let (a, turns) = (all.acceleration(&motion), all.spin_rate(&motion));
                     for (jet, a) in sum.acceleration().iter().zip(a.iter()) {
                         prop_assert!((jet.value() - a).abs() <= 1e-11 * (1.0 + a.abs().max(motion.velocity.norm_squared())));
                     }
-                    prop_assert!(Effect::<$n, _>::has_series(&all));
                     (sum.spin_rate().map(saltus::Jet::value), turns)
                 }};
             }

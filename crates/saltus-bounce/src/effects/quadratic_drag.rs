@@ -81,13 +81,9 @@ impl<const N: usize, S: Spin> Effect<N, S> for QuadraticDrag {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         let factor = motion.speed * -self.per_length;
         sum.accelerate(motion.velocity.map(|v| v * factor));
+        true
     }
 }

@@ -63,18 +63,14 @@ macro_rules! decay {
             }
 
             #[inline]
-            fn has_series(&self) -> bool {
-                true
-            }
-
-            #[inline]
-            fn series<'j>(&self, motion: &JetMotion<'j, $n>, sum: &mut JetSum<'j, $n>) {
+            fn series<'j>(&self, motion: &JetMotion<'j, $n>, sum: &mut JetSum<'j, $n>) -> bool {
                 let rate = if self.per_length == 0.0 {
                     (-self.steady).into()
                 } else {
                     motion.speed * -self.per_length - self.steady
                 };
                 sum.turn(motion.spin.map(|w| w * rate));
+                true
             }
         }
     };

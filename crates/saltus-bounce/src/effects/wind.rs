@@ -64,16 +64,11 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
     }
 
     #[inline]
-    fn has_series(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) {
+    fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         if self.velocity.iter().all(|&v| v == 0.0) {
             return self.effects.series(motion, sum);
         }
         let velocity = std::array::from_fn(|i| motion.velocity[i] - self.velocity[i]);
-        self.effects.series(&JetMotion::new(velocity, motion.spin), sum);
+        self.effects.series(&JetMotion::new(velocity, motion.spin), sum)
     }
 }

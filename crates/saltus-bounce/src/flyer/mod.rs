@@ -11,7 +11,7 @@ use std::marker::PhantomData;
 
 use nalgebra::SVector;
 
-use crate::effects::{Effect, Motion};
+use crate::effects::{Effect, JetMotion, JetSum, Motion};
 use crate::parameter::ParameterError;
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, MOST_FACES, Walls};
@@ -108,7 +108,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     /// Limits: on a line the kink of drag is stepped to; contacts are stepped.
     #[must_use]
     pub fn by_series(mut self) -> Self {
-        self.expanded = N > 1 && self.effects.has_series();
+        let rest = JetMotion::new([0.0.into(); N], [0.0.into(); 3]);
+        self.expanded = N > 1 && self.effects.series(&rest, &mut JetSum::default());
         self
     }
 
