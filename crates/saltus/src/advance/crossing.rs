@@ -50,16 +50,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, step, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
-            let (searched, near) = if by_powers == FirstFall::Nowhere {
-                (Searched::solved(None), None)
-            } else {
-                match self.searched(edge, step, limit, (start, level), along.as_ref().map(|along| (along, by_powers))) {
-                    Ok(searched) => searched,
+            let (searched, near) = match by_powers {
+                FirstFall::Nowhere => (Searched::solved(None), None),
+                FirstFall::At(fall) => self.falls_by_powers(edge, step, fall.u * limit, level),
+                FirstFall::Unclear => match self.falls_by_values(edge, step, limit, (start, level), along.as_ref()) {
+                    Ok(searched) => (searched, None),
                     Err(Undefined(s)) => {
                         undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
                         continue;
                     }
-                }
+                },
             };
             let Searched { fall, mut evidence, turn } = searched;
             if start == Start::Spent && fall.is_none() {
@@ -70,7 +70,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     self.dips(edge, step, crossing.root, by_powers.derivatives(limit))
                         .or_else(|| self.unresolved(edge, step, crossing.root))
                 } else {
-                    let by_powers = || Some(along?.powers.turns()?.map(|u| u * limit));
+                    let by_powers = || along.as_ref()?.powers.turns().map(|turn| turn.map(|u| u * limit));
                     turn.or_else(by_powers).and_then(|turn| {
                         let leaves = first && (start == Start::Spent || self.memory.wall(edge).is_some());
                         self.missed(edge, step, turn, leaves)
@@ -90,46 +90,37 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Where the guard of `edge` falls on a step, by what its powers show or by its values, and the
-    /// dense output near there, if it is long.
+    /// The fall of the guard of `edge` that its powers show at a time `s` of a step, and the dense
+    /// output near there, which is summed up once where it is long.
     #[inline(always)] // what it finds is looked at at once, and need not lie in memory
-    #[allow(clippy::type_complexity)] // a pair
-    fn searched(
+    fn falls_by_powers(
         &mut self,
         edge: A::Edge,
-        step: Step<'_, A::State>,
-        limit: f64,
-        (start, level): (Start, f64),
-        along: Option<(&Along<'_>, FirstFall)>,
-    ) -> Result<(Searched, Option<Near<A::State>>), Undefined> {
-        let Some((_, FirstFall::At(fall))) = along else {
-            let searched = self.looked_for(edge, step, limit, (start, level), along.map(|(along, _)| along))?;
-            return Ok((searched, None));
-        };
-        let Step { now, c, scale } = step;
-        // Where the dense output is long, it is summed up once.
-        let near = if c.len() > LONG { Some(Near::around(c, scale, fall.u * limit)) } else { None };
+        Step { now, c, scale }: Step<'_, A::State>,
+        s: f64,
+        level: f64,
+    ) -> (Searched, Option<Near<A::State>>) {
+        let near = if c.len() > LONG { Some(Near::around(c, scale, s)) } else { None };
         let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
             automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(&near, c, scale, s))
         };
-        let searched = Searched::solved(settle(|s| guard(s) - level, fall.u * limit));
-        Ok((unlevelled(searched, level, &mut guard), near))
+        let searched = Searched::solved(settle(|s| guard(s) - level, s));
+        (unlevelled(searched, level, &mut guard), near)
     }
 
     /// Where the guard of `edge` falls on a step, by its values, or by the sign of its powers in
     /// the Bernstein basis.
     #[inline(never)] // of promised guards few need it: what is always done stays short
-    fn looked_for(
+    fn falls_by_values(
         &mut self,
         edge: A::Edge,
-        step: Step<'_, A::State>,
+        Step { now, c, scale }: Step<'_, A::State>,
         limit: f64,
         (start, level): (Start, f64),
         along: Option<&Along<'_>>,
     ) -> Result<Searched, Undefined> {
-        let Step { now, c, scale } = step;
         let p = along.and_then(Along::bernstein);
         let (value, bend) = if p.is_none() {
             self.memory.stats.guards += 1;
@@ -439,7 +430,6 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
 }
 
 /// An affine guard along a step in powers of time.
-#[derive(Clone, Copy)]
 struct Along<'p> {
     powers: &'p Powers,
     /// The guard at the start, and its constant.

@@ -49,31 +49,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
-        match derivatives {
-            Some(derivatives) if !turns_up(step, derivatives) => None,
-            _ => self.dips_there(edge, step, root, derivatives),
-        }
+        let [slope, bend] = derivatives.or_else(|| self.derivatives(edge, step, root))?;
+        let soon = bend > 0.0 && -slope < bend * (ROUGHLY * step.scale);
+        soon.then(|| self.shallow(edge, step, root, (-slope / bend, bend)))?
     }
 
+    /// The first two derivatives of a guard at its `root`, by differences, unless that is at the
+    /// start of the step.
     #[inline(never)]
-    fn dips_there(
-        &mut self,
-        edge: A::Edge,
-        step: Step<'_, A::State>,
-        root: f64,
-        derivatives: Option<[f64; 2]>,
-    ) -> Option<Evidence> {
+    fn derivatives(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<[f64; 2]> {
         let by = SMALL * step.scale;
         if root < by {
             return None;
         }
-        let derivatives = derivatives.unwrap_or_else(|| {
-            // Zero between them.
-            let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
-            [(after - before) / (2.0 * by), (before + after) / (by * by)]
-        });
-        let [slope, bend] = derivatives;
-        turns_up(step, derivatives).then(|| self.shallow(edge, step, root, (-slope / bend, bend)))?
+        // Zero between them.
+        let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
+        Some([(after - before) / (2.0 * by), (before + after) / (by * by)])
     }
 
     #[cold]
@@ -85,6 +76,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         (turn, bend): (f64, f64),
     ) -> Option<Evidence> {
+        if root < SMALL * step.scale {
+            return None;
+        }
         let depth = 0.5 * bend * turn * turn;
         let close = depth <= self.error_of(edge, step, root, 0.0);
         close.then(|| Evidence::doubtful(Doubt::Grazing, (root - turn.abs()).max(0.0), root + 2.0 * turn.abs()))
@@ -95,12 +89,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// is of a size that this tolerance does not resolve.
     #[inline]
     pub(super) fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
-        if self.memory.resolved { None } else { self.resolved(edge, step, root) }
+        if self.memory.resolved { None } else { self.resolve(edge, step, root) }
     }
 
     #[cold]
     #[inline(never)]
-    fn resolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+    fn resolve(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         let middle = 0.5 * root;
         let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
         let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
@@ -141,10 +135,4 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         (a.midpoint(b), values[0].min(values[1]))
     }
-}
-
-/// Whether a guard of this slope and bend, zero on a step, turns up soon after.
-#[inline]
-fn turns_up<S>(step: Step<'_, S>, [slope, bend]: [f64; 2]) -> bool {
-    bend > 0.0 && -slope < bend * (ROUGHLY * step.scale)
 }

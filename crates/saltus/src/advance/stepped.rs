@@ -245,7 +245,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.stepper.trial(&mut flow, t, x, slope, h)
     }
 
-    /// Once more, for a step to a crossing.
+    /// Once more, for a step to a crossing: out of line, so that what every step runs through stays
+    /// short.
     #[inline(never)]
     fn retried(
         &mut self,
