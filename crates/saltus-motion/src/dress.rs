@@ -238,8 +238,9 @@ fn angle(track: &Track, frames: Frames) -> Option<Curve> {
 }
 
 impl Dress {
-    /// The form and the orientation that go with a path; `None` where neither changes.
-    pub(crate) fn of(track: &Track, form: Option<&Form>, path: &Curve, frames: Frames) -> Option<Self> {
+    /// The form and the orientation that go with a path; `None` where neither changes. Where `turns`
+    /// are counted, a ball that turns about one axis has its angle, too.
+    pub(crate) fn of(track: &Track, form: Option<&Form>, path: &Curve, frames: Frames, turns: bool) -> Option<Self> {
         let orientation = Orientation::of(track);
         if form.is_none() && orientation.is_none() {
             return None;
@@ -277,7 +278,7 @@ impl Dress {
             aim.clear();
         }
         // Where the form is aimed as well, the spin is what is left to turn.
-        let about = orientation.filter(|_| path.between == Between::Cubic && aim.is_empty());
+        let about = orientation.filter(|_| turns && path.between == Between::Cubic && aim.is_empty());
         let about = about.and_then(|_| angle(track, frames));
         Some(Self { offset, scale, aim, spin, about })
     }

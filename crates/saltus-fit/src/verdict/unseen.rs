@@ -61,6 +61,11 @@ impl Stated {
     }
 }
 
+/// What is known, with the errors of readings that a fit found: altered readings are judged by them.
+fn with_errors_of(fits: &Fits<'_>, known: &Known) -> Known {
+    Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known }
+}
+
 /// The COR that the readings amount to; none where they do not settle on one.
 fn judged(fits: &Fits<'_>) -> Option<Cor> {
     let mut judgement = Judgement::default();
@@ -93,7 +98,7 @@ pub(crate) fn in_a_vacuum(
 pub(crate) fn air_shows(table: &Table, evidence: &Evidence, (known, drag): (&Known, f64)) -> Result<bool, FitError> {
     let few = telling(evidence);
     let still = Fits::of(table, &few, known, false)?;
-    let same = Known { sigma_height: Some(still.sigma_height), sigma_time: Some(still.sigma_time), ..*known };
+    let same = with_errors_of(&still, known);
     let scattered = [still.sigma_height, still.sigma_time].iter().any(|sigma| sigma.source == Source::Scatter);
     let still = misfit(&Fits::of(table, &few, &same, false)?);
     let altered = in_a_vacuum(table, few, (&same, drag))?;
@@ -225,7 +230,7 @@ const HALVED: usize = 6;
 /// How much lower and higher the heights may be than they were read, m: by `most`, or by less where
 /// the chi-square rules it out.
 fn zero(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
-    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let same = with_errors_of(fits, known);
     let low = -most.min(lowered_at_most(fits.evidence));
     let few = telling(fits.evidence);
     let at = |by: f64| misfit(&Fits::of(fits.table, &raised(&few, by), &same, false).ok()?);
@@ -258,7 +263,7 @@ fn zero(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
 /// By which part lengths may be smaller and larger than they were read, down and up: by `most`, or
 /// by less where the chi-square, a parabola over the scale, rules it out.
 fn scale(fits: &Fits<'_>, known: &Known, most: f64) -> [f64; 2] {
-    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let same = with_errors_of(fits, known);
     let at = |by: f64| misfit(&Fits::of(fits.table, &rescaled(fits.evidence, 1.0 + by), &same, false).ok()?);
     match (at(0.0), at(-most), at(most)) {
         (Some(still), Some(small), Some(large)) => {
@@ -283,7 +288,7 @@ fn unit(fits: &Fits<'_>, (chi_square, freedom): (f64, usize)) -> f64 {
 /// chi-square, a parabola over the drag, rules it out; that of ordinary balls is always allowed.
 fn air(fits: &Fits<'_>, known: &Known, (e, named): (f64, Option<Ball>)) -> Option<(f64, f64)> {
     // In units of one and the same error of reading.
-    let same = Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known };
+    let same = with_errors_of(fits, known);
     let at = |drag: f64| {
         let altered = in_a_vacuum(fits.table, fits.evidence.clone(), (&same, drag)).ok()?;
         let fits = Fits::of(fits.table, &altered, &same, false).ok()?;

@@ -368,10 +368,7 @@ impl<'a> Export<'a> {
             if self.apexes {
                 path = path.topped(track, self.frames);
             }
-            let mut dress = Dress::of(track, form.as_ref(), &path, self.frames);
-            if !format.counts_turns() {
-                dress.iter_mut().for_each(|dress| dress.about = None);
-            }
+            let dress = Dress::of(track, form.as_ref(), &path, self.frames, format.counts_turns());
             Ball { track, path, dress }
         };
         self.motion.tracks.iter().map(ball).collect()
