@@ -159,7 +159,11 @@ fn tracks_of_pixels_are_turned_the_right_way_up() {
     assert_eq!((marble.trials().len(), marble.trials()[0].readings().len()), (1, 198));
     let (low, high, end) = extent(&marble, 0);
     assert!(low == 0.0 && (203.0..206.0).contains(&high) && (end - 0.99).abs() < 1e-9, "{low} {high} {end}");
-    assert!(marble.notes().iter().any(|note| note.contains("hardly moves: track 2")), "{:?}", marble.notes());
+    assert!(
+        marble.notes().iter().any(|note| note.to_string().contains("hardly moves: track 2")),
+        "{:?}",
+        marble.notes()
+    );
 
     let options = ReadOptions::default().fps(100.0).scale(1.371 / 911.0);
     let names = [5, 6, 7, 8, 9].map(|n| format!("tabletennis_100fps/tracked-{n}.txt"));

@@ -5,6 +5,8 @@ use std::fmt;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+use crate::finding::Spot;
+
 /// A table that could not be read: what is wrong, in which line and column, and what to do about
 /// it.
 ///
@@ -106,13 +108,16 @@ impl TableError {
         self.kind == Kind::Question
     }
 
-    /// Where it is and what is wrong, without the line itself.
-    pub(crate) fn sentence(&self) -> String {
-        let place = self.place.as_ref().map_or_else(String::new, |place| match &place.cell {
-            Some((sheet, index)) => format!(", sheet '{sheet}', cell {}", place.address(*index)),
-            None => format!(":{}:{}", place.line, place.column),
-        });
-        format!("{}{place}: {}", self.name, self.message)
+    /// Where it is, without the line itself.
+    pub(crate) fn spot(&self) -> Spot {
+        let cell = self.place.as_ref().and_then(|place| Some((place, place.cell.as_ref()?)));
+        Spot {
+            file: self.name.clone(),
+            line: self.line(),
+            column: self.column(),
+            sheet: cell.map(|(_, (sheet, _))| sheet.clone()),
+            cell: cell.map(|(place, (_, index))| place.address(*index)),
+        }
     }
 
     /// The line the problem is in (the row, in a workbook), counted from 1; `None` when it is the
@@ -134,17 +139,29 @@ impl TableError {
 /// `sheet` and `cell`, and `advice`; null where there is none.
 impl Serialize for TableError {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let cell = self.place.as_ref().and_then(|place| Some((place, place.cell.as_ref()?)));
+        let spot = self.spot();
         let mut fields = serializer.serialize_struct("TableError", 8)?;
         fields.serialize_field("kind", &self.kind)?;
         fields.serialize_field("message", &self.message)?;
-        fields.serialize_field("file", &self.name)?;
-        fields.serialize_field("line", &self.line())?;
-        fields.serialize_field("column", &self.column())?;
-        fields.serialize_field("sheet", &cell.map(|(_, (sheet, _))| sheet))?;
-        fields.serialize_field("cell", &cell.map(|(place, (_, index))| place.address(*index)))?;
+        fields.serialize_field("file", &spot.file)?;
+        fields.serialize_field("line", &spot.line)?;
+        fields.serialize_field("column", &spot.column)?;
+        fields.serialize_field("sheet", &spot.sheet)?;
+        fields.serialize_field("cell", &spot.cell)?;
         fields.serialize_field("advice", &self.help)?;
         fields.end()
+    }
+}
+
+/// `drop.csv:3:3`, or `book.xlsx, sheet 'Data', cell B3`.
+impl fmt::Display for Spot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        match (&self.sheet, &self.cell, self.line, self.column) {
+            (Some(sheet), Some(cell), ..) => write!(f, ", sheet '{sheet}', cell {cell}"),
+            (_, _, Some(line), Some(column)) => write!(f, ":{line}:{column}"),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -153,7 +170,7 @@ const SHOWN: usize = 90;
 
 impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.sentence())?;
+        write!(f, "{}: {}", self.spot(), self.message)?;
         if let Some(place) = &self.place {
             let at = place.column.saturating_sub(1);
             let from = if at + place.width > SHOWN { at.saturating_sub(SHOWN / 2) } else { 0 };

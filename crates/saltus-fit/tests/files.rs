@@ -32,7 +32,7 @@ fn times(table: &Table, trial: usize) -> Vec<f64> {
 }
 
 fn says(table: &Table, part: &str) {
-    assert!(table.notes().iter().any(|note| note.contains(part)), "no '{part}' in {:?}", table.notes());
+    assert!(table.notes().iter().any(|note| note.to_string().contains(part)), "no '{part}' in {:?}", table.notes());
 }
 
 #[test]

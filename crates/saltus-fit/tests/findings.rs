@@ -6,13 +6,19 @@
 mod film;
 mod noise;
 
+use std::fmt::{Debug, Display};
 use std::fs;
 use std::path::Path;
 
 use film::{Ball, Contact, csv, noisy, report};
 use noise::Noise;
 use proptest::prelude::*;
-use saltus_fit::{Fit, Loss, ReadOptions, Report, Severity, Table, Verdict};
+use saltus_fit::{
+    Fit, Lines, Loss, Named, Note, Pace, Program, ReadOptions, Remark, Repair, Report, Severity, Shape, Table, Verdict,
+    Warning,
+};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// What JSON has of a report is the same after it was read back.
 fn comes_back(report: &Report) {
@@ -126,4 +132,103 @@ fn every_kind_has_words() {
         let whole = named.filter(|(at, found)| !words[at + found.len()..].starts_with(|c: char| c.is_alphanumeric()));
         assert!(whole.count() > 0, "{kind} has no words");
     }
+}
+
+/// Every remark of reading comes back from JSON, and has words: those of its parts before its own.
+#[test]
+fn every_remark_comes_back() {
+    fn back<K: Clone + PartialEq + Debug + Display + Serialize + DeserializeOwned>(kinds: Vec<K>) -> usize
+    where
+        Remark<K>: Display,
+    {
+        for kind in &kinds {
+            let whole = Remark::from(kind.clone());
+            let json = serde_json::to_value(&whole).unwrap();
+            assert!(json["kind"].is_string() && json.get("parts").is_none(), "{json}");
+            assert_eq!(serde_json::from_value::<Remark<K>>(json.clone()).unwrap(), whole);
+            assert_eq!(whole.to_string(), kind.to_string());
+            let mut part = json;
+            part["parts"] = serde_json::json!([{ "first": "a.csv", "last": "c.csv", "count": 3 }, { "first": "S", "last": "S", "count": 1 }]);
+            let part: Remark<K> = serde_json::from_value(part).unwrap();
+            assert_eq!(part.to_string(), format!("a.csv to c.csv (3 of them): S: {kind}"));
+            assert!(kind.to_string().len() > 10, "{kind}");
+        }
+        kinds.len()
+    }
+    let column = || "h (cm)".to_owned();
+    let columns = || vec![column(), "t (s)".to_owned()];
+    let shapes = vec![
+        Shape::Events,
+        Shape::Tops { times: column(), heights: column() },
+        Shape::ContactsAndHeights { times: column(), heights: column() },
+        Shape::Contacts { times: column() },
+        Shape::Intervals { intervals: column() },
+        Shape::IntervalsAndHeights { intervals: column(), heights: column() },
+        Shape::Heights { heights: column(), numbered: true },
+        Shape::Drops { release: Some(column()), rebound: None },
+        Shape::Wide,
+        Shape::Series { heights: column(), times: None },
+    ];
+    let mut notes: Vec<Note> =
+        shapes.into_iter().map(|shape| Note::ReadAs { shape, side_by_side: 2, speeds: true }).collect();
+    notes.extend([
+        Note::Size { rows: 1, trials: 2 },
+        Note::Recognised { program: Program::Tracker },
+        Note::Encoded { encoding: "UTF-16LE".to_owned() },
+        Note::Rate { rate: 240.0, line: 3 },
+        Note::Still { tracks: columns() },
+        Note::Sheets { sheets: columns(), drops: true },
+        Note::SheetsAside { sheets: columns() },
+        Note::Filtered { kept: 5, left_out: 2 },
+        Note::Dropped { height_m: 1.5 },
+        Note::Floor { reading: "812".to_owned(), down: true },
+        Note::FallingTimes,
+        Note::RisingTimes { column: column() },
+        Note::Losses { column: column() },
+        Note::Repeats { columns: columns() },
+        Note::Namesakes { column: column() },
+        Note::Computed,
+        Note::Share { column: column(), of_release: false },
+        Note::Energy { column: column() },
+        Note::SameUnit { column: column(), of: column() },
+        Note::UnitBySize { column: column(), unit: "ms".to_owned() },
+        Note::Pixels { column: column() },
+        Note::Misspelt { written: "hieght".to_owned(), heading: column(), meant: "height".to_owned() },
+        Note::Restarts { times: 2 },
+        Note::Downwards { shown: true },
+        Note::ByTime { gravity: 9.81 },
+    ]);
+    let lines = |json: &str| serde_json::from_str::<Lines>(json).unwrap();
+    let few = lines(r#"{ "first": [3, 4], "count": 2 }"#);
+    let many = lines(r#"{ "first": [3, 4, 5, 6, 7], "count": 90 }"#);
+    assert_eq!(
+        (few.to_string(), many.to_string()),
+        ("lines 3 and 4".to_owned(), "90 lines, the first of them 3".to_owned())
+    );
+    let named = |json: &str| serde_json::from_str::<Named>(json).unwrap();
+    let (first, second) = (named(r#"{ "trial": 1, "name": "" }"#), named(r#"{ "trial": 2, "name": "Ann" }"#));
+    let repairs = vec![
+        Repair::SameFile { file: "b.csv".to_owned(), as_file: "a.csv".to_owned() },
+        Repair::SameLine { line: 4 },
+        Repair::SameSamples { samples: 1 },
+        Repair::SameTrial { trial: second, as_trial: first },
+        Repair::RoundedNumbers,
+        Repair::NoPosition { lines: few },
+    ];
+    let spot = r#"{ "file": "b.xlsx", "line": 3, "column": 2, "sheet": "S", "cell": "B3" }"#;
+    let warnings = vec![
+        Warning::Size { height_m: 100.0, line: 2 },
+        Warning::Zeros { lines: many },
+        Warning::Gravity { found: 4.0, due: 9.81, pace: Pace::Frames { rate: 120.0 } },
+        Warning::Gravity { found: 4.0, due: 9.81, pace: Pace::Clock { factor: 2.0, played: 30.0 } },
+        Warning::UnitAgainstName { column: column(), unit: "mm".to_owned() },
+        Warning::Stray {
+            at: serde_json::from_str(spot).unwrap(),
+            reading: "6.2".to_owned(),
+            factor: 10.0,
+            instead: 62.0,
+        },
+        Warning::MoreStrays { heights: 7 },
+    ];
+    assert_eq!((back(notes), back(repairs), back(warnings)), (35, 6, 7));
 }

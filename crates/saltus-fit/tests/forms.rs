@@ -147,7 +147,7 @@ proptest! {
                 let report = Fit::new().run(&table).unwrap();
                 prop_assert!((report.cor().unwrap().value - e).abs() < 1e-3, "{}", report);
                 // Without its u it is French.
-                let said = name == "rebond" || table.notes().iter().any(|note| note.starts_with(&format!("'{name}' in")));
+                let said = name == "rebond" || table.notes().iter().any(|note| note.to_string().starts_with(&format!("'{name}' in")));
                 prop_assert!(said, "{:?}", table.notes());
             }
             Err(error) => prop_assert!(error.is_question() && error.to_string().contains("did you mean"), "{}", error),

@@ -88,25 +88,40 @@ fn every_constant_names_a_test_that_is_there() {
     assert!(rows(others).len() <= UNHELD, "{}", rows(others).len());
 }
 
+/// The variants of an enumeration, as JSON has them.
+fn kinds(file: &str, name: &str) -> Vec<String> {
+    let source = fs::read_to_string(root().join(file)).unwrap();
+    let body = source.split_once(&format!("pub enum {name} {{")).unwrap().1.split_once("\n}").unwrap().0;
+    let first = body.lines().filter_map(|line| line.strip_prefix("    ")?.split([' ', ',', '{']).next());
+    let kebab = |kind: &str| {
+        let spelt = kind.char_indices();
+        spelt
+            .flat_map(|(n, c)| (n > 0 && c.is_uppercase()).then_some('-').into_iter().chain(c.to_lowercase()))
+            .collect()
+    };
+    first.filter(|word| word.starts_with(|c: char| c.is_ascii_uppercase())).map(kebab).collect()
+}
+
+/// The kinds in a column of the tables of a section.
+fn listed(section: &str, column: usize) -> Vec<&str> {
+    let rows =
+        section.lines().filter_map(|line| line.strip_prefix("| ")?.trim_end_matches(" |").split(" | ").nth(column));
+    rows.flat_map(|names| names.split(", ")).collect()
+}
+
 #[test]
 fn every_finding_is_listed() {
     let page = page();
-    let findings = page.split_once("## Findings").unwrap().1.split_once("## Constants").unwrap().0;
-    let listed: Vec<&str> = findings
-        .lines()
-        .filter_map(|line| line.strip_prefix("| ")?.split(" | ").next())
-        .flat_map(|names| names.split(", "))
-        .collect();
-    let source = fs::read_to_string(root().join("finding/kind.rs")).unwrap();
-    let body = source.split_once("pub enum FindingKind {").unwrap().1;
-    let kinds = body.lines().filter_map(|line| line.strip_prefix("    ")?.split([' ', ',', '{']).next());
-    let kinds: Vec<&str> = kinds.filter(|word| word.starts_with(|c: char| c.is_ascii_uppercase())).collect();
-    assert!(kinds.len() > 60, "{kinds:?}");
-    for kind in kinds {
-        let kebab: String = kind
-            .char_indices()
-            .flat_map(|(n, c)| (n > 0 && c.is_uppercase()).then_some('-').into_iter().chain(c.to_lowercase()))
-            .collect();
-        assert!(listed.contains(&kebab.as_str()), "{kebab} is not listed");
+    let section = page.split_once("## Findings").unwrap().1.split_once("## Constants").unwrap().0;
+    let (findings, remarks) = section.split_once("### Remarks").unwrap();
+    let found = kinds("finding/kind.rs", "FindingKind");
+    assert!(found.len() > 60, "{found:?}");
+    for kind in found {
+        assert!(listed(findings, 0).contains(&kind.as_str()), "{kind} is not listed");
+    }
+    for name in ["Note", "Repair", "Warning"] {
+        for kind in kinds("finding/remark.rs", name) {
+            assert!(listed(remarks, 1).contains(&kind.as_str()), "{kind} is not listed");
+        }
     }
 }

@@ -115,7 +115,7 @@ fn long_tables_are_grouped_and_filtered() {
     assert_eq!(times(&table, 0), [(1, 0.8), (2, 1.4), (3, 2.0)]);
     let golf = read_with(text, &ReadOptions::default().filter("ball", "golf").filter("h0_cm", "80.0"));
     assert_eq!(golf.trials().len(), 2);
-    assert!(golf.notes().iter().any(|n| n.contains("5 rows kept and 2 left out")), "{:?}", golf.notes());
+    assert!(golf.notes().iter().any(|n| n.to_string().contains("5 rows kept and 2 left out")), "{:?}", golf.notes());
     let none = refuse_with(text.as_bytes(), &ReadOptions::default().filter("ball", "squash"));
     assert!(none.to_string().contains("no row has ball = squash"), "{none}");
     let unknown = refuse_with(text.as_bytes(), &ReadOptions::default().filter("colour", "red"));

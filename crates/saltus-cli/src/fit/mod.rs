@@ -37,7 +37,8 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         return each::run(args, &options(args), &fit(args), quiet);
     }
     let table = read(args)?;
-    say(quiet, &format!("{}: {}", table.name(), table.notes().join("; ")));
+    let notes: Vec<String> = table.notes().iter().map(ToString::to_string).collect();
+    say(quiet, &format!("{}: {}", table.name(), notes.join("; ")));
     // What takes long is a bootstrap.
     let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
     let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::detail::{Basis, By, Cause, Gives, Missing, Untried};
 use super::doubt::Doubt;
+use super::remark::{Note, Remark, Repair, Warning};
 use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 
 /// What was found, with its numbers: SI units, but for recordings of unknown scale.
@@ -12,15 +13,15 @@ use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 #[non_exhaustive]
 #[allow(missing_docs)] // docs/fitting-inside.md lists every kind with what raises it; the fields are named in full.
 pub enum FindingKind {
-    // The reading of the table, in the reader's words.
+    // The reading of the table.
     ReadNote {
-        text: String,
+        note: Remark<Note>,
     },
     ReadRepair {
-        text: String,
+        repair: Remark<Repair>,
     },
     ReadWarning {
-        text: String,
+        warning: Remark<Warning>,
     },
     ReadDoubt {
         doubt: Doubt,
@@ -37,9 +38,10 @@ pub enum FindingKind {
         /// Whether its air is taken out of the COR, since the readings show it.
         air: bool,
     },
-    /// What was stated of the way that heights count, where the ball then falls upwards.
+    /// The ball falls upwards under what is stated of the way that heights count.
     FallsUpwards {
-        text: String,
+        /// Whether they are stated to count downwards.
+        down: bool,
     },
 
     // Evidence: contacts and heights put in order.

@@ -4,12 +4,14 @@
 mod detail;
 mod doubt;
 mod kind;
+mod remark;
 
 use serde::{Deserialize, Serialize};
 
 pub use detail::{Air, Basis, By, Cause, Gives, Missing, Need, Untried, Widening};
 pub use doubt::Doubt;
 pub use kind::FindingKind;
+pub use remark::{Lines, Named, Note, Pace, Parts, Program, Remark, Repair, Shape, Spot, Warning};
 
 use crate::word::words;
 

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{Event, Reading, Table, Trial, grid};
+use super::{Event, Reading, Table, Trial};
+use crate::finding::{Lines, Named, Repair, Warning};
 
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
@@ -29,7 +30,7 @@ fn size(table: &mut Table) {
     let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height.map(|h| (h, r.line)));
     let Some((highest, line)) = heights().max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
     if highest > 0.0 && !USUAL.contains(&highest) {
-        table.warnings.push(format!("the highest reading is {highest} m, in line {line}: is that the right unit?"));
+        table.warnings.push(Warning::Size { height_m: highest, line }.into());
     }
 }
 
@@ -37,10 +38,7 @@ fn zeros(table: &mut Table) {
     let zero = |r: &&Reading| r.event == Event::Apex && r.height == Some(0.0) && r.time.is_none();
     let lines: Vec<u64> = table.trials.iter().flat_map(|t| &t.readings).filter(zero).map(|r| r.line).collect();
     if !lines.is_empty() {
-        let named = grid::lines(&lines);
-        table.warnings.push(format!(
-            "{named}: a rebound of zero height is below what can be read; only 'heights-ratio' counts it"
-        ));
+        table.warnings.push(Warning::Zeros { lines: Lines::of(&lines) }.into());
         table.zero_rebounds = lines.len();
     }
 }
@@ -56,8 +54,8 @@ fn copies(table: &mut Table) {
         let candidates = seen.entry(fingerprint(trial)).or_default();
         if let Some(&original) = candidates.iter().find(|&&m| alike(&table.trials[m], trial)) {
             copies[n] = true;
-            let (a, b) = (shown(trial, n), shown(&table.trials[original], original));
-            table.repairs.push(format!("{a} repeats {b} reading by reading: counted once"));
+            let (trial, as_trial) = (named(trial, n), named(&table.trials[original], original));
+            table.repairs.push(Repair::SameTrial { trial, as_trial }.into());
         } else {
             candidates.push(n);
         }
@@ -89,8 +87,8 @@ fn told(trial: &Trial, step: [f64; 2]) -> f64 {
     numbers(trial).map(|(timed, x)| (DIFFER * x / step[usize::from(timed)]).log10().max(0.0)).sum()
 }
 
-fn shown(trial: &Trial, n: usize) -> String {
-    if trial.label.is_empty() { format!("trial {}", n + 1) } else { format!("'{}'", trial.label) }
+fn named(trial: &Trial, n: usize) -> Named {
+    Named { trial: n + 1, name: trial.label.clone() }
 }
 
 fn fingerprint(trial: &Trial) -> u64 {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{Event, Reading, Span, Table};
-use crate::finding::Doubt;
+use crate::finding::{Doubt, Note};
 
 impl Table {
     /// The balls, surfaces or sheets of the table, each with a COR of its own; a single one,
@@ -66,7 +66,7 @@ impl Table {
                 table.doubts.push(doubt);
             }
         }
-        table.notes.push(format!("rebounds follow from their times, with g = {g} m/s²"));
+        table.notes.push(Note::ByTime { gravity: g }.into());
         Cow::Owned(table)
     }
 }

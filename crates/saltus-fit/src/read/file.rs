@@ -18,7 +18,7 @@ use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
-use crate::finding::Doubt;
+use crate::finding::{Doubt, Note};
 use crate::quantity::Ball;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
@@ -43,7 +43,7 @@ pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<T
                 return Err(TableError::new(name, "this file has no sheets: it is a text").help("leave out --sheet"));
             }
             let mut table = read(&Grid::open(name, None, &found.text)?, options)?;
-            table.notes.extend(found.encoding.map(|encoding| format!("the text is encoded as {encoding}")));
+            table.notes.extend(found.encoding.map(|encoding| Note::Encoded { encoding: encoding.to_owned() }.into()));
             table
         }
     };
@@ -57,7 +57,7 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     metadata.frame_rate = options.fps.or(metadata.frame_rate);
     metadata.drop = options.drop.or(metadata.drop);
     metadata.oriented = options.down.is_some();
-    let Recognised { what, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
+    let Recognised { program, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
     let found = if regions.is_empty() {
         Err(no_table(grid, options))
     } else {
@@ -65,7 +65,7 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     };
     let found = match found {
         // Names that stand in the first column, one below the other.
-        Err(error) if what.is_none() && options.header.is_none() => {
+        Err(error) if program.is_none() && options.header.is_none() => {
             let turned = programs::turned(grid);
             let read = turned.map(|region| joined_up(grid, vec![region], false, options, metadata));
             read.and_then(Result::ok).ok_or(error)
@@ -73,8 +73,8 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
         found => found,
     };
     let mut table = found?;
-    if let Some(what) = what {
-        table.notes.insert(0, format!("recognised as {what}"));
+    if let Some(program) = program {
+        table.notes.insert(0, Note::Recognised { program }.into());
     }
     Ok(table)
 }
@@ -94,7 +94,7 @@ fn joined_up<'a>(
         && let Some((fps, line)) = titles.iter().find_map(|title| title.fps)
     {
         metadata.frame_rate = Some(fps);
-        stated.push(format!("{fps} frames, or samples, a second, as line {line} states"));
+        stated.push(Note::Rate { rate: fps, line }.into());
     }
     filmed(&mut regions, metadata.frame_rate);
     let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
@@ -134,8 +134,9 @@ fn joined_up<'a>(
     table.left_aside.extend(aside);
     table.notes.extend(stated);
     if !still.is_empty() {
-        table.notes.push(format!("left aside, as it hardly moves: {} (choose with --column)", still.join(", ")));
-        table.left_aside.extend(still.into_iter().map(|name| LeftAside::new(Kind::Track, name, Why::Still)));
+        let named = |name: &String| LeftAside::new(Kind::Track, name.as_str(), Why::Still);
+        table.left_aside.extend(still.iter().map(named));
+        table.notes.push(Note::Still { tracks: still }.into());
     }
     Ok(table)
 }
@@ -278,14 +279,13 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         return Err(first.unwrap_or_else(|| none().help(format!("the file has {}", known.join(", ")))));
     }
     let drops = told_apart(&mut found);
-    let read = found.iter().map(|(label, _)| label.as_str()).collect::<Vec<_>>().join(", ");
+    let read = found.iter().map(|(label, _)| label.clone()).collect();
     let mut table = pool::join(name, found)?;
-    let what = if drops { " (each name the height of release)" } else { "" };
-    table.notes.insert(0, format!("sheets read: {read}{what}"));
-    let empty: Vec<&str> =
-        aside.iter().filter(|(_, why)| *why == Why::NoTable).map(|(label, _)| label.as_str()).collect();
-    if !empty.is_empty() {
-        table.notes.insert(1, format!("sheets left aside, for they hold no table of bounces: {}", empty.join(", ")));
+    table.notes.insert(0, Note::Sheets { sheets: read, drops }.into());
+    let empty = aside.iter().filter(|(_, why)| *why == Why::NoTable);
+    let sheets: Vec<String> = empty.map(|(label, _)| label.clone()).collect();
+    if !sheets.is_empty() {
+        table.notes.insert(1, Note::SheetsAside { sheets }.into());
     }
     table.left_aside.extend(aside.into_iter().map(|(label, why)| LeftAside::new(Kind::Sheet, label, why)));
     Ok(table)

@@ -405,19 +405,6 @@ fn count(line: &str, mark: u8) -> usize {
     line.as_bytes().iter().filter(|byte| outside(byte)).count()
 }
 
-/// Lines as a message names them: `lines 3 and 4`; of many the first, and how many there are.
-pub(super) fn lines(list: &[u64]) -> String {
-    match list {
-        [] => "no line".to_owned(),
-        [one] => format!("line {one}"),
-        [most @ .., last] if most.len() < 5 => {
-            let most: Vec<String> = most.iter().map(u64::to_string).collect();
-            format!("lines {} and {last}", most.join(", "))
-        }
-        [first, ..] => format!("{} lines, the first of them {first}", list.len()),
-    }
-}
-
 /// A cell as a message quotes it: cut short, on one line.
 pub(super) fn shown(cell: &str) -> String {
     let mut short: String = cell.chars().take(40).map(|c| if c.is_control() { ' ' } else { c }).collect();

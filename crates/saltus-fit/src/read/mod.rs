@@ -39,7 +39,7 @@ pub use aside::{LeftAside, Part, Why};
 pub use options::ReadOptions;
 
 use crate::error::TableError;
-use crate::finding::Doubt;
+use crate::finding::{Doubt, Note, Remark, Repair, Warning};
 use crate::quantity::Ball;
 
 /// What a reading was taken of.
@@ -153,9 +153,9 @@ impl Trial {
 pub struct Table {
     pub(crate) name: String,
     pub(crate) trials: Vec<Trial>,
-    pub(crate) notes: Vec<String>,
-    pub(crate) repairs: Vec<String>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) notes: Vec<Remark<Note>>,
+    pub(crate) repairs: Vec<Remark<Repair>>,
+    pub(crate) warnings: Vec<Remark<Warning>>,
     pub(crate) left_aside: Vec<LeftAside>,
     pub(crate) doubts: Vec<Doubt>,
     pub(crate) metadata: Metadata,
@@ -186,8 +186,8 @@ pub(crate) struct Metadata {
     pub(crate) intervals: bool,
     /// Which way the heights count was stated, and is not to be recognised.
     pub(crate) oriented: bool,
-    /// What was stated of it, and that the ball then falls upwards.
-    pub(crate) falls_upwards: Option<&'static str>,
+    /// Whether heights were stated to count downwards, where the ball then falls upwards.
+    pub(crate) falls_upwards: Option<bool>,
 }
 
 impl Table {
@@ -213,13 +213,14 @@ impl Table {
     /// gravity; and for no file at all.
     pub fn read_all(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, TableError> {
         let mut parts = Vec::with_capacity(paths.len());
-        let (mut given, mut repairs): (Vec<(Vec<u8>, String)>, Vec<String>) = (Vec::new(), Vec::new());
+        let mut given: Vec<(Vec<u8>, String)> = Vec::new();
+        let mut repairs: Vec<Remark<Repair>> = Vec::new();
         for path in paths.iter().map(AsRef::as_ref) {
             let shown = path.display().to_string();
             let name = path.file_name().map_or_else(|| shown.clone(), |n| n.to_string_lossy().into_owned());
             let bytes = bytes(path, &shown)?;
             if let Some((_, before)) = given.iter().find(|(known, _)| *known == bytes) {
-                repairs.push(format!("{name} is the same file as {before}: counted once"));
+                repairs.push(Repair::SameFile { file: name, as_file: before.clone() }.into());
                 continue;
             }
             let table = file::table(&shown, &bytes, options)?;
@@ -259,9 +260,8 @@ impl Table {
 
     /// Once all trials are together: what must not be counted is taken out, what was read is said.
     fn checked(mut self) -> Self {
-        let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
         self.trials.iter_mut().for_each(|trial| trial.readings.shrink_to_fit());
-        self.notes.insert(0, format!("{}, {}", plural(self.rows, "row"), plural(self.trials.len(), "trial")));
+        self.notes.insert(0, Note::Size { rows: self.rows, trials: self.trials.len() }.into());
         check::table(&mut self);
         self
     }
@@ -351,9 +351,9 @@ impl Table {
         &self.trials
     }
 
-    /// What was recognised and what was left aside, a line each, for people.
+    /// How the table was taken; each note has a `Display` form for people.
     #[must_use]
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Remark<Note>] {
         &self.notes
     }
 

@@ -4,6 +4,7 @@
 use super::region::Region;
 use super::{Event, Reading, Trial};
 use crate::error::TableError;
+use crate::finding::{Remark, Repair};
 use crate::statistics::median;
 
 /// Trials whose numbers restart are split; a reading given twice alike is counted once; contacts
@@ -12,7 +13,7 @@ pub(super) fn renumbered(
     region: &Region<'_>,
     trials: Vec<Trial>,
     number: usize,
-    repairs: &mut Vec<String>,
+    repairs: &mut Vec<Remark<Repair>>,
 ) -> Result<Vec<Trial>, TableError> {
     let mut split: Vec<Trial> = Vec::with_capacity(trials.len());
     for trial in trials {
@@ -67,13 +68,13 @@ fn unique(readings: &[Reading]) -> bool {
 }
 
 /// Readings whose numbers restart, run by run.
-fn runs(readings: impl Iterator<Item = Reading>, repairs: &mut Vec<String>) -> Vec<Vec<Reading>> {
+fn runs(readings: impl Iterator<Item = Reading>, repairs: &mut Vec<Remark<Repair>>) -> Vec<Vec<Reading>> {
     let mut runs: Vec<Vec<Reading>> = Vec::new();
     let mut last: Option<Reading> = None;
     for reading in readings {
         let repeated = last.is_some_and(|last| Reading { line: reading.line, ..last } == reading);
         if repeated {
-            repairs.push(format!("line {}: the same as the line before, counted once", reading.line));
+            repairs.push(Repair::SameLine { line: reading.line }.into());
             continue;
         }
         let restarts = last.is_none_or(|last| {

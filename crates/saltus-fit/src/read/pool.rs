@@ -4,6 +4,7 @@ use super::aside::LeftAside;
 use super::heading::Heading;
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
+use crate::finding::{Note, Parts, Remark, Warning};
 use crate::quantity::Ball;
 
 /// Tells files apart whose names are of different balls or surfaces, and recordings from readings
@@ -37,7 +38,7 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
         return Ok(parts.into_iter().next().map(|(_, table)| table).unwrap_or_default());
     }
     let mut pooled = Table { name: name.to_owned(), ..Table::default() };
-    let mut notes: Vec<(String, Vec<String>)> = Vec::new();
+    let mut notes: Vec<(Remark<Note>, Vec<String>)> = Vec::new();
     for (n, (label, part)) in parts.into_iter().enumerate() {
         pooled.metadata = if n == 0 { part.metadata } else { agreed(name, &pooled.metadata, &part.metadata)? };
         for note in part.notes {
@@ -46,12 +47,14 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
                 None => notes.push((note, vec![label.clone()])),
             }
         }
-        let of = |line: String| format!("{label}: {line}");
-        pooled.repairs.extend(part.repairs.into_iter().map(of));
-        // What names its place names the file.
-        let named = [format!("{label}:"), format!("sheet '{label}'")];
-        let placed = |line: String| if named.iter().any(|name| line.contains(name)) { line } else { of(line) };
-        pooled.warnings.extend(part.warnings.into_iter().map(placed));
+        pooled.repairs.extend(part.repairs.into_iter().map(|repair| repair.of(&label)));
+        // What names its place names the file, or the sheet.
+        let placed = |warning: &Warning| match warning {
+            Warning::Stray { at, .. } => at.file.ends_with(&label) || at.sheet.as_ref() == Some(&label),
+            _ => false,
+        };
+        let of = |warning: Remark<Warning>| if placed(&warning.kind) { warning } else { warning.of(&label) };
+        pooled.warnings.extend(part.warnings.into_iter().map(of));
         pooled.rows += part.rows;
         pooled.zero_rebounds += part.zero_rebounds;
         pooled.doubts.extend(part.doubts);
@@ -65,10 +68,11 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
         }));
     }
     // What is said of every part alike is said once.
-    pooled.notes.extend(notes.into_iter().map(|(note, of)| match of.as_slice() {
-        [one] => format!("{one}: {note}"),
-        [first, .., last] => format!("{first} to {last} ({} of them): {note}", of.len()),
-        [] => note,
+    pooled.notes.extend(notes.into_iter().map(|(mut note, of)| {
+        if let (Some(first), Some(last)) = (of.first(), of.last()) {
+            note.parts.insert(0, Parts { first: first.clone(), last: last.clone(), count: of.len() });
+        }
+        note
     }));
     Ok(pooled)
 }

@@ -12,11 +12,12 @@ use super::heading::{Heading, What};
 use super::region::{self, Region};
 use super::units::{Dimension, Unit};
 use crate::error::TableError;
+use crate::finding::Program;
 
 /// The tables of a text, and what they are.
 pub(super) struct Recognised<'a> {
-    /// The program, or what else there is to say about where it comes from.
-    pub(super) what: Option<&'static str>,
+    /// What wrote it, where that shows.
+    pub(super) program: Option<Program>,
     pub(super) regions: Vec<Region<'a>>,
     /// The tables are tracks of one film: the ball is what moves.
     pub(super) tracks: bool,
@@ -24,7 +25,7 @@ pub(super) struct Recognised<'a> {
 
 impl<'a> From<Vec<Region<'a>>> for Recognised<'a> {
     fn from(regions: Vec<Region<'a>>) -> Self {
-        Self { what: None, regions, tracks: false }
+        Self { program: None, regions, tracks: false }
     }
 }
 
@@ -52,7 +53,7 @@ pub(super) fn tables<'a>(
         return Ok(found);
     }
     if let Some(region) = labels(view) {
-        return Ok(Recognised { what: Some("a track of labels (s)"), regions: vec![region], tracks: false });
+        return Ok(Recognised { program: Some(Program::Labels), regions: vec![region], tracks: false });
     }
     if numbers(view, 0) {
         return Ok(vec![bare(view, options, fps)?].into());
@@ -155,7 +156,7 @@ fn imagej<'a>(view: View<'a>, options: &ReadOptions) -> Result<Recognised<'a>, T
             .help(format!("the file has {}", view.cells(0).collect::<Vec<_>>().join(", "))));
     };
     first.aside.append(&mut aside);
-    Ok(Recognised { what: Some("ImageJ tracks"), regions, tracks: true })
+    Ok(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
 }
 
 /// Names for the columns `chosen`, and none for the others.
@@ -196,7 +197,7 @@ fn tracker<'a>(view: View<'a>, options: &ReadOptions) -> Option<Recognised<'a>> 
     let named = found.iter().any(|(named, _)| *named);
     let regions: Vec<Region<'a>> =
         found.into_iter().filter(|(own, _)| *own || !named).map(|(_, region)| region).collect();
-    (!regions.is_empty()).then_some(Recognised { what: Some("a Tracker export (s, m)"), regions, tracks: true })
+    (!regions.is_empty()).then_some(Recognised { program: Some(Program::Tracker), regions, tracks: true })
 }
 
 /// Data sets below one another: a line of the format, one of the source, one of the name; then long
@@ -229,7 +230,7 @@ fn vernier(view: View<'_>) -> Result<Recognised<'_>, TableError> {
     if regions.len() > 1 {
         distinct(&mut regions);
     }
-    Ok(Recognised { what: Some("a Vernier text"), regions, tracks: false })
+    Ok(Recognised { program: Some(Program::Vernier), regions, tracks: false })
 }
 
 const VERNIER: &str =
@@ -282,11 +283,11 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
             }
             region
         });
-        return Some(Recognised { what: Some("runs side by side"), regions: regions.collect(), tracks: false });
+        return Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false });
     }
     let groups = repeated(header)?;
     let regions = groups.iter().enumerate().map(|(n, group)| part(format!("run {}", n + 1), &|c| group.contains(&c)));
-    Some(Recognised { what: Some("runs side by side"), regions: regions.collect(), tracks: false })
+    Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false })
 }
 
 /// The columns of each run, where the same names come again and again.

@@ -13,6 +13,7 @@ use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
+use crate::finding::Note;
 use crate::statistics::median;
 
 impl Columns {
@@ -103,8 +104,7 @@ impl Columns {
             if let (Some(drop), Some(unit)) = (drop, column.unit) {
                 (column.zero, column.sign) = (drop / unit.si(1.0), -1.0);
                 let name = shown(&column.heading.text);
-                self.notes
-                    .push(format!("'{name}' adds up from bounce to bounce: heights are what it leaves of the release"));
+                self.notes.push(Note::Losses { column: name });
             }
         }
     }
@@ -198,8 +198,7 @@ impl Columns {
                 (value.at, value.trial) = (At::Row, format!("trial {count}"));
             }
         }
-        self.notes
-            .push(format!("'{}' are taken for repeats and not for bounces one after another", names.join("', '")));
+        self.notes.push(Note::Repeats { columns: names });
     }
 
     /// Columns of one name beside a height of release, nearly as high as one another: trials.
@@ -221,7 +220,7 @@ impl Columns {
                 value.trial = format!("trial {}", count + 1);
             }
         }
-        self.notes.push(format!("the columns '{}' are taken for repeats", shown(&name)));
+        self.notes.push(Note::Namesakes { column: shown(&name) });
     }
 
     /// The quantity of columns that do not say it: from their cells, the rows' names, their
@@ -303,8 +302,7 @@ impl Columns {
             {
                 value.what = What::Time;
                 let name = shown(&self.columns[index].heading.text);
-                self.notes
-                    .push(format!("the times of '{name}' rise from row to row: taken as those of a running clock"));
+                self.notes.push(Note::RisingTimes { column: name });
             }
         }
     }
@@ -346,7 +344,7 @@ impl Columns {
         let computed = self.columns.iter().any(energy);
         if computed && heights.iter().any(|&n| matches!(self.columns[n].value().map(|v| v.at), Some(At::Nth(_)))) {
             heights.into_iter().for_each(|index| self.leave(index, Why::Computed));
-            self.notes.push("heights were left aside: phyphox computes them from the times".to_owned());
+            self.notes.push(Note::Computed);
         } else if heights.is_empty() {
             // `H,T0,T1,T2`: the height of release, and a clock.
             for column in &mut self.columns {

@@ -3,7 +3,9 @@
 use super::region::Region;
 use super::{ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
+use crate::finding::{Note, Pace, Remark, Repair, Warning};
 use crate::orientation::falls_upwards;
+use crate::statistics::median;
 
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the
 /// other.
@@ -57,27 +59,17 @@ fn falls(table: &mut Table) {
         return;
     }
     let rate = (gravity / median).sqrt();
-    let rate = match table.metadata.frame_rate {
-        Some(fps) => format!("{:.0} frames a second would be right", fps * rate),
-        None => pace(table, rate),
+    let pace = match table.metadata.frame_rate {
+        Some(fps) => Pace::Frames { rate: fps * rate },
+        None => Pace::Clock { factor: rate, played: played(table) },
     };
-    table.warnings.push(format!(
-        "the ball falls with {median:.2} m/s² where {gravity:.2} are due: is the unit of heights, the scale or the frame rate \
-         wrong? ({rate})"
-    ));
+    table.warnings.push(Warning::Gravity { found: median, due: gravity, pace }.into());
 }
 
-/// By how much a recording runs too slowly or too fast, and at which rates it would have been
-/// filmed and played.
-fn pace(table: &Table, rate: f64) -> String {
+/// The rate of the samples, 1/s.
+fn played(table: &Table) -> f64 {
     let steps = table.trials.iter().flat_map(|t| t.readings.windows(2)).filter_map(|w| Some(w[1].time? - w[0].time?));
-    let played = crate::statistics::median(&mut steps.collect::<Vec<f64>>()).map_or(0.0, |step| 1.0 / step);
-    let (by, how) = if rate > 1.0 { (rate, "slower") } else { (1.0 / rate, "faster") };
-    format!(
-        "if it is the clock, the recording runs {by:.1} times {how} than life, as a film shot at {:.0} frames a second and played at {played:.0}; \
-         the COR does not depend on it",
-        played * rate
-    )
+    median(&mut steps.collect::<Vec<f64>>()).map_or(0.0, |step| 1.0 / step)
 }
 
 /// The downward accelerations where a series moves and bends downwards, from second differences.
@@ -95,7 +87,7 @@ fn accelerations(readings: &[Reading], stride: usize) -> Vec<f64> {
 }
 
 /// Recordings one below the other, told apart by a clock that starts again.
-fn recordings(trial: Trial, notes: &mut Vec<String>) -> Vec<Trial> {
+fn recordings(trial: Trial, notes: &mut Vec<Remark<Note>>) -> Vec<Trial> {
     let restarts = |pair: &[Reading]| pair[1].time < pair[0].time;
     let starts: Vec<usize> =
         trial.readings.windows(2).enumerate().filter(|(_, pair)| restarts(pair)).map(|(n, _)| n + 1).collect();
@@ -104,7 +96,7 @@ fn recordings(trial: Trial, notes: &mut Vec<String>) -> Vec<Trial> {
     if starts.is_empty() || shortest < RECORDING {
         return vec![trial];
     }
-    notes.push(format!("the clock starts again {} times: read as {} recordings", starts.len(), starts.len() + 1));
+    notes.push(Note::Restarts { times: starts.len() }.into());
     let like = Trial { readings: Vec::new(), ..trial.clone() };
     let mut parts: Vec<Trial> = Vec::new();
     for (n, reading) in trial.readings.into_iter().enumerate() {
@@ -125,7 +117,7 @@ fn ordered(
     region: &Region<'_>,
     column: usize,
     mut trial: Trial,
-    repairs: &mut Vec<String>,
+    repairs: &mut Vec<Remark<Repair>>,
 ) -> Result<Trial, TableError> {
     let by_time = |a: &Reading, b: &Reading| a.time.partial_cmp(&b.time).unwrap_or(std::cmp::Ordering::Equal);
     trial.readings.sort_by(|a, b| by_time(a, b).then(a.line.cmp(&b.line)));
@@ -142,8 +134,7 @@ fn ordered(
     trial.readings.dedup_by(|b, a| a.time == b.time && a.height == b.height);
     let repeated = before - trial.readings.len();
     if repeated > 0 {
-        let s = if repeated == 1 { "sample is" } else { "samples are" };
-        repairs.push(format!("{repeated} {s} given twice alike, counted once"));
+        repairs.push(Repair::SameSamples { samples: repeated }.into());
     }
     for (n, reading) in trial.readings.iter_mut().enumerate() {
         reading.bounce = n;
@@ -160,19 +151,14 @@ fn orient(unscaled: bool, options: &ReadOptions, table: &mut Table) {
         Some(down) => {
             // What is stated is heeded, but a ball that then falls upwards is worth a word.
             if falls_upwards == Some(true) {
-                table.metadata.falls_upwards = Some(if down {
-                    "the heights are taken to count downwards, as stated, and then the ball falls upwards: it should be --y-up"
-                } else {
-                    "the heights are taken to count upwards, as stated, and then the ball falls upwards: it should be --y-down"
-                });
+                table.metadata.falls_upwards = Some(down);
             }
             false
         }
         None => falls_upwards.unwrap_or(unscaled),
     };
     if turned {
-        let why = if falls_upwards.is_some() { "the ball falls that way" } else { "as in pictures" };
-        table.notes.push(format!("heights count downwards: {why} (--y-up if not)"));
+        table.notes.push(Note::Downwards { shown: falls_upwards.is_some() }.into());
         each_height(table, |h| -h);
     }
     // Where nobody says what the scale reads at the floor, pictures and scales upside down are

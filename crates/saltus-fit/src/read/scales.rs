@@ -11,6 +11,7 @@ use super::region::Region;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
+use crate::finding::{Note, Warning};
 
 /// How long a ball bounces that is dropped and timed, s: from one short flight to a minute.
 const BOUNCES: (f64, f64) = (0.1, 60.0);
@@ -86,8 +87,7 @@ impl Columns {
             || region.frames
             || self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Frame));
         if dimension == Dimension::Length && filmed {
-            self.notes
-                .push(format!("'{name}' has no unit: taken as pixels of unknown size, which a COR does not need"));
+            self.notes.push(Note::Pixels { column: name });
             return Ok(Some(Unit::PIXEL));
         }
         if let Some(unit) = self.of_the_drop(region, index, dimension) {
@@ -120,7 +120,7 @@ impl Columns {
             .into_iter()
             .find(|(unit, _)| (BOUNCES.0..BOUNCES.1).contains(&unit.si(lasts)))?;
         let name = shown(&self.columns[index].heading.text);
-        self.notes.push(format!("'{name}' has no unit: taken as {spelt}, since it lasts as long as a ball bounces"));
+        self.notes.push(Note::UnitBySize { column: name, unit: spelt.to_owned() });
         Some(unit)
     }
 
@@ -209,7 +209,7 @@ impl Columns {
             return None;
         }
         let (name, of) = (shown(&self.columns[index].heading.text), shown(&self.columns[from].heading.text));
-        self.notes.push(format!("'{name}' is taken to be in the unit of '{of}'"));
+        self.notes.push(Note::SameUnit { column: name, of });
         Some(unit)
     }
 
@@ -243,10 +243,7 @@ impl Columns {
         }
         for column in self.columns.iter_mut().filter(|c| of(c) && c.unit != Some(unit)) {
             column.unit = Some(unit);
-            self.warnings.push(format!(
-                "the numbers of '{}' are taken to be in {name}, as stated, against its name",
-                column.heading.text
-            ));
+            self.warnings.push(Warning::UnitAgainstName { column: column.heading.text.clone(), unit: name.to_owned() });
         }
         Ok(())
     }

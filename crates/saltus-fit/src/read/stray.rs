@@ -8,6 +8,7 @@ use super::columns::Columns;
 use super::heading::What;
 use super::region::Region;
 use super::{Event, Trial};
+use crate::finding::{Remark, Warning};
 use crate::statistics::median;
 
 /// What mixed units differ by, cm and m, mm and m, and mm and cm; and a decimal point that has
@@ -33,7 +34,7 @@ struct Stray {
 
 /// Warns of single heights that are ten, a hundred or a thousand times too small or too large
 /// beside the others of their trial.
-pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], warnings: &mut Vec<String>) {
+pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], warnings: &mut Vec<Remark<Warning>>) {
     let found = strays(trials);
     for stray in found.iter().take(NAMED) {
         let reading = &trials[stray.trial].readings[stray.reading];
@@ -54,17 +55,12 @@ pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], war
                 holds(row, column).filter(|_| here).map(|number| (row, column, number))
             });
         let Some((row, column, number)) = place else { continue };
-        let (size, times) = if stray.factor > 1.0 { ("small", stray.factor) } else { ("large", 1.0 / stray.factor) };
-        let message = format!(
-            "'{}' is about {times:.0} times too {size} beside the other heights; if it is in another unit, or its decimal point has slipped, \
-             write {} for it, in the unit of the column",
-            region.cell(row, column),
-            written(number * stray.factor)
-        );
-        warnings.push(format!("a height out of line, {}", region.view.error(row, column, message).sentence()));
+        let reading = region.cell(row, column).to_owned();
+        let (at, instead) = (region.view.error(row, column, "").spot(), written(number * stray.factor));
+        warnings.push(Warning::Stray { at, reading, factor: stray.factor, instead }.into());
     }
     if found.len() > NAMED {
-        warnings.push(format!("{} more heights look as if they were in another unit", found.len() - NAMED));
+        warnings.push(Warning::MoreStrays { heights: found.len() - NAMED }.into());
     }
 }
 

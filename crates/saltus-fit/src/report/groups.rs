@@ -66,12 +66,13 @@ impl Report {
             () if refused == count => (Verdict::Refused, Finding::refusal(kind)),
             () => (Verdict::Doubtful, Finding::doubt(kind)),
         };
-        let notes = table.notes().iter().map(|text| Finding::note(FindingKind::ReadNote { text: text.clone() }));
+        let notes = table.notes.iter().map(|note| Finding::note(FindingKind::ReadNote { note: note.clone() }));
+        let notes: Vec<Finding> = notes.collect();
         Self {
             verdict,
             reason: finding.to_string(),
             trials: table.trials().len(),
-            notes: table.notes().to_vec(),
+            notes: notes.iter().map(Finding::to_string).collect(),
             findings: std::iter::once(finding).chain(notes).collect(),
             differences: differences(&groups),
             groups,

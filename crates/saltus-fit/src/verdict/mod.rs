@@ -24,9 +24,9 @@ pub(crate) use unseen::{Stated, air_shows, in_a_vacuum};
 /// What was said of the table when it was read, and what was done to put its readings in order.
 fn begun(fits: &Fits<'_>) -> Judgement {
     let table = fits.table;
-    let notes = table.notes.iter().map(|text| FindingKind::ReadNote { text: text.clone() });
-    let repairs = table.repairs.iter().map(|text| FindingKind::ReadRepair { text: text.clone() });
-    let warnings = table.warnings.iter().map(|text| FindingKind::ReadWarning { text: text.clone() });
+    let notes = table.notes.iter().map(|note| FindingKind::ReadNote { note: note.clone() });
+    let repairs = table.repairs.iter().map(|repair| FindingKind::ReadRepair { repair: repair.clone() });
+    let warnings = table.warnings.iter().map(|warning| FindingKind::ReadWarning { warning: warning.clone() });
     let doubts = table.doubts.iter().cloned().map(|doubt| Finding::doubt(FindingKind::ReadDoubt { doubt }));
     let findings = notes.chain(repairs).chain(warnings).map(Finding::note).chain(doubts);
     Judgement { findings: findings.chain(fits.evidence.repairs.iter().cloned()).collect(), ..Judgement::default() }

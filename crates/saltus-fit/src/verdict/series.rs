@@ -25,8 +25,8 @@ pub(crate) fn judge(
     (gravity, pixels): (Sourced, bool),
 ) -> (Vec<Estimate>, Vec<ModelChoice>) {
     judgement.findings.extend(series.repairs.iter().cloned());
-    if let Some(text) = &series.falls_upwards {
-        judgement.doubt(FindingKind::FallsUpwards { text: text.clone() });
+    if let Some(down) = series.falls_upwards {
+        judgement.doubt(FindingKind::FallsUpwards { down });
     }
     let Some(pooled) = &series.pooled else {
         judgement.findings.extend(series.refused.iter().cloned());

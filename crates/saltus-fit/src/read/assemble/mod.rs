@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use super::aside::LeftAside;
 use super::cell::Cell;
 use super::columns::{Columns, Kind};
-use super::grid::{lines, shown};
+use super::grid::shown;
 use super::heading::{At, What};
 use super::layout::{Layout, Track, layout, tracks};
 use super::order::{in_order, renumbered, rise, summed};
@@ -20,7 +20,7 @@ use super::stray;
 use super::units::{Scale, Unit};
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
-use crate::finding::Doubt;
+use crate::finding::{Doubt, Lines, Note, Remark, Repair, Shape};
 
 /// Gravity by which speeds become heights: any would do, since only their ratios count, m/s².
 const GRAVITY: f64 = 9.81;
@@ -77,11 +77,11 @@ pub(super) fn table(
     let mut table = Table { metadata, ..Table::default() };
     table.metadata.pixels |= columns.unscaled;
     if skipped > 0 {
-        table.notes.push(format!("{} rows kept and {skipped} left out by the filter", rows.rows.len()));
+        table.notes.push(Note::Filtered { kept: rows.rows.len(), left_out: skipped }.into());
     }
     table.rows = rows.rows.len();
     if rows.rounded {
-        table.repairs.push("numbers of bounces, as if read off a diagram, are rounded to whole ones".to_owned());
+        table.repairs.push(Repair::RoundedNumbers.into());
     }
     let mut tracks = tracks(columns);
     let mut builder = Builder {
@@ -100,7 +100,7 @@ pub(super) fn table(
         flights: Vec::new(),
     };
     if builder.dropped(&rows, &mut tracks, metadata.drop)? {
-        table.notes.push(format!("dropped from {} m, as stated", metadata.drop.unwrap_or_default()));
+        table.notes.push(Note::Dropped { height_m: metadata.drop.unwrap_or_default() }.into());
     }
     builder.layout = layout(region, builder.columns, &rows, &tracks)?;
     unscaled(region, builder.columns, builder.layout, options, &mut table.metadata)?;
@@ -157,11 +157,7 @@ fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &Read
         c.zero = options.zero.unwrap_or(zero);
         c.sign = if down { -1.0 } else { 1.0 };
     }
-    columns.notes.push(format!(
-        "the scale reads {} at the floor and counts {}",
-        region.cell(row, column),
-        if down { "downwards" } else { "upwards" }
-    ));
+    columns.notes.push(Note::Floor { reading: region.cell(row, column).to_owned(), down });
     Ok(())
 }
 
@@ -268,7 +264,7 @@ impl Builder<'_> {
         // Two times may be given in either order.
         let found = count > 2 && falls;
         if found {
-            self.columns.notes.push("the times fall from bounce to bounce: taken as times between contacts".to_owned());
+            self.columns.notes.push(Note::FallingTimes);
         }
         Ok(found)
     }
@@ -301,11 +297,11 @@ impl Builder<'_> {
         flights: bool,
         mut table: Table,
     ) -> Result<Table, TableError> {
-        let what = describe(self.layout, self.columns, tracks, flights);
+        let what = read_as(self.layout, self.columns, tracks, flights);
         let Self { region, columns, layout, trials, missing, aside, flights, .. } = self;
-        table.notes.insert(0, format!("read as {what}"));
-        table.notes.append(&mut columns.notes);
-        table.warnings.append(&mut columns.warnings);
+        table.notes.insert(0, what.into());
+        table.notes.extend(columns.notes.drain(..).map(Remark::from));
+        table.warnings.extend(columns.warnings.drain(..).map(Remark::from));
         table.left_aside.extend(region.aside.iter().cloned().chain(columns.aside.drain(..)).chain(aside));
         let column = columns.values().find(|(_, _, v)| v.what == What::Time).map_or(0, |(n, _, _)| n);
         let key = columns.number().map_or(column, |(n, _)| n);
@@ -325,7 +321,7 @@ impl Builder<'_> {
         });
         if let Layout::Samples { .. } = layout {
             if !missing.is_empty() {
-                table.repairs.push(format!("{}: no position here, left out", lines(&missing)));
+                table.repairs.push(Repair::NoPosition { lines: Lines::of(&missing) }.into());
             }
             samples::series(region, column, columns.unscaled, options, &mut table)?;
         }
@@ -392,49 +388,33 @@ fn energies(columns: &Columns, trials: &mut [Trial]) {
     }
 }
 
-/// One line on what was recognised.
-fn describe(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) -> String {
-    let name = |index: usize| columns.columns[index].heading.text.as_str();
+/// What the columns were taken for.
+fn read_as(layout: Layout, columns: &Columns, tracks: &[Track], flights: bool) -> Note {
+    let name = |index: usize| columns.columns[index].heading.text.clone();
     let first = &tracks[0];
-    let several = if tracks.len() > 1 { format!(", in {} columns side by side", tracks.len()) } else { String::new() };
     let (height, time) = (first.height.or(first.after).or(first.speed), first.time);
-    let what = match layout {
-        Layout::Events { .. } => "events (release, contact, apex)".to_owned(),
-        Layout::Numbered | Layout::Listed => {
-            let order = if layout == Layout::Numbered {
-                "by number of bounces, 0 being the release"
-            } else {
-                "in order, the first being the release"
-            };
-            match (time, first.interval, height) {
-                (Some(t), _, Some(h)) if !flights && columns.of_tops() => {
-                    format!("tops: their times '{}' and their heights '{}'", name(t), name(h))
-                }
-                (Some(t), _, Some(h)) if !flights => {
-                    format!("contact times '{}' and the heights reached after them '{}'", name(t), name(h))
-                }
-                (Some(t), _, None) if !flights => format!("contact times '{}'", name(t)),
-                (t, i, None) => format!("times between contacts '{}'", t.or(i).map_or("", name)),
-                (t, i, Some(h)) => match t.or(i) {
-                    Some(i) => format!("heights '{}' and times between contacts '{}'", name(h), name(i)),
-                    None => format!("heights '{}' {order}", name(h)),
-                },
-            }
-        }
+    let shape = match layout {
+        Layout::Events { .. } => Shape::Events,
+        Layout::Numbered | Layout::Listed => match (time, first.interval, height) {
+            (Some(t), _, Some(h)) if !flights && columns.of_tops() => Shape::Tops { times: name(t), heights: name(h) },
+            (Some(t), _, Some(h)) if !flights => Shape::ContactsAndHeights { times: name(t), heights: name(h) },
+            (Some(t), _, None) if !flights => Shape::Contacts { times: name(t) },
+            (t, i, None) => Shape::Intervals { intervals: t.or(i).map_or_else(String::new, name) },
+            (t, i, Some(h)) => match t.or(i) {
+                Some(i) => Shape::IntervalsAndHeights { intervals: name(i), heights: name(h) },
+                None => Shape::Heights { heights: name(h), numbered: layout == Layout::Numbered },
+            },
+        },
         Layout::Pairs => {
             let rebound = height.or(first.lost).or(first.share).or(first.interval).or(first.total);
-            match (first.release.or(first.before), rebound) {
-                (Some(a), Some(b)) => format!("drops, one a row: '{}' and '{}'", name(a), name(b)),
-                _ => "drops, one a row".to_owned(),
-            }
+            Shape::Drops { release: first.release.or(first.before).map(name), rebound: rebound.map(name) }
         }
-        Layout::Wide => "one trial a row, one bounce a column".to_owned(),
-        Layout::Samples { frames: false } => {
-            format!("a series of heights '{}' in time '{}'", height.map_or("", name), time.map_or("", name))
+        Layout::Wide => Shape::Wide,
+        Layout::Samples { frames } => {
+            let times = time.filter(|_| !frames).map_or_else(String::new, name);
+            Shape::Series { heights: height.map_or_else(String::new, name), times: (!frames).then_some(times) }
         }
-        Layout::Samples { frames: true } => format!("a series of heights '{}', a frame apart", height.map_or("", name)),
     };
     let speeds = columns.values().any(|(_, _, v)| v.what == What::Speed);
-    let as_heights = if speeds { "; a speed v stands for the height v²/2g" } else { "" };
-    format!("{what}{several}{as_heights}")
+    Note::ReadAs { shape, side_by_side: tracks.len(), speeds }
 }

@@ -2,6 +2,7 @@
 //! energies of one side of the impacts for those of the row, samples of a sound for times.
 
 use super::{Columns, Kind, LEVEL};
+use crate::finding::Note;
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
@@ -73,7 +74,7 @@ impl Columns {
         self.columns[index].unit = Some(unit);
         self.promote(index);
         let name = shown(&self.columns[index].heading.text);
-        self.notes.push(format!("'{name}' is taken as an energy, which is as the height"));
+        self.notes.push(Note::Energy { column: name });
     }
 
     fn promote(&mut self, index: usize) {

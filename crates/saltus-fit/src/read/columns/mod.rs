@@ -19,6 +19,7 @@ use super::title;
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
+use crate::finding::{Note, Warning};
 
 /// What a column is for.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,8 +82,8 @@ impl Column {
 pub(super) struct Columns {
     pub(super) columns: Vec<Column>,
     pub(super) aside: Vec<LeftAside>,
-    pub(super) notes: Vec<String>,
-    pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<Note>,
+    pub(super) warnings: Vec<Warning>,
     /// Heights have no scale: only their ratios mean anything.
     pub(super) unscaled: bool,
 }
@@ -151,7 +152,11 @@ impl Columns {
             (heading.unknown, heading.meaning) = (Vec::new(), Meaning::Aside(Why::Other));
         }
         for (written, meant) in &heading.misspelt {
-            self.notes.push(format!("'{}' in '{}' was read as '{meant}'", shown(written), shown(&heading.text)));
+            self.notes.push(Note::Misspelt {
+                written: shown(written),
+                heading: shown(&heading.text),
+                meant: meant.to_string(),
+            });
         }
         let kind = match &heading.meaning {
             Meaning::Number { sure } => Kind::Number { sure: *sure },

@@ -2,6 +2,7 @@
 //! release.
 
 use super::{Columns, Kind, plain};
+use crate::finding::Note;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Of, Role, What};
@@ -72,10 +73,7 @@ impl Columns {
         column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };
         column.kind = if series { Kind::Value(plain(What::Height)) } else { Kind::Share };
         self.aside.retain(|aside| aside.name != name);
-        self.notes.push(format!(
-            "'{name}' is taken as a ratio of heights{}",
-            if series { ", of the height of release" } else { ", of the rebound to its drop" }
-        ));
+        self.notes.push(Note::Share { column: name, of_release: series });
     }
 
     /// Whether a column holds hundredths, by its heading or its cells.

@@ -3,10 +3,12 @@
 //! A sentence begins with a small letter and has no full stop: it may stand after the name of its
 //! trial, or in a list.
 
+mod aside;
 mod models;
 mod names;
 mod plan;
 mod reading;
+mod remarks;
 mod repairs;
 mod verdict;
 

@@ -5,10 +5,15 @@ use crate::finding::{Finding, FindingKind};
 
 pub(super) fn words(finding: &Finding) -> Option<String> {
     Some(match &finding.kind {
-        FindingKind::ReadNote { text }
-        | FindingKind::ReadRepair { text }
-        | FindingKind::ReadWarning { text }
-        | FindingKind::FallsUpwards { text } => text.clone(),
+        FindingKind::ReadNote { note } => note.to_string(),
+        FindingKind::ReadRepair { repair } => repair.to_string(),
+        FindingKind::ReadWarning { warning } => warning.to_string(),
+        FindingKind::FallsUpwards { down } => {
+            let (way, option) = if *down { ("downwards", "--y-up") } else { ("upwards", "--y-down") };
+            format!(
+                "the heights are taken to count {way}, as stated, and then the ball falls upwards: it should be {option}"
+            )
+        }
         FindingKind::ReadDoubt { doubt } => reading::words(doubt),
         FindingKind::Groups { groups, trusted, .. } if trusted == groups => format!("{groups} groups, a COR each"),
         FindingKind::Groups { groups, refused, .. } if refused == groups => {

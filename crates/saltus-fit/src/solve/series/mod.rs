@@ -40,13 +40,13 @@ pub(crate) struct Series {
     /// What was done to put the samples in order.
     pub(crate) repairs: Vec<Finding>,
     /// What was stated about the way that heights count, where the ball then falls upwards.
-    pub(crate) falls_upwards: Option<String>,
+    pub(crate) falls_upwards: Option<bool>,
 }
 
 /// Fits every series of the table, with wild samples left out if `repair`, drag held at `drag`
 /// (1/m) where that is stated; `None` if it has none.
 pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Option<Series>, FitError> {
-    let mut series = Series { falls_upwards: table.metadata.falls_upwards.map(str::to_owned), ..Series::default() };
+    let mut series = Series { falls_upwards: table.metadata.falls_upwards, ..Series::default() };
     let mut seen = false;
     let mut recordings = Vec::new();
     for (n, trial) in table.trials().iter().enumerate() {
