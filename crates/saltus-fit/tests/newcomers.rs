@@ -119,3 +119,23 @@ fn two_balls_in_one_sheet_have_a_cor_each() {
     let difference = &report.differences()[0];
     assert!((difference.value - 0.15).abs() < 0.002 && difference.low > 0.14 && difference.high < 0.16, "{report}");
 }
+
+/// A line of one cell below the names of several columns is a remark, however it is worded; units
+/// may stand below it, and it is named.
+#[test]
+fn remarks_between_names_and_rows_are_none_of_them() {
+    for remark in ["ball dropped on tile", "height of the bottom of the ball", "from the first bounce to the second"] {
+        for text in [
+            format!("Height before (cm),Height after (cm)\n{remark}\n150,96.0\n100,64.1\n80,51.2\n60,38.4\n"),
+            format!("Height before,Height after\n{remark}\n(cm),(cm)\n150,96.0\n100,64.1\n80,51.2\n60,38.4\n"),
+            format!(
+                "Height before,Height after\n{remark}\nseen from the side\ncm,cm\n150,96.0\n100,64.1\n80,51.2\n60,38.4\n"
+            ),
+        ] {
+            let report = fit(&text);
+            let cor = report.cor().unwrap_or_else(|| panic!("{text}{report}"));
+            assert!((cor.value - 0.8).abs() < 0.003 && read(&text).trials().len() == 4, "{text}{report}");
+            assert!(report.left_aside().iter().any(|aside| aside.name == remark), "{text}{report}");
+        }
+    }
+}

@@ -180,6 +180,7 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
     table.metadata.averaged = averaged;
+    table.metadata.ratios = columns.of_ratios();
     table.doubts.extend(doubts.into_iter().flatten());
     Ok(table)
 }
@@ -278,6 +279,8 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         let none = || TableError::new(name, "there is no such sheet, or none at all");
         return Err(first.unwrap_or_else(|| none().help(format!("the file has {}", known.join(", ")))));
     }
+    let ratios = pool::measured(&mut found, |(_, table)| table);
+    aside.extend(ratios.into_iter().map(|(label, _)| (label, Why::Derived)));
     let drops = told_apart(&mut found);
     let read = found.iter().map(|(label, _)| label.clone()).collect();
     let mut table = pool::join(name, found)?;

@@ -21,10 +21,15 @@ fn listed(text: &str) -> Option<String> {
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         // Words by themselves are a title.
-        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|' | ':' | '=')) {
+        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|')) {
             return Some((false, format!("#{line}")));
         }
-        let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash);
+        // What an arrow leads to was read of what stands before it, unless that is a number too.
+        let words = |(name, _): &(&str, &str)| {
+            name.contains(char::is_alphabetic) && cell::read(name.trim(), false) == Cell::Words
+        };
+        let arrow = || ARROWS.iter().find_map(|arrow| line.split_once(arrow)).filter(words);
+        let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash).or_else(arrow);
         let (name, values) = parted.or_else(|| measured(line))?;
         let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();

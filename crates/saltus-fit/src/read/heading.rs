@@ -242,6 +242,22 @@ impl Heading {
         self.has(Atom::Top) || self.has(Atom::Max) && (self.has(Atom::Height) || !time)
     }
 
+    /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`.
+    pub(super) fn coordinate(text: &str, header: &[String]) -> Option<Self> {
+        let parted = |text: &str| {
+            let end = text.find(['(', '[']).unwrap_or(text.len());
+            let name = text[..end].trim_end();
+            let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
+            let stem = name.strip_suffix(letter)?;
+            let apart = stem.ends_with(['_', ' ', '.', '-']) && stem.contains(char::is_alphabetic);
+            apart.then(|| (stem.to_owned(), letter, format!("{letter} {}", &text[end..])))
+        };
+        let (stem, letter, plain) = parted(text)?;
+        let other =
+            |name: &String| parted(name).is_some_and(|(of, l, _)| of == stem && !l.eq_ignore_ascii_case(&letter));
+        header.iter().any(other).then(|| Self::parse(&plain).called(text))
+    }
+
     fn called(self, text: &str) -> Self {
         Self { text: text.to_owned(), ..self }
     }

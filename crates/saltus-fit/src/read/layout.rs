@@ -211,7 +211,9 @@ fn arrives(columns: &Columns, track: &Track) -> bool {
         let timed = column.value().is_some_and(|v| {
             matches!(v.what, What::Time | What::Total) && matches!(v.at, At::Nth(contact) if contact > 1)
         });
-        timed && (column.heading.has(Atom::Rest) || split(&column.heading.text).iter().any(|word| word.text == "to"))
+        let heading = &column.heading;
+        let to = || split(&heading.text).iter().any(|word| word.text == "to");
+        timed && (heading.has(Atom::Rest) || heading.has(Atom::Release) || to())
     };
     track.release.is_some() && matches!(track.nth.as_slice(), [index] if until(*index))
 }

@@ -184,6 +184,8 @@ pub(crate) struct Metadata {
     pub(crate) averaged: Option<f64>,
     /// Times are sums of times between contacts.
     pub(crate) intervals: bool,
+    /// Heights are ratios to others.
+    pub(crate) ratios: bool,
     /// Which way the heights count was stated, and is not to be recognised.
     pub(crate) oriented: bool,
     /// Whether heights were stated to count downwards, where the ball then falls upwards.

@@ -32,6 +32,16 @@ pub(super) fn apart(parts: &mut [(String, Table)]) {
     }
 }
 
+/// Takes out tables of ratios beside others: they were worked out from them.
+pub(super) fn measured<T>(parts: &mut Vec<T>, table: impl Fn(&T) -> &Table) -> Vec<T> {
+    if parts.iter().all(|part| table(part).metadata.ratios) {
+        return Vec::new();
+    }
+    let (ratios, others) = std::mem::take(parts).into_iter().partition(|part| table(part).metadata.ratios);
+    *parts = others;
+    ratios
+}
+
 /// Joins tables, each with what tells it from the others, into one of all their trials.
 pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, TableError> {
     if parts.len() == 1 {
@@ -100,6 +110,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,
         intervals: a.intervals || b.intervals,
+        ratios: a.ratios && b.ratios,
         oriented: a.oriented,
         falls_upwards: a.falls_upwards.or(b.falls_upwards),
     })

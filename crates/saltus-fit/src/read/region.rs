@@ -97,8 +97,11 @@ pub(super) fn tables<'a>(view: View<'a>) -> Vec<Region<'a>> {
         if let Some(last) = found.last_mut() {
             last.rows.retain(|row| *row < header.at);
         }
+        // Remarks between names and units.
+        let within = (header.at + 1..header.below).filter(|&row| remark(view, row, &header.names));
+        let remarks: Vec<LeftAside> = within.flat_map(|row| texts(view, row..row + 1)).collect();
         let mut region = Region::new(view, header.names, header.at, (header.below..end).collect());
-        region.aside = above;
+        region.aside = above.into_iter().chain(remarks).collect();
         found.push(region);
         from = header.below;
     }
@@ -133,7 +136,13 @@ fn texts(view: View<'_>, span: std::ops::Range<usize>) -> Vec<LeftAside> {
 fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'_>>) -> Option<Header> {
     let mut best: Option<Header> = None;
     let last = if before.is_some() { end } else { end.min(from + HEAD) };
+    // A name by itself names no rows of several cells.
+    let filled = |row: usize| view.cells(row).filter(|cell| !cell.is_empty()).count();
+    let wide = |row: usize| (row + 1..end).find(|&n| !names_only(view, n)).is_some_and(|n| filled(n) > 1);
     for row in from..last {
+        if before.is_some_and(|b| remark(view, row, &b.header) && wide(row)) {
+            continue;
+        }
         for header in headers(view, row, end) {
             // Below a table a single word, or names without rows, are no header.
             let next = before.is_none()
@@ -185,15 +194,27 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         let counted = measured(view, &names, next) || sampled(view, &names, next..end);
         let score = if (1..VALUE).contains(&score) && counted { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
-        // A row of words may stand between, such as of units that are not known; a header without
-        // rows is one too.
-        if score > 0 && (next >= end || numbers(next) || next + 1 < end && numbers(next + 1) || events(view, next)) {
+        // A row of words may stand between, such as of units that are not known, and remarks; a
+        // header without rows is one too.
+        let remarks = (next..end).take_while(|&n| remark(view, n, &names)).count();
+        let rows = next + remarks;
+        if score > 0 && (rows >= end || numbers(rows) || rows + 1 < end && numbers(rows + 1) || events(view, rows)) {
             found.push(Header { names, at: row, below: next, score });
         }
     };
     push(one.clone(), row + 1);
     if let Some(names) = (row + 1 < end).then(|| numbered(view, &one, row + 1)).flatten() {
         push(names, row + 2);
+    }
+    // Units may stand below remarks.
+    let remarks = (row + 1..end).take_while(|&n| remark(view, n, &one)).count();
+    let units = row + 1 + remarks;
+    if remarks > 0
+        && below(units)
+        && of_units(&line(units))
+        && let Some(names) = both(&one, &line(units))
+    {
+        push(names, units + 1);
     }
     if below(row + 1)
         && !events(view, row + 1)
@@ -207,6 +228,16 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         push(names, row + 2);
     }
     found
+}
+
+/// Whether a row holds a cell of words and nothing else, where several columns are named: it is no
+/// header of theirs, nor of a table below them.
+fn remark(view: View<'_>, row: usize, names: &[String]) -> bool {
+    names.iter().filter(|name| !name.is_empty()).count() > 1
+        && names_only(view, row)
+        && view.cells(row).filter(|cell| !cell.is_empty()).count() == 1
+        && !events(view, row)
+        && !of_units(&view.cells(row).map(str::to_owned).collect::<Vec<_>>())
 }
 
 /// Whether a cell of a row bears a unit, below a name that is understood.

@@ -152,8 +152,8 @@ pub(super) fn of_another_motion(region: &Region<'_>) -> Option<Doubt> {
 }
 
 /// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights,
-/// speeds, energies and times may be of anything, but heights beside times, which fall as a ball
-/// does or do not fit. Answered for is what was chosen by an option, and a name that is spelt as
+/// speeds, energies and times may be of anything, but heights beside times of contacts, which fall
+/// as a ball does or do not fit. Answered for is what was chosen by an option, and a name that is spelt as
 /// the documentation spells it, `height_cm`; `h0` beside `h1` are signs of a bounce.
 pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
@@ -168,7 +168,8 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let named = region.view.grid.tab.is_some_and(|tab| Quantity::Length.parse(tab).is_ok());
     let high = named || read().any(|(_, c, v)| v.what == What::Height && length(c));
     let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
-    let timed = read().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval) && v.at == At::Row);
+    // A flight lasts as long as its height says, whatever flies.
+    let timed = read().any(|(_, _, v)| v.what == What::Time && v.at == At::Row);
     let spelt = |c: &Column| c.heading.text.contains('_');
     let released = read().any(|(_, _, v)| v.at == At::Release);
     let list = |c: &Column, v: &Value| v.what == What::Height && v.at == At::Row && !(timed || released || spelt(c));

@@ -99,6 +99,10 @@ impl Columns {
         if let Some(unit) = self.by_size(region, index).filter(|_| dimension == Dimension::Time) {
             return Ok(Some(unit));
         }
+        // Nobody asks in which unit nothing is.
+        if region.rows.is_empty() {
+            return Ok(None);
+        }
         Err(self.no_unit(region, index, dimension))
     }
 

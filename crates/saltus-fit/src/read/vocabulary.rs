@@ -129,7 +129,8 @@ pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
 /// letters.
 pub(super) fn nearest(word: &str) -> Option<&'static str> {
     let most = word.chars().count().min(LONGEST) / 3;
-    let known = entries().map(|(known, _)| (distance(word, known), known));
+    let says = |(_, names): &(&str, std::str::Split<'_, char>)| names.clone().any(|name| name != "filler");
+    let known = entries().filter(says).map(|(known, _)| (distance(word, known), known));
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
 

@@ -29,6 +29,9 @@ const TWO: [&str; 9] = ["two", "zwei", "deux", "due", "dois", "twee", "tva", "dw
 /// What the highest one of is the top of a flight.
 const POINTS: [&str; 5] = ["point", "punkt", "punto", "ponto", "punt"];
 
+/// What peaks at a contact.
+const SOUND: [&str; 6] = ["sound", "audio", "noise", "volume", "amplitude", "loudness"];
+
 /// Nobody counts further.
 const COUNTED: usize = 1_000_000;
 
@@ -46,6 +49,12 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         } else if POINTS.contains(&&*folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
             // `highest point`.
             Kind::Known(&[Atom::Rebound, Atom::Top])
+        } else if let Some(sound) = words.last_mut().filter(|w| {
+            meanings(&folded).is_some_and(|a| a.contains(&Atom::Top)) && SOUND.contains(&&*w.text.to_lowercase())
+        }) {
+            // A sound peaks when the ball hits the floor.
+            sound.kind = Kind::Known(&[Atom::Filler]);
+            Kind::Known(&[Atom::Impact])
         } else if piece == "TID" {
             // The number of a track, where `tid` is the time in Swedish.
             Kind::Unknown
@@ -74,6 +83,9 @@ pub(super) fn split(text: &str) -> Vec<Word> {
                 }
                 _ => Kind::Unknown,
             }
+        } else if let Some(parts) = compound(&folded) {
+            words.extend(parts.map(|(text, atoms)| Word { text: text.to_owned(), kind: Kind::Known(atoms) }));
+            continue;
         } else {
             Kind::Unknown
         };
@@ -93,6 +105,29 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         }
     }
     words
+}
+
+/// A part of a compound has so many letters at least: shorter words are the ends of others.
+const PART: usize = 4;
+
+/// The two words that one is put together from, as in German, Dutch or Swedish: each is known, and
+/// has to do with what is measured. An `s` may join them.
+fn compound(word: &str) -> Option<[(&str, &'static [Atom]); 2]> {
+    let part = |text: &'_ str| {
+        let atoms = meanings(text)?;
+        let says = |atom: &Atom| {
+            use Atom::{Error, Filler, Group, Label, Motion, Note, Number, Ordinal, Other, Unit};
+            !matches!(atom, Filler | Label | Group | Motion | Other | Note | Number | Ordinal(_) | Unit(_) | Error)
+        };
+        (text.chars().count() >= PART && atoms.iter().all(says)).then_some(atoms)
+    };
+    let cuts = word.char_indices().map(|(at, _)| word.split_at(at)).skip(PART);
+    let mut found = cuts.filter_map(|(head, tail)| {
+        let joined = || head.strip_suffix('s').and_then(|head| Some((head, part(head)?)));
+        let head = part(head).map(|atoms| (head, atoms)).or_else(joined)?;
+        Some([head, (tail, part(tail)?)])
+    });
+    found.next()
 }
 
 /// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`;
@@ -271,4 +306,35 @@ pub(super) fn numbers(words: &[Word]) -> Numbers {
         found.group = group.join(" ");
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn atoms(text: &str) -> Option<Vec<Atom>> {
+        let known = |word: &Word| match word.kind {
+            Kind::Known(atoms) => Some(atoms.to_vec()),
+            _ => None,
+        };
+        split(text).iter().map(known).collect::<Option<Vec<_>>>().map(|all| all.concat())
+    }
+
+    /// A word put together from two is read as those two, and a word of which a part is not known
+    /// is not understood.
+    #[test]
+    fn compounds_are_their_parts() {
+        for (one, two) in [("hoogteverlies", "hoogte verlies"), ("Aufprallszeit", "Aufprall Zeit")] {
+            assert!(atoms(one).is_some() && atoms(one) == atoms(two), "{one}");
+        }
+        for word in ["hoogteboom", "timeball", "heightxyz", "weight", "verlies"] {
+            assert!(compound(word).is_none(), "{word}");
+        }
+    }
+
+    #[test]
+    fn a_sound_peaks_at_a_contact() {
+        assert!(split("time of sound peak").iter().any(|word| word.is(Atom::Impact)));
+        assert!(!split("time of peak").iter().any(|word| word.is(Atom::Impact)));
+    }
 }

@@ -81,6 +81,16 @@ impl Columns {
                 (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Event, Vec::new());
                 continue;
             }
+            // Balls and surfaces tell rows apart, whatever stands above them.
+            let labels = |cell: &&str| {
+                let named = Heading::parse(cell);
+                named.unknown.is_empty() && !named.labels().is_empty() && named.value().is_none()
+            };
+            let mut named = cells.iter().filter(|cell| !cell.is_empty()).peekable();
+            if self.columns[index].value().is_none() && named.peek().is_some() && named.all(labels) {
+                (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Setting, Vec::new());
+                continue;
+            }
             let words = cells.iter().filter(|cell| !cell.is_empty()).all(|cell| read(cell, false) == Cell::Words);
             let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
             let differ = cells.iter().any(|cell| *cell != cells[0]);

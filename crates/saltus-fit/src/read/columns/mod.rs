@@ -95,7 +95,7 @@ impl Columns {
         let mut found =
             Self { columns: Vec::new(), aside: Vec::new(), notes: Vec::new(), warnings: Vec::new(), unscaled: false };
         for text in &region.header {
-            found.push(Heading::parse(text));
+            found.push(Heading::coordinate(text, &region.header).unwrap_or_else(|| Heading::parse(text)));
         }
         found.enumerated();
         found.spans(region);

@@ -84,14 +84,16 @@ impl Columns {
         let Some(release) = of(Some("H")).or_else(|| of(None).filter(|_| !counted)) else { return };
         let lower =
             |(n, c, v): (usize, &super::Column, &Value)| n == release || rebound(c, v) || high(v) && letter(c) == "h";
-        let others: Vec<usize> = self.values().map(|(n, _, _)| n).filter(|n| *n != release).collect();
+        // A mean beside them says nothing more.
+        let read = || self.values().filter(|(_, _, v)| v.role == Role::Reading);
+        let others: Vec<usize> = read().map(|(n, _, _)| n).filter(|n| *n != release).collect();
         let number = |row: usize, column: usize| match region.view.read(row, column) {
             Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
             _ => None,
         };
         let pairs = region.rows.iter().flat_map(|&row| others.iter().map(move |&n| (row, n)));
         let mut pairs = pairs.filter_map(|(row, n)| Some((number(row, release)?, number(row, n)?))).peekable();
-        if self.values().all(lower) && pairs.peek().is_some() && pairs.all(|(above, below)| above > below) {
+        if read().all(lower) && pairs.peek().is_some() && pairs.all(|(above, below)| above > below) {
             self.place(release, At::Release, String::new());
         }
     }

@@ -76,6 +76,11 @@ impl Columns {
         self.notes.push(Note::Share { column: name, of_release: series });
     }
 
+    /// Whether heights stand for ratios only.
+    pub(in crate::read) fn of_ratios(&self) -> bool {
+        self.columns.iter().any(|c| c.kind == Kind::Share || c.value().is_some() && c.unit == Some(Unit::WHOLE))
+    }
+
     /// Whether a column holds hundredths, by its heading or its cells.
     fn is_percent(&self, region: &Region<'_>, index: usize) -> bool {
         let percent = |unit: Option<Unit>| unit.is_some_and(|unit| unit.scale == Scale::Percent);

@@ -54,7 +54,9 @@ impl Heading {
         {
             return key;
         }
-        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) {
+        // Until the second contact, or a later one, lies a rebound.
+        let until = has(Atom::Impact) && numbers.bounce.first().is_some_and(|&contact| contact > 1);
+        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) && !until {
             return Meaning::Aside(Why::Other);
         }
         self.reading(what, numbers, run)
