@@ -68,6 +68,10 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     Some(if n % 2 == 1 { high } else { 0.5 * (values[n / 2 - 1] + high) })
 }
 
+/// So many readings tell how all are to be read, and what a change of all does to the COR; more
+/// would only cost time.
+pub(crate) const TELLING: usize = 1000;
+
 /// Frame rates of cameras, 1/s; colour television's are a thousandth slower.
 const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
 

@@ -16,7 +16,7 @@ use crate::solve::one::identified;
 use crate::solve::profile::limit;
 use crate::solve::robust;
 use crate::solve::successive::{Fitted, fit};
-use crate::statistics::{CLEAR, SPARE, TREND, WEAK, chi_square_p};
+use crate::statistics::{CLEAR, SPARE, TELLING, TREND, WEAK, chi_square_p};
 
 /// Speeds must differ by this factor before a dependence on speed can be told from one COR, and
 /// heights before a wrong zero shows.
@@ -27,9 +27,8 @@ const DRAG_SPEEDS: f64 = 1.6;
 const OFFSET_IMPACTS: usize = 4;
 /// A COR for every bounce is tried for up to so many.
 const BOUNCES: usize = 12;
-/// Leaving out each trial in turn is tried for up to so many trials and readings.
+/// Leaving out each trial in turn is tried for up to so many trials.
 const TRIALS: usize = 30;
-const LEFT_OUT: usize = 1500;
 /// The zero of a scale is off by a ball at most, and this is the largest: a basketball, m.
 const LARGEST_BALL: f64 = 0.25;
 /// Heights of which one is missing are looked for among so many, and need so many in their trial.
@@ -377,7 +376,7 @@ fn mean(fitted: &Fitted, cors: usize) -> Measured {
 /// The chi-square per reading of each trial under the model fitted to the others.
 fn left_out(model: &Flight, whole: &Fitted) -> Result<Option<f64>, FitError> {
     let count = model.trials.len();
-    if !(2..=TRIALS).contains(&count) || used(model) > LEFT_OUT {
+    if !(2..=TRIALS).contains(&count) || used(model) > TELLING {
         return Ok(None);
     }
     let (mut sum, mut rows) = (0.0, 0);

@@ -8,7 +8,7 @@
 //! (Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260), for CORs from one end of the possible to the
 //! other; those that cost about as little as the best are its rivals.
 
-use crate::statistics::{CLEAR, NORMAL, SCATTER, WEAK, median};
+use crate::statistics::{CLEAR, NORMAL, SCATTER, TELLING, WEAK, median};
 
 /// Between two contacts that are kept lie up to so many flights, and up to one less that are left
 /// out.
@@ -18,10 +18,6 @@ const APART: usize = 3;
 pub(crate) const BOUNCES: f64 = 0.05;
 /// The CORs that are tried, and how many: neighbours are nearer than [`BOUNCES`].
 const CORS: (f64, f64, u32) = (0.05, 1.25, 70);
-/// Runs of more contacts tell no more of how to read them.
-const TELLING: usize = 400;
-/// Golden sections that narrow a COR down from two steps to a thousandth of one.
-const SECTIONS: u32 = 16;
 
 /// A contact that is kept: its place in the run, and the flights since the one before it.
 pub(super) type Step = (usize, usize);
@@ -211,7 +207,8 @@ impl Way {
         let step = (CORS.1 / CORS.0).ln() / f64::from(CORS.2);
         let (mut low, mut high) = (near.ln() - step, near.ln() + step);
         let price = |log: f64| self.price(runs, log.exp(), sigma);
-        for _ in 0..SECTIONS {
+        // The least of a function of doubles shows to the root of their spacing.
+        while high - low > f64::EPSILON.sqrt() {
             let apart = golden * (high - low);
             let (a, b) = (high - apart, low + apart);
             if price(a) < price(b) { high = b } else { low = a }

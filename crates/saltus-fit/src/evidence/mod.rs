@@ -25,9 +25,6 @@ pub(crate) struct Moment {
 /// The error of a time that nobody states, s.
 pub(crate) const ASSUMED_TIME: f64 = 0.01;
 
-/// So many other ways to read the contacts are fitted.
-const RIVALS: usize = 6;
-
 /// At least so many pairs of contacts show that each was heard twice: within each they are no
 /// further apart than this, s,
 const PAIRS: usize = 3;
@@ -151,7 +148,7 @@ impl Evidence {
             }
             trials
         };
-        self.rivals = others.iter().take(RIVALS).map(read).collect();
+        self.rivals = others.iter().map(read).collect();
         self.trials = read(best);
         for ((&n, run), steps) in places.iter().zip(&runs).zip(&best.runs) {
             let place = at(table, self.trials[n].trial);

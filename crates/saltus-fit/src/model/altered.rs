@@ -4,13 +4,11 @@
 use super::drag::Air;
 use super::flight::FOLLOWED;
 use crate::evidence::{Evidence, TrialEvidence};
+use crate::statistics::TELLING;
 
 /// The speed that a flight of this duration starts with is found to a part of 1e-12 in so many
 /// rounds: each leaves a tenth of the error at most.
 const ROUNDS: usize = 12;
-
-/// So many readings tell what a change of all does to the COR; all the others would only cost time.
-const TELLING: usize = 1000;
 
 /// A part of the readings that tells what a change does to the COR: trials evenly spaced, each from
 /// its beginning.

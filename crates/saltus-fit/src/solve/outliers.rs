@@ -18,8 +18,6 @@ const MOST_TRIALS: f64 = 0.25;
 /// The scatter, in assumed errors, below which numbers are exact to their own rounding: 10 nm of
 /// heights, 10 ns of times.
 const LEAST_SCATTER: f64 = 1e-6;
-/// Where many are wild a second look finds those that the first ones hid.
-const ROUNDS: usize = 3;
 
 /// The evidence without the readings that do not belong to the model: `drop` takes them out by
 /// trial and place.
@@ -31,10 +29,11 @@ pub(crate) fn without<M: OneKind>(
     let (sigma, stated) = (known.map_or(M::ASSUMED, |s| s.value), known.is_some());
     let (mut left, mut all) = (evidence, None);
     let mut dropped = 0;
-    for _ in 0..ROUNDS {
+    // Where many are wild another look finds those that the first ones hid.
+    loop {
         let (wrong, count) = find::<M>(&left, all.as_ref().unwrap_or(&left), (sigma, stated))?;
         if wrong.is_empty() {
-            break;
+            return Ok(left);
         }
         dropped += wrong.len();
         if dropped as f64 > MOST * (count + dropped - wrong.len()) as f64 {
@@ -43,7 +42,6 @@ pub(crate) fn without<M: OneKind>(
         all.get_or_insert_with(|| left.clone());
         drop(&mut left, &wrong);
     }
-    Ok(left)
 }
 
 /// For each trial the places of readings that do not belong to the model; empty where all do.

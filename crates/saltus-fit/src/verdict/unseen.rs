@@ -221,10 +221,10 @@ fn one_missing(judgement: &mut Judgement, fits: &Fits<'_>, known: &Known) {
     }
 }
 
-/// The chi-square over the zero is looked at in so many even steps from end to end, since it is no
-/// parabola where heights are low,
-const STEPS: u32 = 16;
-/// and the step in which it becomes too large is halved so often: to a thousandth of the ball.
+/// The chi-square over the zero is looked at in even steps from end to end, since it is no parabola
+/// where heights are low: together with the halvings of one they part it in a thousand.
+const STEPS: u32 = 1024 >> HALVED;
+/// The step in which it becomes too large is halved so often: to a thousandth of the ball.
 const HALVED: usize = 6;
 
 /// How much lower and higher the heights may be than they were read, m: by `most`, or by less where
