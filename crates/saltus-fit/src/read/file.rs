@@ -58,18 +58,17 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     metadata.drop = options.drop.or(metadata.drop);
     metadata.oriented = options.down.is_some();
     let Recognised { program, regions, tracks } = programs::tables(grid, options, metadata.frame_rate)?;
-    let found = if regions.is_empty() {
-        Err(no_table(grid, options))
-    } else {
-        joined_up(grid, regions, tracks, options, metadata)
+    // Names that stand in the first column, one below the other.
+    let turnable = program.is_none() && options.header.is_none();
+    let turned = || joined_up(grid, vec![programs::turned(grid)?], false, options, metadata).ok();
+    let first = if turnable && programs::turned_by_units(grid) { turned() } else { None };
+    let found = match first {
+        Some(table) => Ok(table),
+        None if regions.is_empty() => Err(no_table(grid, options)),
+        None => joined_up(grid, regions, tracks, options, metadata),
     };
     let found = match found {
-        // Names that stand in the first column, one below the other.
-        Err(error) if program.is_none() && options.header.is_none() => {
-            let turned = programs::turned(grid);
-            let read = turned.map(|region| joined_up(grid, vec![region], false, options, metadata));
-            read.and_then(Result::ok).ok_or(error)
-        }
+        Err(error) if turnable => turned().ok_or(error),
         found => found,
     };
     let mut table = found?;

@@ -8,7 +8,7 @@ use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::grid::{Grid, View};
-use super::heading::{Heading, What};
+use super::heading::{At, Heading, What};
 use super::region::{self, Region};
 use super::units::{Dimension, Unit};
 use crate::error::TableError;
@@ -84,6 +84,21 @@ pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
         region.header.iter().all(numbered) && (0..region.header.len()).all(cell)
     };
     found.into_iter().find(|region| !region.rows.is_empty() && (region.header.iter().any(says) || measured(region)))
+}
+
+/// Whether names in the first column bear the units, one of them that of a release, where the names
+/// of columns bear none: those count trials.
+pub(super) fn turned_by_units(grid: &Grid<'_>) -> bool {
+    let bare = |name: &String| Heading::parse(name).unit.is_none();
+    let upright = region::tables(View { grid, across: false });
+    let names = turned(grid).filter(|_| upright.iter().all(|region| region.header.iter().all(bare)));
+    let place = |name: &String| {
+        let heading = Heading::parse(name);
+        let length = heading.unit.is_some_and(|unit| unit.dimension == Dimension::Length);
+        heading.value().filter(|_| length && heading.unknown.is_empty()).map(|value| value.at)
+    };
+    let places: Vec<At> = names.iter().flat_map(|region| &region.header).filter_map(place).collect();
+    places.contains(&At::Release) && places.iter().any(|at| *at != At::Release)
 }
 
 /// The column of a row with this text.
