@@ -92,8 +92,8 @@ fn contacts_adrift_are_a_doubt_where_they_are_many() {
     assert!(!adrift(&[4.37], 11) && adrift(&[1.37, 3.31, 5.41], 8));
 }
 
-/// A film whose motion is another one by ten times its noise is rough; one whose noise is a fiftieth
-/// of the path is not.
+/// A film whose motion is another one by ten times its noise is rough; one whose noise is a
+/// fiftieth of the path is not.
 #[test]
 fn a_motion_far_from_quiet_samples_is_rough() {
     let ball = Ball { drop: 1.0, release: 0.1, gravity: G, drag: 0.0, cor: |_| 0.8, contact: Contact::Instant };

@@ -153,8 +153,8 @@ pub(super) fn of_another_motion(region: &Region<'_>) -> Option<Doubt> {
 
 /// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights,
 /// speeds, energies and times may be of anything, but heights beside times of contacts, which fall
-/// as a ball does or do not fit. Answered for is what was chosen by an option, and a name that is spelt as
-/// the documentation spells it, `height_cm`; `h0` beside `h1` are signs of a bounce.
+/// as a ball does or do not fit. Answered for is what was chosen by an option, and a name that is
+/// spelt as the documentation spells it, `height_cm`; `h0` beside `h1` are signs of a bounce.
 pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
     if answered || region.given || region.chosen {

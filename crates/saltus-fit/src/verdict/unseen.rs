@@ -61,7 +61,8 @@ impl Stated {
     }
 }
 
-/// What is known, with the errors of readings that a fit found: altered readings are judged by them.
+/// What is known, with the errors of readings that a fit found: altered readings are judged by
+/// them.
 fn with_errors_of(fits: &Fits<'_>, known: &Known) -> Known {
     Known { sigma_height: Some(fits.sigma_height), sigma_time: Some(fits.sigma_time), ..*known }
 }
