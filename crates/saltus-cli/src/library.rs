@@ -9,7 +9,7 @@ use clap::Args as ClapArgs;
 use saltus_fit::{Fit, ReadOptions};
 use saltus_motion::Format;
 use saltus_scene::vary::{Value, Vary, refused};
-use saltus_scene::{Stage, Template, length};
+use saltus_scene::{Stage, Template, at_most, rounded_up};
 use serde_json::{Map, Value as Json, json};
 
 use crate::error::Error;
@@ -124,8 +124,9 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     say(
         quiet,
         &format!(
-            "{made} motions and index.json in '{folder}'; farthest contact from a frame: {off:.2} frames; worst height error: {}",
-            length(miss)
+            "{made} motions and index.json in '{folder}'; farthest contact from a frame: {} frames; worst height error: {}",
+            rounded_up(off, 2),
+            at_most(miss)
         ),
     );
     if let Some(first) = nothing.first() {

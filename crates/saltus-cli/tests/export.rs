@@ -240,7 +240,7 @@ fn what_animators_ask_for() {
     let output = run(&["export", squash, "--to", "csv", "--on-twos"]);
     let said = text(&output.stderr);
     assert!(said.contains("each drawing stands for two frames"), "{said}");
-    assert!(said.contains("worst height error: 8.37 mm; hops of up to 8.37 mm left out"), "{said}");
+    assert!(said.contains("worst height error: 8.38 mm; hops of up to 8.38 mm left out"), "{said}");
     // A table is no scene, and a moment no motion.
     let table = root().join("examples/data/squash-on-cement.csv");
     let message = refused(&["export", table.to_str().unwrap(), "-o", &path("ball.glb")]);

@@ -1,11 +1,12 @@
 //! Motion as keys: exact cubics between contacts, or samples on frames.
 
-use crate::motion::{Point, Stretch, Track};
+use crate::bound::{Miss, apart, difference};
+use crate::motion::{Piece, Point, Stretch, Track, norm};
 use crate::rate::Frames;
 
 /// Keys closer than this share of a frame are one: programs merge them anyhow.
 pub(crate) const APART: f64 = 0.01;
-/// At so many points between two keys a curve is compared with the motion.
+/// At so many points between two keys a form or a turning is compared with the motion.
 pub(crate) const COMPARED: u32 = 16;
 
 /// A place at a time, with the velocities on both sides of it.
@@ -60,39 +61,33 @@ impl Curve {
         }
     }
 
-    /// The greatest distance between curve and motion in m: in height, and along all axes. It is
-    /// that of 16 points between neighbours among keys and contacts: of a parabola and a line
-    /// exact, else up to 1 % too small. Of drawings that stand it is that at their own times.
+    /// The greatest distance between curve and motion in m, from above: in height, and along all
+    /// axes. Of drawings that stand it is that at their own times.
     #[must_use]
     pub fn error(&self, track: &Track) -> Miss {
-        let mut miss = Miss::default();
-        let mut stops: Vec<f64> = self.keys.iter().map(|key| key.t).collect();
-        let (first, last) = (stops.first().copied().unwrap_or(0.0), stops.last().copied().unwrap_or(0.0));
-        stops.extend(track.stretches.iter().map(Stretch::start).filter(|t| (first..last).contains(t)));
-        stops.sort_by(f64::total_cmp);
-        let mut next = 0;
-        for span in stops.windows(2) {
-            while self.keys.get(next + 1).is_some_and(|key| key.t <= span[0]) {
-                next += 1;
-            }
-            let Some([from, to]) = self.keys.get(next..next + 2).and_then(|pair| <&[Key; 2]>::try_from(pair).ok())
-            else {
-                break;
-            };
-            // A drawing that stands is looked at when it is drawn.
-            if self.between == Between::Hold && from.t < span[0] {
-                continue;
-            }
-            let last = if self.between == Between::Hold { 0 } else { COMPARED };
-            for k in 0..=last {
-                let t = span[0] + (span[1] - span[0]) * f64::from(k) / f64::from(COMPARED);
-                let (a, b) = (between(self.between, from, to, t), track.at(t));
-                let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-                miss.height = miss.height.max(d[2].abs());
-                miss.place = miss.place.max(d.iter().map(|d| d * d).sum::<f64>().sqrt());
-            }
+        if self.between == Between::Hold {
+            return self.keys.iter().fold(Miss::default(), |miss, key| {
+                let (p, q) = (key.place, track.at(key.t));
+                let off: Point = std::array::from_fn(|axis| p[axis] - q[axis]);
+                miss.or(Miss { height: off[2].abs(), place: norm(&off) })
+            });
         }
-        miss
+        let pieces: Vec<Piece> = (0..self.keys.len().saturating_sub(1)).map(|n| self.piece(n)).collect();
+        let last = pieces.last().map_or(0.0, |piece| piece.start + piece.span);
+        let rest = Piece { start: track.end(), span: last - track.end(), ..still(track.at(track.end())) };
+        apart(pieces.iter(), track.pieces().chain([&rest]))
+    }
+
+    /// What happens between a key, by index, and the next: in powers of time. The last key stays.
+    pub(crate) fn piece(&self, n: usize) -> Piece {
+        let Some(a) = self.keys.get(n) else { return still([0.0; 3]) };
+        let b = self.keys.get(n + 1).unwrap_or(a);
+        Piece { start: a.t, span: b.t - a.t, ..powers(self.between, a, b) }
+    }
+
+    /// The piece at `t` in s: the later one, where two meet.
+    pub(crate) fn piece_at(&self, t: f64) -> Piece {
+        self.piece(self.keys.partition_point(|key| key.t <= t).saturating_sub(1))
     }
 }
 
@@ -146,28 +141,6 @@ impl Curve {
     }
 }
 
-/// How far a curve is from the motion, in m.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Miss {
-    /// In height.
-    pub height: f64,
-    /// In space.
-    pub place: f64,
-}
-
-impl Miss {
-    /// In another unit, so many of which make one of this.
-    pub(crate) const fn times(self, factor: f64) -> Self {
-        Self { height: self.height * factor, place: self.place * factor }
-    }
-
-    /// The worse of two.
-    #[must_use]
-    pub const fn or(self, other: Self) -> Self {
-        Self { height: self.height.max(other.height), place: self.place.max(other.place) }
-    }
-}
-
 pub(crate) fn between(how: Between, a: &Key, b: &Key, t: f64) -> Point {
     let h = b.t - a.t;
     let u = if h > 0.0 { (t - a.t) / h } else { 0.0 };
@@ -183,6 +156,31 @@ pub(crate) fn between(how: Between, a: &Key, b: &Key, t: f64) -> Point {
             }
         }
     })
+}
+
+/// A place in which nothing moves.
+fn still(place: Point) -> Piece {
+    Piece { start: 0.0, span: 0.0, coefficients: vec![place], spin: Vec::new() }
+}
+
+/// What happens between two keys in powers of the time since the first.
+fn powers(how: Between, a: &Key, b: &Key) -> Piece {
+    let h = b.t - a.t;
+    let per = if h > 0.0 { 1.0 / h } else { 0.0 };
+    let row = |of: &dyn Fn(usize) -> f64| -> Point { std::array::from_fn(of) };
+    let d = row(&|axis| (b.place[axis] - a.place[axis]) * per);
+    let mut piece = still(a.place);
+    match how {
+        Between::Hold => {}
+        Between::Line => piece.coefficients.push(d),
+        Between::Cubic => {
+            let (v, w) = (a.leave, b.enter);
+            let second = row(&|axis| (3.0 * d[axis] - 2.0 * v[axis] - w[axis]) * per);
+            let third = row(&|axis| (v[axis] + w[axis] - 2.0 * d[axis]) * per * per);
+            piece.coefficients.extend([v, second, third]);
+        }
+    }
+    piece
 }
 
 fn key(stretch: &Stretch, t: f64) -> Key {
@@ -254,12 +252,15 @@ impl Track {
     }
 }
 
+/// Whether the cubic between two keys stays within `tolerance` of the motion, on every axis.
 fn fits(stretch: &Stretch, a: &Key, b: &Key, tolerance: f64) -> bool {
-    (1..COMPARED).all(|k| {
-        let t = a.t + (b.t - a.t) * f64::from(k) / f64::from(COMPARED);
-        let (p, q) = (between(Between::Cubic, a, b, t), stretch.at(t));
-        p.iter().zip(q).all(|(p, q)| (p - q).abs() <= tolerance)
-    })
+    let cubic = Piece { start: a.t, span: b.t - a.t, ..powers(Between::Cubic, a, b) };
+    let from = stretch.pieces.partition_point(|piece| piece.start + piece.span <= a.t);
+    let within = stretch.pieces[from..].iter().take_while(|piece| piece.start < b.t);
+    within
+        .map(|piece| (piece, [piece.start.max(a.t), (piece.start + piece.span).min(b.t)]))
+        .filter(|(_, span)| span[1] > span[0])
+        .all(|(piece, span)| difference(&cubic, piece, span).stays(tolerance))
 }
 
 /// The longest of the spans from `a` that fit; some progress always.

@@ -1,16 +1,13 @@
-//! What moves besides the place: form and orientation as keys, and how far the picture is from the
-//! motion.
+//! What moves besides the place: form and orientation as keys.
 
 use crate::curve::{APART, Between, COMPARED, Curve, Key, between, longest};
-use crate::motion::{Point, Stretch, Track, UP};
+use crate::motion::{Point, Stretch, Track, UP, dot};
 use crate::rate::Frames;
-use crate::shape::{Form, Pose, support};
-use crate::turn::{
-    MOST, Orientation, Quaternion, Turn, aimed, axis, back, dot, fastest, product, times, turned, turns,
-};
+use crate::shape::{Form, Pose};
+use crate::turn::{Orientation, Quaternion, Turn, aimed, back, fastest, product, times, turns};
 
 /// How exact a form is between keys, as a part of the ball's radius.
-const FINE: f64 = 1e-4;
+pub(crate) const FINE: f64 = 1e-4;
 /// How far apart two keys stand where an orientation leaps, as a share of a frame. Blender merges
 /// keys that are 0.01 frame apart, and so turns through the leap for a whole frame; the test
 /// `a_leap_of_the_axis_has_keys_that_blender_keeps_apart` holds it.
@@ -35,42 +32,6 @@ pub(crate) struct Dress {
     /// The same turning as an angle about y in rad, from up towards x, counted on over whole turns:
     /// of a path of cubics, for a ball that turns about y alone.
     pub(crate) about: Option<Curve>,
-}
-
-/// How a picture departs from the motion it shows, and how exact it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shown {
-    /// The least length along the axis, of a diameter.
-    pub least: f64,
-    /// The greatest.
-    pub most: f64,
-    /// How far a point of the outline is from where a round ball has it, in m, at most.
-    pub moved: f64,
-    /// How far the volume is from that of the ball, as a part of it, at most, between keys too.
-    pub volume: f64,
-    /// How far the ball gets below the height of its lowest point, or into what it touches, in m,
-    /// at most.
-    pub sunk: f64,
-    /// How many keys of orientation had to be added so that none is half a turn from the next.
-    pub added: usize,
-}
-
-impl Shown {
-    /// In another unit of length, so many of which make one of this.
-    pub(crate) const fn times(self, factor: f64) -> Self {
-        Self { moved: self.moved * factor, sunk: self.sunk * factor, ..self }
-    }
-
-    pub(crate) const fn or(self, other: Self) -> Self {
-        Self {
-            least: self.least.min(other.least),
-            most: self.most.max(other.most),
-            moved: self.moved.max(other.moved),
-            volume: self.volume.max(other.volume),
-            sunk: self.sunk.max(other.sunk),
-            added: self.added + other.added,
-        }
-    }
 }
 
 fn scale(pose: &Pose) -> Point {
@@ -238,8 +199,8 @@ fn angle(track: &Track, frames: Frames) -> Option<Curve> {
 }
 
 impl Dress {
-    /// The form and the orientation that go with a path; `None` where neither changes. Where `turns`
-    /// are counted, a ball that turns about one axis has its angle, too.
+    /// The form and the orientation that go with a path; `None` where neither changes. A ball that
+    /// turns about one axis has its angle too, where `turns` are counted.
     pub(crate) fn of(track: &Track, form: Option<&Form>, path: &Curve, frames: Frames, turns: bool) -> Option<Self> {
         let orientation = Orientation::of(track);
         if form.is_none() && orientation.is_none() {
@@ -286,57 +247,5 @@ impl Dress {
     /// Whether the form changes at all.
     pub(crate) const fn shaped(&self) -> bool {
         self.scale.keys.len() > 1
-    }
-
-    /// What is shown of a ball whose place is shown by `path`.
-    pub(crate) fn shown(&self, track: &Track, path: &Curve) -> Shown {
-        let mut shown = Shown { least: 1.0, most: 1.0, ..Shown::default() };
-        let fast = |turn: &&Turn| {
-            let stretch = track.stretch(turn.t);
-            let inside = turn.t > stretch.start() && turn.t < stretch.end();
-            inside && fastest(stretch) * stretch.span() > MOST
-        };
-        if self.about.is_none() {
-            shown.added = self.spin.iter().filter(fast).count();
-        }
-        if !self.shaped() {
-            return shown;
-        }
-        let r = track.radius;
-        let mut stops: Vec<f64> = path.keys.iter().chain(&self.scale.keys).map(|key| key.t).collect();
-        stops.sort_by(f64::total_cmp);
-        for span in stops.windows(2) {
-            for k in 0..COMPARED {
-                let t = span[0] + (span[1] - span[0]) * f64::from(k) / f64::from(COMPARED);
-                let ([across, _, along], offset) = (self.scale.at(t), self.offset.at(t));
-                let axis = axis(turned(&self.aim, t));
-                shown.least = shown.least.min(along);
-                shown.most = shown.most.max(along);
-                let shift = [offset[0], offset[1], offset[2] - r];
-                let moved = dot(&shift, &shift).sqrt() + r * (along - 1.0).abs().max((across - 1.0).abs());
-                shown.moved = shown.moved.max(moved);
-                shown.volume = shown.volume.max((across * across * along - 1.0).abs());
-                let stretch = track.stretch(t);
-                let (normal, gap) = match stretch.contact.filter(|_| !stretch.flight) {
-                    Some(contact) => {
-                        let touch = stretch.at(stretch.start());
-                        let (n, p) = (contact.normal, path.at(t));
-                        // From where a round ball touches, which is its lowest point on a level
-                        // floor only.
-                        let at = |k: usize| p[k] + offset[k] - touch[k] - r * UP[k] + r * n[k];
-                        (n, dot(&n, &std::array::from_fn(at)))
-                    }
-                    None => (UP, offset[2]),
-                };
-                let reach = if along > 0.0 {
-                    let cos = dot(&axis, &normal);
-                    r * ((along * cos).powi(2) + across * across * (1.0 - cos * cos).max(0.0)).sqrt()
-                } else {
-                    r * support(1.0, 1.0)
-                };
-                shown.sunk = shown.sunk.max(reach - gap);
-            }
-        }
-        shown
     }
 }

@@ -41,6 +41,13 @@ pub(crate) fn eases(curve: &Curve, axis: usize) -> Vec<Ease> {
     eases
 }
 
+/// The least and the greatest value of one axis of a curve.
+pub(crate) fn extremes(curve: &Curve, axis: usize) -> [f64; 2] {
+    // A cubic that is parted where it turns back is extreme at the ends of its parts.
+    let ends = eases(curve, axis).into_iter().flat_map(|ease| ease.value);
+    ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// Where the cubic turns back inside (0, 1), in order.
 fn turns([_, v, m, n]: [f64; 4]) -> Vec<f64> {
     let size = v.abs().max(m.abs()).max(n.abs());

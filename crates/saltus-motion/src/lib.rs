@@ -39,28 +39,32 @@
 //! let held = snapped.held(2.0 / 24.0)?;
 //! let shape = Shape { squash: 0.3, stretch: 0.1, hold: 2.0 / 24.0 };
 //! let shown = Export { shape, ..Export::new(&held, frames) }.file(Format::Glb)?.shown.unwrap_or_default();
-//! assert!(shown.least == 0.7 && shown.sunk.abs() < 1e-15);
+//! assert!((shown.least - 0.7).abs() < 1e-4 && shown.sunk < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bound;
 mod curve;
 mod cycle;
 mod dress;
 mod ease;
+mod flattened;
 mod format;
 mod motion;
 mod rate;
 mod shape;
+mod shown;
 mod snap;
 mod space;
 mod turn;
 
-pub use curve::{Between, Curve, Key, Miss};
-pub use dress::Shown;
+pub use bound::Miss;
+pub use curve::{Between, Curve, Key};
 pub use format::{Export, ExportError, File, Format};
 pub use motion::{Contact, Motion, MotionError, Piece, Point, Stretch, Track};
 pub use rate::{Frames, Rate, RateError};
 pub use shape::{Form, Pose, Shape};
+pub use shown::Shown;
 pub use snap::Snap;
 pub use space::{Space, Unit, Up};
 pub use turn::Turn;

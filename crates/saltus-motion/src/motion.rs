@@ -6,6 +6,14 @@ use std::fmt;
 /// A place in m: (x, y, up).
 pub type Point = [f64; 3];
 
+pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub(crate) fn norm(a: &Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
 /// A stretch of time in which the place is one polynomial, Σ cₖ (t - start)ᵏ; of a flight under
 /// gravity alone, a quadratic.
 #[derive(Clone, Debug, PartialEq)]
@@ -205,6 +213,11 @@ impl Track {
     #[must_use]
     pub fn at(&self, t: f64) -> Point {
         self.stretch(t).at(t)
+    }
+
+    /// What it is made of, in order.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = &Piece> {
+        self.stretches.iter().flat_map(|stretch| &stretch.pieces)
     }
 
     /// When contacts begin, in s.

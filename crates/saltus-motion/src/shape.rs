@@ -1,8 +1,7 @@
 //! Squash and stretch: the form of a ball, of one volume always.
 
-use crate::motion::{Contact, Motion, MotionError, Piece, Point, Stretch, Track, UP};
+use crate::motion::{Contact, Motion, MotionError, Piece, Point, Stretch, Track, UP, dot, norm};
 use crate::rate::Frames;
-use crate::turn::{dot, norm};
 
 /// How much a ball is squashed and stretched.
 ///

@@ -1,7 +1,7 @@
 //! Turning: orientations from spins, and keys between which the shortest way is the right one.
 
 use crate::curve::{COMPARED, longest};
-use crate::motion::{Piece, Point, Stretch, Track};
+use crate::motion::{Piece, Point, Stretch, Track, dot, norm};
 
 /// An orientation (x, y, up, w) of length 1.
 pub(crate) type Quaternion = [f64; 4];
@@ -35,14 +35,6 @@ pub(crate) fn product([ax, ay, az, aw]: Quaternion, [bx, by, bz, bw]: Quaternion
         aw * bz + ax * by - ay * bx + az * bw,
         aw * bw - ax * bx - ay * by - az * bz,
     ]
-}
-
-pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-pub(crate) fn norm(a: &Point) -> f64 {
-    dot(a, a).sqrt()
 }
 
 fn unit<const N: usize>(a: [f64; N]) -> [f64; N] {

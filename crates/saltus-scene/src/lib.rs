@@ -37,7 +37,7 @@ pub mod vary;
 mod tests;
 
 pub use air::{Decay, Effects, Linear, Quadratic};
-pub use animation::{Departure, Squash, Stage, Staging, length};
+pub use animation::{Departure, Squash, Stage, Staging, at_most, length, rounded_up};
 pub use ball::{Ball, Start};
 pub use contact::Contact;
 pub use error::{Error, SceneError};

@@ -38,8 +38,6 @@ pub(crate) struct Check {
 
 /// Heights are compared at so many times, and at every contact.
 const TIMES: u32 = 4000;
-/// An export looks at its curves in points, and may say this much less than there is.
-const LOOKED: f64 = 1.01;
 /// What single precision adds to a height, of the size of the picture.
 const SINGLE: f64 = 1e-6;
 /// Keys are this near to a motion in which more than gravity acts, unless an export says otherwise,
@@ -63,7 +61,7 @@ pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
             Some(tolerance) => tolerance,
             None => {
                 let format = if reading.sampled { Format::CsvFrames } else { Format::Csv };
-                export.file(format).map_err(Error::new)?.miss.height * LOOKED + SINGLE * size
+                export.file(format).map_err(Error::new)?.miss.height + SINGLE * size
             }
         };
         let Found { worst, at, sunk } = compared(reading, &motion, frames);

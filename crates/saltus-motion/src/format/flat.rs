@@ -5,9 +5,8 @@ use std::fmt::Write;
 use super::Ball;
 use super::view::View;
 use crate::curve::Curve;
-use crate::dress::Dress;
 use crate::ease::{Ease, eases};
-use crate::turn::{Turn, axis, turned as turned_to};
+use crate::turn::Turn;
 
 /// What a number does; sizes in units of the picture, angles in degrees with the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +29,7 @@ pub(super) struct Channel {
 /// From the outermost inwards: along the path, from there to the centre, squash, spin. The
 /// innermost holds a disc about its origin.
 pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
-    let shaped = ball.dress.as_ref().filter(|dress| dress.shaped());
+    let shaped = ball.flat.as_ref().or(ball.dress.as_ref()).filter(|dress| dress.shaped());
     let of = |name, moves, curve: &Curve, axis, to: &dyn Fn(f64) -> f64| {
         let mapped = |ease: Ease| Ease { value: ease.value.map(to), ..ease };
         Channel { name, moves, eases: eases(curve, axis).into_iter().map(mapped).collect() }
@@ -45,13 +44,9 @@ pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
     if let Some(dress) = shaped {
         within.push(of("u", Moves::X, &dress.offset, 0, &|x| x * view.scale));
         within.push(of("v", Moves::Y, &dress.offset, 2, &|up| -up * view.scale));
-        if dress.aim.iter().all(|turn| turn.quaternion[0] == 0.0 && turn.quaternion[2] == 0.0) {
-            within.push(turning("a", &dress.aim));
-            within.push(of("w", Moves::ScaleX, &dress.scale, 0, &|s| s));
-            within.push(of("h", Moves::ScaleY, &dress.scale, 2, &|s| s));
-        } else {
-            within.extend(seen(dress, ball.held()));
-        }
+        within.push(turning("a", &dress.aim));
+        within.push(of("w", Moves::ScaleX, &dress.scale, 0, &|s| s));
+        within.push(of("h", Moves::ScaleY, &dress.scale, 2, &|s| s));
     }
     if let Some(dress) = &ball.dress {
         within.push(match &dress.about {
@@ -66,50 +61,6 @@ pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
     };
     channels.extend(within.into_iter().filter(|channel| !idle(channel)));
     channels
-}
-
-/// Between keys of a form that leaves the plane its picture is looked at so often.
-const SEEN: u32 = 4;
-
-/// What the plane shows of a ball whose axis leaves it: turn, length across and length along.
-///
-/// A ball that is longer by c along the unit axis a and by b across it is seen as an ellipse, whose
-/// matrix is b² + (c² - b²) p pᵀ with p what the plane sees of a: as long as √(b² + (c² - b²) p²)
-/// along p, and b across it.
-fn seen(dress: &Dress, held: bool) -> [Channel; 3] {
-    let mut keys: Vec<f64> =
-        dress.aim.iter().map(|turn| turn.t).chain(dress.scale.keys.iter().map(|key| key.t)).collect();
-    keys.sort_by(f64::total_cmp);
-    keys.dedup();
-    let part = |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(SEEN);
-    let mut times: Vec<f64> = keys.windows(2).flat_map(|pair| (0..SEEN).map(move |k| part(pair, k))).collect();
-    times.extend(keys.last());
-    let mut last = 0.0;
-    let shown: Vec<[f64; 3]> = times
-        .iter()
-        .map(|&t| {
-            let ([across, _, along], [x, _, up]) = (dress.scale.at(t), axis(turned_to(&dress.aim, t)));
-            let square = x * x + up * up;
-            if square > 0.0 {
-                // An axis has two directions: the one nearer to the last.
-                let angle = x.atan2(up).to_degrees();
-                last = angle - 180.0 * ((angle - last) / 180.0).round();
-            }
-            [last, across, (across * across + (along * along - across * across) * square).sqrt()]
-        })
-        .collect();
-    let channel = |name, moves, part: usize| Channel {
-        name,
-        moves,
-        eases: (1..times.len())
-            .map(|n| Ease {
-                t: [times[n - 1], times[n]],
-                value: [shown[n - 1][part], shown[n][part]],
-                handles: (!held).then_some([1.0 / 3.0, 2.0 / 3.0]),
-            })
-            .collect(),
-    };
-    [channel("a", Moves::Turn, 0), channel("w", Moves::ScaleX, 1), channel("h", Moves::ScaleY, 2)]
 }
 
 /// Even turns, in degrees with the clock.

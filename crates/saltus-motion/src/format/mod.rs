@@ -17,11 +17,13 @@ mod view;
 
 use std::fmt;
 
-use crate::curve::{APART, Between, Curve, Miss};
-use crate::dress::{Dress, Shown};
+use crate::bound::Miss;
+use crate::curve::{APART, Between, Curve};
+use crate::dress::Dress;
 use crate::motion::{Motion, Point, Track};
 use crate::rate::Frames;
 use crate::shape::Shape;
+use crate::shown::Shown;
 use crate::space::{Space, Unit};
 use crate::turn::Turn;
 
@@ -170,6 +172,11 @@ impl Format {
         matches!(self, Self::Blender | Self::Svg | Self::Lottie | Self::DotLottie | Self::Html)
     }
 
+    /// Whether it shows the plane of x and up.
+    const fn is_flat(self) -> bool {
+        matches!(self, Self::Svg | Self::Lottie | Self::DotLottie | Self::Html)
+    }
+
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {
@@ -221,6 +228,8 @@ struct Ball<'a> {
     track: &'a Track,
     path: Curve,
     dress: Option<Dress>,
+    /// What a picture of the plane shows instead, where the form leaves the plane.
+    flat: Option<Dress>,
 }
 
 /// One of the nested nodes that a ball is in programs that know three dimensions: moved last,
@@ -256,6 +265,15 @@ impl Ball<'_> {
         }
         nodes.push(inner);
         nodes
+    }
+
+    /// How what is shown departs from the motion; `None` for a round ball that does not turn.
+    fn shown(&self) -> Option<Shown> {
+        let solid = self.dress.as_ref()?.shown(self.track, &self.path, false);
+        let Some(flat) = &self.flat else { return Some(solid) };
+        // A flat picture has no volume, and its turning is counted already.
+        let flat = flat.shown(self.track, &self.path, true);
+        Some(solid.or(Shown { volume: 0.0, added: 0, ..flat }))
     }
 
     /// Whether every drawing stands until the next.
@@ -350,7 +368,7 @@ impl<'a> Export<'a> {
         };
         let both = || balls.iter().chain(&second);
         let miss = both().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
-        let shown = both().filter_map(|ball| Some(ball.dress.as_ref()?.shown(ball.track, &ball.path)));
+        let shown = both().filter_map(Ball::shown);
         let keys = balls.iter().map(|ball| ball.path.keys.len()).sum();
         Ok(File { bytes, keys, miss, shown: shown.reduce(Shown::or) })
     }
@@ -369,7 +387,8 @@ impl<'a> Export<'a> {
                 path = path.topped(track, self.frames);
             }
             let dress = Dress::of(track, form.as_ref(), &path, self.frames, format.counts_turns());
-            Ball { track, path, dress }
+            let flat = dress.as_ref().filter(|_| format.is_flat()).and_then(Dress::flattened);
+            Ball { track, path, dress, flat }
         };
         self.motion.tracks.iter().map(ball).collect()
     }

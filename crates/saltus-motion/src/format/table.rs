@@ -33,7 +33,7 @@ pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
         csv.push_str(",turn_x,turn_y,turn_up,turn_w");
     }
     csv.push('\n');
-    for Ball { track, path, dress } in balls {
+    for Ball { track, path, dress, .. } in balls {
         let name = quoted(&track.name);
         let mut times: Vec<f64> = path.keys.iter().map(|key| key.t).collect();
         if let Some(dress) = dress.as_ref().filter(|_| path.between == Between::Cubic) {
@@ -84,7 +84,7 @@ pub(super) fn csv(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
 /// Keys with velocities on both sides, and a place for every frame.
 pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, ExportError> {
     let frames = export.frames;
-    let balls = balls.iter().map(|Ball { track, path, dress }| {
+    let balls = balls.iter().map(|Ball { track, path, dress, .. }| {
         let key = |key: &Key| {
             json!({
                 "frame": frames.number(key.t), "t": key.t, "place": key.place,

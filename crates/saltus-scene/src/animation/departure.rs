@@ -68,12 +68,12 @@ impl fmt::Display for Departure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Loop { hop } => write!(f, "hop {hop} alone, as a loop"),
-            Self::Cut { height, off } if height < off && length(*height) == length(0.0) => {
+            Self::Cut { height, off } if height < off && *height < NOTHING => {
                 write!(f, "contacts shorter than a frame left out")
             }
-            Self::Cut { height, .. } => write!(f, "hops of up to {} left out", length(*height)),
+            Self::Cut { height, .. } => write!(f, "hops of up to {} left out", at_most(*height)),
             Self::SnappedByGravity { tops } => {
-                write!(f, "snapped by gravity, tops moved by up to {}", length(*tops))?;
+                write!(f, "snapped by gravity, tops moved by up to {}", at_most(*tops))?;
                 // A top that was asked for is lost, and there is a way to keep it.
                 if *tops >= 1e-4 { write!(f, " (--snap heights keeps them)") } else { Ok(()) }
             }
@@ -98,14 +98,80 @@ impl fmt::Display for Departure {
     }
 }
 
+/// What is shown as no length, in m: a millionth of a millimetre.
+const NOTHING: f64 = 1e-9;
+/// What rounding has added to a number that was to have few digits, as a part of it: 2.1 mm may be
+/// computed as a hair more, and is not 2.11 mm for that.
+const HAIR: f64 = 1e-9;
+
+/// A number from above, with so many digits behind the point.
+#[must_use]
+pub fn rounded_up(number: f64, digits: usize) -> String {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // a few digits
+    let unit = 10_f64.powi(digits as i32);
+    format!("{:.digits$}", (number * unit * (1.0 - HAIR)).ceil() / unit)
+}
+
+/// A length as [`length`] shows it, from above: what is bounded by one is bounded by the other.
+///
+/// ```
+/// assert_eq!(saltus_scene::at_most(2.1213e-3), "2.13 mm");
+/// assert_eq!(saltus_scene::length(2.1213e-3), "2.12 mm");
+/// ```
+#[must_use]
+pub fn at_most(metres: f64) -> String {
+    let (mm, cm) = (|m: f64| m * 1e3, |m: f64| m * 1e2);
+    match metres {
+        m if m < NOTHING => "0 mm".to_owned(),
+        m if m < 1e-5 => {
+            let unit = 10_f64.powf(mm(m).log10().floor() - 1.0);
+            format!("{:.1e} mm", (mm(m) / unit * (1.0 - HAIR)).ceil() * unit)
+        }
+        m if m < 0.01 => format!("{} mm", rounded_up(mm(m), 2)),
+        m if m < 1.0 => format!("{} cm", rounded_up(cm(m), 1)),
+        m => format!("{} m", rounded_up(m, 2)),
+    }
+}
+
 /// A length that a person can picture.
 #[must_use]
 pub fn length(metres: f64) -> String {
     match metres {
-        m if m < 1e-9 => "0 mm".to_owned(),
+        m if m < NOTHING => "0 mm".to_owned(),
         m if m < 1e-5 => format!("{:.1e} mm", m * 1e3),
         m if m < 0.01 => format!("{:.2} mm", m * 1e3),
         m if m < 1.0 => format!("{:.1} cm", m * 1e2),
         m => format!("{m:.2} m"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A figure of the line is a bound, and hardly above what it stands for.
+    #[test]
+    fn what_is_rounded_up_is_no_less() {
+        assert_eq!(at_most(0.0), "0 mm");
+        assert_eq!(
+            (at_most(1e-4), at_most(2.13e-3), at_most(0.21)),
+            ("0.10 mm".into(), "2.13 mm".into(), "21.0 cm".into())
+        );
+        assert_eq!(
+            (at_most(1.0001e-4), at_most(1.2301), at_most(2.11e-7)),
+            ("0.11 mm".into(), "1.24 m".into(), "2.2e-4 mm".into())
+        );
+        for k in 0..4000 {
+            let m = 1e-9 * 1.0077_f64.powi(k);
+            let text = at_most(m);
+            let (number, unit) = text.split_once(' ').unwrap();
+            let unit = match unit {
+                "mm" => 1e-3,
+                "cm" => 1e-2,
+                _ => 1.0,
+            };
+            let said = number.parse::<f64>().unwrap() * unit;
+            assert!(said >= m * (1.0 - 2.0 * HAIR) && said <= 1.11 * m + 1e-5, "{text} for {m}");
+        }
     }
 }

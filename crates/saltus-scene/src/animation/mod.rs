@@ -3,7 +3,7 @@
 
 mod departure;
 
-pub use departure::{Departure, length};
+pub use departure::{Departure, at_most, length, rounded_up};
 
 use nalgebra::Vector3;
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Space, Stretch, Track};
@@ -110,18 +110,19 @@ impl Stage {
         file.miss.height + if moved { 0.0 } else { cut.fold(0.0, f64::max) }
     }
 
-    /// How exact a file is, and how it departs from the run, in a line.
+    /// How exact a file is, and how it departs from the run, in a line: figures are bounds, rounded
+    /// upwards.
     #[must_use]
     pub fn says(&self, file: &File) -> String {
         let Self { motion, frames, shape, departures, .. } = self;
         let mut says: String = departures.iter().map(|departure| format!("; {departure}")).collect();
         if let Some(seen) = file.shown {
             if shape.squash > 0.0 || shape.stretch > 0.0 {
-                let volume = 100.0 * seen.volume;
-                says += &format!("; outline moved by up to {}, volume kept within {volume:.2} %", length(seen.moved));
+                let volume = rounded_up(100.0 * seen.volume, 2);
+                says += &format!("; outline moved by up to {}, volume kept within {volume} %", at_most(seen.moved));
             }
             if seen.sunk > SUNK {
-                says += &format!("; the ball is in what it touches by up to {}", length(seen.sunk));
+                says += &format!("; the ball is in what it touches by up to {}", at_most(seen.sunk));
             }
             if seen.added > 0 {
                 says +=
@@ -131,12 +132,12 @@ impl Stage {
         if frames.on_twos {
             says += "; each drawing stands for two frames, and is exact at the first";
         }
-        let (off, miss) = (motion.off_frame(*frames), length(self.height_error(file)));
-        format!("{} keys; farthest contact from a frame: {off:.2} frames; worst height error: {miss}{says}", file.keys)
+        let (off, miss) = (rounded_up(motion.off_frame(*frames), 2), at_most(self.height_error(file)));
+        format!("{} keys; farthest contact from a frame: {off} frames; worst height error: {miss}{says}", file.keys)
     }
 }
 
-/// How deep a ball is in what it touches that is worth a word, in m: a hundredth of a millimetre.
+/// How deep a ball may be in what it touches without a word, in m: a hundredth of a millimetre.
 const SUNK: f64 = 1e-5;
 
 impl Staging {
@@ -174,7 +175,7 @@ impl Staging {
             departures.push(Departure::Loop { hop });
         } else {
             let height = hops_below(&whole, frames.step());
-            let off = if whole.tracks == free.tracks { 0.0 } else { heights_apart(&whole, &free) };
+            let off = if whole.tracks == free.tracks { 0.0 } else { whole.apart(&free).height };
             // What is left out on a floor that moves need not rise above where it starts and ends.
             if whole.tracks != free.tracks && height.max(off) > 0.0 {
                 departures.push(Departure::Cut { height, off });
@@ -266,23 +267,6 @@ fn hops_below(motion: &Motion, span: f64) -> f64 {
     let short = flights.filter(|stretch| stretch.flight && stretch.span() < span);
     let high = |stretch: &Stretch| stretch.top().0 - stretch.at(stretch.start())[2].max(stretch.at(stretch.end())[2]);
     short.map(high).fold(0.0, f64::max)
-}
-
-/// How far the heights of two motions on the same times are apart, at most, looked at in points of
-/// every piece of the first.
-fn heights_apart(a: &Motion, b: &Motion) -> f64 {
-    /// Points of a piece; between them a parabola is higher by at most a 4 × 16² th of its height.
-    const POINTS: u32 = 16;
-    let mut apart = 0.0_f64;
-    for (a, b) in a.tracks.iter().zip(&b.tracks) {
-        for piece in a.stretches.iter().flat_map(|stretch| &stretch.pieces) {
-            for k in 0..=POINTS {
-                let s = piece.span * f64::from(k) / f64::from(POINTS);
-                apart = apart.max((piece.at(s)[2] - b.at(piece.start + s)[2]).abs());
-            }
-        }
-    }
-    apart
 }
 
 /// The record as tracks, and the radius that balls without one are drawn with: a stretch ends where
