@@ -3,6 +3,7 @@
 use nalgebra::SVector;
 
 use super::gravity::upwards;
+use super::jets::times;
 use super::{Effect, Gravity, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative};
 use crate::sphere::Sphere;
@@ -54,7 +55,7 @@ impl<const N: usize, S: Spin> Effect<N, S> for Buoyancy {
         upwards(self.gravity.value() * self.ratio)
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, _motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         sum.lift(self.gravity.value() * self.ratio);
         true
@@ -121,15 +122,14 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for AddedMass<E> {
         self.effects.kink(motion)
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
+        if self.share == 1.0 {
+            return self.effects.series(motion, sum);
+        }
         let mut inner = JetSum::default();
         let all = self.effects.series(motion, &mut inner);
-        let mut acceleration = inner.acceleration();
-        if self.share != 1.0 {
-            acceleration = acceleration.map(|a| a * self.share);
-        }
-        sum.accelerate(acceleration);
+        sum.accelerate(times(&inner.acceleration(), self.share.into()));
         sum.turn(inner.spin_rate());
         all
     }

@@ -95,7 +95,7 @@ impl<const N: usize, S: Spin> Effect<N, S> for Gravity {
         upwards(-self.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, _motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         sum.lift(-self.0);
         true

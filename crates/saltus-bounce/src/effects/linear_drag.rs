@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::SVector;
 
+use super::jets::times;
 use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
@@ -58,9 +59,9 @@ impl<const N: usize, S: Spin> Effect<N, S> for LinearDrag {
         motion.velocity * -self.rate
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
-        sum.accelerate(motion.velocity.map(|v| v * -self.rate));
+        sum.accelerate(times(&motion.velocity, (-self.rate).into()));
         true
     }
 }

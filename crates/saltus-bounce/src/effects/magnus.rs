@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
+use super::jets::times;
 use super::{Effect, JetMotion, JetSum, Motion};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
@@ -75,7 +76,7 @@ impl Effect<2, f64> for Magnus {
         Vector2::new(-v[1], v[0]) * (w * self.factor(w.abs() * square.sqrt(), square))
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, 2>, sum: &mut JetSum<'j, 2>) -> bool {
         let ([x, up], [w, ..]) = (motion.velocity, motion.spin);
         let mut factor = w * self.slope;
@@ -97,19 +98,19 @@ impl Effect<3, Vector3<f64>> for Magnus {
         cross * self.factor(cross.norm(), motion.velocity.norm_squared())
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, 3>, sum: &mut JetSum<'j, 3>) -> bool {
         let ([vx, vy, vz], [wx, wy, wz]) = (motion.velocity, motion.spin);
         let cross = [wy * vz - wz * vy, wz * vx - wx * vz, wx * vy - wy * vx];
         let [x, y, z] = cross;
         if self.saturation == 0.0 {
-            sum.accelerate(cross.map(|c| c * self.slope));
+            sum.accelerate(times(&cross, self.slope.into()));
             return true;
         }
-        let across = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() * self.saturation;
-        let square = motion.speed.powi(2);
+        let across = (x * x + y * y + z * z).sqrt() * self.saturation;
+        let square = motion.speed * motion.speed;
         let factor = square * self.slope / (square + across);
-        sum.accelerate(cross.map(|c| c * factor));
+        sum.accelerate(times(&cross, factor));
         true
     }
 }

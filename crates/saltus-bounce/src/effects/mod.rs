@@ -130,7 +130,7 @@ pub trait Effect<const N: usize, S: Spin = ()> {
 
     /// The same once more over [`Jet`](saltus::Jet)s, added to a sum, and whether that is all that
     /// the effect does: flights are then advanced by Taylor series where
-    /// [`Flyer::by_series`](crate::Flyer::by_series) asks for it. An effect of other effects says all
+    /// [`Flyer::by_series`](crate::Flyer::by_series) asks. An effect of other effects says all
     /// where each of them does.
     ///
     /// ```
@@ -160,14 +160,14 @@ pub trait Effect<const N: usize, S: Spin = ()> {
     /// assert!(expanded.stats.steps < stepped.stats.steps);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, _motion: &JetMotion<'j, N>, _sum: &mut JetSum<'j, N>) -> bool {
         false
     }
 }
 
 impl<const N: usize, S: Spin> Effect<N, S> for () {
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, _motion: &JetMotion<'j, N>, _sum: &mut JetSum<'j, N>) -> bool {
         true
     }
@@ -205,7 +205,7 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Option<E> {
         self.as_ref()?.kink(motion)
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         self.as_ref().is_none_or(|effect| effect.series(motion, sum))
     }
@@ -242,7 +242,7 @@ macro_rules! tuple_of_effects {
                 $first.kink(motion) $(.or_else(|| $other.kink(motion)))*
             }
 
-            #[inline]
+            #[inline(always)]
             fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
                 #[allow(non_snake_case)]
                 let ($first, $($other,)*) = self;

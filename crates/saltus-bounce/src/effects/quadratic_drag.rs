@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use super::jets::times;
 use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
@@ -80,10 +81,10 @@ impl<const N: usize, S: Spin> Effect<N, S> for QuadraticDrag {
         (N == 1).then(|| motion.velocity[0])
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         let factor = motion.speed * -self.per_length;
-        sum.accelerate(motion.velocity.map(|v| v * factor));
+        sum.accelerate(times(&motion.velocity, factor));
         true
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::SVector;
 
+use super::jets::times;
 use super::{Effect, JetMotion, JetSum, Motion, Spin};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::sphere::Sphere;
@@ -62,14 +63,14 @@ macro_rules! decay {
                 motion.spin.times(-(self.steady + self.per_length * motion.velocity.norm()))
             }
 
-            #[inline]
+            #[inline(always)]
             fn series<'j>(&self, motion: &JetMotion<'j, $n>, sum: &mut JetSum<'j, $n>) -> bool {
                 let rate = if self.per_length == 0.0 {
                     (-self.steady).into()
                 } else {
                     motion.speed * -self.per_length - self.steady
                 };
-                sum.turn(motion.spin.map(|w| w * rate));
+                sum.turn(times(&motion.spin, rate));
                 true
             }
         }

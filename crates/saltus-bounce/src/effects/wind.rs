@@ -63,12 +63,13 @@ impl<const N: usize, S: Spin, E: Effect<N, S>> Effect<N, S> for Wind<N, E> {
         self.effects.kink(&self.seen(motion))
     }
 
-    #[inline]
+    #[inline(always)]
     fn series<'j>(&self, motion: &JetMotion<'j, N>, sum: &mut JetSum<'j, N>) -> bool {
         if self.velocity.iter().all(|&v| v == 0.0) {
             return self.effects.series(motion, sum);
         }
-        let velocity = std::array::from_fn(|i| motion.velocity[i] - self.velocity[i]);
+        let mut velocity = motion.velocity;
+        velocity.iter_mut().zip(self.velocity.as_slice()).for_each(|(v, wind)| *v -= *wind);
         self.effects.series(&JetMotion::new(velocity, motion.spin), sum)
     }
 }

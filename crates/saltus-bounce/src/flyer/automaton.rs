@@ -49,18 +49,18 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
     }
 
     /// x' in flight over jets.
-    #[inline]
+    #[inline(always)]
     fn jets<'j, const K: usize>(&self, x: [Jet<'j>; K]) -> [Jet<'j>; K] {
-        let at = |i: usize| x.get(i).copied().unwrap_or(0.0.into());
-        let motion = JetMotion::new(std::array::from_fn(|i| at(N + i)), std::array::from_fn(|i| at(2 * N + i)));
+        let (mut velocity, mut spin) = ([Jet::from(0.0); N], [Jet::from(0.0); 3]);
+        velocity.iter_mut().zip(x.iter().skip(N)).for_each(|(to, from)| *to = *from);
+        spin.iter_mut().zip(x.iter().skip(2 * N)).for_each(|(to, from)| *to = *from);
         let mut sum = JetSum::<N>::default();
-        self.effects.series(&motion, &mut sum);
-        let (acceleration, spin) = (sum.acceleration(), sum.spin_rate());
-        std::array::from_fn(|i| match i {
-            i if i < N => at(N + i),
-            i if i < 2 * N => acceleration[i - N],
-            i => spin[i - 2 * N],
-        })
+        self.effects.series(&JetMotion::new(velocity, spin), &mut sum);
+        let rates = [velocity, sum.acceleration()];
+        let mut rate = x;
+        rate.iter_mut().zip(rates.iter().flatten()).for_each(|(to, from)| *to = *from);
+        rate.iter_mut().skip(2 * N).zip(&sum.spin_rate()).for_each(|(to, from)| *to = *from);
+        rate
     }
 
     /// Whether forces are constant in `stance`.
