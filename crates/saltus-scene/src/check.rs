@@ -6,6 +6,7 @@ use super::ball::Ball;
 use super::contact::Contact;
 use super::error::{Fault, short};
 use super::scene::Scene;
+use super::{Floor, Shape};
 
 /// How far rounding may let things overlap, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
@@ -50,18 +51,34 @@ fn radius(ball: &Ball) -> f64 {
 /// Why the scene may go on for ever.
 fn endless(scene: &Scene) -> Option<&'static str> {
     let (balls, floors) = (&scene.balls, &scene.floors);
+    let holds = |floor: &Floor| !matches!(floor.shape, Shape::Wall { .. });
+    let swings = |floor: &Floor| matches!(floor.shape, Shape::Parabola { .. } | Shape::Sine { .. });
+    let walls = floors.iter().map(|floor| match floor.shape {
+        Shape::Wall { .. } => 1,
+        Shape::Box { .. } => 2,
+        _ => 0,
+    });
+    let deep = |floor: &Floor| matches!(floor.shape, Shape::Stairs { count: None, .. });
+    let lift = scene.effects.buoyancy(&balls[0], scene.gravity);
     let drag = scene.effects.linear.is_some() || scene.effects.quadratic.is_some();
     let elastic = |m: usize| scene.law(0, m).and_then(super::Law::constant).is_some_and(|cor| cor.value() == 1.0);
-    if floors.is_empty() {
+    let lasting = |floor: &Floor| floor.motion.as_ref().is_some_and(|motion| motion.ends().is_none());
+    if !floors.iter().any(holds) {
         Some("there is no floor")
     } else if scene.gravity.value() == 0.0 {
         Some("there is no gravity to bring the ball down")
+    } else if lift.is_some_and(|lift| lift.net_gravity() <= 0.0) {
+        Some("the ball is not heavier than the air")
     } else if balls.len() > 1 {
         Some("there are several balls")
-    } else if floors.iter().any(|floor| floor.motion.is_some()) {
-        Some("the floor moves")
-    } else if scene.dimensions > 1 {
-        Some("a ball that moves sideways may slide or roll on")
+    } else if floors.iter().any(lasting) {
+        Some("the floor moves for ever")
+    } else if scene.dimensions > 1 && floors.iter().any(swings) {
+        Some("a ball may swing on a curve for ever")
+    } else if scene.dimensions > 1 && walls.sum::<usize>() > 1 {
+        Some("a ball may go to and fro between walls for ever")
+    } else if scene.dimensions > 1 && floors.iter().any(deep) {
+        Some("the stairs have no end")
     } else if scene.contact != Contact::Rigid {
         Some("a contact that takes time dies out ever more slowly")
     } else if !drag && (0..floors.len()).any(elastic) {

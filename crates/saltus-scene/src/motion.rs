@@ -26,6 +26,14 @@ pub enum Motion {
 }
 
 impl Motion {
+    /// From when on it is still, in s; `None` if it never is.
+    pub(super) fn ends(&self) -> Option<f64> {
+        match self {
+            Self::Sine { .. } => None,
+            Self::Schedule(points) => Some(points.last().map_or(0.0, |last| last[0])),
+        }
+    }
+
     /// How far above its height the floor is at `t` in s, in m.
     #[must_use]
     pub fn offset(&self, t: f64) -> f64 {

@@ -109,8 +109,7 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
-    let flyer = if scene.run.stepper == Some(Stepper::Series) { flyer.by_series() } else { flyer };
-    Ok(BoundModel::boxed(flyer, view, stance, start))
+    Ok(bound(scene, flyer, view, stance, start))
 }
 
 fn rough<const N: usize, S, E>(scene: &Scene, effects: E, spin: S) -> Result<Box<dyn Runner>, PlanError>
@@ -124,8 +123,24 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
+    Ok(bound(scene, flyer, view, stance, start))
+}
+
+/// A ball with its start, by Taylor series where the scene asks for them.
+fn bound<const N: usize, S, E, G>(
+    scene: &Scene,
+    flyer: SceneFlyer<N, S, E, G>,
+    view: FloorsView,
+    stance: Stance<N>,
+    start: Moving<N, S>,
+) -> Box<dyn Runner>
+where
+    S: Turning + Turned + Send + Sync + 'static,
+    E: Effect<N, S> + Send + Sync + 'static,
+    G: Grip<N, S> + Send + Sync + 'static,
+{
     let flyer = if scene.run.stepper == Some(Stepper::Series) { flyer.by_series() } else { flyer };
-    Ok(BoundModel::boxed(flyer, view, stance, start))
+    BoundModel::boxed(flyer, view, stance, start)
 }
 
 /// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and

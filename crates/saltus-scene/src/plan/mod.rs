@@ -28,7 +28,7 @@ pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
 use super::source::Source;
-use super::{Contact, Floor, Law, Scene, SceneError, Shape, Stepper};
+use super::{Contact, Floor, Law, Motion, Scene, SceneError, Shape, Stepper};
 use method::Method;
 use runner::{Recording, RunOptions, Runner};
 
@@ -224,6 +224,7 @@ impl Scene {
         let modes = runner.modes(method);
         let solved = modes.iter().all(|mode| mode.advance.is_solved());
         let explanation = Explanation::of(self, model, runner.coordinates(), modes, tolerance);
+        let motions = self.floors.iter().filter_map(|floor| floor.motion.as_ref());
         let options = RunOptions {
             until: self.run.until,
             most_jumps,
@@ -234,6 +235,7 @@ impl Scene {
             stepped: false,
             frames: None,
             absolute,
+            still: motions.filter_map(Motion::ends).fold(0.0, f64::max),
         };
         Plan { runner, scene: Arc::new(self.clone()), options, explanation }
     }
