@@ -44,16 +44,29 @@ struct Args {
     command: Command,
 }
 
+/// The options of a command are put together only when it is asked for, with what it says of
+/// itself: the list of commands has a line of its own for each.
 #[derive(Debug, Subcommand)]
+#[command(defer = true)]
 enum Command {
+    /// Estimate the coefficient of restitution (COR) from a table of bounces.
     Fit(Box<fit::FitArgs>),
+    /// Simulate a scene, or a ball that bounces on a level floor.
     Simulate(simulate::Simulate),
+    /// Say how a scene would be run, and why.
     Explain(explain::Explain),
+    /// Show what accuracy costs in a scene.
     Accuracy(accuracy::Accuracy),
+    /// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
     Export(export::Export),
+    /// Write many motions like one for animators: a file for each, and an index of them.
     Library(library::Library),
+    /// Read a file that `saltus export` wrote, and say how far its heights are from the scene's
+    /// motion.
     Check(check::Check),
+    /// Find the scene that does what is wished for, and write it.
     Solve(solve::Solve),
+    /// Run a scene many times with other values, and write a table with a row for each run.
     Sweep(sweep::SweepArgs),
     /// Write a shell's completions to standard output.
     ///

@@ -21,7 +21,7 @@ use crate::scenes::{ended, ending, note, planned, scene};
 ///
 /// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is:
 /// gravity and a constant coefficient of restitution, every flight an exact parabola. Without
-/// --until the run ends when the ball has come to rest.
+/// --until the run ends when nothing happens any more.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Simulate {
     /// The scene; `-` for standard input.

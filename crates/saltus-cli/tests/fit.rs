@@ -165,6 +165,17 @@ fn help_on_help_and_no_line_broken_twice() {
     assert_eq!(saltus(folder.path(), &["help", "--help"]).stdout, saltus(folder.path(), &["help"]).stdout);
     assert_eq!(saltus(folder.path(), &["help", "fit", "-h"]).stdout, saltus(folder.path(), &["help", "fit"]).stdout);
     assert!(saltus(folder.path(), &["help", "--help"]).status.success());
+    // A command has a line in the list of all, and says the same of itself.
+    let said = |args: &[&str]| {
+        let text = String::from_utf8(saltus(folder.path(), args).stdout).unwrap();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let list = said(&["--help"]);
+    for command in ["fit", "simulate", "explain", "accuracy", "export", "library", "check", "solve", "sweep"] {
+        let own = said(&[command, "-h"]);
+        let first = own.split(" Usage:").next().unwrap();
+        assert!(list.contains(&format!(" {command} {first}")), "{command}: {first}");
+    }
 }
 
 /// The reader of old workbooks may panic; nobody hears of it.
