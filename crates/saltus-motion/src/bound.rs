@@ -32,13 +32,13 @@ impl Miss {
     }
 }
 
-/// The greatest value of `f` on a span and `least`, from above; too large by at most [`SLACK`] of
-/// it and by `fine`.
+/// The greatest value of `f` on a span, from above, or `least`; too large by at most [`SLACK`] of it
+/// and by `fine`.
 ///
 /// On [a, b] a function whose second derivative is at least -`curvature` is at most the greater of
 /// f(a) and f(b) and curvature (b - a)²/8 more. A part in which that may be exceeded is halved.
 pub(crate) fn most([a, b]: [f64; 2], curvature: f64, fine: f64, least: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut bound, mut occurs) = (least, least);
+    let (mut bound, mut occurs) = (least, f64::NEG_INFINITY);
     let (mut open, mut parts) = (vec![[(a, f(a)), (b, f(b))]], 0);
     while let Some([(a, p), (b, q)]) = open.pop() {
         let above = p.max(q) + 0.125 * curvature * (b - a) * (b - a);
@@ -118,9 +118,10 @@ impl Piece {
         }
     }
 
-    /// Whether no coordinate gets farther from 0 than `within`.
+    /// Whether no coordinate gets farther from 0 than `within`, nor a bound of it, which may be a
+    /// little larger than it is.
     pub(crate) fn stays(&self, within: f64) -> bool {
-        let curvature = self.bound(2);
+        let (curvature, within) = (self.bound(2), (1.0 - 2.0 * SLACK) * within);
         (0..3).all(|axis| {
             let most = most([0.0, self.span], curvature[axis], 0.0, (1.0 - SLACK) * within, |s| self.at(s)[axis].abs());
             most <= within
