@@ -221,7 +221,7 @@ def case(saltus, folder, known, name, options, space):
         for animation, rows in found["animations"].items():
             off, below, volume = measure(rows, heights.values(), balls, start, flat)
             height, moved, sunk, kept = said
-            bad = off > height * 1.02 + moved + READER or volume > 1.05 * kept + 1e-4 or found["errors"]
+            bad = off > height + moved + READER or volume > kept + READER or found["errors"]
             bad = bad or (level and below > height + sunk + READER)
             yield kind, animation, (off, below if level else 0.0, volume), said, bad, found["issues"]
 
