@@ -1,6 +1,7 @@
 //! The laws a random scene has to keep: it is refused with a reason or runs to a named end; nothing
-//! sinks through a floor; energy is not gained.
+//! sinks through a floor or into another ball; energy is not gained.
 
+use saltus::nalgebra::Vector3;
 use saltus_scene::Scene;
 use saltus_scene::plan::{End, Moment, Record};
 
@@ -68,8 +69,12 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
         }
     }
     let mut most = vec![f64::INFINITY; record.balls()];
+    for t in record.events().iter().map(|event| event.t).filter(|_| record.balls() > 1) {
+        apart(record, t, slack)?;
+    }
     for step in 0..=64 {
         let t = until * f64::from(step) / 64.0;
+        apart(record, t, slack)?;
         let mut total = 0.0;
         for ball in 0..record.balls() {
             let Some(moment) = record.at(ball, t) else {
@@ -89,6 +94,25 @@ fn sound(made: &Made, record: &Record) -> Result<(), String> {
                 return Err(format!("energy rises from {} to {total} at {t}", most[0]));
             }
             most[0] = most[0].min(total);
+        }
+    }
+    Ok(())
+}
+
+/// Whether no two balls overlap at `t` by more than rounding and steps may leave, which is more the
+/// faster they are and the farther away.
+fn apart(record: &Record, t: f64, slack: f64) -> Result<(), String> {
+    for ball in 1..record.balls() {
+        for other in 0..ball {
+            let [(a, r, v), (b, q, w)] = [ball, other].map(|ball| {
+                let radius = record.scene().balls[ball].radius.unwrap_or_default();
+                let moment = record.at(ball, t).unwrap_or(Moment::ZERO);
+                (moment.position + Vector3::z() * radius, radius, moment.velocity)
+            });
+            let deep = r + q - (a - b).norm();
+            if deep > slack * (1.0 + v.norm() + w.norm() + a.norm().max(b.norm())) {
+                return Err(format!("balls {other} and {ball} overlap by {deep} at {t}"));
+            }
         }
     }
     Ok(())
