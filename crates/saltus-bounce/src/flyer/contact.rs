@@ -266,7 +266,10 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         x: &Moving<N, S>,
     ) -> (Stance<N>, Moving<N, S>) {
         let (slip, normal) = self.slip(face, t, x);
-        if N > 2 && slip.norm() > ENDED * along.norm() {
+        // A slip that ends while it is still along what it was is no more than the rounding of its
+        // guard: it would have no end any more.
+        let turned = 2.0 * forwards(&slip, along, &normal) < slip.norm();
+        if N > 2 && turned && slip.norm() > ENDED * along.norm() {
             return (Stance::Slide { face, along: noted(&slip, &normal) }, self.beside(face, t, x));
         }
         let x = self.held(face, t, x);
