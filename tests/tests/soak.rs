@@ -20,8 +20,8 @@ const EVALUATIONS: u64 = 200_000_000;
 /// Of the first six million, those that have broken a law: a floor not met again by a bounce below
 /// the rounding of its motion or of a long stiff step, a corner, an impact while sliding, friction
 /// that held what it could not, rolling on curved ground, a light ball between the floor and a
-/// heavy one, a COR of 1e-9 whose rebounds left the range of numbers, a slip of rounding that had no
-/// end.
+/// heavy one, a COR of 1e-9 whose rebounds left the range of numbers, a slip of rounding that had
+/// no end.
 const BROKEN_ONCE: [u64; 18] = [
     10_188, 16_544, 31_849, 33_365, 76_643, 141_099, 331_928, 348_293, 430_915, 836_149, 849_809, 960_723, 961_866,
     995_019, 1_768_841, 5_204_027, 5_230_418, 5_245_312,
@@ -38,9 +38,9 @@ fn scenes_that_broke_a_law_keep_it() {
 
 /// Of two million and four hundred thousand, those that end in an error and should not: a slip in
 /// space that turns too fast for Rodas5P at 2e-11 to 4e-11, twice; a ball that bounces ever lower
-/// on a rising floor and is 1e-11 m inside it where the schedule ends. Of the first 120 000 eight, all
-/// with a COR of 1e-9, whose rebound is less than what steps are off by: balls that touch each other
-/// as one hits the floor, a curve, the wall of a box.
+/// on a rising floor and is 1e-11 m inside it where the schedule ends. Of the first 120 000 eight,
+/// all with a COR of 1e-9, whose rebound is less than what steps are off by: balls that touch each
+/// other as one hits the floor, a curve, the wall of a box.
 #[test]
 #[ignore = "ends in an error that says where"]
 fn scenes_that_end_in_an_error_still() {

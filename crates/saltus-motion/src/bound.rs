@@ -32,8 +32,8 @@ impl Miss {
     }
 }
 
-/// The greatest value of `f` on a span, from above, or `least`; too large by at most [`SLACK`] of it
-/// and by `fine`.
+/// The greatest value of `f` on a span, from above, or `least`; too large by at most [`SLACK`] of
+/// it and by `fine`.
 ///
 /// On [a, b] a function whose second derivative is at least -`curvature` is at most the greater of
 /// f(a) and f(b) and curvature (b - a)²/8 more. A part in which that may be exceeded is halved.
