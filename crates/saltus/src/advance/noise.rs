@@ -89,13 +89,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if change.is_finite() { change } else { 0.0 }
     }
 
-    /// How far the guard bends along a polynomial: by its powers from the second on.
+    /// How far the guard bends along a polynomial: by its powers from the second on, as the guard
+    /// moves with the state at the start.
     #[cold]
     pub(super) fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
         self.memory.stats.guards += 2;
-        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + c.get(i).abs()));
+        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + TINY * c.get(i).abs()));
         let [bent, start] = [&bent, &c[0]].map(|x| self.guard(edge, now.seconds(), x));
-        let bend = (bent - start).abs();
+        let bend = (bent - start).abs() / TINY;
         if bend.is_finite() { bend } else { 0.0 }
     }
 
@@ -132,14 +133,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let by = SMALL * scale;
                 let rate = this.guard_rate(mode, edge, t, x, by);
                 let rounding = this.rate_rounding(edge, t, x, by);
-                let flat = rate.abs() <= rounding;
-                let mut along = |part: f64| {
-                    let s = part * scale;
-                    this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along
-                };
                 // A guard that falls or rises as a power of time does so within a small part of
                 // the step.
-                wall.stays = flat && (along(1.0) || along(ROUGHLY));
+                let s = ROUGHLY * scale;
+                wall.stays = rate.abs() <= rounding
+                    && this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along;
                 let spent = this.memory.spent_as(edge).is_some();
                 wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, (t, x), by, (rate, rounding));
                 wall.stays || !spent
@@ -192,6 +190,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Whether a guard that falls at this `rate` by differences over `by`, beyond their `rounding`,
     /// does so beyond that of the flow, and on the side ahead alone as well, where a guard may bend
     /// sharply.
+    ///
+    /// A rate that lasts is the same over half the way. What differences leave of a guard that
+    /// rises as a higher power of time is a quarter then, or less.
     #[cold]
     fn falls_at_once(
         &mut self,
@@ -209,11 +210,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let noise = rounding + ROUNDINGS * f64::EPSILON / TINY * off;
         let slope = self.flow(mode, t, x);
-        self.memory.stats.guards += 3;
+        self.memory.stats.guards += 4;
         let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
         let start = guard(0.0);
-        let [far, near] = [by, 0.5 * by].map(|s| (guard(s) - start) / s);
-        rate < -noise && 2.0 * near - far < -noise
+        let [far, near, nearest] = [by, 0.5 * by, 0.25 * by].map(|s| (guard(s) - start) / s);
+        let ahead = [2.0 * near - far, 2.0 * nearest - near];
+        let lasts = |[rate, sooner]: [f64; 2]| rate < -noise && sooner <= 0.5 * rate;
+        lasts(ahead) && lasts([rate, self.guard_rate(mode, edge, t, x, 0.5 * by)])
     }
 
     /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins

@@ -108,19 +108,31 @@ impl Search<'_> {
     /// touched zero there, and falls again. Where rounding hides which it was, what longer
     /// stretches have shown decides; and if they show that the guard rises first, it falls where
     /// their polynomial does.
-    pub(super) fn left(&self, order: Option<f64>, b: f64) -> Part {
+    pub(super) fn left(&mut self, order: Option<f64>, b: f64) -> Part {
         if !self.spent {
             return Part::AtStart;
         }
         let told = self.departure.filter(|it| order.is_none() || it.is_far(b));
         if let Some(it) = told.filter(Departure::rises)
             && let Some(root) = it.rest.root()
+            && root * it.length > self.tick
         {
             return Part::Hidden(root * it.length);
         }
         let linear = order.is_some_and(|order| order.round() <= 1.0);
-        let touched = order.is_some_and(is_even) || !linear && told.is_some_and(|it| it.touches());
-        if touched { Part::AtStart } else { Part::None(Side::Outside) }
+        let touched = if order.is_some_and(is_even) {
+            Some(b)
+        } else {
+            told.filter(|it| !linear && it.touches()).map(|it| it.length)
+        };
+        if touched.is_some_and(|b| !self.comes_from_above(b)) { Part::AtStart } else { Part::None(Side::Outside) }
+    }
+
+    /// Whether the guard came to its spent root from above, along the flow that leaves it: a time
+    /// `b` before the root it is above it by half of what it is below it as long after, or more.
+    fn comes_from_above(&mut self, b: f64) -> bool {
+        let [before, after] = [-b, b].map(|s| (self.guard)(s) - self.base);
+        before > -0.5 * after
     }
 
     /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the

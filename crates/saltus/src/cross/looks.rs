@@ -16,9 +16,13 @@ const MOST_TURNS: usize = 8;
 const STANDS_AT: [f64; 2] = [0.3, 0.6];
 
 impl Search<'_> {
+    fn walk(&mut self, a: f64, side: Side) -> Walk {
+        Walk { side, last: self.flat.take().unwrap_or(a), base: self.base, tick: self.tick, rose: f64::NEG_INFINITY }
+    }
+
     /// Number by number.
     pub(super) fn walked(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
-        let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };
+        let mut walk = self.walk(a, side);
         let mut s = a;
         while s < b {
             s = s.next_up();
@@ -33,7 +37,7 @@ impl Search<'_> {
 
     /// A walk from one side to another, on which no sample falls but from the start; the signs
     /// of its steps count.
-    fn passed(&self, from: Side, to: Side, b: f64) -> Part {
+    fn passed(&mut self, from: Side, to: Side, b: f64) -> Part {
         if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
     }
 
@@ -83,7 +87,7 @@ impl Search<'_> {
         if steps > LOOKS / PER_STEP {
             return Ok(Look::Smooth);
         }
-        let mut walk = Walk { side, last: self.flat.take().unwrap_or(a), base: self.base };
+        let mut walk = self.walk(a, side);
         for (s, value) in samples {
             match walk.to(s, value, self.roughness(s)) {
                 Tread::Falls => return Ok(Look::Steps(Part::Fall { a: walk.last, b: s, near: None })),
@@ -132,7 +136,7 @@ impl Search<'_> {
                 hidden = Some((hidden.map_or(s, |(from, _)| from), s));
                 continue;
             }
-            let next = Side::of(value, side);
+            let next = Side::beside(value, side, self.base);
             if side == Side::Inside && next == Side::Outside {
                 return Part::Fall { a: self.flat.unwrap_or(a), b: s, near: None };
             }
@@ -173,6 +177,10 @@ struct Walk {
     /// The last sample that was inside, or on the wall.
     last: f64,
     base: f64,
+    /// How far apart times are: what rises from below zero and falls within as much has not risen.
+    tick: f64,
+    /// When it last rose from below zero.
+    rose: f64,
 }
 
 impl Walk {
@@ -181,10 +189,13 @@ impl Walk {
         let side = match self.side {
             Side::Wall if (value - self.base).abs() <= roughness => Side::Wall,
             Side::Wall => Side::of(value - self.base, Side::Wall),
-            side => Side::of(value, side),
+            side => Side::beside(value, side, self.base),
         };
+        if (self.side, side) == (Side::Outside, Side::Inside) {
+            self.rose = s;
+        }
         let tread = match (self.side, side) {
-            (Side::Inside, Side::Outside) => return Tread::Falls,
+            (Side::Inside, Side::Outside) if s - self.rose >= self.tick => return Tread::Falls,
             (Side::Wall, Side::Outside) => Tread::FallsAtStart,
             _ => Tread::Stays,
         };

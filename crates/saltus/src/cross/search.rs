@@ -68,7 +68,15 @@ pub(super) enum Side {
 impl Side {
     /// A zero leaves the guard on the side it came from.
     pub(super) fn of(value: f64, came_from: Self) -> Self {
-        if value > 0.0 {
+        Self::beside(value, came_from, 0.0)
+    }
+
+    /// The same where rounding has left a spent root at `base`: what has fallen from there is
+    /// outside until it is above that.
+    pub(super) fn beside(value: f64, came_from: Self, base: f64) -> Self {
+        if came_from == Self::Outside && value <= base {
+            Self::Outside
+        } else if value > 0.0 {
             Self::Inside
         } else if value < 0.0 {
             Self::Outside
@@ -300,6 +308,7 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
         let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
+        let base = if known.is_some() { 0.0 } else { self.base };
         let (q, q_margin) = if leaving { (p.without_root_at_start(), DIVIDED * margin) } else { (*p, margin) };
         // A stretch of zeros has no slope, and no margin for one.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
@@ -319,6 +328,7 @@ impl<'a> Search<'a> {
         }
         let order = || Some(order(p.start(), p.end(), a, b));
         Ok(Next::Part(match q.shape(q_margin) {
+            Shape::Above if side == Side::Outside => Part::None(Side::beside(start.max(end), side, base)),
             Shape::Above => Part::None(Side::Inside),
             Shape::Below => match side {
                 Side::Inside => Part::Fall { a: from, b, near: None },
@@ -357,7 +367,7 @@ impl<'a> Search<'a> {
                 Side::Wall if leaving && !self.spent && q.start() < -q_margin => return Ok(Next::Halves),
                 Side::Wall if !self.spent && self.rough == 0.0 && q.start() <= q_margin => return Ok(Next::Looks),
                 Side::Wall => Part::None(Side::of(q.end(), side)),
-                _ => Part::None(Side::of(end, side)),
+                _ => Part::None(Side::beside(end, side, base)),
             },
             Shape::Flat if scale == 0.0 => {
                 let plateau = side == Side::Wall && !self.spent && !self.falls_smoothly;
@@ -455,7 +465,7 @@ impl<'a> Search<'a> {
 
     /// The sign at the end alone.
     fn by_sign(&mut self, a: f64, b: f64, side: Side) -> Result<Part, Undefined> {
-        let end = Side::of(self.value(b)?, side);
+        let end = Side::beside(self.value(b)?, side, self.base);
         self.flat = None;
         Ok(if side == Side::Inside && end == Side::Outside { Part::Fall { a, b, near: None } } else { Part::None(end) })
     }
