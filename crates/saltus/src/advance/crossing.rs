@@ -43,7 +43,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             {
                 let at_start = wall.falls.then(|| Crossing::at_start(limit * AT_START));
                 if let Some(crossing) = at_start.or_else(|| self.leaves(mode, edge, step, limit)) {
-                    found = earlier(found, OnStep { edge, crossing, near: None });
+                    found = earlier(found, OnStep { edge, crossing, near: None, slope: None });
                 }
                 continue;
             }
@@ -80,7 +80,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             }
             if let Some(crossing) = fall {
-                found = earlier(found, OnStep { edge, crossing, near });
+                let slope = by_powers.derivatives(limit).map(|[slope, _]| slope);
+                found = earlier(found, OnStep { edge, crossing, near, slope });
             }
         }
         let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
@@ -330,6 +331,8 @@ pub(super) struct OnStep<A: Automaton> {
     pub(super) crossing: Crossing,
     /// The dense output near it, if it is long and its powers showed the crossing.
     pub(super) near: Option<Near<A::State>>,
+    /// dg/dt there, if its powers showed it.
+    pub(super) slope: Option<f64>,
 }
 
 impl<A: Automaton> Clone for OnStep<A> {

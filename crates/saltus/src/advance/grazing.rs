@@ -105,7 +105,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// The guard of `edge` a time `s` after the start of a step.
     #[inline(never)]
-    fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
+    pub(super) fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
         self.memory.stats.guards += 1;
         self.guard(edge, step.time(s), &step.at(s))
     }

@@ -414,7 +414,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         x: &A::State,
         slope: &A::State,
         step: Step<'_, A::State>,
-        &OnStep { edge, crossing, .. }: &OnStep<A>,
+        &OnStep { edge, crossing, slope: dg_dt, .. }: &OnStep<A>,
         limit: f64,
     ) -> Option<Closer<M::Dense<A::State>>> {
         let Step { now, scale, .. } = step;
@@ -423,13 +423,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if h <= MINUTE * scale {
             return None;
         }
-        let near = (crossing.inside - SMALL * scale).max(0.0);
-        let mut guard = |s: f64| {
-            self.memory.stats.guards += 1;
-            self.guard(edge, step.time(s), &step.at(s))
-        };
-        let rise = guard(near) - guard(crossing.inside);
-        let fall = rise / (crossing.inside - near); // -dg/dt
+        let fall = -dg_dt.unwrap_or_else(|| self.slope_before(edge, step, crossing.inside));
         for _ in 0..3 {
             let trial = self.retried(mode, now.seconds(), x, slope, h);
             if !(trial.end.is_finite() && trial.slope.is_finite()) {
@@ -449,6 +443,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             h = (h + shift).min(limit);
         }
         None
+    }
+
+    /// dg/dt shortly before a time `s` of a step, by differences.
+    #[inline(never)]
+    fn slope_before(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
+        let near = (s - SMALL * step.scale).max(0.0);
+        let [before, there] = [near, s].map(|s| self.on(edge, step, s));
+        (there - before) / (s - near)
     }
 }
 
