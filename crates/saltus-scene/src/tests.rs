@@ -354,7 +354,7 @@ fn balls_above_each_other_fall_in_air() {
     assert!(both.impacts().len() > 5);
     assert!(matches!(both.end(), plan::End::Zeno { .. }), "{:?}", both.end());
     for k in 0..=200 {
-        let t = both.until() * f64::from(k) / 200.0;
+        let t = both.until() * (f64::from(k) / 200.0); // the last one is the end itself
         let [low, high] = [0, 1].map(|ball| both.at(ball, t).unwrap().height());
         assert!(high - low > 0.06 - 1e-8, "{low} {high} at {t}");
     }
