@@ -34,29 +34,14 @@ impl Dress {
         stops.sort_by(f64::total_cmp);
         stops.dedup();
         let mut keys: Vec<(f64, Ellipse)> = Vec::new();
-        let mut last = 0.0;
-        for (n, &t) in stops.iter().enumerate() {
-            if let Some(from) = n.checked_sub(1).map(|n| stops[n]).filter(|_| !held) {
-                let mut a = from;
-                while a < t {
-                    let mut b = t;
-                    for _ in 0..HALVINGS {
-                        if self.straight([a, b], last) {
-                            break;
-                        }
-                        b = 0.5 * (a + b);
-                    }
-                    a = b;
-                    if b < t {
-                        let ellipse = self.ellipse(b, last);
-                        last = ellipse[0];
-                        keys.push((b, ellipse));
-                    }
-                }
+        for t in stops {
+            while keys.last().is_none_or(|&(last, _)| last < t) {
+                let (b, near) = match keys.last() {
+                    Some(&(a, [near, ..])) => (if held { t } else { self.straight_until(a, t, near) }, near),
+                    None => (t, 0.0),
+                };
+                keys.push((b, self.ellipse(b, near)));
             }
-            let ellipse = self.ellipse(t, last);
-            last = ellipse[0];
-            keys.push((t, ellipse));
         }
         let key = |&(t, [_, across, along]): &(f64, Ellipse)| Key {
             t,
@@ -80,6 +65,19 @@ impl Dress {
         let angle = if square > 0.0 { x.atan2(up) } else { near };
         let angle = angle - half * ((angle - near) / half).round();
         [angle, across, (across * across + (along * along - across * across) * square).sqrt()]
+    }
+
+    /// Until when angle and lengths may go straight from a time: to another, or a half of the way,
+    /// or of that.
+    fn straight_until(&self, a: f64, mut b: f64, near: f64) -> f64 {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            if middle <= a || self.straight([a, b], near) {
+                break;
+            }
+            b = middle;
+        }
+        b
     }
 
     /// Whether angle and lengths may go straight from a time to another.

@@ -120,28 +120,28 @@ pub fn rounded_up(number: f64, digits: usize) -> String {
 /// ```
 #[must_use]
 pub fn at_most(metres: f64) -> String {
-    let (mm, cm) = (|m: f64| m * 1e3, |m: f64| m * 1e2);
-    match metres {
-        m if m < NOTHING => "0 mm".to_owned(),
-        m if m < 1e-5 => {
-            let unit = 10_f64.powf(mm(m).log10().floor() - 1.0);
-            format!("{:.1e} mm", (mm(m) / unit * (1.0 - HAIR)).ceil() * unit)
-        }
-        m if m < 0.01 => format!("{} mm", rounded_up(mm(m), 2)),
-        m if m < 1.0 => format!("{} cm", rounded_up(cm(m), 1)),
-        m => format!("{} m", rounded_up(m, 2)),
-    }
+    let tiny = |mm: f64| {
+        let unit = 10_f64.powf(mm.log10().floor() - 1.0);
+        format!("{:.1e}", (mm / unit * (1.0 - HAIR)).ceil() * unit)
+    };
+    in_units(metres, tiny, rounded_up)
 }
 
 /// A length that a person can picture.
 #[must_use]
 pub fn length(metres: f64) -> String {
+    in_units(metres, |mm| format!("{mm:.1e}"), |number, digits| format!("{number:.digits$}"))
+}
+
+/// A length in a unit of its size: so many digits of a number, or a `tiny` one with its power of
+/// ten.
+fn in_units(metres: f64, tiny: impl Fn(f64) -> String, number: impl Fn(f64, usize) -> String) -> String {
     match metres {
         m if m < NOTHING => "0 mm".to_owned(),
-        m if m < 1e-5 => format!("{:.1e} mm", m * 1e3),
-        m if m < 0.01 => format!("{:.2} mm", m * 1e3),
-        m if m < 1.0 => format!("{:.1} cm", m * 1e2),
-        m => format!("{m:.2} m"),
+        m if m < 1e-5 => format!("{} mm", tiny(m * 1e3)),
+        m if m < 0.01 => format!("{} mm", number(m * 1e3, 2)),
+        m if m < 1.0 => format!("{} cm", number(m * 1e2, 1)),
+        m => format!("{} m", number(m, 2)),
     }
 }
 

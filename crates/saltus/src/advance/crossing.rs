@@ -62,12 +62,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 },
             };
             let Searched { fall, mut evidence, turn } = searched;
+            let derivatives = by_powers.derivatives(limit);
             if start == Start::Spent && fall.is_none() {
                 self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
             }
             if let Some(observer) = &mut observer {
                 let grazing = if let Some(crossing) = fall {
-                    self.dips(edge, step, crossing.root, by_powers.derivatives(limit))
+                    self.dips(edge, step, crossing.root, derivatives)
                         .or_else(|| self.unresolved(edge, step, crossing.root))
                 } else {
                     let by_powers = || along.as_ref()?.powers.turns().map(|turn| turn.map(|u| u * limit));
@@ -80,7 +81,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
             }
             if let Some(crossing) = fall {
-                let slope = by_powers.derivatives(limit).map(|[slope, _]| slope);
+                let slope = derivatives.map(|[slope, _]| slope);
                 found = earlier(found, OnStep { edge, crossing, near, slope });
             }
         }

@@ -263,7 +263,7 @@ impl<'a> Search<'a> {
         let leaving = side == Side::Wall && a == 0.0;
         let mut margin = proxy.margin;
         if side == Side::Wall {
-            let (roughness, base) = (self.roughness(b), if known.is_some() { 0.0 } else { self.base });
+            let (roughness, base) = (self.roughness(b), self.base_of(stretch));
             if proxy.p.coefficients().iter().all(|value| (value - base).abs() < roughness) {
                 return Ok(Part::None(Side::Wall));
             }
@@ -308,7 +308,7 @@ impl<'a> Search<'a> {
         let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
         let (leaving, scale) = (side == Side::Wall && a == 0.0, p.scale());
-        let base = if known.is_some() { 0.0 } else { self.base };
+        let base = self.base_of(stretch);
         let (q, q_margin) = if leaving { (p.without_root_at_start(), DIVIDED * margin) } else { (*p, margin) };
         // A stretch of zeros has no slope, and no margin for one.
         if leaving && self.spent && known.is_none() && q.scale() > 0.0 {
@@ -417,6 +417,11 @@ impl<'a> Search<'a> {
     /// Whether values off by so much are off by more than a guard's cancellation explains.
     pub(super) fn is_rougher_than_rounding(&self, off: f64) -> bool {
         off > FAR * f64::EPSILON * self.largest
+    }
+
+    /// Where a spent root at the start lies on a stretch: a given polynomial is the change from it.
+    fn base_of(&self, stretch: &Stretch) -> f64 {
+        if stretch.known.is_some() { 0.0 } else { self.base }
     }
 
     /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
