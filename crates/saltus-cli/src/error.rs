@@ -32,14 +32,18 @@ impl Error {
     #[allow(clippy::needless_pass_by_value)] // used as a function
     pub(crate) fn stdout(error: io::Error) -> Self {
         Self {
-            message: format!("cannot write to standard output: {error}"),
+            message: format!("cannot write to standard output: {}", system(&error)),
             broken_pipe: error.kind() == io::ErrorKind::BrokenPipe,
             data: None,
         }
     }
 
     pub(crate) fn writing(path: &Path, error: &io::Error) -> Self {
-        Self::new(format!("cannot write '{}': {error}", path.display()))
+        Self::new(format!("cannot write '{}': {}", path.display(), system(error)))
+    }
+
+    pub(crate) fn reading(path: &Path, error: &io::Error) -> Self {
+        Self::new(format!("cannot read '{}': {}", path.display(), plain(error)))
     }
 
     /// What it says.
@@ -67,6 +71,27 @@ impl Error {
         anstream::eprintln!("\u{1b}[1;31merror:\u{1b}[0m {}", self.message);
         ExitCode::from(2)
     }
+}
+
+/// What the system says, without its number.
+fn plain(error: &io::Error) -> String {
+    let says = error.to_string();
+    says.split(" (os error").next().unwrap_or(&says).to_owned()
+}
+
+/// What the system says of writing, and what to do where that is known.
+pub(crate) fn system(error: &io::Error) -> String {
+    let says = plain(error);
+    let advice = match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            "make room, or name a file elsewhere"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "name a file where you may write, or change whose it is"
+        }
+        _ => return says,
+    };
+    format!("{says}: {advice}")
 }
 
 impl fmt::Display for Error {

@@ -12,7 +12,7 @@ use saltus_scene::vary::{Value, Vary, refused};
 use saltus_scene::{Stage, Template, at_most, rounded_up};
 use serde_json::{Map, Value as Json, json};
 
-use crate::error::Error;
+use crate::error::{Error, system};
 use crate::export::Shown;
 use crate::fit::tables;
 use crate::output::{extension, say, write};
@@ -78,7 +78,9 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     if let Some(drawn) = &first.drawn {
         say(quiet, drawn);
     }
-    let folder = |error: io::Error| Error::new(format!("cannot make the folder '{}': {error}", args.output.display()));
+    let folder = |error: io::Error| {
+        Error::new(format!("cannot make the folder '{}': {}", args.output.display(), system(&error)))
+    };
     fs::create_dir_all(&args.output).map_err(folder)?;
 
     let mut progress = Progress::new(runs, quiet);
@@ -111,7 +113,11 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     };
     progress.clear();
     if let ControlFlow::Break(error) = ended {
-        return Err(error);
+        return Err(Error::new(format!(
+            "{error}; '{}' has {} whole motions and no index: --force writes all anew",
+            args.output.display(),
+            motions.len().saturating_sub(1)
+        )));
     }
     let index = json!({
         "schema": SCHEMA, "saltus": env!("CARGO_PKG_VERSION"), "source": name, "vary": vary.texts(),

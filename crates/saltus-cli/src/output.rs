@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use crate::error::Error;
@@ -35,22 +35,32 @@ fn file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
         Ok(old) if !old.is_file() => return fs::write(&target, bytes).map_err(fail),
         _ => {}
     }
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let mut temporary = builder().tempfile_in(&folder).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => {
-            Error::new(format!("cannot write '{}': there is no folder '{}'", path.display(), folder.display()))
-        }
-        _ => fail(error),
-    })?;
+    check_folder(&target)?;
+    let mut temporary = builder().tempfile_in(folder(&target)).map_err(fail)?;
     temporary.write_all(bytes).and_then(|()| temporary.as_file().sync_all()).map_err(fail)?;
     if let Ok(old) = fs::metadata(&target) {
         fs::set_permissions(temporary.path(), old.permissions()).map_err(fail)?;
     }
     temporary.persist(&target).map_err(|error| fail(error.error))?;
     Ok(())
+}
+
+/// The folder that a file is in.
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
+}
+
+/// Refuses a file in a folder that there is not.
+pub(crate) fn check_folder(path: &Path) -> Result<(), Error> {
+    let folder = folder(path);
+    match fs::metadata(folder) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => Err(Error::new(format!("cannot write '{}': '{}' is no folder", path.display(), folder.display()))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            Err(Error::new(format!("cannot write '{}': there is no folder '{}'", path.display(), folder.display())))
+        }
+        Err(error) => Err(Error::writing(path, &error)),
+    }
 }
 
 /// A new file gets the permissions that any program would give it.

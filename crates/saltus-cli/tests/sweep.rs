@@ -200,7 +200,15 @@ fn what_is_wrong_is_said_before_anything_is_written() {
     let said = place.refused(&["--vary", "restitution=0.1,0.2", "--vary", "restitution=0.1,0.2"]);
     assert!(said.contains("`restitution` varies twice"), "{said}");
     let said = place.refused(&["--vary", "restitution=0:1:1000000", "--vary", "ball.height=1:2:10000000"]);
-    assert!(said.contains("more than 1000000000000 runs"), "{said}");
+    assert!(said.contains("10000000000000 runs, and a sweep has 100000000 at most: vary in fewer"), "{said}");
+    for many in [&["restitution=0:1:99999999999"][..], &["restitution=0:1", "--random=100000001"]] {
+        let said = place.refused(&[&["--vary"], many, &["-o", "rows.csv"]].concat());
+        assert!(said.contains("a sweep has 100000000 at most"), "{said}");
+    }
+    let all: Vec<String> = (0..12).map(|key| format!("--vary=key{key}=0:1:99999999999")).collect();
+    let said = place.refused(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(said.contains("a sweep has 100000000 at most"), "{said}");
+    assert!(!place.path("rows.csv").exists() && !place.path("rows.csv.sweep").exists());
     let several = Place::of(
         "floor = [{ restitution = 0.5 }, { kind = 'wall', at = '2 m', restitution = 0.5 }]\nball = { position = [0, 1] }\nrun = { until = '1 s' }\n",
     );
@@ -231,6 +239,18 @@ fn sweeps_are_drawn() {
     let map = drawn(&["--vary", "restitution=0.3:0.7:9", "--vary", "ball.height=1cm:10m:8:log"]);
     assert!(map.contains("fill-opacity") && map.contains("ball.height (cm)"), "{map}");
     drawn(&["--vary", "restitution=0.3:0.7", "--random", "9"]);
+    // Gone on with in either format, the picture is that of the whole sweep.
+    for table in ["again.csv", "again.jsonl"] {
+        let vary = ["--vary", "restitution=0.3:1.2:9", "--vary", "gravity=earth,moon", "--plot", "picture.svg"];
+        place.done(&[&vary[..], &["-o", table]].concat());
+        let (whole, picture) = (place.read(table), place.read("picture.svg"));
+        for kept in [1, 7, 18] {
+            let lines: Vec<&str> = whole.lines().take(kept).collect();
+            fs::write(place.path(table), lines.join("\n") + "\n4,0.").unwrap();
+            place.done(&[&vary[..], &["-o", table, "--resume"]].concat());
+            assert!(place.read(table) == whole && place.read("picture.svg") == picture, "{table}: {kept}");
+        }
+    }
 
     let refused = |arguments: &[&str]| place.refused(&[arguments, &["--plot", "p.svg", "-o", "t.csv"]].concat());
     let text = refused(&["--vary", "restitution=0.3:0.7:5", "--show", "rest"]);
@@ -239,6 +259,11 @@ fn sweeps_are_drawn() {
     assert!(refused(&["--vary", "restitution=0.3:0.7:500", "--vary", "ball.height=1m:2m:500"]).contains("100000 runs"));
     let three = ["--vary", "restitution=0.3:0.7:2", "--vary", "ball.height=1m:2m:2", "--vary", "gravity=9.8,1.6"];
     assert!(refused(&three).contains("one key, or a grid of two"));
+    for (plot, says) in [("p.png", "name the file 'p.svg'"), ("no/p.svg", "no folder 'no'"), ("-", "cannot both go")] {
+        let output = if plot == "-" { "-" } else { "t.csv" };
+        let said = place.refused(&["--vary", "restitution=0.3:0.7:5", "--plot", plot, "-o", output]);
+        assert!(said.contains(says), "{said}");
+    }
     assert!(!place.path("t.csv").exists() && !place.path("p.svg").exists());
 }
 
@@ -352,4 +377,33 @@ fn a_full_disk_is_a_failure() {
     assert!(!Path::new("/dev/full.sweep").exists());
     let said = place.refused(&["--vary", "restitution=0.1:0.9:9", "-o", "/dev/full", "--resume"]);
     assert!(said.contains("is no file that can be gone on with"), "{said}");
+}
+
+/// A disk that is full after so many rows: what is written are whole rows or a torn one that
+/// --resume makes again, and no half picture is left.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_loses_nothing() {
+    let place = Place::of(DROP);
+    let sweep = "sweep scene.toml --vary restitution=0.1:0.9:900 --plot p.svg -o";
+    let arguments = |file: &str, more: &str| -> Vec<String> {
+        format!("{sweep} {file} {more}").split_whitespace().skip(2).map(str::to_owned).collect()
+    };
+    let run = |arguments: &[String]| place.done(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    run(&arguments("whole.csv", ""));
+    let (whole, picture) = (place.read("whole.csv"), place.read("p.svg"));
+    fs::remove_file(place.path("p.svg")).unwrap();
+    // Files of at most 16 KiB, as the system's limit says it.
+    let saltus = tool::saltus().get_program().to_owned();
+    let limited = format!("trap '' XFSZ; ulimit -f 32; exec {} {sweep} rows.csv", saltus.display());
+    let output = Command::new("sh").args(["-c", &limited]).current_dir(place.0.path()).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("make room") && said.contains("--resume goes on behind them"), "{said}");
+    assert!(!said.contains("os error") && whole.starts_with(&place.read("rows.csv")), "{said}");
+    let mut names: Vec<_> = fs::read_dir(place.0.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["rows.csv", "rows.csv.sweep", "scene.toml", "whole.csv", "whole.csv.sweep"]);
+    run(&arguments("rows.csv", "--resume"));
+    assert!(place.read("rows.csv") == whole && place.read("p.svg") == picture);
 }

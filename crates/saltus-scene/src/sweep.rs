@@ -151,6 +151,7 @@ impl RowFormat {
 /// assert!(sweep.header().starts_with("run,restitution,impacts,first_impact_s,"));
 /// let rows: Vec<_> = (0..sweep.runs()).map(|run| sweep.row(run)).collect();
 /// assert_eq!(sweep.text(), sweep.header() + &rows.iter().map(|row| row.text.as_str()).collect::<String>());
+/// assert!(rows.iter().all(|row| sweep.read(&row.text).as_ref() == Some(row)));
 /// assert!(rows.len() == 5 && rows[4].text.starts_with("4,0.9,") && rows[4].why.is_none());
 /// # Ok::<(), saltus_scene::Error>(())
 /// ```
@@ -272,7 +273,17 @@ impl<'a> Sweep<'a> {
         Row { text, numbers, why: came.err().map(|nothing| nothing.why) }
     }
 
-    /// The whole table, its runs made on all cores where `saltus` has its feature `rayon`.
+    /// A row read back from its line; `None` if the line has other cells than the table.
+    #[must_use]
+    pub fn read(&self, line: &str) -> Option<Row> {
+        let cells = self.rows.cells(line.trim_end())?;
+        let number = |cell: &String| cell.parse().ok().filter(|value: &f64| value.is_finite());
+        let why = self.headers().iter().position(|name| name == Column::Why.name());
+        let why = why.and_then(|why| cells.get(why)).filter(|why| !why.is_empty());
+        Some(Row { text: line.to_owned(), numbers: cells.iter().map(number).collect(), why: why.cloned() })
+    }
+
+    /// The whole table in memory, its runs made on all cores where `saltus` has its feature `rayon`.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = self.header();
@@ -306,10 +317,10 @@ enum Cell {
 }
 
 impl Cell {
-    #[allow(clippy::cast_precision_loss)] // counts are below 10^12
+    #[allow(clippy::cast_precision_loss)] // 53 bits
     fn number(&self) -> Option<f64> {
         match self {
-            Self::Number(value) => Some(*value),
+            Self::Number(value) => Some(*value).filter(|value| value.is_finite()),
             Self::Count(count) => Some(*count as f64),
             Self::Written(number) => number.parse().ok(),
             Self::None | Self::Word(_) => None,
@@ -365,6 +376,34 @@ impl Rows {
             RowFormat::Csv => format!("{run},"),
             RowFormat::Jsonl => format!("{{\"run\":{run},"),
         }
+    }
+
+    /// The cells of a line, as many as there are headings.
+    fn cells(&self, line: &str) -> Option<Vec<String>> {
+        let cells = match self.format {
+            RowFormat::Csv => {
+                let mut quoted = false;
+                let ends = |c: char| {
+                    quoted ^= c == '"';
+                    c == ',' && !quoted
+                };
+                let plain = |cell: &str| match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
+                    Some(word) => word.replace("\"\"", "\""),
+                    None => cell.to_owned(),
+                };
+                line.split(ends).map(plain).collect()
+            }
+            RowFormat::Jsonl => {
+                let row: serde_json::Map<String, serde_json::Value> = serde_json::from_str(line).ok()?;
+                let text = |value: &serde_json::Value| match value {
+                    serde_json::Value::Null => String::new(),
+                    serde_json::Value::String(word) => word.clone(),
+                    other => other.to_string(),
+                };
+                self.headers.iter().map(|name| row.get(name).map(text)).collect::<Option<Vec<_>>>()?
+            }
+        };
+        (cells.len() == self.headers.len()).then_some(cells)
     }
 
     fn names(&self, column: Column) -> Vec<String> {

@@ -98,7 +98,7 @@ pub(super) fn readings(path: &Path) -> Result<Vec<Reading>, Error> {
             path.display()
         )));
     }
-    let bytes = fs::read(path).map_err(|error| Error::new(format!("cannot read '{}': {error}", path.display())))?;
+    let bytes = fs::read(path).map_err(|error| Error::reading(path, &error))?;
     let text = |bytes| String::from_utf8(bytes).map_err(|_| Error::new("it is no text"));
     let readings = match extension.as_str() {
         "glb" => glb(&bytes),

@@ -31,7 +31,7 @@ pub(crate) struct Sweep {
     #[arg(long, value_parser = one_of(&RowFormat::ALL, RowFormat::name, RowFormat::about))]
     pub(crate) format: Option<RowFormat>,
     /// Draw a result of the runs against the one or two keys that vary, as SVG.
-    #[arg(long, value_name = "FILE", conflicts_with = "resume")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// The result to draw, a heading of the table; when all was at rest unless given.
     #[arg(long, value_name = "NAME", requires = "plot")]

@@ -34,19 +34,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         say(quiet, &note);
     }
     let runs = sweep.runs();
-    if args.plot.is_some() {
-        saltus_plot::sweep::check(&sweep, args.show.as_deref()).map_err(Error::new)?;
-        if runs > MOST_DRAWN {
-            return Err(Error::new(format!(
-                "a picture shows {MOST_DRAWN} runs at most, and these are {runs}: vary in fewer steps, or leave out --plot"
-            )));
-        }
-        if args.plot.as_deref() == Some(Path::new("-"))
-            && args.output.as_deref().is_none_or(|path| path == Path::new("-"))
-        {
-            return Err(Error::new("the picture and the table cannot both go to standard output: name a file for one"));
-        }
-    }
+    check_plot(args, &sweep)?;
     let (mut table, done) = Table::open(args, &sweep, &whose(args, &toml, &sweep, &vary, format))?;
     if done > 0 {
         say(
@@ -60,7 +48,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         pool = pool.num_threads(threads.into());
     }
     let pool = pool.build().map_err(|error| Error::new(format!("cannot start that many threads: {error}")))?;
-    let mut rows = Vec::new();
+    let mut rows = if args.plot.is_some() { table.before(&sweep, done)? } else { Vec::new() };
     let mut progress = Progress::new(runs, quiet);
     let mut nothing = (0_u64, None);
     let left = usize::try_from(done).map_err(Error::new)?..usize::try_from(runs).map_err(Error::new)?;
@@ -99,6 +87,24 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         output::write(Some(path), svg.as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses a picture that cannot be drawn or written, before any run is made.
+fn check_plot(args: &SweepArgs, sweep: &Sweep<'_>) -> Result<(), Error> {
+    let Some(plot) = args.plot.as_deref() else { return Ok(()) };
+    let dash = Path::new("-");
+    if plot == dash && args.output.as_deref().is_none_or(|path| path == dash) {
+        return Err(Error::new("the picture and the table cannot both go to standard output: name a file for one"));
+    }
+    output::check_picture(Some(plot))?;
+    output::check_folder(plot)?;
+    saltus_plot::sweep::check(sweep, args.show.as_deref()).map_err(Error::new)?;
+    match sweep.runs() {
+        ..=MOST_DRAWN => Ok(()),
+        runs => Err(Error::new(format!(
+            "a picture shows {MOST_DRAWN} runs at most, and these are {runs}: vary in fewer steps, or leave out --plot"
+        ))),
+    }
 }
 
 /// What the rows of a file depend on.

@@ -4,11 +4,11 @@
 //! Beside `FILE` stands `FILE.sweep`, which says whose rows they are.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use saltus_scene::sweep::Sweep;
+use saltus_scene::sweep::{Row, Sweep};
 use serde_json::Value;
 
 use super::SweepArgs;
@@ -80,6 +80,19 @@ impl Table {
         Ok((to(Some((file, path.to_owned())), sweep.header()), 0))
     }
 
+    /// The rows that are in the file already.
+    pub(super) fn before(&self, sweep: &Sweep<'_>, done: u64) -> Result<Vec<Row>, Error> {
+        let Some((_, path)) = self.file.as_ref().filter(|_| done > 0) else { return Ok(Vec::new()) };
+        let text = fs::read_to_string(path).map_err(|error| Error::reading(path, &error))?;
+        let line = |(run, line): (usize, &str)| {
+            sweep.read(&format!("{line}\n")).ok_or_else(|| {
+                let path = path.display();
+                Error::new(format!("'{path}' was changed since: run {run} is no row of it; --force starts anew"))
+            })
+        };
+        text.lines().skip(sweep.header().lines().count()).enumerate().map(line).collect()
+    }
+
     /// Takes a row; writes when there is enough or it has waited.
     pub(super) fn push(&mut self, row: &str) -> Result<(), Error> {
         self.kept.extend_from_slice(row.as_bytes());
@@ -88,7 +101,7 @@ impl Table {
 
     fn write(&mut self) -> Result<(), Error> {
         match &mut self.file {
-            Some((file, path)) => file.write_all(&self.kept).map_err(|error| Error::writing(path, &error))?,
+            Some((file, path)) => file.write_all(&self.kept).map_err(|error| broken_off(path, &error))?,
             None => output::stdout(&self.kept).map(drop)?,
         }
         self.kept.clear();
@@ -101,11 +114,18 @@ impl Table {
         self.write()?;
         match &self.file {
             Some((file, path)) if file.metadata().is_ok_and(|found| found.is_file()) => {
-                file.sync_all().map_err(|error| Error::writing(path, &error))
+                file.sync_all().map_err(|error| broken_off(path, &error))
             }
             _ => Ok(()),
         }
     }
+}
+
+/// The rows of a file stay, those of a device are gone.
+fn broken_off(path: &Path, error: &io::Error) -> Error {
+    let kept = fs::metadata(path).is_ok_and(|found| found.is_file());
+    let stays = if kept { "; the whole rows in it stay, and --resume goes on behind them" } else { "" };
+    Error::new(format!("{}{stays}", Error::writing(path, error)))
 }
 
 /// `FILE.sweep`.

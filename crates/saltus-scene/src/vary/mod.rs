@@ -7,8 +7,8 @@ pub use values::{Value, Variation};
 
 use crate::{Error, SceneError};
 
-/// More runs than anyone waits for.
-const MOST_RUNS: u64 = 1_000_000_000_000;
+/// The most runs of one sweep: their table is some 15 GB, and takes one core hours to days.
+const MOST_RUNS: u64 = 100_000_000;
 
 /// What varies, and how: every value with every other, the last variation fastest, or values drawn
 /// at random.
@@ -62,24 +62,26 @@ impl Vary {
     /// How many runs there are.
     ///
     /// # Errors
-    /// [`Error`] for a range without a count in a grid, or for more than 10¹² runs.
+    /// [`Error`] for a range without a count in a grid, and for more than a hundred million runs.
     pub fn runs(&self) -> Result<u64, Error> {
-        if let Some(count) = self.random {
-            return Ok(count);
+        let runs = match self.random {
+            Some(count) => u128::from(count),
+            None => self.variations.iter().try_fold(1_u128, |runs, variation| {
+                let count = variation.count().ok_or_else(|| {
+                    let (key, text) = (&variation.key, &variation.text);
+                    Error::new(format!(
+                        "it is not said how many values `{key}` takes: write --vary {text}:10, or draw them by --random 1000"
+                    ))
+                })?;
+                Ok::<_, Error>(runs.saturating_mul(u128::from(count)))
+            })?,
+        };
+        match u64::try_from(runs) {
+            Ok(runs) if runs <= MOST_RUNS => Ok(runs),
+            _ => Err(Error::new(format!(
+                "these are {runs} runs, and a sweep has {MOST_RUNS} at most: vary in fewer steps, draw some by --random 100000, or make several sweeps"
+            ))),
         }
-        let mut runs = 1_u64;
-        for variation in &self.variations {
-            let Some(count) = variation.count() else {
-                let (key, text) = (&variation.key, &variation.text);
-                return Err(Error::new(format!(
-                    "it is not said how many values `{key}` takes: write --vary {text}:10, or draw them by --random 1000"
-                )));
-            };
-            runs = runs.checked_mul(count).filter(|runs| *runs <= MOST_RUNS).ok_or_else(|| {
-                Error::new(format!("the grid has more than {MOST_RUNS} runs: draw some of them by --random 100000"))
-            })?;
-        }
-        Ok(runs)
     }
 
     /// The values of a run, counted from 0, one for each variation.

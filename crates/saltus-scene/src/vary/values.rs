@@ -201,7 +201,7 @@ impl Variation {
     }
 
     /// Value `n` of as many as it takes.
-    #[allow(clippy::cast_precision_loss)] // counts are below 10^12
+    #[allow(clippy::cast_precision_loss)] // counts are at most 10^8
     #[must_use]
     pub fn value(&self, n: u64) -> Value {
         match &self.values {
