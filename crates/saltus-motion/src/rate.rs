@@ -3,6 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+/// The most frames of a motion.
+const MOST_FRAMES: f64 = 1e6;
+
 /// Frames per second, a fraction: 24, or 24000/1001 where a catalogue says 23.976.
 ///
 /// ```
@@ -28,7 +31,7 @@ impl Rate {
     pub fn new(frames: u32, seconds: u32) -> Result<Self, RateError> {
         let (a, b) = (u64::from(frames), u64::from(seconds));
         if seconds == 0 || a < b || a > 1000 * b {
-            return Err(RateError(format!("{frames}/{seconds}")));
+            return Err(RateError::of(&format!("{frames}/{seconds}")));
         }
         let shared = divisor(frames, seconds);
         Ok(Self { frames: frames / shared, seconds: seconds / shared })
@@ -72,7 +75,7 @@ impl FromStr for Rate {
     /// Reads `24`, `12.5`, `24000/1001`, and `23.976`, `23.98`, `29.97`, `47.952`, `59.94`,
     /// `119.88` as the fractions they stand for.
     fn from_str(text: &str) -> Result<Self, RateError> {
-        let bad = || RateError(text.to_owned());
+        let bad = || RateError::of(text);
         let text = text.trim();
         let whole = |text: &str| text.trim().parse::<u32>().ok();
         if let Some((frames, seconds)) = text.split_once('/') {
@@ -100,17 +103,21 @@ impl FromStr for Rate {
     }
 }
 
-/// What was given is no frame rate.
+/// What was given is no frame rate, or none that a motion can be shown at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RateError(String);
 
+impl RateError {
+    fn of(text: &str) -> Self {
+        Self(format!(
+            "'{text}' is not a frame rate: give frames per second from 1 to 1000, such as 24, 25, 29.97 or 24000/1001"
+        ))
+    }
+}
+
 impl fmt::Display for RateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "'{}' is not a frame rate: give frames per second from 1 to 1000, such as 24, 25, 29.97 or 24000/1001",
-            self.0
-        )
+        f.write_str(&self.0)
     }
 }
 
@@ -139,6 +146,21 @@ impl Frames {
     #[must_use]
     pub fn step(self) -> f64 {
         self.rate.frame() * if self.on_twos { 2.0 } else { 1.0 }
+    }
+
+    /// Refuses a motion of so many seconds that it has more than a million frames: an hour and more
+    /// at 240 frames per second.
+    ///
+    /// # Errors
+    /// [`RateError`], with the longest time that there may be.
+    pub fn holds(self, seconds: f64) -> Result<(), RateError> {
+        let most = MOST_FRAMES * self.rate.frame();
+        if seconds <= most {
+            return Ok(());
+        }
+        Err(RateError(format!(
+            "{seconds:.0} s are more than {MOST_FRAMES} frames: end the motion within {most:.0} s, or show fewer frames per second"
+        )))
     }
 
     /// The frame number of `t` in s, with its fraction.

@@ -370,3 +370,40 @@ fn a_page_that_plays() {
     }
     assert_eq!(moves.len(), page.matches("<g class=\"moves\">").count());
 }
+
+/// Each ball of several has a colour of its own, in every format that has colours, and a file has
+/// no material that nothing is made of.
+#[test]
+fn balls_differ_in_colour() {
+    let mut motion = travels();
+    let one = |motion: &Motion, format| text(written(motion, format, Shape::default()));
+    let alone =
+        [Format::Html, Format::Svg, Format::Lottie, Format::Usd, Format::Blender].map(|format| one(&motion, format));
+    for n in 1..3 {
+        let mut other = motion.tracks[0].clone();
+        other.name = format!("ball {n}");
+        motion.tracks.push(other);
+    }
+    let (second, third) = ("0.04", "0.49");
+    assert!(
+        !alone[0].contains("style=\"fill:var(--ball2)\"")
+            && one(&motion, Format::Html).contains("style=\"fill:var(--ball3)\"")
+    );
+    assert!(!alone[1].contains("rgb(") && one(&motion, Format::Svg).contains("style=\"fill:rgb(0,125,92)\""));
+    for (format, alone) in [(Format::Lottie, &alone[2]), (Format::Usd, &alone[3]), (Format::Blender, &alone[4])] {
+        let several = one(&motion, format);
+        assert!(several.contains(second) && several.contains(third) && !alone.contains(third), "{format:?}");
+    }
+    for (motion, shape, most) in [(travels(), Shape::default(), 2), (motion, SQUASHED, 4)] {
+        let file: Value = serde_json::from_str(&text(written(&motion, Format::Gltf, shape))).unwrap();
+        let materials = file["materials"].as_array().unwrap().len();
+        let primitives =
+            file["meshes"].as_array().unwrap().iter().flat_map(|mesh| mesh["primitives"].as_array().unwrap());
+        let used: std::collections::BTreeSet<_> = primitives.map(|part| part["material"].as_u64().unwrap()).collect();
+        assert!(used.len() == materials && materials <= most, "{used:?} of {materials}");
+    }
+    // Without ground there is no material for it.
+    let free = Motion::new("free", travels().tracks, Vec::new()).unwrap();
+    let file: Value = serde_json::from_str(&one(&free, Format::Gltf)).unwrap();
+    assert_eq!(file["materials"].as_array().unwrap().len(), 1);
+}

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Ball, Export, Node};
+use super::{Ball, Export, Node, colour};
 use crate::curve::{Between, Curve, Key};
 use crate::space::Unit;
 use crate::turn::Turn;
@@ -90,7 +90,7 @@ def paint(item, name, colour):
     item.data.materials.append(material)
 
 
-def sphere(name, radius, bottom, stripes, rings=16, sides=32):
+def sphere(name, radius, bottom, colour, stripes, rings=16, sides=32):
     """A sphere with its bottom at a height: at 0 it stands on its origin, so that height 0 is touch."""
     from math import cos, pi, sin
     vertices = [(0.0, 0.0, bottom)]
@@ -111,7 +111,7 @@ def sphere(name, radius, bottom, stripes, rings=16, sides=32):
         top = 1 + (rings - 2) * sides
         faces.append((top + side, top + after, last))
     item = mesh_object(name, vertices, faces, True)
-    paint(item, "ball", (0.85, 0.33, 0.1, 1.0))
+    paint(item, "ball", (*colour, 1.0))
     if stripes:
         # In two colours, so that a turning ball is seen to turn.
         paint(item, "stripe", (0.95, 0.8, 0.6, 1.0))
@@ -170,7 +170,7 @@ for ball in DATA["balls"]:
     around = None
     for number, node in enumerate(ball["nodes"]):
         if number == len(ball["nodes"]) - 1:
-            item = sphere(node["name"], ball["radius"], node["bottom"], node["turns"] or node["about"])
+            item = sphere(node["name"], ball["radius"], node["bottom"], ball["colour"], node["turns"] or node["about"])
         else:
             item = bpy.data.objects.new(node["name"], None)
             item.empty_display_size = ball["radius"]
@@ -208,7 +208,7 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     let fps = nominal.ceil();
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 1000
     let whole = fps as u32;
-    let balls = balls.iter().map(|ball| {
+    let balls = balls.iter().enumerate().map(|(number, ball)| {
         let mut nodes: Vec<Value> = ball.nodes().iter().map(|node| chained(export, node, ball.held())).collect();
         let mut bottom = -ball.track.radius;
         if ball.dress.is_none() {
@@ -219,7 +219,7 @@ pub(super) fn script(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
         if let Some(inner) = nodes.last_mut() {
             inner["bottom"] = json!(bottom);
         }
-        json!({ "radius": ball.track.radius, "nodes": nodes })
+        json!({ "radius": ball.track.radius, "colour": colour(number), "nodes": nodes })
     });
     let [[left, right], [low, high]] = export.motion.reach();
     let data = json!({

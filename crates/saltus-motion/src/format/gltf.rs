@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::{Ball, Export, ExportError};
+use super::{Ball, Export, ExportError, colour};
 use crate::curve::{Between, Curve};
 use crate::motion::Point;
 use crate::turn::Turn;
@@ -20,6 +20,7 @@ struct Buffer {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+    materials: Vec<Value>,
 }
 
 impl Buffer {
@@ -59,6 +60,19 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
+    /// A material, made where it is first used.
+    fn material(&mut self, name: &str, [r, g, b]: [f64; 3]) -> usize {
+        let material = json!({
+            "name": name, "doubleSided": true,
+            "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7 },
+        });
+        let found = self.materials.iter().position(|other| *other == material);
+        found.unwrap_or_else(|| {
+            self.materials.push(material);
+            self.materials.len() - 1
+        })
+    }
+
     fn mesh(&mut self, name: &str, shape: &Shape, materials: &[usize]) -> Value {
         let position = self.floats(&shape.positions, Some(ARRAY));
         let normal = self.floats(&shape.normals, Some(ARRAY));
@@ -70,12 +84,15 @@ impl Buffer {
     }
 
     /// A ball; one that turns is in two colours, so that it is seen to.
-    fn ball(&mut self, ball: &Ball<'_>, turns: bool) -> Value {
+    fn ball(&mut self, number: usize, ball: &Ball<'_>, turns: bool) -> Value {
         let mut shape = sphere(ball.track.radius);
-        if !turns {
+        let mut materials = vec![self.material("ball", colour(number))];
+        if turns {
+            materials.push(self.material("stripe", [0.95, 0.8, 0.6]));
+        } else {
             shape.indices = vec![shape.indices.concat()];
         }
-        self.mesh(&ball.track.name, &shape, &[0, 2])
+        self.mesh(&ball.track.name, &shape, &materials)
     }
 }
 
@@ -252,7 +269,7 @@ fn parts(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> (Value,
                 if k == 0 { paths.push(value) } else { between.push(value) }
             } else {
                 value["mesh"] = json!(meshes.len());
-                meshes.push(buffer.ball(ball, !node.turns.is_empty()));
+                meshes.push(buffer.ball(n, ball, !node.turns.is_empty()));
                 shapes.push(value);
             }
         }
@@ -262,7 +279,8 @@ fn parts(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> (Value,
     let depth = super::depth(motion);
     for shape in motion.ground.iter().filter_map(|line| strip(line, depth)) {
         nodes.push(json!({ "name": "ground", "mesh": meshes.len() }));
-        meshes.push(buffer.mesh("ground", &shape, &[1]));
+        let material = buffer.material("ground", [0.6, 0.6, 0.6]);
+        meshes.push(buffer.mesh("ground", &shape, &[material]));
     }
     // The order matters: a reader that plays only one takes the first, and some cannot read cubics.
     let mut animations = vec![animation("frames", shown, &mut buffer)];
@@ -271,23 +289,13 @@ fn parts(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> (Value,
     }
     let roots: Vec<usize> = (0..count).chain(carried..nodes.len()).collect();
     let (per, seconds) = export.frames.rate.fraction();
-    let material = |name: &str, colour: [f64; 4]| {
-        json!({
-            "name": name, "doubleSided": true,
-            "pbrMetallicRoughness": { "baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 0.7 },
-        })
-    };
-    let mut materials = vec![material("ball", [0.85, 0.33, 0.1, 1.0]), material("ground", [0.6, 0.6, 0.6, 1.0])];
-    if shown.iter().any(|ball| ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty())) {
-        materials.push(material("stripe", [0.95, 0.8, 0.6, 1.0]));
-    }
     let document = json!({
         "asset": {
             "version": "2.0", "generator": concat!("saltus ", env!("CARGO_PKG_VERSION")),
             "extras": { "title": motion.title, "fps": [per, seconds], "startFrame": export.frames.first, "loops": motion.loops },
         },
         "scene": 0, "scenes": [{ "name": motion.title, "nodes": roots }], "nodes": nodes, "meshes": meshes,
-        "materials": materials,
+        "materials": buffer.materials,
         "animations": animations, "accessors": buffer.accessors, "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::flat::{Moves, channels};
 use super::view::View;
-use super::{Ball, Export, ExportError};
+use super::{Ball, Export, ExportError, colour};
 use crate::ease::Ease;
 
 pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, ExportError> {
@@ -24,7 +24,7 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
         "ty": "tr", "p": still(json!([0, 0])), "a": still(json!([0, 0])), "s": still(json!([100, 100])), "r": still(json!(0)), "o": still(json!(100)),
     });
     let mut layers = Vec::new();
-    for ball in balls {
+    for (number, ball) in balls.iter().enumerate() {
         let channels = channels(ball, &view);
         let from = layers.len() + 1;
         let turns = ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty());
@@ -51,7 +51,7 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
                 let r = ball.track.radius * view.scale;
                 let mut parts = vec![
                     json!({ "ty": "el", "p": still(json!([0, 0])), "s": still(json!([2.0 * r, 2.0 * r])) }),
-                    json!({ "ty": "fl", "c": paint([0.85, 0.33, 0.1]), "o": still(json!(100)), "r": 1 }),
+                    json!({ "ty": "fl", "c": paint(colour(number)), "o": still(json!(100)), "r": 1 }),
                     at_origin.clone(),
                 ];
                 let mut shapes = vec![json!({ "ty": "gr", "nm": "ball", "it": parts })];

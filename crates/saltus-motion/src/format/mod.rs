@@ -27,9 +27,6 @@ use crate::shown::Shown;
 use crate::space::{Space, Unit};
 use crate::turn::Turn;
 
-/// More frames than this are refused: an hour and more at 240 frames per second.
-const MOST_FRAMES: f64 = 1e6;
-
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -198,9 +195,28 @@ pub struct File {
     pub shown: Option<Shown>,
 }
 
+/// The colours of balls, one after the other, and then again; vermilion, blue, green, purple and
+/// ochre stay apart for every common kind of colour blindness.
+const COLOURS: [[f64; 3]; 5] =
+    [[0.85, 0.33, 0.1], [0.04, 0.38, 0.71], [0.0, 0.49, 0.36], [0.63, 0.29, 0.6], [0.72, 0.53, 0.04]];
+
+/// The colour of a ball by its number, its parts from 0 to 1.
+const fn colour(ball: usize) -> [f64; 3] {
+    COLOURS[ball % COLOURS.len()]
+}
+
+/// The same as pictures write it.
+fn ink(ball: usize) -> String {
+    let [r, g, b] = colour(ball).map(|part| (255.0 * part).round());
+    format!("rgb({r},{g},{b})")
+}
+
 /// How far keys may be from a motion, in m, unless another distance is asked for: a dot of a
 /// picture that shows 40 cm by 4000 dots.
 const TOLERANCE: f64 = 1e-4;
+
+/// How near keys may have to be to a motion, as a part of its size: a thousand roundings of it.
+const FINEST: f64 = 1e-12;
 
 /// A motion and how it is to be shown.
 #[derive(Clone, Copy, Debug)]
@@ -305,8 +321,8 @@ impl<'a> Export<'a> {
     /// The motion as a file.
     ///
     /// # Errors
-    /// [`ExportError`] if the motion has more than a million frames, or the format cannot hold its
-    /// frame rate, the unit or the axis.
+    /// [`ExportError`] if the motion has more than a million frames, the tolerance is finer than
+    /// its places, or the format cannot hold its frame rate, the unit or the axis.
     ///
     /// ```
     /// use saltus_motion::{Export, Format, Frames, Motion, Piece, Shape, Space, Stretch, Track, Unit};
@@ -335,16 +351,21 @@ impl<'a> Export<'a> {
     /// The file, its lengths those of the motion.
     fn written(&self, format: Format) -> Result<File, ExportError> {
         let (end, frame) = (self.motion.end(), self.frames.rate.frame());
-        if end / frame > MOST_FRAMES {
-            let says = format!("{:.0} frames are too many: end the motion earlier", end / frame);
-            return Err(ExportError(says));
-        }
+        self.frames.holds(end).map_err(|error| ExportError(error.to_string()))?;
         if end < APART * frame {
             return Err(ExportError(format!(
                 "the motion lasts {end:.1e} s, less than a hundredth of a frame, and there is nothing to show: let it run longer"
             )));
         }
         self.shape.check().map_err(ExportError)?;
+        let [across, up] = self.motion.reach();
+        let finest = FINEST * [across, up].as_flattened().iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        if self.tolerance.is_nan() || self.tolerance < finest {
+            return Err(ExportError(format!(
+                "keys cannot be within {:e} of the motion, whose places are no more exact: give a tolerance of {finest:.0e} or more",
+                self.tolerance
+            )));
+        }
         let balls = self.balls(format, format.sampled());
         // glTF has two animations, and what is said of the file holds for both.
         let second = if matches!(format, Format::Glb | Format::Gltf) { self.balls(format, false) } else { Vec::new() };

@@ -22,7 +22,12 @@ pub(super) fn page(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
         let _ = writeln!(body, "<polyline class=\"ground\" points=\"{}\"/>", points.join(" "));
     }
     let mut data = Vec::new();
-    for ball in balls {
+    for (n, ball) in balls.iter().enumerate() {
+        // The page has as many inks, light and dark, as there are colours.
+        let ink = match n % super::COLOURS.len() {
+            0 => "var(--ball)".to_owned(),
+            n => format!("var(--ball{})", n + 1),
+        };
         if ball.path.between == Between::Cubic {
             let way = cubics(&ball.path, |[x, _, up]| format!("{} {}", view.x(x), view.y(up + ball.track.radius)));
             let _ = writeln!(body, "<path class=\"path\" d=\"{way}\"/>");
@@ -31,7 +36,12 @@ pub(super) fn page(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
         let r = view.radius(ball.track.radius);
         // Each number moves a group of its own, from the outermost inwards, as the script finds
         // them.
-        let _ = write!(body, "{}<circle class=\"ball\" r=\"{r}\"/>", "<g class=\"moves\">".repeat(channels.len()));
+        let _ = write!(
+            body,
+            "{}<circle class=\"ball\" r=\"{r}\" style=\"fill:{ink}\" data-radius=\"{}\"/>",
+            "<g class=\"moves\">".repeat(channels.len()),
+            ball.track.radius * view.scale
+        );
         if ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()) {
             let _ = write!(body, "<path class=\"mark\" stroke-width=\"{}\" d=\"M0 0V{}\"/>", 0.3 * r, -0.8 * r);
         }
@@ -57,7 +67,7 @@ pub(super) fn page(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
             Some(json!([stretch.start(), contact.speed]))
         });
         data.push(json!({
-            "name": ball.track.name, "moves": moving.collect::<Vec<Value>>(), "keys": keys,
+            "name": ball.track.name, "ink": ink, "moves": moving.collect::<Vec<Value>>(), "keys": keys,
             "contacts": contacts.collect::<Vec<Value>>(),
         }));
     }

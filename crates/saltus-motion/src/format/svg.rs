@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::flat::{Channel, Moves, channels, cubics};
 use super::view::View;
-use super::{Ball, Export};
+use super::{Ball, Export, ink};
 use crate::curve::Between;
 
 /// For how long the last picture stands before it starts again, in s.
@@ -56,7 +56,9 @@ fn marked(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
         }
         let _ = write!(
             body,
-            "<circle class=\"ball\" r=\"{r}\" data-radius=\"{}\"><title>{}</title></circle>",
+            "<circle class=\"ball\" r=\"{r}\"{} data-radius=\"{}\"><title>{}</title></circle>",
+            // The style has the first one's.
+            if n == 0 { String::new() } else { format!(" style=\"fill:{}\"", ink(n)) },
             ball.track.radius * view.scale,
             escaped(&ball.track.name)
         );

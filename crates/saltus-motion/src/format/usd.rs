@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::{Ball, Export, Node};
+use super::{Ball, Export, Node, colour};
 use crate::curve::{Between, Curve};
 use crate::motion::Point;
 use crate::space::Up;
@@ -135,7 +135,7 @@ fn stage(
         export.space.up.unwrap_or(Up::Y).name().to_uppercase()
     );
     for (n, ball) in balls.iter().enumerate() {
-        let radius = ball.track.radius;
+        let (radius, [red, green, blue]) = (ball.track.radius, colour(n));
         let _ = writeln!(usd, "def Xform \"Ball{}\" (\n    displayName = {}\n)\n{{", n + 1, quoted(&ball.track.name));
         let nodes = ball.nodes();
         for (k, node) in nodes.iter().enumerate() {
@@ -145,7 +145,7 @@ fn stage(
                 _ => {
                     let _ = write!(
                         usd,
-                        "    def Sphere \"Shape\"\n    {{\n    double radius = {radius}\n    float3[] extent = [({0}, {0}, {0}), ({radius}, {radius}, {radius})]\n    color3f[] primvars:displayColor = [(0.85, 0.33, 0.1)]\n",
+                        "    def Sphere \"Shape\"\n    {{\n    double radius = {radius}\n    float3[] extent = [({0}, {0}, {0}), ({radius}, {radius}, {radius})]\n    color3f[] primvars:displayColor = [({red}, {green}, {blue})]\n",
                         -radius
                     );
                 }

@@ -164,6 +164,7 @@ impl Staging {
     /// the ball is squashed.
     pub fn stage(&self, record: &Record) -> Result<Stage, Error> {
         let frames = self.frames;
+        frames.holds(record.until()).map_err(Error::new)?;
         let (mut whole, drawn) = motion(record.scene(), record)?;
         if self.mirror {
             whole = whole.mirrored();
