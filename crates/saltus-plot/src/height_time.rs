@@ -15,9 +15,10 @@ pub(crate) struct Motion {
 
 /// A picture of height against time.
 ///
-/// Time runs to the right, height upwards from the floor at zero. Each motion is a line (solid,
-/// dashed, dotted, dash-dotted, in that order) in which every flight is one smooth curve;
-/// measurements are marks with bars of one standard error; model contacts are ticks under the floor
+/// Time runs to the right, height upwards from the floor at zero, unless it is elsewhere. Each
+/// motion is a line (solid, dashed, dotted, dash-dotted, in that order) in which every flight is
+/// one smooth curve; measurements are marks with bars of one standard error; model contacts are
+/// ticks under the floor
 /// line; residuals stand in a panel of their own below. The same input gives the same bytes.
 ///
 /// # Example
@@ -54,6 +55,7 @@ pub struct HeightTime {
     pub(crate) motions: Vec<Motion>,
     pub(crate) measured: Vec<Measured>,
     pub(crate) contacts: Vec<f64>,
+    pub(crate) grounds: Vec<Vec<Arc>>,
     pub(crate) residuals: Vec<Residual>,
     unit: Option<HeightUnit>,
     size: Option<(f64, f64)>,
@@ -71,6 +73,7 @@ impl HeightTime {
             motions: Vec::new(),
             measured: Vec::new(),
             contacts: Vec::new(),
+            grounds: Vec::new(),
             residuals: Vec::new(),
             unit: None,
             size: None,
@@ -105,6 +108,26 @@ impl HeightTime {
     pub fn contacts(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.contacts.extend(times);
         self
+    }
+
+    /// Adds where the floor is, in place of the one at height zero: one that moves, or what is
+    /// below a ball that travels. Contacts are marked on the floor that is nearest to a motion.
+    #[must_use]
+    pub fn ground(mut self, arcs: impl IntoIterator<Item = Arc>) -> Self {
+        self.grounds.push(arcs.into_iter().collect());
+        self
+    }
+
+    /// How high the floor is at `t` in s under the motion that is nearest to it.
+    pub(crate) fn floor(&self, t: f64) -> f64 {
+        let at = |arcs: &[Arc]| {
+            let arc = arcs.iter().find(|arc| arc.start() <= t && t <= arc.end())?;
+            Some(arc.height(t))
+        };
+        let heights: Vec<f64> = self.motions.iter().filter_map(|motion| at(&motion.arcs)).collect();
+        let far = |floor: f64| heights.iter().map(|height| (height - floor).abs()).fold(f64::INFINITY, f64::min);
+        let floors = self.grounds.iter().filter_map(|ground| at(ground));
+        floors.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(0.0)
     }
 
     /// Adds a line under the title, such as the COR and its error. Long lines wrap.
@@ -156,10 +179,14 @@ impl HeightTime {
     pub(crate) fn bounds(&self) -> Result<Bounds, PlotError> {
         let mut time = Reach::default();
         let mut height = Reach::default();
-        height.include(0.0);
-        for (m, motion) in self.motions.iter().enumerate() {
-            for (a, arc) in motion.arcs.iter().enumerate() {
-                arc.check(|| format!("arc {} of motion {}", a + 1, m + 1))?;
+        if self.grounds.is_empty() {
+            height.include(0.0);
+        }
+        let motions = self.motions.iter().map(|motion| ("motion", &motion.arcs));
+        let grounds = self.grounds.iter().map(|ground| ("ground", ground));
+        for (m, (what, arcs)) in motions.enumerate().chain(grounds.enumerate()) {
+            for (a, arc) in arcs.iter().enumerate() {
+                arc.check(|| format!("arc {} of {what} {}", a + 1, m + 1))?;
                 let (low, high) = arc.extent();
                 time.include(arc.start());
                 time.include(arc.end());

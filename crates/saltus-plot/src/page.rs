@@ -163,7 +163,7 @@ fn panels(
     w: f64,
 ) -> Result<(), PlotError> {
     let b = ty.base;
-    let (height, sole) = height_axis(bounds, parts.main, ty);
+    let (height, sole) = height_axis(bounds, parts.main, ty, picture.grounds.is_empty());
     let below = parts.residuals.map(|(_, _, length)| residuals::axis(&picture.residuals, length, ty));
     let widest = |axis: &Axis| axis.ticks().iter().map(|&t| width(&axis.text(t), b, false)).fold(0.0, f64::max);
     let numbers = widest(&height).max(below.as_ref().map_or(0.0, widest));
@@ -215,12 +215,13 @@ fn time_axis(bounds: &Bounds, length: f64, ty: Type) -> Axis {
     Axis::new(ends.0, ends.1, (low, ends.1), 12).thinned(length, 1.6 * ty.base, |text| width(text, ty.base, false))
 }
 
-/// The height axis, and how far the panel reaches below the floor, in px (zero when heights do).
-fn height_axis(bounds: &Bounds, length: f64, ty: Type) -> (Axis, f64) {
+/// The height axis, over a floor that is `flat` at zero or not, and how far the panel reaches below
+/// the floor, in px (zero when heights do).
+fn height_axis(bounds: &Bounds, length: f64, ty: Type, flat: bool) -> (Axis, f64) {
     let size = bounds.height_unit.size;
     let (low, high) = (bounds.height.0 / size, bounds.height.1 / size);
     // Rounding leaves landings a hair below the floor.
-    let floor_is_lowest = low >= -2e-3 * (high - low);
+    let floor_is_lowest = flat && low >= -2e-3 * (high - low);
     let sole = if floor_is_lowest { ty.sole() } else { 0.6 * ty.base };
     let head = 0.6 * ty.base;
     let scale = (high - low) / (length - sole - head).max(1.0);
@@ -264,8 +265,15 @@ fn heights(
             .map_err(failed)?;
     }
     let (x, y) = (x.per_unit(bounds.time_unit.size), y.per_unit(bounds.height_unit.size));
-    let floor = PathElement::new(vec![(t0, 0.0), (t1, 0.0)], Ink::Floor.stroke(1.6 * ty.hairline()));
-    chart.draw_series([floor]).map_err(failed)?;
+    if picture.grounds.is_empty() {
+        let floor = PathElement::new(vec![(t0, 0.0), (t1, 0.0)], Ink::Floor.stroke(1.6 * ty.hairline()));
+        chart.draw_series([floor]).map_err(failed)?;
+    }
+    let grounds = picture.grounds.iter().map(|arcs| {
+        let (data, width) = (curve::path(arcs, x, y), 1.6 * ty.hairline());
+        Trace { data, ink: Ink::Floor, width, dash: Dash::Solid, alpha: 1.0 }
+    });
+    chart.draw_series(grounds).map_err(failed)?;
 
     for (i, motion) in picture.motions.iter().enumerate().rev() {
         let data = curve::path(&motion.arcs, x, y);
@@ -279,7 +287,10 @@ fn heights(
     let ink = Ink::Series(0);
     let (length, width) = (0.8 * ty.sole(), 1.5 * ty.hairline());
     chart
-        .draw_series(contacts.iter().map(|t| Tick { at: (t / frame.second, 0.0), length, width, ink }))
+        .draw_series(contacts.iter().map(|&t| {
+            let at = (t / frame.second, picture.floor(t) / bounds.height_unit.size);
+            Tick { at, length, width, ink }
+        }))
         .map_err(failed)?;
 
     measurements(picture, bounds, &mut chart, ty, |p| (x.at(p.time), y.at(p.height)))

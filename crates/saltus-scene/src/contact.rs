@@ -8,7 +8,7 @@ use super::error::Fault;
 use super::kinds::kinds;
 use super::value::{At, Loose, Measure, Number, Pressure, Speed, Time};
 use saltus_bounce::ParameterError;
-use saltus_bounce::contact::{Elastic, Hertz, HuntCrossley, KelvinVoigt};
+use saltus_bounce::contact::{ContactLaw, Elastic, Hertz, HuntCrossley, KelvinVoigt};
 use saltus_bounce::restitution::Cor;
 use saltus_bounce::units::Quantity;
 
@@ -33,6 +33,30 @@ pub enum Contact {
     Hertz(Hertz),
     /// A Hertz contact with damping.
     HuntCrossley(HuntCrossley),
+}
+
+impl Contact {
+    /// The energy in J that a ball has in the spring of its contact when it is pressed in by
+    /// `deformation` in m: what it took without damping.
+    ///
+    /// ```
+    /// use saltus_scene::Scene;
+    /// let toml = b"contact = { law = 'kelvin-voigt', stiffness = 1e4, damping = 1 }\n[ball]\nmass = 1\nheight = 1\n[run]\nuntil = 1\n";
+    /// let scene = Scene::parse("soft.toml", toml)?;
+    /// assert_eq!(scene.contact.stored(0.01), 0.5);
+    /// # Ok::<(), saltus_scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn stored(&self, deformation: f64) -> f64 {
+        // The integral of a force that grows with a power of the deformation.
+        let (force, power) = match self {
+            Self::Rigid => (0.0, 1.0),
+            Self::KelvinVoigt(law) => (law.force(deformation, 0.0), 1.0),
+            Self::Hertz(law) => (law.force(deformation, 0.0), 1.5),
+            Self::HuntCrossley(law) => (law.force(deformation, 0.0), 1.5),
+        };
+        force * deformation / (power + 1.0)
+    }
 }
 
 kinds! {

@@ -159,6 +159,31 @@ impl Floor {
             .unwrap_or(up)
     }
 
+    /// How high the floor is at x in m and t in s; none of a wall.
+    ///
+    /// ```
+    /// use saltus_scene::Scene;
+    /// let toml = b"restitution = 0.5\nball = { position = [0, 1] }\nfloor = { kind = 'stairs', tread = 0.3, rise = 0.2, count = 4 }\n";
+    /// let scene = Scene::parse("stairs.toml", toml)?;
+    /// assert_eq!(scene.floors[0].level(0.5, 0.0), Some(-0.4));
+    /// # Ok::<(), saltus_scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn level(&self, x: f64, t: f64) -> Option<f64> {
+        let still = match self.shape {
+            Shape::Level { height } | Shape::Box { height, .. } => height,
+            Shape::Incline { angle, height } => height + x * angle.tan(),
+            Shape::Stairs { top, from, tread, rise, count } => top - rise * down(x, from, tread, count),
+            Shape::Wall { .. } => return None,
+            Shape::Parabola { .. } | Shape::Sine { .. } => self.shape.curve(x)?[0],
+            Shape::Polyline { ref points } => {
+                let ([x0, z], slope) = piece(points, x);
+                z + slope * (x - x0)
+            }
+        };
+        Some(still + self.motion.as_ref().map_or(0.0, |motion| motion.offset(t)))
+    }
+
     /// The outline, in x and up, of a floor or wall that has any, within
     /// `[[left, right], [low, high]]`; none of one across y.
     #[must_use]

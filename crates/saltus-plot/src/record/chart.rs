@@ -2,8 +2,8 @@
 
 use crate::{Chart, Measure, PlotError, Stroke};
 use saltus_bounce::effects::Buoyancy;
-use saltus_scene::Shape;
 use saltus_scene::plan::{Moment, Record, Segment};
+use saltus_scene::{Contact, Shape};
 
 use super::title;
 
@@ -68,15 +68,23 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     product
 }
 
-/// Potential and kinetic energy of all balls, and their sum; per mass where there is none.
+/// A polynomial of time at `s`.
+fn value(coefficients: &[f64], s: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
+}
+
+/// Potential energy, kinetic, and that in the spring of a contact that takes time, of all balls,
+/// and their sum; per mass where there is none.
 pub(super) fn energy(record: &Record) -> Chart {
+    /// In how many straight pieces a step of a contact is drawn.
+    const PIECES: u32 = 8;
     let scene = record.scene();
     let known = scene.balls.iter().all(|ball| ball.mass.is_some());
     let measure = if known { Measure::Energy } else { Measure::SpecificEnergy };
-    let mut kinds: [Vec<Stroke>; 3] = [Vec::new(), Vec::new(), Vec::new()];
+    let mut kinds: [Vec<Stroke>; 4] = Default::default();
     let all: Vec<Vec<Segment>> = (0..record.balls()).map(|ball| record.segments(ball)).collect();
     // All balls of a run have the same pieces of time.
-    for n in 0..all[0].len() {
+    for (n, piece) in all[0].iter().enumerate() {
         let (mut potential, mut kinetic) = (Vec::new(), Vec::new());
         for (ball, segments) in scene.balls.iter().zip(&all) {
             let Some(segment) = segments.get(n) else { continue };
@@ -94,19 +102,31 @@ pub(super) fn energy(record: &Record) -> Chart {
             }
         }
         let total = sum(&potential, &kinetic);
-        for (strokes, y) in kinds.iter_mut().zip([total, potential, kinetic]) {
-            strokes.push(over_time(&all[0][n], y));
+        if scene.contact != Contact::Rigid {
+            // One ball on a level floor, whose spring takes up what is missing.
+            let level = scene.floors.first().and_then(|floor| floor.level(0.0, 0.0)).unwrap_or(0.0);
+            let height = part(piece, Moment::height);
+            let spring = |s: f64| if piece.flight { 0.0 } else { scene.contact.stored(level - value(&height, s)) };
+            let times = (0..=PIECES).map(|k| piece.span * f64::from(k) / f64::from(PIECES));
+            let points: Vec<_> = times.map(|s| (piece.start + s, value(&total, s), spring(s))).collect();
+            kinds[0].extend(Stroke::polygon(&points.iter().map(|&(t, e, spring)| [t, e + spring]).collect::<Vec<_>>()));
+            kinds[3].extend(Stroke::polygon(&points.iter().map(|&(t, _, spring)| [t, spring]).collect::<Vec<_>>()));
+        } else {
+            kinds[0].push(over_time(piece, total));
         }
+        kinds[1].push(over_time(piece, potential));
+        kinds[2].push(over_time(piece, kinetic));
     }
     let name = if known { "Energy" } else { "Energy per mass" };
     let chart = Chart::new(&title(scene), ("Time", Measure::Time), (name, measure));
-    let [total, potential, kinetic] = kinds;
+    let [total, potential, kinetic, spring] = kinds;
     let ends = |strokes: &[Stroke]| -> Vec<[[f64; 2]; 2]> {
         let point = |(x, y): (f64, f64)| [x, y];
         strokes.windows(2).map(|pair| [point(pair[0].end()), point(pair[1].start())]).collect()
     };
     let jumps = ends(&total);
-    chart.line("total", total).line("potential", potential).line("kinetic", kinetic).jumps(jumps)
+    let chart = chart.line("total", total).line("potential", potential).line("kinetic", kinetic).jumps(jumps);
+    if spring.is_empty() { chart } else { chart.line("in the contact", spring) }
 }
 
 /// Velocity over height; an arrow on each of the first arcs.
@@ -189,4 +209,38 @@ pub(super) fn hysteresis(record: &Record) -> Result<Chart, PlotError> {
         ));
     }
     Ok(chart)
+}
+
+#[cfg(test)]
+mod tests {
+    use saltus_scene::Scene;
+
+    use super::*;
+
+    /// Of a ball in a contact that takes time the total never rises, and falls no further than what
+    /// the damper took: an elastic one keeps it to a hundred thousandth.
+    #[test]
+    fn the_spring_has_what_the_ball_gives_it() {
+        for (law, kept) in [
+            ("law = 'kelvin-voigt', stiffness = 1e4, damping = 0", 1.0 - 1e-5),
+            ("law = 'kelvin-voigt', stiffness = 1e4, damping = 2", 0.5),
+            ("law = 'kelvin-voigt', cor = 0.8, time = 0.01, tension = true", 0.6),
+            ("law = 'hertz', stiffness = 1e6", 1.0 - 1e-5),
+            ("law = 'hunt-crossley', stiffness = 1e6, cor = 0.8, speed = 4", 0.5),
+        ] {
+            let toml = format!("contact = {{ {law} }}\nball = {{ mass = 0.1, height = 1 }}\nrun = {{ until = 0.7 }}\n");
+            let record = Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+            assert_eq!(record.impacts().len(), 1);
+            let lines = energy(&record).lines;
+            let [(_, total), .., (name, spring)] = &lines[..] else { panic!("{} lines", lines.len()) };
+            let most = total[0].start().1;
+            let ends = || total.iter().flat_map(|stroke| [stroke.start().1, stroke.end().1]);
+            let rise = ends().zip(ends().skip(1)).map(|(a, b)| b - a).fold(0.0, f64::max);
+            assert!(rise < 1e-6 * most, "{law}: {rise} of {most}");
+            let last = total.last().unwrap().end().1;
+            assert!(last > kept * most && last <= most * (1.0 + 1e-9), "{law}: {last} of {most}");
+            let top = spring.iter().map(|stroke| stroke.end().1).fold(0.0, f64::max);
+            assert!(name == "in the contact" && top > 0.7 * most, "{law}: {top} of {most}");
+        }
+    }
 }

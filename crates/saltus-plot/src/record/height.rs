@@ -1,72 +1,130 @@
 //! Height against time.
 
 use crate::{Arc, Background, HeightTime};
-use saltus_scene::plan::{Record, With};
-use saltus_scene::{Floor, Motion, Shape};
+use saltus_scene::Motion;
+use saltus_scene::plan::{Moment, Record, With};
+
+/// In how many straight pieces ground is drawn at least: one for two dots of a page.
+const PIECES: f64 = 400.0;
+/// And at most: more than can be told apart.
+const MOST: f64 = 4000.0;
+/// In how many pieces a vibration is drawn, each within half a per cent of its amplitude.
+const OF_PERIOD: f64 = 32.0;
 
 pub(super) fn picture(record: &Record) -> HeightTime {
     let scene = record.scene();
     let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(record));
-    let floor = scene.floors.iter().find_map(|floor| moving(floor, record.until()));
     for ball in 0..record.balls() {
-        let label = match (record.balls(), &floor) {
-            (1, None) => String::new(),
-            (1, Some(_)) => "ball".to_owned(),
-            _ => scene.ball_name(ball),
-        };
+        let label = if record.balls() == 1 { String::new() } else { scene.ball_name(ball) };
         let arcs = record.segments(ball).into_iter().map(|segment| {
-            let heights = segment.coefficients.iter().map(saltus_scene::plan::Moment::height).collect();
+            let heights = segment.coefficients.iter().map(Moment::height).collect();
             Arc::new(segment.start, segment.span, heights)
         });
         picture = picture.motion(&label, arcs);
     }
-    if let Some(arcs) = floor {
-        picture = picture.motion("floor", arcs);
+    for ground in grounds(record) {
+        picture = picture.ground(ground);
     }
     let impacts = record.impacts().into_iter();
     let contacts = impacts.filter(|impact| matches!(impact.with, With::Floor(_))).map(|impact| impact.t);
     picture.contacts(contacts).background(Background::Adaptive)
 }
 
-/// How a floor that moves goes, in pieces of an eighth of its period or from point to point of its
-/// schedule.
-fn moving(floor: &Floor, until: f64) -> Option<Vec<Arc>> {
-    /// More pieces than can be told apart.
-    const MOST: f64 = 4000.0;
-    let (Shape::Level { height }, Some(motion)) = (&floor.shape, &floor.motion) else { return None };
-    match motion {
-        Motion::Sine { amplitude, frequency, phase } => {
-            let span = (1.0 / (8.0 * frequency)).max(until / MOST);
-            let w = std::f64::consts::TAU * frequency;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
-            let count = (until / span).ceil() as u32;
-            let arc = |k: u32| {
-                let start = f64::from(k) * span;
-                let at = |t: f64| {
-                    let (sin, cos) = (w * t + phase).sin_cos();
-                    (height + amplitude * sin, amplitude * w * cos)
-                };
-                let ((a, u), (b, v)) = (at(start), at(start + span));
-                // Cubic with the heights and velocities of both ends.
-                let (d, s) = ((b - a) / span, span);
-                Arc::new(
-                    start,
-                    span.min(until - start),
-                    vec![a, u, (3.0 * d - 2.0 * u - v) / s, (u + v - 2.0 * d) / (s * s)],
-                )
-            };
-            Some((0..count).map(arc).collect())
+/// The ground below each ball over time, each once; none where all of it lies at height zero, or
+/// where there is none.
+pub(super) fn grounds(record: &Record) -> Vec<Vec<Arc>> {
+    let (scene, until) = (record.scene(), record.until());
+    let fast = scene.floors.iter().map(|floor| match floor.motion {
+        Some(Motion::Sine { frequency, .. }) => OF_PERIOD * frequency * until,
+        _ => 0.0,
+    });
+    let count = fast.fold(PIECES, f64::max).min(MOST).ceil();
+    let mut grounds: Vec<Vec<Arc>> = Vec::new();
+    for ball in 0..record.balls() {
+        let level = |t: f64| {
+            let x = record.at(ball, t)?.position.x;
+            scene.floors.iter().filter_map(|floor| floor.level(x, t)).reduce(f64::max)
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
+        let times = (0..=count as u32).map(|k| until * (f64::from(k) / count));
+        let points: Vec<[f64; 2]> = times.filter_map(|t| Some([t, level(t)?])).collect();
+        let ground = joined(&points);
+        if ground.iter().any(|arc| arc.extent() != (0.0, 0.0)) && !grounds.contains(&ground) {
+            grounds.push(ground);
         }
-        Motion::Schedule(points) => {
-            let mut knots = vec![[0.0, motion.offset(0.0)]];
-            knots.extend(points.iter().copied().filter(|point| point[0] > 0.0 && point[0] < until));
-            knots.push([until, motion.offset(until)]);
-            let arc = |pair: &[[f64; 2]]| {
-                let ([s, low], [e, high]) = (pair[0], pair[1]);
-                Arc::new(s, e - s, vec![height + low, if e > s { (high - low) / (e - s) } else { 0.0 }])
-            };
-            Some(knots.windows(2).map(arc).collect())
+    }
+    grounds
+}
+
+/// Straight arcs through points, one for all that lie on one line.
+fn joined(points: &[[f64; 2]]) -> Vec<Arc> {
+    /// How far a point may be from a line, as a part of what heights differ by.
+    const NEAR: f64 = 1e-9;
+    let heights = points.iter().map(|point| point[1]);
+    let near = NEAR * (heights.clone().fold(f64::NEG_INFINITY, f64::max) - heights.fold(f64::INFINITY, f64::min));
+    let mut corners: Vec<[f64; 2]> = Vec::new();
+    for &[t, h] in points {
+        while let [.., [s, a], [m, b]] = corners[..]
+            && (a + (h - a) * ((m - s) / (t - s)) - b).abs() <= near
+        {
+            corners.pop();
         }
-        _ => None,
+        corners.push([t, h]);
+    }
+    let arc = |pair: &[[f64; 2]]| {
+        let ([s, a], [t, b]) = (pair[0], pair[1]);
+        Arc::new(s, t - s, vec![a, (b - a) / (t - s)])
+    };
+    corners.windows(2).map(arc).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use saltus_scene::Scene;
+
+    use super::*;
+
+    /// The scene's ground, and at how many impacts a ball was met on it.
+    fn met(toml: &str) -> (Vec<Vec<Arc>>, usize) {
+        let record = Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+        let grounds = grounds(&record);
+        let mut count = 0;
+        for impact in record.impacts().iter().filter(|impact| matches!(impact.with, With::Floor(_))) {
+            let low = record.at(impact.ball, impact.t).unwrap().height();
+            let at = |ground: &Vec<Arc>| {
+                ground.iter().find(|arc| arc.start() <= impact.t && impact.t <= arc.end()).unwrap().height(impact.t)
+            };
+            let near = grounds.iter().map(at).map(|floor| (low - floor).abs()).fold(f64::INFINITY, f64::min);
+            // Straight pieces cut corners and waves a little.
+            assert!(near < 5e-3, "{near} m at {} s of\n{toml}", impact.t);
+            count += 1;
+        }
+        (grounds, count)
+    }
+
+    #[test]
+    fn balls_bounce_on_the_ground_that_is_drawn() {
+        let thrown = "restitution = 0.7\nball = { position = [-0.9, 1], velocity = [0.4, 0] }\nrun = { until = 3 }\n";
+        let fallen = "restitution = 0.5\nball = { height = 0.2 }\nrun = { until = 3 }\n";
+        for (scene, floor, least) in [
+            (thrown, "{ kind = 'stairs', from = -0.8, tread = 0.3, rise = 0.2, count = 5 }", 3),
+            (thrown, "{ kind = 'incline', angle = -0.2 }", 3),
+            (thrown, "{ kind = 'parabola', curvature = 0.5 }", 3),
+            (thrown, "{ kind = 'sine', amplitude = 0.05, wavelength = 0.7 }", 3),
+            (thrown, "{ kind = 'polyline', points = [[-2, 0.5], [0, 0], [2, 0.5]] }", 3),
+            (thrown, "[{ height = -0.3 }, { kind = 'incline', angle = -0.3 }]", 3),
+            (fallen, "{ height = -0.7 }", 3),
+            (fallen, "{ motion = { amplitude = 0.01, frequency = 20 } }", 5),
+            (fallen, "{ motion = { schedule = [[0, 0], [0.5, 0.1]] } }", 3),
+        ] {
+            let (grounds, count) = met(&format!("{scene}floor = {floor}\n"));
+            assert!(grounds.len() == 1 && count >= least, "{floor}: {count} on {}", grounds.len());
+        }
+        // The floor of old pictures, and what many balls share, is drawn once or not at all.
+        assert!(met(fallen).0.is_empty());
+        let two = "ball = [{ mass = 1, radius = 0.01, height = 1 }, { mass = 1, radius = 0.01, height = 2 }]\n";
+        let two = format!("restitution = 0.5\n{two}floor = {{ height = -1 }}\nrun = {{ until = 2 }}\n");
+        let (grounds, _) = met(&two);
+        assert!(grounds.len() == 1 && grounds[0].len() == 1, "{grounds:?}");
     }
 }

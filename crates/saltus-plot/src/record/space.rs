@@ -1,8 +1,8 @@
 //! The path in space, and the ball at equal times.
 
-use crate::{Chart, Disc, Measure, PlotError, Stroke};
+use crate::{Arc, Chart, Disc, Measure, PlotError, Stroke};
 use saltus_scene::plan::{Moment, Record, Segment};
-use saltus_scene::{Floor, Scene, Shape};
+use saltus_scene::{Floor, Shape};
 
 use super::title;
 
@@ -54,7 +54,7 @@ pub(super) fn path(record: &Record) -> Result<Chart, PlotError> {
         }
     }
     let sideways: Vec<usize> = axes.iter().map(|&(_, k)| k).collect();
-    Ok(chart.ground(outline(scene, reach(record, &sideways))))
+    Ok(chart.ground(outline(record, reach(record, &sideways))))
 }
 
 /// The way of a ball's centre in a segment, exact as the segment is: what is across it, and up.
@@ -103,16 +103,29 @@ pub(super) fn ghost(record: &Record) -> Chart {
             chart = chart.discs([Disc { at: [x, m.height() + r], radius: r, full }]);
         }
     }
+    if aside && let grounds @ [_, ..] = &super::height::grounds(record)[..] {
+        let across = |arc: &Arc| Stroke::new(arc.length(), vec![pace * arc.start(), pace], arc.coefficients().to_vec());
+        return chart.ground(grounds.iter().flatten().map(across));
+    }
     let ends = if aside { [-step, step * f64::from(FRAMES + 1)] } else { reach[0] };
-    chart.ground(outline(scene, [ends, reach[1]]))
+    chart.ground(outline(record, [ends, reach[1]]))
 }
 
-/// Floors and walls as far as the balls get, `reach` sideways and up.
-fn outline(scene: &Scene, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
+/// Floors and walls as far as the balls get, `reach` sideways and up; floors that move where they
+/// are first and last.
+fn outline(record: &Record, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
     let [[left, right], [low, high]] = reach;
     let more = 0.04 * (right - left).max(high - low);
     let reach = [[left - more, right + more], [low, high + more]];
-    scene.floors.iter().flat_map(|floor| shape(floor, reach)).collect()
+    let drawn = |floor: &Floor| match (&floor.shape, &floor.motion) {
+        (Shape::Level { height }, Some(motion)) => {
+            let at = |t: f64| height + motion.offset(t);
+            let line = |level: f64| Stroke::between([reach[0][0], level], [reach[0][1], level]);
+            vec![line(at(0.0)), line(at(record.until()))]
+        }
+        _ => shape(floor, reach),
+    };
+    record.scene().floors.iter().flat_map(drawn).collect()
 }
 
 fn shape(floor: &Floor, reach: [[f64; 2]; 2]) -> Vec<Stroke> {
