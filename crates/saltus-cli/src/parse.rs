@@ -1,5 +1,9 @@
 //! How what stands behind an option is read.
 
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use saltus_bounce::units::Quantity;
@@ -60,9 +64,33 @@ pub(crate) fn target(text: &str) -> Result<Target, String> {
     Ok(target)
 }
 
-pub(crate) fn rate(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err(format!("'{text}' is not a frame rate: give a number above zero, such as 30")),
+/// A number without a unit in a range.
+pub(crate) fn number(
+    range: RangeInclusive<f64>,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let (low, high) = (range.start(), range.end());
+        let value = text.parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("'{text}' is not a number from {low} to {high}"))
     }
 }
+
+/// A whole number in a range.
+pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + fmt::Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let (low, high) = (range.start(), range.end());
+        let value = text.parse().ok().filter(|value| range.contains(value));
+        value.ok_or_else(|| format!("'{text}' is not a whole number from {low} to {high}"))
+    }
+}
+
+/// After how many jumps a run may be told to end: any number.
+pub(crate) const JUMPS: RangeInclusive<u32> = 1..=u32::MAX;
+/// How many samples or frames a second may have: from one in a quarter of an hour to one in a
+/// microsecond.
+pub(crate) const RATES: RangeInclusive<f64> = 0.001..=1e6;
+/// The number of a first frame: six digits, which every format holds.
+pub(crate) const FIRST_FRAME: RangeInclusive<i32> = -1_000_000..=1_000_000;

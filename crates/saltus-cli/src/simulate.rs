@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args as ClapArgs, ValueEnum};
-use saltus_bounce::Cor;
 use saltus_bounce::effects::Gravity;
 use saltus_bounce::units::Quantity;
 use saltus_plot::record;
@@ -14,7 +13,7 @@ use saltus_scene::{Kind, Sampling, Scene};
 use crate::accuracy;
 use crate::error::Error;
 use crate::output::{check_picture, extension, say, write};
-use crate::parse::{one_of, positive, quantity, rate, target};
+use crate::parse::{JUMPS, RATES, number, one_of, positive, quantity, target, whole};
 use crate::scenes::{ended, ending, note, planned, scene};
 
 /// Simulate a scene, or a ball that bounces on a level floor.
@@ -31,8 +30,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "LENGTH", value_parser = quantity(Quantity::Length), allow_hyphen_values = true)]
     pub(crate) drop: Option<f64>,
     /// The coefficient of restitution, from 0 to 1.
-    #[arg(long, value_name = "NUMBER", value_parser = cor, allow_hyphen_values = true)]
-    pub(crate) cor: Option<Cor>,
+    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1.0), allow_hyphen_values = true)]
+    pub(crate) cor: Option<f64>,
     /// The upward velocity it starts with, such as `-2m/s`.
     #[arg(long, value_name = "SPEED", value_parser = quantity(Quantity::Speed), default_value = "0m/s", allow_hyphen_values = true)]
     pub(crate) velocity: f64,
@@ -43,13 +42,13 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
     /// After how many jumps to stop; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "COUNT", value_parser = whole(JUMPS))]
     pub(crate) most_jumps: Option<u32>,
     /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
     pub(crate) every: Option<f64>,
     /// Sample the motion at this many frames per second.
-    #[arg(long, value_name = "NUMBER", value_parser = rate)]
+    #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
     pub(crate) fps: Option<f64>,
     /// How to write the motion; without it, after the extension of the output file, or else as
     /// text.
@@ -80,11 +79,6 @@ pub(crate) enum MotionFormat {
     Csv,
     /// The jumps with both sides, for programs.
     Json,
-}
-
-fn cor(text: &str) -> Result<Cor, String> {
-    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    Cor::new(value).map_err(|error| error.to_string())
 }
 
 pub(crate) fn run(args: &Simulate, quiet: bool) -> Result<ExitCode, Error> {
@@ -128,9 +122,7 @@ fn made(args: &Simulate) -> Result<Scene, Error> {
             let end = ending(args.until, args.most_jumps.or(Some(10_000)));
             let toml = format!(
                 "gravity = {:?}\nrestitution = {:?}\nball = {{ height = {height:?}, velocity = {:?} }}\n",
-                args.gravity,
-                cor.value(),
-                args.velocity
+                args.gravity, cor, args.velocity
             );
             Scene::parse_with("options", toml.as_bytes(), end).map_err(Error::new)
         }

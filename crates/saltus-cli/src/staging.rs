@@ -1,5 +1,6 @@
 //! How a motion is shown: what can be asked of it.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use clap::{Args as ClapArgs, ValueEnum};
@@ -10,8 +11,16 @@ use saltus_scene::{Squash, Stage, length};
 
 use crate::error::Error;
 use crate::output::say;
-use crate::parse::positive;
+use crate::parse::{JUMPS, number, positive, whole};
 use crate::scenes::{ended, ending, note, planned, scene};
+
+/// The parts of its height that a ball may lose, and by which it may be longer.
+const SQUASHES: RangeInclusive<f64> = 0.0..=0.9;
+const STRETCHES: RangeInclusive<f64> = 0.0..=2.0;
+/// By how much either may be made more or less: beyond it nothing is seen, or no ball is left.
+const FACTORS: RangeInclusive<f64> = 0.001..=1000.0;
+/// For how many frames a contact may be held.
+const FRAMES: RangeInclusive<u32> = 1..=1000;
 
 /// How a motion is shown.
 #[derive(Clone, Debug, ClapArgs)]
@@ -30,18 +39,18 @@ pub(crate) struct Staging {
     #[arg(long, value_name = "PART", value_parser = squash)]
     pub(crate) squash: Option<Squash>,
     /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
-    #[arg(long, value_name = "PART", value_parser = part(2.0))]
+    #[arg(long, value_name = "PART", value_parser = number(STRETCHES))]
     pub(crate) stretch: Option<f64>,
     /// Squash and stretch so many times as much.
-    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", value_parser = number(FACTORS), default_value_t = 1.0)]
     pub(crate) exaggerate: f64,
     /// Hold each contact for this many frames at least; what comes after is later. Where a contact
     /// is an instant, --squash holds it for 2.
-    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "FRAMES", value_parser = whole(FRAMES))]
     pub(crate) hold: Option<u32>,
     /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole
     /// frames, its end its start.
-    #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = whole(JUMPS))]
     pub(crate) looped: Option<u32>,
     /// Turn left and right around.
     #[arg(long)]
@@ -105,10 +114,10 @@ impl Staging {
             "on-twos" => self.on_twos = switch()?,
             "mirror" => self.mirror = switch()?,
             "squash" => self.squash = Some(squash(value)?),
-            "stretch" => self.stretch = Some(part(2.0)(value)?),
-            "exaggerate" => self.exaggerate = factor(value)?,
-            "hold" => self.hold = Some(count(value)?),
-            "loop" => self.looped = Some(count(value)?),
+            "stretch" => self.stretch = Some(number(STRETCHES)(value)?),
+            "exaggerate" => self.exaggerate = number(FACTORS)(value)?,
+            "hold" => self.hold = Some(whole(FRAMES)(value)?),
+            "loop" => self.looped = Some(whole(JUMPS)(value)?),
             _ => return Err(format!("'{option}' is no way to show a motion")),
         }
         Ok(())
@@ -121,29 +130,9 @@ pub(crate) fn drawn(stage: &Stage) -> Option<String> {
     Some(format!("the scene gives no radius: drawn with {radius}; set `radius` under [ball]"))
 }
 
-/// A number from 0 to `most`.
-fn part(most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| match text.parse::<f64>() {
-        Ok(value) if (0.0..=most).contains(&value) => Ok(value),
-        _ => Err(format!("'{text}' is not a number from 0 to {most}")),
-    }
-}
-
 fn squash(text: &str) -> Result<Squash, String> {
     match text {
         "law" => Ok(Squash::Law),
-        text => part(0.9)(text).map(Squash::Part).map_err(|error| format!("{error}, nor `law`")),
+        text => number(SQUASHES)(text).map(Squash::Part).map_err(|error| format!("{error}, nor `law`")),
     }
-}
-
-fn factor(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err(format!("'{text}' is not a number above zero")),
-    }
-}
-
-fn count(text: &str) -> Result<u32, String> {
-    let count = text.parse().ok().filter(|count| (1..=1000).contains(count));
-    count.ok_or_else(|| format!("'{text}' is no whole number from 1 to 1000"))
 }

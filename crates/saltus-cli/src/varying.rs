@@ -3,6 +3,8 @@
 use clap::Args as ClapArgs;
 use saltus_scene::vary::{Variation, Vary};
 
+use crate::parse::whole;
+
 /// What may stand behind --vary.
 pub(crate) const VARIATIONS: &str = "Variations, for example:
   --vary restitution=0.5:0.9:41        41 numbers from 0.5 to 0.9
@@ -12,9 +14,6 @@ pub(crate) const VARIATIONS: &str = "Variations, for example:
   --vary floor.0.friction=0,0.2,0.4    of the first of several floors
 Several make a grid, in which the first changes slowest; with --random N each of N runs draws from all.";
 
-/// More draws than anyone waits for.
-const MOST_RUNS: u64 = 1_000_000_000_000;
-
 /// What varies, and how.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Varying {
@@ -23,10 +22,10 @@ pub(crate) struct Varying {
     variations: Vec<Variation>,
     /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for
     /// `log`, instead of all; COUNT does not matter then.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
+    #[arg(long, value_name = "COUNT", value_parser = whole(1_u64..=u64::MAX))]
     random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "random")]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = whole(0..=u64::MAX), requires = "random")]
     seed: u64,
 }
 

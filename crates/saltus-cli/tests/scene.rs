@@ -316,7 +316,7 @@ fn the_schema_of_scenes() {
 fn simulating_what_cannot_be() {
     for (arguments, part) in [
         (&["--drop", "1", "--cor", "0.5"][..], "give a unit of length"),
-        (&["--drop", "1m", "--cor", "1.2"], "1.2 is not a coefficient of restitution"),
+        (&["--drop", "1m", "--cor", "1.2"], "'1.2' is not a number from 0 to 1"),
         (&["--drop", "1s", "--cor", "0.5"], "'s' in '1s' is not a unit of length"),
         (&["--drop", "-1m", "--cor", "0.5"], "below the floor"),
         (&["--drop", "1m", "--cor", "0.5", "--gravity", "-9.81m/s^2"], "not a gravity"),
@@ -334,7 +334,10 @@ fn simulating_what_cannot_be() {
 fn an_elastic_ball_never_rests_and_says_when_it_stopped() {
     let output = run(&["simulate", "--drop", "1m", "--cor", "1", "--most-jumps", "50"]);
     assert!(output.status.success());
-    assert!(text(&output.stderr).contains("stopped after 50 jumps"), "{}", text(&output.stderr));
+    let said = text(&output.stderr);
+    assert!(said.contains("stopped after 50 jumps"), "{said}");
+    // Advice for a command that has the option, and for one that has not.
+    assert!(said.contains("`most_jumps` under [run], or --most-jumps where a command has it, allows more"), "{said}");
 }
 
 /// Numbers beyond any that can be right are refused at once, with the range.

@@ -116,7 +116,7 @@ impl std::error::Error for SceneError {}
 /// use saltus_scene::{Sampling, Scene};
 /// let record = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = 1 }\n")?.plan()?.run()?;
 /// let error = record.table(Some(Sampling::Every(1e-9))).unwrap_err();
-/// assert!(error.to_string().ends_with("samples are more than 10000000: sample less often, or end the run earlier"));
+/// assert!(error.to_string().ends_with("the samples are more than 10000000: sample less often, or end the run earlier"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, PartialEq, Eq)]

@@ -4,12 +4,50 @@
 //! A scene is data. It does not say how it is to be run; every number in it has been checked, every
 //! law is made. What the keys mean, with units and defaults, is in `docs/scenes.md`; [`schema`]
 //! gives it to editors.
+//!
+//! A scene is planned, and run: a [`Record`] is all that happened. From there a few lines lead to a
+//! table, to JSON, to a file for animators, and to a picture.
+//!
+//! ```
+//! use saltus_motion::{Format, Frames};
+//! use saltus_scene::{Sampling, Scene, Staging};
+//!
+//! let toml = b"restitution = 0.75
+//! [ball]
+//! name = 'tennis ball'
+//! radius = '33 mm'
+//! position = ['0 m', '1 m']
+//! velocity = ['2 m/s', '0 m/s']
+//! ";
+//! // Or `Scene::read("scene.toml")`.
+//! let scene = Scene::parse("scene.toml", toml)?;
+//! let record = scene.plan()?.run()?;
+//! for impact in record.impacts().iter().take(3) {
+//!     println!("{:.3} s at {:.2} m/s", impact.t, impact.approach);
+//! }
+//!
+//! // Samples every 10 ms, for a spreadsheet; `record.json(..)` for programs.
+//! let csv = record.table(Some(Sampling::Every(0.01)))?.csv();
+//! assert!(csv.starts_with("t,"));
+//!
+//! // Keys for animators, 24 frames a second, within 0.1 mm; `glb.bytes` is the file.
+//! let stage = Staging::new(Frames::new("24".parse()?)).stage(&record)?;
+//! let glb = stage.file(Format::Glb, 1e-4)?;
+//! assert!(glb.bytes.starts_with(b"glTF"));
+//! println!("{}", stage.says(&glb));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A picture is `saltus_plot::record::svg(&record, Kind::Height)`, by the crate `saltus-plot` with
+//! its feature `scene`. Many runs with other values are a [`sweep`]; a scene that does what is
+//! wished for is found by [`solve`]; what accuracy costs is measured by [`accuracy`].
 
 pub mod accuracy;
 mod air;
 mod animation;
 mod ball;
 mod check;
+mod column;
 mod contact;
 mod error;
 mod file;

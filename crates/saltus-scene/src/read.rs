@@ -159,6 +159,9 @@ pub(super) fn made(text: &str, table: Spanned<DeTable<'_>>, run: Run) -> Result<
     file.scene(run)
 }
 
+/// A value of at most so many bytes is shown in a message.
+const SHORT: usize = 40;
+
 /// What stands between backticks, after the first so many.
 fn quoted(message: &str, after: usize) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).skip(after).collect()
@@ -193,10 +196,12 @@ fn translate(text: &str, span: Range<usize>, message: &str) -> Fault {
     }
     for wrong in ["invalid type: ", "invalid value: ", "wanted "] {
         if let Some((found, wanted)) = message.strip_prefix(wrong).and_then(|rest| rest.split_once(", expected ")) {
+            // What stands there, as it was written.
+            let written = text.get(span.clone()).filter(|text| text.len() <= SHORT && !text.contains('\n'));
             let found = match found {
                 "map" => "a table",
                 "sequence" => "a list",
-                other => other,
+                other => written.unwrap_or(other),
             };
             return Fault {
                 message: format!("{found} does not belong here"),
@@ -215,21 +220,48 @@ fn translate(text: &str, span: Range<usize>, message: &str) -> Fault {
     Fault::new(span, message)
 }
 
+/// What the TOML reader says in words of its trade, what we say, and what to do.
+const WORDS: [(&str, &str, Option<&str>); 9] = [
+    ("cannot recurse", TOO_DEEP, Some("take brackets and braces away: a scene has four levels of them")),
+    ("recursion limit", TOO_DEEP, Some("take brackets and braces away: a scene has four levels of them")),
+    (
+        "floating-point number overflow",
+        "this number is larger than any that can be computed with",
+        Some("write a smaller one"),
+    ),
+    ("number too large", "this number is larger than any that can be computed with", Some("write a smaller one")),
+    ("unexpected leading zero", "a number does not begin with a zero here", Some("leave the zero out")),
+    ("unclosed inline table", "these braces are not closed", Some("write `}`, and close the quotes before it")),
+    ("unclosed array", "these brackets are not closed", Some("write `]`, and close the quotes before it")),
+    ("unclosed table", "the name of this table is not closed", Some("write `]` behind it")),
+    (
+        "missing escaped value",
+        "a backslash does not stand for itself in these quotes",
+        Some("write two, or single quotes"),
+    ),
+];
+const TOO_DEEP: &str = "lists and tables are too deep in each other here";
+
 /// What is wrong with a line that is no TOML.
 fn syntax(text: &str, span: Range<usize>, message: &str) -> Fault {
     let (message, help) = if message.starts_with("duplicate key") {
         let help = "keep one; several balls or floors stand each under [[ball]] or [[floor]]";
         ("this key is given twice", Some(help))
     } else {
-        (message, slip(text, &span))
+        let known = WORDS.iter().find(|(theirs, _, _)| message.starts_with(theirs));
+        let (ours, help) = known.map_or((message, None), |&(_, ours, help)| (ours, help));
+        (ours, help.or_else(|| slip(text, &span)))
     };
-    Fault { message: message.to_owned(), help: help.map(str::to_owned), span }
+    // What the reader expects is advice where there is no better.
+    let (message, wanted) = message.split_once(", expected ").unwrap_or((message, "nothing"));
+    let wanted = (wanted != "nothing").then(|| format!("write {wanted}"));
+    Fault { message: message.to_owned(), help: help.map(str::to_owned).or(wanted), span }
 }
 
 /// Rust's names of types in words.
 fn plain(wanted: &str) -> &str {
     match wanted {
-        "u32" => "a whole number, zero or more, without quotes",
+        "u32" => "a whole number from 0 to 4294967295, without quotes",
         "a boolean" => "true or false",
         "a string" => "text in quotes",
         "a tuple of size 2" | "an array of length 2" => "two values, such as [0.7, 0.8]",

@@ -149,11 +149,27 @@ pub(super) fn only<const N: usize>(
     Ok(())
 }
 
+/// The largest number without a unit: a drag coefficient or a curve's shape beyond it leaves no
+/// digits to the numbers beside it.
+const LARGEST: f64 = 1e12;
+
 fn finite<E: Error>(value: f64) -> Result<f64, E> {
     if value.is_finite() {
         Ok(value)
     } else {
         Err(E::custom(format!("{value} is not a finite number: write one that is, such as 0.5")))
+    }
+}
+
+/// A number without a unit.
+fn plain<E: Error>(value: f64) -> Result<f64, E> {
+    let beyond = |limit: &str| {
+        E::custom(format!("{value:e} is beyond the numbers that can be right: a number without a unit is {limit}"))
+    };
+    match finite::<E>(value)?.abs() {
+        size if size > LARGEST => Err(beyond("at most 1e12 either way")),
+        size if size > 0.0 && size < SMALLEST => Err(beyond("zero, or 1e-30 or more either way")),
+        _ => Ok(value),
     }
 }
 
@@ -210,10 +226,10 @@ impl<'de> Deserialize<'de> for Number {
                 f.write_str("a number, without quotes and without a unit")
             }
             fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
-                finite(value).map(Number)
+                plain(value).map(Number)
             }
             fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
-                Ok(Number(rounded(value)))
+                plain(rounded(value)).map(Number)
             }
         }
         deserializer.deserialize_any(Read)
@@ -363,10 +379,10 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Short<T> {
                 f.write_str("a number without quotes, a range such as [0.7, 0.8], or a table")
             }
             fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-                finite(value).map(Short::Number)
+                plain(value).map(Short::Number)
             }
             fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
-                Ok(Short::Number(rounded(value)))
+                plain(rounded(value)).map(Short::Number)
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
                 let mut ends = Vec::new();

@@ -5,8 +5,9 @@
 use std::fs;
 use std::path::Path;
 
-use saltus_motion::{Format, Frames};
-use saltus_scene::{Scene, Staging};
+use saltus_motion::{Format, Frames, Snap};
+use saltus_scene::solve::{Clock, Wish, solve};
+use saltus_scene::{Departure, Scene, Staging};
 
 /// At so many times a reader looks.
 const LOOKS: u32 = 4001;
@@ -40,4 +41,28 @@ fn the_height_error_bounds_what_readers_measure() {
         }
     }
     assert!(cut >= 4, "some scenes end in hops that are left out");
+}
+
+/// A top that was asked for is moved by snapping to frames with gravity kept: the closing line says
+/// by how much at most, and how it is kept.
+#[test]
+fn a_top_that_snapping_moves_is_said() {
+    let clock = Clock { fps: 24.0, first: 0 };
+    let solved = solve(None, &["height"], &[Wish::parse("apex 2 at 60cm", clock).unwrap()]).unwrap();
+    let record = Scene::parse("solved", solved.toml().unwrap().as_bytes()).unwrap().plan().unwrap().run().unwrap();
+    let frames = Frames::new("24".parse().unwrap());
+    for (snap, kept) in [(Snap::Gravity, false), (Snap::Heights, true)] {
+        let mut staging = Staging::new(frames);
+        staging.snap = Some(snap);
+        let stage = staging.stage(&record).unwrap();
+        let off = (stage.motion.tracks[0].stretches[1].top().0 - 0.6).abs();
+        let says = stage.says(&stage.file(Format::Csv, 1e-4).unwrap());
+        assert_eq!(off < 1e-6, kept, "{off}: {says}");
+        assert_eq!(says.contains("(--snap heights keeps them)"), !kept, "{says}");
+        let said = stage.departures.iter().find_map(|departure| match departure {
+            Departure::SnappedByGravity { tops } => Some(*tops),
+            _ => None,
+        });
+        assert!(kept || said.is_some_and(|tops| off <= tops), "{off} of {said:?}");
+    }
 }

@@ -6,7 +6,7 @@ use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
 use saltus_fit::{CorModel, Loss};
 
-use crate::parse::{ReportFormat, positive, rate};
+use crate::parse::{RATES, ReportFormat, number, positive};
 
 /// Headers of tables that are understood.
 const LAYOUTS: &str = "Layouts of tables, for example:
@@ -125,7 +125,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) header: Option<Vec<String>>,
     /// How many frames were filmed in a second, where the table counts frames.
-    #[arg(long, value_name = "NUMBER", value_parser = rate)]
+    #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
     pub(crate) fps: Option<f64>,
     /// How large one pixel is, such as `1.5mm`, or `1.371m/911` for a length that spans 911 pixels.
     #[arg(long, value_name = "LENGTH", value_parser = scale)]

@@ -34,8 +34,11 @@ use runner::{Recording, RunOptions, Runner};
 
 /// After how many jumps a run ends that says nothing of it.
 const MOST_JUMPS: u32 = 10_000;
-/// After how many evaluations of flows and guards a run ends: a minute or so.
-const MOST_EVALUATIONS: u64 = 200_000_000;
+/// After how many evaluations of flows and guards a run ends, and how many more it has for each
+/// jump that it may make: some ten seconds for ten thousand jumps. A contact that takes time has
+/// about a thousand.
+const EVALUATIONS: u64 = 20_000_000;
+const EVALUATIONS_PER_JUMP: u64 = 2_000;
 /// With how many balls on a line a scene runs, and with how many in the plane or in space.
 const MOST_BALLS: usize = 5;
 const MOST_IN_SPACE: usize = 5;
@@ -141,7 +144,8 @@ impl Plan {
         self
     }
 
-    /// Ends the run after so many evaluations of flows and guards; 2 × 10⁸ unless set.
+    /// Ends the run after so many evaluations of flows and guards, or a fifth as many steps; 2 ×
+    /// 10⁷ and 2000 for each jump that it may make unless set.
     #[must_use]
     pub const fn most_evaluations(mut self, count: u64) -> Self {
         self.options.most_evaluations = count;
@@ -228,7 +232,7 @@ impl Scene {
         let options = RunOptions {
             until: self.run.until,
             most_jumps,
-            most_evaluations: MOST_EVALUATIONS,
+            most_evaluations: EVALUATIONS + EVALUATIONS_PER_JUMP * most_jumps as u64,
             method,
             tolerance,
             solved,
@@ -448,9 +452,22 @@ impl RunError {
     }
 }
 
+/// What the engine says to who writes a model, in words for who writes a scene.
 impl From<saltus::Error> for RunError {
     fn from(error: saltus::Error) -> Self {
-        Self(error.to_string())
+        use saltus::ErrorKind::{Entry, Flow, Guard, InitialState, Promise, Reset, Series, StepSize};
+        let what = match error.kind() {
+            Flow | Guard | InitialState | Promise | Reset | Series => {
+                "a number has grown beyond all that can be computed with"
+            }
+            StepSize => "it changes faster than moments can be told apart",
+            Entry => "a ball is in what it touches, by more than rounding",
+            _ => return Self(error.to_string()),
+        };
+        let (t, mode) = (error.t(), error.mode());
+        Self(format!(
+            "the run breaks off at {t} s, in mode {mode}: {what}; numbers of the scene are too far apart: bring masses, sizes, speeds, drags and stiffnesses nearer to each other"
+        ))
     }
 }
 

@@ -245,12 +245,12 @@ impl fmt::Display for End {
             Self::Steps { most } => {
                 write!(
                     f,
-                    "the limit of {most} steps was reached: end the run earlier, or loosen `tolerance` under [run]"
+                    "the limit of {most} steps was reached: end the run earlier, loosen `tolerance`, or allow more by `most_jumps` under [run]"
                 )
             }
             Self::Evaluations { most } => write!(
                 f,
-                "the limit of {most} evaluations was reached: end the run earlier, or loosen `tolerance` under [run]"
+                "the limit of {most} evaluations was reached: end the run earlier, loosen `tolerance`, or allow more by `most_jumps` under [run]"
             ),
             Self::Cascade => write!(f, "too many jumps happen at one time"),
         }

@@ -68,6 +68,10 @@ impl RunOptions {
     }
 }
 
+/// Fewer evaluations than any stepper needs for a step: it is flows that are solved whose steps
+/// this limits.
+const EVALUATIONS_PER_STEP: u64 = 5;
+
 /// A model that may be sent between threads and shared, with all its runs.
 pub(super) trait Shared:
     Automaton<Mode: Send + Sync, State: Send + Sync, Edge: Send + Sync> + Send + Sync + 'static
@@ -115,7 +119,8 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
             .stepper(R::Stepper::from(options.method))
             .tolerance(options.tolerance)
             .most_jumps(options.most_jumps)
-            .most_evaluations(options.most_evaluations);
+            .most_evaluations(options.most_evaluations)
+            .most_steps(options.most_evaluations / EVALUATIONS_PER_STEP);
         let simulation = match options.absolute {
             Some(absolute) => simulation.absolute_tolerance(absolute),
             None => simulation,
