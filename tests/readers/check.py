@@ -10,13 +10,17 @@ Needs Python and, for what each reads, Node and Chromium; what is not there is s
 under target/readers: Pixar's USD, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender as a module (300 MB; its
 version 5.0 wants Python 3.11). The exit status is 1 if a file is wrong.
 """
+import bisect
+import csv
 import json
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import venv
+import wave
 import zipfile
 from pathlib import Path
 
@@ -81,15 +85,40 @@ def install(blender):
 
 def page(folder, svg, player, lottie, times):
     """What a browser finds on the page."""
-    browser = next(filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])))
     text = (HERE / "page.html").read_text()
-    for mark, value in [("@SVG@", svg), ("@PLAYER@", player), ("@TIMES@", json.dumps(times)), ("@LOTTIE@", lottie)]:
+    measure = (HERE / "measure.js").read_text()
+    marks = [("@SVG@", svg), ("@MEASURE@", measure), ("@PLAYER@", player), ("@TIMES@", json.dumps(times)), ("@LOTTIE@", lottie)]
+    for mark, value in marks:
         text = text.replace(mark, value)
+    return dumped(folder, text)
+
+
+# Behind the page's own script, whose functions it calls as the page's buttons do.
+PLAYED = """<pre id="found"></pre><script>
+@MEASURE@
+{
+const balls = [...document.querySelectorAll(".ball")], ground = document.querySelector(".ground");
+play(false);
+const rows = @TIMES@.map((t) => { go(t); return balls.map((ball) => [height(ball, ground), null]); });
+document.getElementById("found").textContent = JSON.stringify({ issues: [], errors: 0, animations: { "its player": rows } });
+}
+</script></body>"""
+
+
+def played(folder, path, times):
+    """What a browser finds on a page that plays by itself."""
+    script = PLAYED.replace("@MEASURE@", (HERE / "measure.js").read_text()).replace("@TIMES@", json.dumps(times))
+    return dumped(folder, path.read_text().replace("</body>", script))
+
+
+def dumped(folder, text):
+    """What a script in a page has left in it."""
+    browser = next(filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])))
     path = folder / "page.html"
     path.write_text(text)
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom"]
-    dumped = run(browser, *options, path.as_uri()).stdout
-    found = re.search(r'<pre id="found">(.+?)</pre>', dumped, re.S)
+    shown = run(browser, *options, path.as_uri()).stdout
+    found = re.search(r'<pre id="found">(.+?)</pre>', shown, re.S)
     if not found:
         raise RuntimeError("the browser found nothing")
     return json.loads(found.group(1))
@@ -106,6 +135,7 @@ def readers(python, node, blender, folder):
         modules = INSTALLED / "node"
         known["glb"] = lambda path, times: last(run("node", "glb.mjs", path, json.dumps(times), cwd=modules))
     if any(map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])):
+        known["html"] = lambda path, times: played(folder, path, times)
         known["svg"] = lambda path, times: page(folder, path.read_text(), "", "null", times)
         if node:
             player = INSTALLED / "node/node_modules/lottie-web/build/player/lottie_svg.min.js"
@@ -210,9 +240,11 @@ def case(saltus, folder, known, name, options, space):
     balls, start = shown["balls"], shown["ground"][0][0][1] if shown["ground"] else None
     level = start is not None and all(up == 0 for line in shown["ground"] for _, up in line)
     heights = truth(saltus, path, options, balls, name)
+    for kind, late, off, count, bad in [] if space else sounds(saltus, folder, path, options, shown):
+        yield kind, "%d contacts" % count, (off, late), None, bad, []
     for kind, read in sorted(known.items()):
         # Flat pictures are measured from the ground.
-        flat = kind in ("svg", "lottie", "dotlottie")
+        flat = kind in ("html", "svg", "lottie", "dotlottie")
         if space and kind not in SPACES or flat and start is None:
             continue
         file = folder / ("ball." + SUFFIXES.get(kind, kind))
@@ -226,20 +258,69 @@ def case(saltus, folder, known, name, options, space):
             yield kind, animation, (off, below if level else 0.0, volume), said, bad, found["issues"]
 
 
+def listed(file):
+    """The contacts of a table: ball, time in s, height in m, speed in m/s."""
+    with open(file, newline="") as rows:
+        return [(row["ball"], float(row["time_s"]), float(row["height_m"]), float(row["speed_m_per_s"])) for row in csv.DictReader(rows)]
+
+
+def heard(file, hits):
+    """How late the ticks of a sound are, in s at most: the first sample that is as loud as a tick at its start, and no tick where there is no contact."""
+    with wave.open(str(file)) as sound:
+        rate, count = sound.getframerate(), sound.getnframes()
+        assert (sound.getnchannels(), sound.getsampwidth(), rate) == (1, 2, 48000), "a wrong kind of sound"
+        samples = struct.unpack("<%dh" % count, sound.readframes(count))
+    hits = [hit for hit in hits if hit[3] > 0.0]
+    fastest, late = max((hit[3] for hit in hits), default=0.0), 0.0
+    for n, (_, t, _, speed) in enumerate(hits):
+        # One that rings is not told from the next, nor a tick of less than a step of 16 bits.
+        alone = n == 0 or t - hits[n - 1][1] > 0.04
+        loud = 0.8 * 32767 * speed / fastest
+        if alone and loud > 4.0 and (n + 1 == len(hits) or hits[n + 1][1] - t > 0.001):
+            first = next((k for k in range(max(0, int(t * rate) - 480), count) if abs(samples[k]) > 0.9 * loud), count)
+            late = max(late, abs(first / rate - t))
+    begins = [hit[1] for hit in hits]
+    for k, sample in enumerate(samples):
+        here = bisect.bisect_right(begins, k / rate + 1e-6)
+        assert sample == 0 or here and k / rate - begins[here - 1] < 0.041, "a tick at %g s without a contact" % (k / rate)
+    return late
+
+
+def sounds(saltus, folder, path, options, shown):
+    """The list of contacts and the sound of a scene: kind, how late they are in s, how far off in m, whether they are wrong."""
+    files = {kind: folder / ("ball." + kind) for kind in ("contacts", "wav")}
+    for kind, file in files.items():
+        run(saltus, "-q", "export", path, *options, "--to", kind, "--force", "-o", file)
+    hits, ends = listed(files["contacts"]), {ball["name"]: ball for ball in shown["balls"]}
+    keys = {name: [key["t"] for key in ball["keys"]] for name, ball in ends.items()}
+    # Every contact is a key of its ball, and lies where the ball is then.
+    late = max((min(abs(t - key) for key in keys[name]) for name, t, *_ in hits), default=0.0)
+    off = max((abs(height - between(ends[name]["keys"], t)) for name, t, height, _ in hits), default=0.0)
+    yield "contacts", late, off, len(hits), late > 1e-9 or off > READER
+    late = heard(files["wav"], hits)
+    yield "wav", late, 0.0, len(hits), late > 1 / 48000 + 1e-6
+
+
 def main():
     flags = [argument for argument in sys.argv[1:] if argument.startswith("--")]
     named = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
     saltus = Path(named[0] if named else ROOT / "target/release/saltus").resolve()
     python, node = install("--blender" in flags)
-    wrong, table = 0, {}
+    wrong, table, times = 0, {}, {}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         known = readers(python, node, "--blender" in flags, folder)
-        for name in {"glb", "svg", "lottie", "dotlottie", "blender"} - known.keys():
+        for name in {"glb", "html", "svg", "lottie", "dotlottie", "blender"} - known.keys():
             print("left out, for its reader is not here: %s" % name)
         for name, options, space in MATRIX if "--matrix" in flags else CASES:
             for kind, animation, measured, said, bad, issues in case(saltus, folder, known, name, options, space):
                 wrong += bool(bad)
+                if said is None:
+                    print("%-5s %-16s %-44s %-11s %-20s at most %.2e s late, %.2e m off" % (
+                        "WRONG" if bad else "ok", name, " ".join(options), kind, animation, measured[1], measured[0]), flush=True)
+                    row = times.setdefault(kind, [0, 0.0])
+                    row[0], row[1] = row[0] + 1, max(row[1], measured[1])
+                    continue
                 print("%-5s %-16s %-44s %-11s %-20s off %.2e of %.2e + %.2e, below 0 by %.1e of %.1e, volume %.2f %% of %.2f %%" % (
                     "WRONG" if bad else "ok", name, " ".join(options + space), kind, animation,
                     measured[0], said[0], said[1], measured[1], said[2], 100 * measured[2], 100 * said[3]), flush=True)
@@ -254,6 +335,8 @@ def main():
     for kind, row in sorted(table.items()):
         (off, height), (volume, kept) = row.get(True, (0.0, 0.0)), row.get(False, (0.0, 0.0))
         print("| `%s` | %d | %.3f mm | %.2f mm | %.3f %% | %.2f %% |" % (kind, row["count"], 1e3 * off, 1e3 * height, 100 * volume, 100 * kept))
+    for kind, (count, late) in sorted(times.items()):
+        print("%d files of %s: contacts at most %.2e s late" % (count, kind, late))
     print("%d wrong" % wrong)
     return 1 if wrong else 0
 
