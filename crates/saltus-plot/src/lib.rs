@@ -38,12 +38,15 @@
 //! # Ok::<(), saltus_plot::PlotError>(())
 //! ```
 //!
+//! With the feature `scene` runs of scenes are drawn in one line (`record`), and sweeps of them
+//! (`sweep`); with the feature `fit` reports of fits (`fit`).
+//!
 //! A [`Chart`] shows any two quantities against each other: velocity or energy against time, phase
 //! portraits, paths to scale, loops.
 //!
 //! # Limits
 //!
-//! The floor of a [`HeightTime`] is at height zero. Letters are measured with the widths of
+//! Letters are measured with the widths of
 //! Helvetica; a much wider face may let neighbouring labels come close. Arcs that together are
 //! narrower than 0.3 px are drawn as one stroke.
 
@@ -55,6 +58,8 @@ mod coordinate;
 mod curve;
 mod data;
 mod error;
+#[cfg(feature = "fit")]
+pub mod fit;
 mod grain;
 mod heading;
 mod height_time;

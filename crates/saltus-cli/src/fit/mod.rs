@@ -2,7 +2,6 @@
 
 mod args;
 mod each;
-mod pictures;
 mod values;
 
 use std::io::Read;
@@ -11,7 +10,7 @@ use std::process::ExitCode;
 use std::sync::Once;
 
 use saltus_fit::{CorModel, Expected, Fit, Loss, ReadOptions, Report, Table, Verdict};
-use saltus_plot::PlotError;
+use saltus_plot::{PlotError, fit as pictures};
 
 use crate::error::Error;
 use crate::output::{check_new, check_picture, say, write};

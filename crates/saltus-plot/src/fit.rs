@@ -1,13 +1,29 @@
 //! Pictures of a fit: the motion with its residuals, the COR over speed, the apex ladder, the
-//! profile of the cost.
+//! profile of the cost. Needs the feature `fit`.
+//!
+//! Each is `None` where the report has nothing that it would show.
+//!
+//! ```
+//! use saltus_fit::{Fit, Table};
+//! let text = b"bounce,height_cm\n0,100\n1,36\n2,13\n3,4.7\n";
+//! let report = Fit::new().run(&Table::parse("drop.csv", text)?)?;
+//! let picture = saltus_plot::fit::motion(&report).ok_or("nothing to draw")??;
+//! assert!(picture.starts_with("<svg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use saltus_fit::{Measure, Method, Motion, Report, Verdict};
-use saltus_plot::{
+
+use crate::{
     Arc, Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke,
 };
 
 /// The measured points, the fitted motion, and what is left between them.
-pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
+///
+/// # Errors
+/// [`PlotError`] where the picture cannot be drawn.
+#[must_use]
+pub fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     if !report.groups().is_empty() {
         return compared(report);
     }
@@ -49,7 +65,11 @@ pub(super) fn motion(report: &Report) -> Option<Result<String, PlotError>> {
 
 /// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed
 /// with its 95 % band.
-pub(super) fn cor(report: &Report) -> Option<Result<String, PlotError>> {
+///
+/// # Errors
+/// [`PlotError`] where the picture cannot be drawn.
+#[must_use]
+pub fn cor(report: &Report) -> Option<Result<String, PlotError>> {
     if !report.series().is_empty() {
         return impacts(report);
     }
@@ -144,7 +164,11 @@ fn compared(report: &Report) -> Option<Result<String, PlotError>> {
 
 /// Apex heights bounce by bounce, on an axis where one COR is a straight line: those of every
 /// trial, and of the fitted motion.
-pub(super) fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
+///
+/// # Errors
+/// [`PlotError`] where the picture cannot be drawn.
+#[must_use]
+pub fn ladder(report: &Report) -> Option<Result<String, PlotError>> {
     let motion = report.motion()?;
     let apexes = [saltus_fit::Mark::Release, saltus_fit::Mark::Apex];
     let read = report.points().iter().filter(|point| point.height > 0.0 && apexes.contains(&point.mark));
@@ -205,7 +229,11 @@ const LIMIT: f64 = 3.84;
 const DRAWN: f64 = 30.0;
 
 /// The cost of each method as the COR is held at other values.
-pub(super) fn profile(report: &Report) -> Option<Result<String, PlotError>> {
+///
+/// # Errors
+/// [`PlotError`] where the picture cannot be drawn.
+#[must_use]
+pub fn profile(report: &Report) -> Option<Result<String, PlotError>> {
     let mut chart = Chart::new(&report.title(), ("COR", Scale::Number), ("Chi-square above its least", Scale::Number));
     let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
     for profile in report.profiles() {
