@@ -28,8 +28,17 @@ fn each(option: &str, unit: &str, command: impl Fn() -> Command) {
             Some(0) => assert!(!output.stdout.is_empty(), "{here}"),
             Some(2) => {
                 let whole = says.contains("whole number from") || says.contains("number from");
-                let range =
-                    ["at most", "above zero", "or more", "such as", "within", "longer", "from", "the motion has"];
+                let range = [
+                    "at most",
+                    "above zero",
+                    "more than",
+                    "or more",
+                    "such as",
+                    "within",
+                    "longer",
+                    "from",
+                    "the motion has",
+                ];
                 assert!(whole || range.iter().any(|word| says.contains(word)), "{here}");
             }
             _ => panic!("{here}"),

@@ -201,7 +201,10 @@ fn translate(text: &str, span: Range<usize>, message: &str) -> Fault {
             let found = match found {
                 "map" => "a table",
                 "sequence" => "a list",
-                other => written.unwrap_or(other),
+                other => {
+                    let told = other.split('`').nth(1).filter(|told| told.len() <= SHORT);
+                    written.or(told).unwrap_or("this value")
+                }
             };
             return Fault {
                 message: format!("{found} does not belong here"),

@@ -175,7 +175,7 @@ fn every_number_is_run_or_its_range_is_said() {
 /// A flow that steps hardly get on with ends all the same, and says so.
 #[test]
 fn a_run_that_gets_nowhere_ends() {
-    let toml = b"restitution = 0.7\nball = { height = 1 }\ndrag = { rate = 3e8, per_length = 0.1 }\nrun = { until = 1, most_jumps = 1 }";
+    let toml = b"restitution = 0.7\nball = { height = 1 }\ndrag = { rate = 3e8, per_length = 0.1 }\nrun = { until = 1, most_jumps = 100 }";
     let scene = saltus_scene::Scene::parse("stiff", toml).unwrap();
     let outcome = scene.plan().unwrap().most_evaluations(1_000_000).outcome().unwrap();
     assert!(outcome.end.to_string().contains("allow more by `most_jumps` under [run]"), "{}", outcome.end);

@@ -96,7 +96,7 @@ mod tests {
             };
             let near = grounds.iter().map(at).map(|floor| (low - floor).abs()).fold(f64::INFINITY, f64::min);
             // Straight pieces cut corners and waves a little.
-            assert!(near < 5e-3, "{near} m at {} s of\n{toml}", impact.t);
+            assert!(near < 5e-3 || grounds.is_empty(), "{near} m at {} s of\n{toml}", impact.t);
             count += 1;
         }
         (grounds, count)
