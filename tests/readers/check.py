@@ -296,7 +296,10 @@ def sounds(saltus, folder, path, options, shown):
     # Every contact is a key of its ball, and lies where the ball is then.
     late = max((min(abs(t - key) for key in keys[name]) for name, t, *_ in hits), default=0.0)
     off = max((abs(height - between(ends[name]["keys"], t)) for name, t, height, _ in hits), default=0.0)
-    yield "contacts", late, off, len(hits), late > 1e-9 or off > READER
+    # Keys nearer to each other than a hundredth of a frame are one.
+    per, seconds = shown["fps"]
+    fastest = max((speed for *_, speed in hits), default=0.0)
+    yield "contacts", late, off, len(hits), late > 0.01 * seconds / per or off > READER + late * fastest
     late = heard(files["wav"], hits)
     yield "wav", late, 0.0, len(hits), late > 1 / 48000 + 1e-6
 
