@@ -190,7 +190,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         remaining: f64,
         by_formula: bool,
     ) -> Close<A::State> {
-        let Crossing { inside, outside, root, rest } = crossing;
+        let Crossing { inside, outside, root, rest, leaps } = crossing;
         let span = inside.min(remaining);
         // The time of the jump, at which the next arc begins: what the guard is then is what it is
         // here.
@@ -205,7 +205,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let nearest = at(root);
         let g = guard(&nearest);
         let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
-        self.memory.slack = FEW * g.abs().max(outer.abs());
+        (self.memory.slack, self.memory.leapt) = (FEW * g.abs().max(outer.abs()), leaps);
         let short = self.memory.is_short(root);
         let resolved = root > SURELY * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();

@@ -1,6 +1,7 @@
 //! What a mode's guards say as it is entered.
 
 use std::cell::Cell;
+use std::mem;
 
 use crate::automaton::refusal::guard_undefined;
 use crate::automaton::solution::Fall;
@@ -24,7 +25,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
-        let mut zero = None;
+        let (mut zero, mut nudged) = (None, None);
         self.memory.walls.clear();
         let edges = self.automaton.edges(mode);
         if let Some(flaw) = edges.flaw() {
@@ -38,8 +39,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if self.memory.idle.is_empty() || !self.is_driven(mode, edge, t, &{ *x }, g) {
                     continue;
                 }
-            } else if spent.is_none() && g > NOTHING * size(x) {
-                continue;
+            } else if spent.is_none() && g > 0.0 {
+                // Clear of zero in any unit: a millionth of what it is made of does not bring it there.
+                let nudged = nudged.get_or_insert_with(|| x.with(|i| x.get(i) + TINY * weight(i) * self.size(x, i)));
+                self.memory.stats.guards += 1;
+                if g > (self.guard(edge, t + FAR * resolution(t), nudged) - g).abs() {
+                    continue;
+                }
             }
             let x = &{ *x };
             if self.is_entered(mode, edge, t, x, g, &mut zero)? {
@@ -81,12 +87,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(false);
         }
         let still = self.entry_error(edge, t, x, g);
-        let slope = self.guard_slope(mode, edge, t, x, g, still);
+        let Leaving { slope, straight } = self.leaving(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };
         if -g <= ROUNDINGS * rounding {
-            let unsure = slope.is_nan() || slope.abs() * self.glance() <= SURELY * rounding;
-            if !spent && unsure && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
+            let sure = slope.abs() * self.glance() > SURELY * rounding;
+            let leaves = sure && (slope < 0.0 || straight);
+            if !spent && !leaves && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
                 return Ok(false);
             }
@@ -108,7 +115,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// no root to be spent, unless the state has stayed where it leaps.
     #[inline]
     pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
-        if self.memory.slack > 0.0 && self.memory.slack > NOTHING * size(before) {
+        if mem::take(&mut self.memory.leapt) {
             let (before, after) = (*before, *after); // else both would be kept in memory
             self.has_leapt(edge, &before, (to, t, &after));
         }
@@ -117,8 +124,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[cold]
     #[inline(never)]
     fn has_leapt(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
-        // A guard that is promised affine leaps nowhere.
-        if self.automaton.about(edge).affine || !self.has(to, edge) || !is_moved(before, after) {
+        if !self.has(to, edge) || !is_moved(before, after) {
             return;
         }
         self.memory.stats.guards += 1;
@@ -168,13 +174,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.last_duration > 0.0 { TINY * self.memory.last_duration } else { TINY }
     }
 
-    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is
-    /// zero, its sign is that of d²g/dt².
-    ///
-    /// The shortest time is taken over which the change of the guard doubles (or, where it never
-    /// does, quadruples) with time twice in a row: longer than rounding, shorter than the way to
-    /// the guard's next root. A change by no more than `rounding` is none. That of a guard promised
-    /// affine doubles over every time along a line: the longest one has the least rounding.
+    /// dg/dt along the flow.
     pub(super) fn guard_slope(
         &mut self,
         mode: A::Mode,
@@ -184,6 +184,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         g: f64,
         rounding: f64,
     ) -> f64 {
+        self.leaving(mode, edge, t, x, g, rounding).slope
+    }
+
+    /// dg/dt along the flow, by a difference over a time short against the last arc; where dg/dt is
+    /// zero, its sign is that of d²g/dt².
+    ///
+    /// The shortest time is taken over which the change of the guard doubles (or, where it never
+    /// does, quadruples) with time twice in a row: longer than rounding, shorter than the way to
+    /// the guard's next root. A change by no more than `rounding` is none. That of a guard promised
+    /// affine doubles over every time along a line: the longest one has the least rounding.
+    fn leaving(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64, rounding: f64) -> Leaving {
         let longest = self.glance();
         let slope = self.flow(mode, t, x);
         if self.automaton.about(edge).affine && self.smooth.within(t + longest) == t + longest {
@@ -191,7 +202,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let ahead = x.with(|i| x.get(i) + longest * slope.get(i));
             let change = self.automaton.guard(edge, t + longest, &ahead) - g;
             if change.abs() > ROUNDINGS * rounding {
-                return change / longest;
+                return Leaving { slope: change / longest, straight: true };
             }
         }
         let middle = self.flow(mode, t + 0.5 * longest, &x.with(|i| x.get(i) + 0.5 * longest * slope.get(i)));
@@ -213,13 +224,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let doubles =
                     (far - by * half).abs() < ROUGHLY * far.abs() && (half - by * quarter).abs() < ROUGHLY * half.abs();
                 if doubles && far.abs() > ROUNDINGS * rounding {
-                    return far / h;
+                    return Leaving { slope: far / h, straight: bends == 0.0 };
                 }
                 h /= ROUGHLY;
             }
         }
-        change(longest, 1.0) / longest.max(f64::MIN_POSITIVE)
+        Leaving { slope: change(longest, 1.0) / longest.max(f64::MIN_POSITIVE), straight: false }
     }
+}
+
+/// How a guard goes on from where a mode is entered.
+struct Leaving {
+    /// dg/dt along the flow.
+    slope: f64,
+    /// Whether the guard changes in proportion to time.
+    straight: bool,
 }
 
 /// Whether a coordinate differs by more than roundings.
@@ -227,8 +246,14 @@ fn is_moved<S: State>(x: &S, y: &S) -> bool {
     x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > NOTHING * x.get(i).abs())
 }
 
-/// The sum of a state's coordinates, all taken as positive.
+/// (√5 - 1)/2, whose multiples less their whole parts lie apart as far as numbers of 0 to 1 can.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// How far coordinate `i` is nudged beside the others, from 0 to 1: no two alike, so that a guard of
+/// their difference is nudged as well.
 #[inline]
-fn size<S: State>(x: &S) -> f64 {
-    (0..x.len()).map(|i| x.get(i).abs()).sum()
+fn weight(i: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss)]
+    let turns = (i + 1) as f64 * GOLDEN;
+    turns.fract()
 }

@@ -158,9 +158,9 @@ fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> 
     let [inside, outside, root] = [crossing.inside, crossing.outside, crossing.root].map(|s| from + s);
     if inside < outside && guard(inside) >= 0.0 && guard(outside) < 0.0 {
         let (inside, outside) = narrowed(guard, inside, outside);
-        Some(Crossing { inside, outside, root: root.clamp(inside, outside), rest: 0.0 })
+        Some(Crossing { inside, outside, root: root.clamp(inside, outside), rest: 0.0, ..*crossing })
     } else {
-        settle(guard, root)
+        Some(Crossing { leaps: crossing.leaps, ..settle(guard, root)? })
     }
 }
 

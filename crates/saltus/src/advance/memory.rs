@@ -71,6 +71,8 @@ pub(crate) struct Memory<E, S> {
     /// How far the search of this exact arc went before a limit of the run cut it.
     pub(super) cut_at: Option<f64>,
     pub(super) slack: f64,
+    /// Whether the guard leapt at the last crossing.
+    pub(super) leapt: bool,
     pub(super) last_duration: f64,
     pub(super) longest_duration: f64,
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard
@@ -104,6 +106,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             walls: Few::new_const(),
             cut_at: None,
             slack: 0.0,
+            leapt: false,
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
@@ -141,8 +144,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen
     /// it at every arc, until its crossings were lost at its start.
     #[inline]
-    pub(super) fn cut(&mut self, size: f64) {
-        self.step = self.step.map(|step| step.min(size));
+    pub(super) fn cut(&mut self, size: f64, duration: f64) {
+        self.step = self.step.map(|step| step.min(size.max(duration)));
     }
 
     /// An arc from `x` that took time has ended.

@@ -28,11 +28,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// reset gives it anew. At the start of a run nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&self, x: &A::State) -> A::State {
-        let largest = self.memory.largest.filter(|largest| largest.len() == x.len());
-        x.with(|i| match x.get(i).abs() {
-            0.0 => 0.0,
-            here => largest.map_or(here, |largest| here.max(largest.get(i))),
-        })
+        x.with(|i| self.size(x, i))
+    }
+
+    /// The same of coordinate `i`.
+    #[inline]
+    pub(super) fn size(&self, x: &A::State, i: usize) -> f64 {
+        match (x.get(i).abs(), self.memory.largest.filter(|largest| largest.len() == x.len())) {
+            (0.0, _) => 0.0,
+            (here, largest) => largest.map_or(here, |largest| here.max(largest.get(i))),
+        }
     }
 
     /// How far rounding the coordinates and the time may move the guard of `edge`, `g` at `x`.

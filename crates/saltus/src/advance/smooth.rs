@@ -152,7 +152,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let clear = self.memory.wall(edge).is_none() || -behind > self.guard_rounding(edge, stop, x, behind, x);
         let fell = before >= 0.0 && behind < 0.0 && clear;
         fell.then(|| {
-            self.memory.slack = FEW * before.max(-behind);
+            (self.memory.slack, self.memory.leapt) = (FEW * before.max(-behind), true);
             stop
         })
     }

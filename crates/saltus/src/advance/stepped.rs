@@ -93,7 +93,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     }
                 }
                 if let Some(rough) = found {
-                    return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), remaining, observer);
+                    return self.closed_in(mode, (&x, &slope, step), (&rough, limit, first), (remaining, began), observer);
                 }
                 // Where guards were looked at, the state goes on from where they were asked last.
                 let state = if clear { trial.end } else { horner(step.c, 1.0) };
@@ -122,10 +122,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mode: A::Mode,
         (x, slope, step): (&A::State, &A::State, Step<'_, A::State>),
         (rough, limit, first): (&OnStep<A>, f64, bool),
-        remaining: f64,
+        (remaining, began): (f64, Time),
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
-        self.memory.cut(step.scale);
+        self.memory.cut(step.scale, step.now.since(began) + rough.crossing.root);
         if let Some(Closer { dense, h, ahead }) = self.closer(mode, x, slope, step, rough, limit) {
             let closer = Step { now: step.now, c: dense.as_ref(), scale: h };
             if let Some(again) = self.first_crossing(mode, closer, ahead, first, None::<&mut O>)? {
@@ -333,7 +333,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let t = now.seconds();
         for edge in self.automaton.edges(mode).iter() {
-            if self.memory.spent_as(edge).is_none() {
+            if self.memory.spent_as(edge).is_none() && self.memory.wall(edge).is_none() {
                 continue;
             }
             // What the guard rises by on the way of the flow and on that of the dense output; and

@@ -33,17 +33,19 @@ pub struct Crossing {
     /// What rounding takes from the root: it lies at `root + rest`, by the guard's values on both
     /// sides.
     pub rest: f64,
+    /// Whether the guard leaps there from one value to another, and does not pass zero.
+    pub leaps: bool,
 }
 
 impl Crossing {
     /// A crossing at the very start.
     pub(crate) const fn at_start(outside: f64) -> Self {
-        Self { inside: 0.0, outside, root: 0.0, rest: 0.0 }
+        Self { inside: 0.0, outside, root: 0.0, rest: 0.0, leaps: false }
     }
 
     /// A crossing just after a given time.
     pub(crate) const fn after(root: f64) -> Self {
-        Self { inside: root, outside: root.next_up(), root, rest: 0.0 }
+        Self { inside: root, outside: root.next_up(), root, rest: 0.0, leaps: false }
     }
 }
 

@@ -37,7 +37,7 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
         }
     }
     let (a, b) = narrowed(guard, a, b);
-    Some(Crossing { inside: a, outside: b, root: near, rest: 0.0 })
+    Some(Crossing { inside: a, outside: b, root: near, rest: 0.0, leaps: false })
 }
 
 /// Neighbouring numbers within `a..b` between which the guard falls, not negative at `a` and
@@ -183,6 +183,6 @@ impl Search<'_> {
         }
         let rest = |side: f64| (b - a) * (side / (above - below));
         let (root, rest) = if above <= -below { (a, rest(above)) } else { (b, rest(below)) };
-        Ok(Crossing { inside: a, outside: b, root, rest: if rest.is_finite() { rest } else { 0.0 } })
+        Ok(Crossing { inside: a, outside: b, root, rest: if rest.is_finite() { rest } else { 0.0 }, leaps: false })
     }
 }

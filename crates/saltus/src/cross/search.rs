@@ -196,8 +196,9 @@ impl<'a> Search<'a> {
                 Part::Falls { a, b, guess } => (a, b, Some(guess)),
             };
             let crossing = self.refined(a, b, guess)?;
-            if self.passage(&crossing)? != Passage::Pole {
-                break Some(crossing);
+            let passage = self.passage(&crossing)?;
+            if passage != Passage::Pole {
+                break Some(Crossing { leaps: passage == Passage::Leap, ..crossing });
             }
             (self.flat, self.largest) = (None, 0.0);
             let behind = Stretch { a: crossing.outside, margin: f64::INFINITY, known: None, ..all };
