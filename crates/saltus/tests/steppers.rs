@@ -181,6 +181,21 @@ fn modes_of_different_dimension_suit_every_stepper() {
     check(Rodas5P);
 }
 
+/// Beside the steps on the way a crossing costs one real step to it, with its dense output (15
+/// evaluations of Dop853), and does not shorten the steps after it.
+#[test]
+fn a_crossing_costs_one_more_step() {
+    let oscillator = Hybrid::new()
+        .mode("right", |_t, x: &Vector2<f64>| vector![x[1], -x[0]])
+        .edge("right", "left", |_t, x| x[0], |_t, x| *x)
+        .mode("left", |_t, x| vector![x[1], -x[0]])
+        .edge("left", "right", |_t, x| -x[0], |_t, x| *x)
+        .affine();
+    let run = Simulation::of(&oscillator).stepper(Dop853).tolerance(1e-8).absolute_tolerance(1e-8).most_jumps(1000);
+    let run = run.run("right", vector![1.0, 0.0], 0.0..f64::INFINITY).unwrap();
+    assert_eq!(cost(&run), (5498, 0, 99_627));
+}
+
 #[test]
 fn a_ball_comes_to_rest_on_every_stepper() {
     // The last bounces last a billionth of a step, and still begin with the speed of the reset. The

@@ -2,7 +2,7 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
-use crate::certainty::{FAR, FEW, MINUTE, ROUGHLY, SURELY, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, SURELY, TINY};
 use crate::cross::{
     AT_START, Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc,
     settle,
@@ -11,25 +11,25 @@ use crate::error::Error;
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
-use crate::poly::{Bernstein, MAX_DEGREE, SUMMED, value_and_slope};
+use crate::poly::{Bernstein, MAX_DEGREE, SUMMED};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
+use super::near::Near;
 
 /// So much larger states are taken that a guard's constant costs their difference no digits.
 const LARGER: f64 = (1_u128 << 70) as f64;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// The earliest crossing within `0..=limit` of a dense output; an observer is told how guards
-    /// were searched. A guard that is no number beyond it does not matter.
+    /// The earliest crossing within a range of a dense output; an observer is told how guards were
+    /// searched. A guard that is no number beyond it does not matter.
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,
         step: Step<'_, A::State>,
-        limit: f64,
-        first: bool,
+        Range { limit, first, roughly }: Range,
         mut observer: Option<&mut impl Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
@@ -43,18 +43,24 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             {
                 let at_start = wall.falls.then(|| Crossing::at_start(limit * AT_START));
                 if let Some(crossing) = at_start.or_else(|| self.leaves(mode, edge, step, limit)) {
-                    found = earlier(found, OnStep { edge, crossing, near: None, slope: None });
+                    keep_earlier(&mut found, OnStep { edge, crossing, near: None, slope: None });
                 }
                 continue;
             }
             let affine = self.automaton.about(edge).affine;
             let along = if affine { self.along(edge, step, limit / scale, start, level, &mut powers) } else { None };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
-            let (searched, near) = match by_powers {
-                FirstFall::Nowhere => (Searched::solved(None), None),
-                FirstFall::At(fall) => self.falls_by_powers(edge, step, fall.u * limit, level),
+            let mut near = None;
+            let searched = match by_powers {
+                FirstFall::Nowhere => Searched::solved(None),
+                FirstFall::At(fall) if roughly => Searched::solved(Some(Crossing::after(fall.u * limit))),
+                FirstFall::At(fall) => {
+                    let s = fall.u * limit;
+                    near = (c.len() > LONG).then(|| Near::around(c, scale, s));
+                    self.falls_by_powers(edge, step, &near, s, level)
+                }
                 FirstFall::Unclear => match self.falls_by_values(edge, step, limit, (start, level), along.as_ref()) {
-                    Ok(searched) => (searched, None),
+                    Ok(searched) => searched,
                     Err(Undefined(s)) => {
                         undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
                         continue;
@@ -82,7 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             if let Some(crossing) = fall {
                 let slope = derivatives.map(|[slope, _]| slope);
-                found = earlier(found, OnStep { edge, crossing, near, slope });
+                keep_earlier(&mut found, OnStep { edge, crossing, near, slope });
             }
         }
         let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
@@ -92,24 +98,24 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// The fall of the guard of `edge` that its powers show at a time `s` of a step, and the dense
-    /// output near there, which is summed up once where it is long.
+    /// The fall of the guard of `edge` that its powers show at a time `s` of a step, `near` which
+    /// the dense output may be summed up.
     #[inline(always)] // what it finds is looked at at once, and need not lie in memory
     fn falls_by_powers(
         &mut self,
         edge: A::Edge,
         Step { now, c, scale }: Step<'_, A::State>,
+        near: &Option<Near<A::State>>,
         s: f64,
         level: f64,
-    ) -> (Searched, Option<Near<A::State>>) {
-        let near = if c.len() > LONG { Some(Near::around(c, scale, s)) } else { None };
+    ) -> Searched {
         let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
-            automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(&near, c, scale, s))
+            automaton.guard(edge, smooth.within(now.after(s).seconds()), &at(near, c, scale, s))
         };
         let searched = Searched::solved(settle(|s| guard(s) - level, s));
-        (unlevelled(searched, level, &mut guard), near)
+        unlevelled(searched, level, &mut guard)
     }
 
     /// Where the guard of `edge` falls on a step, by its values, or by the sign of its powers in
@@ -250,6 +256,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
+/// Where on a dense output guards are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Range {
+    /// From its start on, up to this.
+    pub(super) limit: f64,
+    /// Whether it begins the arc.
+    pub(super) first: bool,
+    /// Whether the crossing is looked for again on a real step to it, and need not be settled
+    /// between neighbouring times here where powers show it.
+    pub(super) roughly: bool,
+}
+
 /// Whether a guard of the value `start` stays above zero when it changes by `most`,
 /// with room for the digits that its `constant` costs.
 #[inline]
@@ -361,51 +379,6 @@ fn at<S: State>(near: &Option<Near<S>>, c: &[S], scale: f64, s: f64) -> S {
     }
 }
 
-/// A state on a dense output after a time, and its slope there: all that counts within rounding of
-/// it.
-#[derive(Clone, Copy)]
-pub(super) struct Near<S> {
-    pub(super) s: f64,
-    pub(super) state: S,
-    pub(super) slope: S,
-}
-
-impl<S: State> Near<S> {
-    #[inline(never)] // once for each kind of state, not for each model and stepper
-    pub(super) fn around(c: &[S], scale: f64, s: f64) -> Self {
-        let (u, per_second) = (s / scale, 1.0 / scale);
-        let mut slope = c[0];
-        let state = c[0].with(|i| {
-            let (value, rate) = value_and_slope(c, |c| c.get(i), u);
-            slope = slope.with(|j| if i == j { rate * per_second } else { slope.get(j) });
-            value
-        });
-        Self { s, state, slope }
-    }
-
-    /// The state after a time `s` on the same dense output.
-    #[inline]
-    pub(super) fn at(&self, c: &[S], scale: f64, s: f64) -> S {
-        let by = s - self.s;
-        if by.abs() > MINUTE * self.s {
-            return Self::far(c, s / scale);
-        }
-        self.state.with(|i| self.state.get(i) + by * self.slope.get(i))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn far(c: &[S], u: f64) -> S {
-        horner(c, u)
-    }
-
-    /// The same around another time within rounding.
-    #[inline]
-    pub(super) fn moved(&self, c: &[S], scale: f64, s: f64) -> Self {
-        Self { s, state: self.at(c, scale, s), slope: self.slope }
-    }
-}
-
 /// The end of an arc's last piece.
 pub(super) struct Close<S> {
     pub(super) span: f64,
@@ -471,11 +444,17 @@ impl Along<'_> {
     }
 }
 
-/// The earlier of two crossings on a step; of two that time cannot tell apart the `first`.
+/// Keeps the earlier of the crossing `found` on a step and a `further` one; of two that time cannot
+/// tell apart the first.
 #[inline]
-fn earlier<A: Automaton>(first: Option<OnStep<A>>, second: OnStep<A>) -> Option<OnStep<A>> {
-    let both = first.and_then(|first| Some(OnStep { crossing: together(&first.crossing, &second.crossing)?, ..first }));
-    both.or(Some(second))
+fn keep_earlier<A: Automaton>(found: &mut Option<OnStep<A>>, further: OnStep<A>) {
+    if let Some(first) = found
+        && let Some(both) = together(&first.crossing, &further.crossing)
+    {
+        first.crossing = both;
+    } else {
+        *found = Some(further);
+    }
 }
 
 /// Of two crossings that time cannot tell apart the first, with the inner end of both, so that

@@ -1,6 +1,7 @@
 //! What a mode's guards say as it is entered.
 
 use std::cell::Cell;
+use std::f64::consts::SQRT_2;
 use std::mem;
 
 use crate::automaton::refusal::guard_undefined;
@@ -40,7 +41,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     continue;
                 }
             } else if spent.is_none() && g > 0.0 {
-                // Clear of zero in any unit: a millionth of what it is made of does not bring it there.
+                // Clear of zero: a millionth of what it is made of does not bring it there.
                 let nudged = nudged.get_or_insert_with(|| x.with(|i| x.get(i) + TINY * weight(i) * self.size(x, i)));
                 self.memory.stats.guards += 1;
                 if g > (self.guard(edge, t + FAR * resolution(t), nudged) - g).abs() {
@@ -246,14 +247,11 @@ fn is_moved<S: State>(x: &S, y: &S) -> bool {
     x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > NOTHING * x.get(i).abs())
 }
 
-/// (√5 - 1)/2, whose multiples less their whole parts lie apart as far as numbers of 0 to 1 can.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-
-/// How far coordinate `i` is nudged beside the others, from 0 to 1: no two alike, so that a guard of
-/// their difference is nudged as well.
+/// How far coordinate `i` is nudged beside the others, from 0 to 1: no two alike, so that a guard
+/// of their difference is nudged as well.
 #[inline]
 fn weight(i: usize) -> f64 {
     #[allow(clippy::cast_precision_loss)]
-    let turns = (i + 1) as f64 * GOLDEN;
+    let turns = (i + 1) as f64 * SQRT_2;
     turns.fract()
 }

@@ -140,12 +140,10 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         self.walls.iter().find(|wall| wall.edge == edge)
     }
 
-    /// An arc ends at a crossing on a step of `size`: the rest of the step was not used, and says
-    /// nothing of how long the next one may be. A flow whose error estimate is zero would lengthen
-    /// it at every arc, until its crossings were lost at its start.
+    /// The next step is to be no longer than this.
     #[inline]
-    pub(super) fn cut(&mut self, size: f64, duration: f64) {
-        self.step = self.step.map(|step| step.min(size.max(duration)));
+    pub(super) fn cut(&mut self, longest: f64) {
+        self.step = self.step.map(|step| step.min(longest));
     }
 
     /// An arc from `x` that took time has ended.

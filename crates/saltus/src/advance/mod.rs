@@ -7,6 +7,7 @@ mod enter;
 mod exact;
 mod grazing;
 mod memory;
+mod near;
 mod noise;
 mod promises;
 mod series;

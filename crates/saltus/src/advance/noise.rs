@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::crossing::Step;
+use super::crossing::{Step, is_rounding, less_constant};
 use super::{Advance, Spent, Wall};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -125,6 +125,52 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !self.memory.walls.is_empty() {
             self.sort_walls(mode, step);
         }
+    }
+
+    /// Whether an arc that leaves a wall by the flow, or stands on it, falls from it at once by a
+    /// dense output whose slope at its start is not the flow's: the step is too long for a motion
+    /// this slow, and would lose the state behind the wall.
+    pub(super) fn contradicted(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        slope: &A::State,
+        Step { now, c, scale: h }: Step<'_, A::State>,
+    ) -> bool {
+        let Some(c1) = c.get(1) else { return false };
+        if (0..slope.len()).all(|i| c1.get(i) == h * slope.get(i)) {
+            return false;
+        }
+        let t = now.seconds();
+        for edge in self.automaton.edges(mode).iter() {
+            if self.memory.spent_as(edge).is_none() && self.memory.wall(edge).is_none() {
+                continue;
+            }
+            // What the guard rises by on the way of the flow and on that of the dense output; and
+            // whether a fall on the latter is beyond rounding.
+            let (rate, told, falls) = if self.automaton.about(edge).affine {
+                self.memory.stats.guards += 3;
+                let guard = |x: &A::State| self.automaton.guard(edge, t, x);
+                let constant = guard(&slope.with(|_| 0.0));
+                let told = less_constant(guard, constant, c1);
+                let rate = h * less_constant(guard, constant, slope);
+                (rate, told, told < 0.0 && !is_rounding(&guard, constant, c1, &mut self.memory.stats.guards))
+            } else {
+                self.memory.stats.guards += 5;
+                let s = SMALL * h;
+                let rise = |rate: &A::State, by: f64| {
+                    let at = |by: f64| x.with(|i| x.get(i) + by * rate.get(i));
+                    self.guard(edge, t + s, &at(by)) - self.guard(edge, t - s, &at(-by))
+                };
+                let (rate, told) = (rise(slope, s), rise(c1, SMALL));
+                let g = self.guard(edge, t, x);
+                (rate, told, told < 0.0 && -told > ROUNDINGS * self.guard_rounding(edge, t, x, g, x))
+            };
+            if rate > 0.0 && told < 0.5 * rate || falls && rate > 0.5 * told {
+                return true;
+            }
+        }
+        false
     }
 
     #[cold]

@@ -16,8 +16,9 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Span, Time, resolution};
 
-use super::crossing::{Near, OnStep, Step};
+use super::crossing::{OnStep, Range, Step};
 use super::exact::natural;
+use super::near::Near;
 use super::smooth::Arrival;
 use super::stepped::{SHORTEST, evened, remaining, searched, wrong_dimension};
 use super::{Advance, ArcEnd};
@@ -199,7 +200,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let limit = searched(h, remaining, since, now.after(remaining));
             let mut held = std::mem::take(&mut self.held);
             held.0.clear();
-            let found = self.first_crossing(mode, Step { now, c, scale: unit }, limit, first, Some(&mut held));
+            let found = self.first_crossing(
+                mode,
+                Step { now, c, scale: unit },
+                Range { limit, first, roughly: false },
+                Some(&mut held),
+            );
             self.held = held;
             let near = match &found {
                 Ok(Some(OnStep { crossing, near: Some(near), .. })) => near.moved(c, unit, crossing.root),
