@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use saltus_fit::{Fit, ReadOptions, Table};
 
 /// How the heights of release and of the rebound are called.
-const DROPS: [[&str; 2]; 20] = [
+const DROPS: [[&str; 2]; 41] = [
     ["drop height", "bounce height"],
     ["Fallhöhe", "Rücksprunghöhe"],
     ["hauteur de chute", "hauteur du rebond"],
@@ -28,10 +28,31 @@ const DROPS: [[&str; 2]; 20] = [
     ["下落高度", "反弹高度"],
     ["落下高さ", "はね返り高さ"],
     ["drop [H]", "rebound [h]"],
+    ["înălțimea de cădere", "înălțimea ricoșeului"],
+    ["ύψος πτώσης", "ύψος αναπήδησης"],
+    ["alçada de caiguda", "alçada del rebot"],
+    ["visina pada", "visina odskoka"],
+    ["višina padca", "višina odboja"],
+    ["висина пада", "висина одскока"],
+    ["височина на падане", "височина на отскок"],
+    ["kukkumiskõrgus", "põrkekõrgus"],
+    ["krišanas augstums", "atlēciena augstums"],
+    ["kritimo aukštis", "atšokimo aukštis"],
+    ["tinggi jatuh", "tinggi pantulan"],
+    ["chiều cao thả", "chiều cao nảy"],
+    ["ارتفاع السقوط", "ارتفاع الارتداد"],
+    ["גובה נפילה", "גובה ניתור"],
+    ["ارتفاع رهاسازی", "ارتفاع برگشت"],
+    ["गिरने की ऊँचाई", "उछाल की ऊँचाई"],
+    ["fallhæð", "hopphæð"],
+    ["erorketa altuera", "errebote altuera"],
+    ["valhoogte", "bonshoogte"],
+    ["uchder gollwng", "uchder adlam"],
+    ["釋放高度", "反彈高度"],
 ];
 
 /// How the number of a bounce and its height, or its time, are called.
-const SERIES: [[&str; 3]; 11] = [
+const SERIES: [[&str; 3]; 22] = [
     ["bounce", "height", "time"],
     ["Aufprall", "Höhe", "Zeit"],
     ["rebond", "hauteur", "temps"],
@@ -43,6 +64,17 @@ const SERIES: [[&str; 3]; 11] = [
     ["удар", "высота", "время"],
     ["次数", "高度", "时间"],
     ["バウンド", "高さ", "時間"],
+    ["ricoșeu", "înălțime", "timp"],
+    ["αναπήδηση", "ύψος", "χρόνος"],
+    ["odskok", "visina", "vrijeme"],
+    ["отскок", "височина", "време"],
+    ["põrge", "kõrgus", "aeg"],
+    ["atlēciens", "augstums", "laiks"],
+    ["atšokimas", "aukštis", "laikas"],
+    ["pantulan ke", "tinggi", "waktu"],
+    ["رقم الارتداد", "الارتفاع", "الزمن"],
+    ["מספר ניתור", "גובה", "זמן"],
+    ["Odraz č.", "Výška", "Čas"],
 ];
 
 fn cor(text: &str) -> f64 {

@@ -31,6 +31,14 @@ pub enum Doubt {
         /// What it says.
         text: String,
     },
+    /// A column whose words are not understood rises and falls as the readings do, and says
+    /// something else: it may be the one that holds them.
+    Rival {
+        /// The column that was left aside.
+        column: String,
+        /// The column that was read.
+        of: String,
+    },
     /// Releases and rebounds are in different units, and their numbers are those of one.
     Units {
         /// The column of the releases.

@@ -173,8 +173,12 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     columns.losses(metadata.drop);
     said::released(region, &columns)?;
     let averaged = said::averaged(region, &columns);
-    let doubts =
-        [said::unsaid(region, &columns, options), said::mixed_units(region, &columns), said::of_another_motion(region)];
+    let doubts = [
+        said::unsaid(region, &columns, options),
+        said::mixed_units(region, &columns),
+        said::of_another_motion(region),
+        said::rival(region, &columns, options),
+    ];
     // A sound is sampled far more finely than a contact is heard.
     let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
@@ -215,7 +219,12 @@ fn titled(region: &Region<'_>, table: &mut Table) {
         return;
     }
     let title = region.aside.iter().find(|aside| turned(&aside.name));
-    table.doubts.extend(title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) }));
+    let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
+    // Comments speak of much else: of one every word is understood.
+    let whole = |text: &str| Heading::parse(text).unknown.is_empty() && turned(text);
+    let comment = || region.view.grid.comments().take(said::ROWS).find(|(_, text)| whole(text));
+    let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
+    table.doubts.extend(title.or_else(comment));
 }
 
 /// No table was found: the header that comes nearest tells why.

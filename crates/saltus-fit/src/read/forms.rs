@@ -15,7 +15,8 @@ pub(super) fn table(text: &str) -> Option<String> {
 }
 
 /// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
-/// tabs between them; words may be read of some, `Ball: golf`. `None` if any is something else.
+/// tabs between them; words may be read of some, `Ball: golf`, and lines between may tell
+/// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     let line = |line: &str| {
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
@@ -30,27 +31,44 @@ fn listed(text: &str) -> Option<String> {
         };
         let arrow = || ARROWS.iter().find_map(|arrow| line.split_once(arrow)).filter(words);
         let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash).or_else(arrow);
-        let (name, values) = parted.or_else(|| measured(line))?;
+        let Some((name, values)) = parted.or_else(|| measured(line)) else {
+            return prose(line).then(|| (false, format!("#{line}")));
+        };
         let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();
         let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
         // Words are a remark.
         let read = values.iter().all(number);
+        // What commas part from the name above a list is its title, `golf ball, heights in cm:`.
+        if let Some((title, name)) = name.rsplit_once(',').filter(|_| read && values.len() >= LIST) {
+            return Some((true, format!("{title}\r{}\t{}", name.trim(), values.join("\t"))));
+        }
         let spelt = if read { format!("{}\t{}", name.trim(), values.join("\t")) } else { format!("#{line}") };
-        plain.then_some((read, spelt))
+        (plain || !read && prose(line)).then_some((read, spelt))
     };
     let lines = || text.lines().filter(|line| !line.trim().is_empty());
     let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
     let numbers = found.iter().filter(|(number, _)| *number).count();
     // A line by itself is a list of several.
     let several = found.iter().any(|(number, line)| *number && line.matches('\t').count() >= LIST);
-    if numbers < 2 && !(numbers == 1 && several) || 2 * numbers < found.len() {
+    let told = lines().filter(|line| prose(line)).count();
+    if numbers < 2 && !(numbers == 1 && several) || 2 * numbers < found.len() - told {
         return None;
     }
     // A blank line stays one, so that lines keep their numbers.
     let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// A line of so many words or more, of letters, tells something.
+const TOLD: usize = 5;
+
+/// Whether a line tells something, and measures nothing: no number in it has a unit.
+fn prose(line: &str) -> bool {
+    let words = line.split_whitespace().filter(|word| word.contains(char::is_alphabetic)).count();
+    let unit = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some());
+    words >= TOLD && !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
 }
 
 /// Lines of a name and a number, `1st 128`, below one that says of what and in which unit, `Height

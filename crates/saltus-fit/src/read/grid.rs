@@ -212,9 +212,9 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// The lines that are comments.
-    pub(super) fn comments(&self) -> impl Iterator<Item = &str> {
-        self.text.lines().filter_map(|line| line.strip_prefix('#'))
+    /// The lines that are comments, with their numbers.
+    pub(super) fn comments(&self) -> impl Iterator<Item = (u64, &str)> {
+        (1..).zip(self.text.lines()).filter_map(|(n, line)| Some((n, line.strip_prefix('#')?)))
     }
 
     /// The metadata comments: `# frame rate: 30`, `# gravity: 9.8 m/s^2`, `# sigma height: 1 cm`,

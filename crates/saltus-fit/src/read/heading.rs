@@ -389,12 +389,14 @@ impl Heading {
     /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is
     /// a preposition.
     fn take_unit_word(&mut self, words: &mut Vec<Word>) {
-        let is_unit = |w: &Word| match w.kind {
+        // Before a word that is known the inch is a preposition: `height in cm`, `time in air`.
+        let named = |n: usize| matches!(words.get(n), Some(Word { kind: Kind::Known(_), .. }));
+        let is_unit = |n: usize| match words[n].kind {
             Kind::Known([Atom::Unit(_)]) => true,
-            Kind::Known(_) => w.text == "in",
-            _ => Unit::parse(&w.text).is_some(),
+            Kind::Known(_) => words[n].text == "in" && !named(n + 1),
+            _ => Unit::parse(&words[n].text).is_some(),
         };
-        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(&words[n])).collect();
+        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(n)).collect();
         if found.len() > 1 && words[found[0]].text == "in" {
             found.remove(0);
         }

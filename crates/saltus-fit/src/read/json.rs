@@ -1,5 +1,7 @@
 //! Records in JSON as tables: a list of objects is a row each, a list a member is a column each.
 
+mod united;
+
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -123,7 +125,7 @@ pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
     }
     let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
     let mut values: Vec<Node> = values.collect::<Result<_, _>>().ok()?;
-    let whole = if values.len() == 1 { values.pop()? } else { Node::List(values) };
+    let whole = united::united(if values.len() == 1 { values.pop()? } else { Node::List(values) });
     let mut found = Vec::new();
     tables("", &whole, "", &mut found);
     (!found.is_empty()).then_some(found)

@@ -184,6 +184,9 @@ pub(super) fn layout(
     if numbered && rowed && (!released || constant) {
         return Ok(Layout::Numbered);
     }
+    if counted && let Some(error) = before_the_release(region, columns, rows) {
+        return Err(error);
+    }
     // Heights that fall below one another are the bounces of one drop.
     let stated = tracks.iter().all(|t| t.drop.is_some() && t.release.is_none());
     let keyed = columns.columns.iter().any(|c| matches!(c.kind, Kind::Trial | Kind::Setting));
@@ -201,6 +204,23 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// Bounces that count from the release on have no height before that: where the first comes as
+/// high as it was before, one of the two columns is something else.
+fn before_the_release(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+    let first = rows.rows.first().filter(|row| row.bounce == Some(0))?;
+    let number = |n: usize| match region.view.read(first.at, n) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let (before, column, _) = columns.values().find(|(n, _, v)| v.at == At::Release && number(*n).is_some())?;
+    let loses = |n: usize| number(n) < number(before);
+    let (_, height, _) = columns.values().find(|(n, _, v)| (v.what, v.at) == (What::Height, At::Row) && !loses(*n))?;
+    let (name, other) = (shown(&column.heading.text), shown(&height.heading.text));
+    let message = format!("bounce 0 is the release: which of '{name}' and '{other}' is its height?");
+    let help = format!("choose one by --column '{other}', or count drops of their own in a column 'trial'");
+    Some(region.header_error(before, message).question().help(help))
 }
 
 /// Whether a track holds the time from release to one contact, the second or a later one, and says

@@ -1,5 +1,7 @@
 //! Where in a text its tables lie: which lines name the columns, and which rows stand below them.
 
+use std::collections::BTreeSet;
+
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::columns::{LEVEL, of_samples};
@@ -53,6 +55,17 @@ impl<'a> Region<'a> {
 
     pub(super) fn cell(&self, row: usize, column: usize) -> &str {
         self.view.cell(row, column)
+    }
+
+    /// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them
+    /// left out.
+    pub(super) fn counts(&self, column: usize) -> bool {
+        let cells = self.rows.iter().map(|&row| self.cell(row, column)).filter(|cell| !cell.is_empty());
+        let numbers: Option<BTreeSet<usize>> = cells.map(|cell| cell.parse().ok()).collect();
+        numbers.is_some_and(|numbers| {
+            let first = numbers.first().copied().unwrap_or(2);
+            first < 2 && numbers.iter().enumerate().all(|(n, number)| *number == first + n)
+        })
     }
 
     /// An error of the table as a whole.
@@ -186,7 +199,7 @@ fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     let names = |n: usize| view.cells(n).filter(|cell| !cell.is_empty()).count();
     let titled =
         names(row) == 1 && !one[0].is_empty() && row + 1 < end && names_only(view, row + 1) && names(row + 1) > 1;
-    if of_units(&one) || titled {
+    if of_units(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
         return found;
     }
     let mut push = |names: Vec<String>, next: usize| {

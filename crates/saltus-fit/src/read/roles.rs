@@ -23,7 +23,7 @@ impl Columns {
         let trials = self.values().any(|(_, _, v)| !v.trial.is_empty() || !v.group.is_empty());
         let rows = self.values().any(|(_, c, v)| !v.or_trial && v.at != At::Release && (c.unit.is_some() || !trials));
         for (index, column) in self.columns.iter_mut().enumerate() {
-            if rows && column.unit.is_none() && column.value().is_some_and(|v| v.or_trial) && counts(region, index) {
+            if rows && column.unit.is_none() && column.value().is_some_and(|v| v.or_trial) && region.counts(index) {
                 column.kind = Kind::Trial;
             }
         }
@@ -45,6 +45,7 @@ impl Columns {
             match value.role {
                 Role::Max if tops && matches!(value.what, What::Time | What::Height) => self.read(*index),
                 Role::Reading => {}
+                Role::Mean | Role::Max | Role::Min if self.of_no_other(region, *index, &values) => self.read(*index),
                 Role::Mean if beside(value) => self.leave(*index, Why::Statistic),
                 Role::Mean => self.read(*index),
                 Role::Error => self.error(*index, value, &values),
@@ -84,6 +85,23 @@ impl Columns {
             }
         }
         Ok(())
+    }
+
+    /// Whether a mean, or an extreme, that stands in every row is none of what stands beside it: of
+    /// one number a row that is another, and of no rows that share it.
+    fn of_no_other(&self, region: &Region<'_>, index: usize, values: &[(usize, Value)]) -> bool {
+        let Some(own) = self.columns[index].value() else { return false };
+        let reads = |v: &Value| v.role == Role::Reading && v.what == own.what;
+        let mut beside = values.iter().filter(|(_, v)| reads(v) && (v.at == own.at || !v.trial.is_empty()));
+        let (Some((other, reading)), None) = (beside.next(), beside.next()) else { return false };
+        let number = |row: usize, column: usize| match region.view.read(row, column) {
+            Cell::Number(m) => Some(m.value.to_bits()),
+            _ => None,
+        };
+        let pairs: Vec<_> = region.rows.iter().map(|&row| (number(row, index), number(row, *other))).collect();
+        let apart: BTreeSet<_> = pairs.iter().map(|(sum, _)| *sum).collect();
+        let whole = pairs.len() > 1 && pairs.iter().all(|(sum, one)| sum.is_some() && one.is_some());
+        whole && !reading.position && apart.len() == pairs.len() && pairs.iter().any(|(sum, one)| sum != one)
     }
 
     /// Whether the numbers of a column rise from row to row.
@@ -246,10 +264,12 @@ impl Columns {
                 self.leave(index, Why::Other);
                 continue;
             }
+            let lost = || self.one(&Kind::Lost).filter(|&n| self.unit_of(region, n).is_some()).map(|_| What::Height);
             let neighbour = self
                 .values()
                 .find(|(n, _, v)| v.what != What::Unsaid && self.unit_of(region, *n).is_some())
-                .map(|(_, _, v)| v.what);
+                .map(|(_, _, v)| v.what)
+                .or_else(lost);
             let what = match (own, of_rows, options) {
                 (Some(Dimension::Length), _, _) => What::Height,
                 (Some(Dimension::Time), _, _) => What::Time,
@@ -357,17 +377,6 @@ impl Columns {
             }
         }
     }
-}
-
-/// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them left
-/// out.
-fn counts(region: &Region<'_>, index: usize) -> bool {
-    let cells = || region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
-    let numbers: Option<BTreeSet<usize>> = cells().map(|cell| cell.parse().ok()).collect();
-    numbers.is_some_and(|numbers| {
-        let first = numbers.first().copied().unwrap_or(2);
-        first < 2 && numbers.iter().enumerate().all(|(n, number)| *number == first + n)
-    })
 }
 
 /// Whether heights side by side are nearly as high as one another, and well below the release:

@@ -11,7 +11,7 @@ use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded, misspelt};
-use super::words::{Kind, split};
+use super::words::{Kind, Word, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::statistics::median;
@@ -108,7 +108,7 @@ const BEGINS: [&str; 27] = [
 ];
 
 /// More rows than these are not looked through for words, nor comments.
-const ROWS: usize = 200;
+pub(super) const ROWS: usize = 200;
 
 /// Whether a text says that something bounces, or is dropped.
 fn says(text: &str) -> bool {
@@ -141,7 +141,10 @@ fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
     let numbers = |cell: &str| cell.parse::<f64>().is_ok();
     let cells = (0..grid.rows().min(ROWS)).flat_map(move |row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
     let cells = cells.filter(move |cell| !cell.is_empty() && !numbers(cell));
-    cells.chain(grid.comments().take(ROWS)).chain(grid.tab).chain([region.label.as_str(), stem(grid.name)])
+    cells
+        .chain(grid.comments().take(ROWS).map(|(_, text)| text))
+        .chain(grid.tab)
+        .chain([region.label.as_str(), stem(grid.name)])
 }
 
 /// The doubt whether a table is of a bounce that speaks of another motion in which heights, or
@@ -178,6 +181,114 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(says))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
 }
+
+/// Fewer rows than these fall alike by chance.
+const ALIKE: usize = 3;
+
+/// Words that say that numbers were read, and of a ball.
+const PLAIN: [&str; 47] = [
+    "ball",
+    "balls",
+    "balle",
+    "ballon",
+    "bille",
+    "kugel",
+    "pelota",
+    "balon",
+    "bola",
+    "palla",
+    "pallina",
+    "pallone",
+    "bal",
+    "boll",
+    "bold",
+    "pallo",
+    "labda",
+    "мяча",
+    "experiment",
+    "experience",
+    "versuch",
+    "messung",
+    "mesure",
+    "misura",
+    "medida",
+    "measured",
+    "measurement",
+    "observed",
+    "actual",
+    "experimental",
+    "real",
+    "raw",
+    "reached",
+    "recorded",
+    "obs",
+    "meas",
+    "gemessen",
+    "gemessene",
+    "gemessener",
+    "mesuree",
+    "atteinte",
+    "misurata",
+    "medido",
+    "gemeten",
+    "uppmatt",
+    "malt",
+    "измеренная",
+];
+
+/// Whether a heading says that its heights are those of a bounce, or no more than that they are
+/// heights: it names nothing else, `height (cm)`, `rebound`, but not `door height`.
+fn plain(heading: &Heading) -> bool {
+    let of_bounces = [Atom::Rebound, Atom::Impact, Atom::After, Atom::Between].iter().any(|atom| heading.has(*atom));
+    let words = split(&heading.text);
+    let bare = |word: &Word| match word.kind {
+        // An article, or what stands between names.
+        Kind::Known([Atom::Filler]) => word.text.chars().count() < ARTICLE,
+        Kind::Known(atoms) => atoms.iter().all(|a| matches!(a, Atom::Height | Atom::Max | Atom::Mean | Atom::Unit(_))),
+        _ => true,
+    };
+    of_bounces || words.iter().any(|word| PLAIN.contains(&&*folded(&word.text))) || words.iter().all(bare)
+}
+
+/// Words that say nothing and are longer than this name something.
+const ARTICLE: usize = 4;
+
+/// The doubt whether the heights are those that were read, where they are not plainly the heights,
+/// and a column that is not understood is called one too, or rises and falls with them from row to
+/// row and says something else; `--column` answers it.
+pub(super) fn rival(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
+    if options.column.is_some() || region.given || region.chosen {
+        return None;
+    }
+    let number = |row: usize, n: usize| match region.view.read(row, n) {
+        Cell::Number(m) => Some(m.unit.or(columns.columns[n].unit).map_or(m.value, |unit| unit.si(m.value))),
+        _ => None,
+    };
+    let length = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
+    let unknown = |c: &Column| {
+        c.kind == Of::Aside && !c.heading.unknown.is_empty() && !c.heading.turns() && c.heading.value().is_some()
+    };
+    let aside = columns.columns.iter().enumerate().filter(|(_, c)| unknown(c) && length(c));
+    let read = |v: &Value| v.what == What::Height && v.role == Role::Reading && v.at != At::Release && !v.position;
+    let with = |(n, column): &(usize, &Column)| {
+        columns.values().filter(|(_, c, v)| read(v) && !plain(&c.heading)).find(|(of, _, _)| {
+            // `Ceiling height` beside `Light height`: named alike.
+            if column.heading.has(Atom::Height) {
+                return true;
+            }
+            let pairs = region.rows.iter().filter_map(|&row| Some((number(row, *n)?, number(row, *of)?)));
+            let pairs: Vec<(f64, f64)> = pairs.collect();
+            let alike = |w: &[(f64, f64)]| (w[1].0 - w[0].0) * (w[1].1 - w[0].1) > 0.0;
+            let other = pairs.iter().any(|(a, b)| (a / b - 1.0).abs() > SAME);
+            pairs.len() >= ALIKE && pairs.windows(2).all(alike) && other
+        })
+    };
+    let ((_, column), (_, of, _)) = aside.into_iter().find_map(|aside| Some((aside, with(&aside)?)))?;
+    Some(Doubt::Rival { column: shown(&column.heading.text), of: shown(&of.heading.text) })
+}
+
+/// Heights that differ by less are the same in another unit, and rounded.
+const SAME: f64 = 0.05;
 
 /// CORs of balls that people drop to see them bounce.
 const USUAL: std::ops::Range<f64> = 0.3..0.95;

@@ -190,11 +190,10 @@ impl Columns {
     /// The unit of the neighbours, if they have one and the numbers below it make sense: no rebound
     /// is higher than the release.
     fn adopted(&mut self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
-        let mut units: Vec<(usize, Unit)> = self
-            .values()
-            .filter(|(n, _, v)| *n != index && v.what.dimension() == Some(dimension))
-            .filter_map(|(n, _, _)| Some((n, self.unit_of(region, n)?)))
-            .collect();
+        let lost = self.one(&Kind::Lost).filter(|_| dimension == Dimension::Length);
+        let alike = self.values().filter(|(_, _, v)| v.what.dimension() == Some(dimension)).map(|(n, _, _)| n);
+        let mut units: Vec<(usize, Unit)> =
+            alike.chain(lost).filter(|n| *n != index).filter_map(|n| Some((n, self.unit_of(region, n)?))).collect();
         let (from, unit) = units.pop()?;
         if units.iter().any(|(_, other)| *other != unit) || unit.unscaled() {
             return None;

@@ -62,8 +62,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         let line = region.view.line(row, 0);
         let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
         let text = cells.join(" ");
-        let (fps, height, sigma, unit) =
-            (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text), unit(&text));
+        let (fps, height, sigma) = (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text));
         if fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
             found.length = found.length.or(Some((shown(&text), line)));
         }
@@ -74,10 +73,12 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         } else if let Some((value, _)) = sigma {
             found.sigma.0 = found.sigma.0.or(Some(value));
         }
-        match unit.map(|unit| unit.dimension) {
-            Some(Dimension::Time) => found.units.0 = found.units.0.or(unit),
-            Some(_) => found.units.1 = found.units.1.or(unit),
-            None => {}
+        for unit in Unit::listed(&text).unwrap_or_else(|| unit(&text).into_iter().collect()) {
+            match unit.dimension {
+                Dimension::Time => found.units.0 = found.units.0.or(Some(unit)),
+                Dimension::Length => found.units.1 = found.units.1.or(Some(unit)),
+                _ => {}
+            }
         }
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }

@@ -3,6 +3,7 @@
 use saltus_bounce::units::Quantity;
 
 use super::vocabulary::{Atom, folded, meanings};
+use super::words::{Kind, Word, split};
 
 /// What a unit measures, as far as a table of bounces asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -66,6 +67,33 @@ const JOULES: [(&str, f64); 8] = [
 /// By the international mile, m/s.
 const MILE_AN_HOUR: f64 = 0.447_04;
 
+/// What a unit is called.
+const UNITS: [&str; 18] = [
+    "unit",
+    "units",
+    "einheit",
+    "einheiten",
+    "unite",
+    "unites",
+    "unidad",
+    "unidades",
+    "unidade",
+    "unita",
+    "eenheid",
+    "eenheden",
+    "enhet",
+    "enhed",
+    "jednotka",
+    "jednostka",
+    "单位",
+    "単位",
+];
+
+/// Whether a name is that of a unit: `unit`, `height_unit`.
+pub(super) fn names_unit(name: &str) -> bool {
+    folded(name).split(|c: char| !c.is_alphanumeric()).any(|word| UNITS.contains(&word))
+}
+
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Unit {
@@ -117,6 +145,16 @@ impl Unit {
     /// Whether only ratios of its numbers have a meaning.
     pub(super) fn unscaled(self) -> bool {
         !matches!(self.scale, Scale::Si { .. })
+    }
+
+    /// The units that a line states of all numbers, `Unit: cm`, `Units = cm, s`; `None` if it states
+    /// none. Every word before them has to be understood.
+    pub(super) fn listed(line: &str) -> Option<Vec<Self>> {
+        let (name, units) = line.split_once([':', '=']).filter(|(name, _)| names_unit(name))?;
+        let said = |word: &Word| !matches!(word.kind, Kind::Unknown) || names_unit(&word.text);
+        let units = units.split([',', ';', '/', ' ']).filter(|word| !matches!(*word, "" | "and" | "und" | "et" | "y"));
+        let found: Vec<Self> = units.map(Self::parse).collect::<Option<_>>()?;
+        (!found.is_empty() && split(name).iter().all(said)).then_some(found)
     }
 
     /// The unit that a text is and nothing else: `cm`, `m/s`, `inches`, `%`.

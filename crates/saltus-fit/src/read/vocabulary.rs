@@ -60,6 +60,8 @@ pub(super) enum Atom {
     Note,
     /// The word says nothing.
     Filler,
+    /// A filler that readings are taken with, or by.
+    Tool,
     /// The word puts what follows in this place of an order.
     Ordinal(usize),
     /// The word is this unit.
@@ -109,6 +111,7 @@ impl Atom {
             "motion" => Self::Motion,
             "note" => Self::Note,
             "filler" => Self::Filler,
+            "tool" => Self::Tool,
             _ => match name.split_once(':')? {
                 ("ordinal", place) => Self::Ordinal(place.parse().ok()?),
                 ("unit", symbol) => Self::Unit(symbol),
@@ -218,44 +221,62 @@ pub(super) fn unparted(c: char) -> bool {
     matches!(c, '\u{3040}'..='\u{30ff}' | '\u{3400}'..='\u{9fff}')
 }
 
+/// Letters with marks, and the plain ones.
+const MARKED: [(&str, &str); 37] = [
+    ("àáâãäåąăāảạấầẩẫậắằẳẵặ", "a"),
+    ("çćčĉċ", "c"),
+    ("ďđð", "d"),
+    ("èéêëęěēėẻẽẹếềểễệ", "e"),
+    ("ğģĝ", "g"),
+    ("ìíîïıīįỉĩị", "i"),
+    ("ķ", "k"),
+    ("łļľĺ", "l"),
+    ("ñńňņ", "n"),
+    ("òóôõöøőōỏọốồổỗộơớờởỡợ", "o"),
+    ("řŕ", "r"),
+    ("śşšș", "s"),
+    ("ťţț", "t"),
+    ("ùúûüůűūųủũụưứừửữự", "u"),
+    ("ŵẅ", "w"),
+    ("ýỳỷỹỵŷÿ", "y"),
+    ("źżž", "z"),
+    ("ά", "α"),
+    ("έ", "ε"),
+    ("ή", "η"),
+    ("ί", "ι"),
+    ("ό", "ο"),
+    ("ύ", "υ"),
+    ("ώ", "ω"),
+    ("ё", "е"),
+    ("æ", "ae"),
+    ("œ", "oe"),
+    ("ß", "ss"),
+    ("þ", "th"),
+    ("أإآ", "ا"),
+    ("ة", "ه"),
+    ("ي", "ی"),
+    ("ك", "ک"),
+    ("ँ", "ं"),
+    // A subscript letter names a component of a vector.
+    ("ₓ", "x"),
+    ("ᵧ", "y"),
+    // Vowels of Arabic, and marks that turn the direction of writing.
+    ("\u{64b}\u{64c}\u{64d}\u{64e}\u{64f}\u{650}\u{651}\u{652}\u{200c}\u{200e}\u{200f}", ""),
+];
+
 /// A text in lower case, its accents and the marks of subscripts taken off: `Höhe h₁` is `hohe h1`.
 pub(super) fn folded(text: &str) -> String {
     let mut found = String::with_capacity(text.len());
     for c in text.chars().flat_map(char::to_lowercase) {
         match c {
-            'à' | 'á' | 'â' | 'ã' | 'ä' | 'å' | 'ą' | 'ă' => found.push('a'),
-            'ç' | 'ć' | 'č' => found.push('c'),
-            'ď' => found.push('d'),
-            'è' | 'é' | 'ê' | 'ë' | 'ę' | 'ě' => found.push('e'),
-            'ğ' => found.push('g'),
-            'ì' | 'í' | 'î' | 'ï' | 'ı' => found.push('i'),
-            'ł' => found.push('l'),
-            'ñ' | 'ń' | 'ň' => found.push('n'),
-            'ò' | 'ó' | 'ô' | 'õ' | 'ö' | 'ø' | 'ő' => found.push('o'),
-            'ř' => found.push('r'),
-            'ś' | 'ş' | 'š' | 'ș' => found.push('s'),
-            'ť' | 'ţ' | 'ț' => found.push('t'),
-            'ù' | 'ú' | 'û' | 'ü' | 'ů' | 'ű' => found.push('u'),
-            'ý' => found.push('y'),
-            'ź' | 'ż' | 'ž' => found.push('z'),
-            'ά' => found.push('α'),
-            'έ' => found.push('ε'),
-            'ή' => found.push('η'),
-            'ί' => found.push('ι'),
-            'ό' => found.push('ο'),
-            'ύ' => found.push('υ'),
-            'ώ' => found.push('ω'),
-            'ё' => found.push('е'),
-            'æ' => found.push_str("ae"),
-            'œ' => found.push_str("oe"),
-            'ß' => found.push_str("ss"),
+            '₀'..='₉' => found.extend(char::from_digit(u32::from(c) - u32::from('₀'), 10)),
             // Accents by themselves, as some programs write them.
             '\u{300}'..='\u{36f}' => {}
-            '₀'..='₉' => found.extend(char::from_digit(u32::from(c) - u32::from('₀'), 10)),
-            // A subscript letter names a component of a vector.
-            'ₓ' => found.push('x'),
-            'ᵧ' => found.push('y'),
-            c => found.push(c),
+            c if c.is_ascii() => found.push(c),
+            c => match MARKED.iter().find(|(marked, _)| marked.contains(c)) {
+                Some((_, plain)) => found.push_str(plain),
+                None => found.push(c),
+            },
         }
     }
     found

@@ -269,7 +269,8 @@ pub(super) fn numbers(words: &[Word]) -> Numbers {
     let mut found = Numbers::default();
     let of_trial = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && !w.is(Atom::Filler);
     let of_group = |w: &Word| w.is(Atom::Group) || w.is(Atom::Label);
-    let counts = |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler] | [Atom::Number]));
+    let counts =
+        |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler, ..] | [Atom::Number]));
     let mut group: Vec<&str> = Vec::new();
     let mut labelled = false;
     for (n, word) in words.iter().enumerate() {

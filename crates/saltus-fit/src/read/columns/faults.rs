@@ -81,6 +81,14 @@ impl Columns {
                 (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Event, Vec::new());
                 continue;
             }
+            // A name of a number that counts the rows is that, whatever else it says.
+            if let Meaning::Number { sure } = heading.meaning
+                && self.columns.iter().enumerate().all(|(n, c)| n == index || !matches!(c.kind, Kind::Number { .. }))
+                && region.counts(index)
+            {
+                (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Number { sure }, Vec::new());
+                continue;
+            }
             // Balls and surfaces tell rows apart, whatever stands above them.
             let labels = |cell: &&str| {
                 let named = Heading::parse(cell);

@@ -392,7 +392,9 @@ impl Columns {
             let named = |v: &Value| !(v.trial.is_empty() && v.group.is_empty());
             let apart = |v: &Value| named(v) == named(&value) || v.position == value.position;
             let same = |v: &Value| {
-                let alike = (&v.trial, &v.group) == (&value.trial, &value.group) || !apart(v);
+                // A name that only one of two bears does not tell them apart: `old height`, `height`.
+                let bare = v.group.is_empty() != value.group.is_empty();
+                let alike = (&v.trial, &v.group) == (&value.trial, &value.group) || bare || !apart(v);
                 (v.what, v.at) == (value.what, value.at) && alike
             };
             let Some((before, _)) = seen.iter().find(|(_, v)| same(v)) else {

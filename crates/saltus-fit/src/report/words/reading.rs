@@ -16,6 +16,10 @@ pub(super) fn words(doubt: &Doubt) -> String {
         Doubt::Motion { text } => {
             format!("'{text}' speaks of another motion than a bounce: are the readings those of a ball that bounces?")
         }
+        Doubt::Rival { column, of } => format!(
+            "'{column}' is not understood and was left aside, and its numbers fall as those of '{of}' do: which of the two were measured? Choose \
+             by --column '{of}' or --column '{column}'"
+        ),
         Doubt::Units { drop, rebound } => format!(
             "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \
              them wrong?"
