@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
 /// What may be called a height and is none that the ball reached, or that of another way to read it.
-const OTHERS: [&str; 71] = [
+const OTHERS: [&str; 73] = [
     "target height",
     "ideal height",
     "expected height",
@@ -36,6 +36,8 @@ const OTHERS: [&str; 71] = [
     "door height",
     "box height",
     "old height",
+    "partner A",
+    "light",
     "reference height",
     "standard height",
     "required height",
@@ -96,7 +98,7 @@ fn wrong(report: &Report, e: f64, near: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn of_two_heights_the_wrong_one_is_not_trusted(

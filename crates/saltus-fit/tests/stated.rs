@@ -41,6 +41,38 @@ proptest! {
         prop_assert!((cor - e).abs() < 2e-3, "{}", text);
     }
 
+    /// Rows of an object or of a list of lists are rows, by the names that stand beside them.
+    #[test]
+    fn rows_of_records_may_be_called_by_numbers(e in 0.5f64..0.85, shape in 0..4usize) {
+        let rows = |mark: &str, of: &dyn Fn(usize, &str) -> String| {
+            series(e).iter().enumerate().map(|(n, h)| of(n, h)).collect::<Vec<_>>().join(mark)
+        };
+        let text = match shape {
+            0 => format!("{{\"bounces\": {{{}}}}}", rows(",", &|n, h| format!("\"{n}\": {{\"height_cm\": {h}}}"))),
+            1 => format!("{{\"bounce_height_cm\": {{{}}}}}", rows(",", &|n, h| format!("\"{n}\": {h}"))),
+            2 => format!("{{\"columns\": [\"bounce\", \"height_cm\"], \"data\": [{}]}}", rows(",", &|n, h| format!("[{n}, {h}]"))),
+            _ => format!("[[\"bounce\", \"height (cm)\"], {}]", rows(",", &|n, h| format!("[{n}, {h}]"))),
+        };
+        prop_assert!((trusted(&text) - e).abs() < 2e-3, "{}", text);
+    }
+
+    /// A comment right above numbers that names all of their columns is their header.
+    #[test]
+    fn a_comment_may_be_the_header(e in 0.5f64..0.85, mark in prop::sample::select(vec![",", ";", " ", "\t"])) {
+        let rows: String = series(e).iter().enumerate().map(|(n, h)| format!("{n}{mark}{h}\n")).collect();
+        let text = format!("# filmed by Zorb\n# bounce{mark}height_cm\n{rows}");
+        prop_assert!((trusted(&text) - e).abs() < 2e-3, "{}", text);
+    }
+
+    /// A table of something else before, or behind, that of the readings is left aside.
+    #[test]
+    fn a_table_of_materials_is_left_aside(e in 0.5f64..0.85, first: bool) {
+        let rows: String = series(e).iter().enumerate().map(|(n, h)| format!("| {n} | {h} |\n")).collect();
+        let (items, data) = ("| Item | Quantity |\n|---|---|\n| Ball | 1 |\n| Stick | 2 |\n", format!("| Bounce | Height (cm) |\n|---|---|\n{rows}"));
+        let text = if first { format!("{items}\n{data}") } else { format!("{data}\n{items}") };
+        prop_assert!((trusted(&text) - e).abs() < 2e-3, "{}", text);
+    }
+
     /// A line that states units and nothing else is no header, and holds for all numbers.
     #[test]
     fn a_line_of_units_is_for_what_bears_none(e in 0.5f64..0.85, line in prop::sample::select(vec!["Unit: cm", "Units: cm, s", "Einheit: cm", "units = cm"])) {
@@ -57,6 +89,8 @@ proptest! {
         let asked = "\nIs that what a ball of grade 9 should do? Thanks, Tom\n";
         let text = format!("{told}{lines}{asked}");
         prop_assert!((trusted(&text) - e).abs() < 4e-3, "{}", text);
+        let typed: String = series(e).iter().enumerate().map(|(n, h)| format!("bounce {n} ~{h}cm (hard to see)\n")).collect();
+        prop_assert!((trusted(&typed) - e).abs() < 4e-3, "{}", typed);
         let titled = format!("golf ball dropped on the kitchen tiles, heights in cm: {}\n", series(e).join(", "));
         prop_assert!((trusted(&titled) - e).abs() < 4e-3, "{}", titled);
     }
@@ -96,6 +130,13 @@ proptest! {
         let text = format!("drop (cm),rebound (cm),mean rebound (cm)\n{repeats}");
         prop_assert!((trusted(&text) - e).abs() < 4e-3, "{}", text);
     }
+}
+
+#[test]
+fn moments_stand_below_what_happens() {
+    let times: String = [0.0, 0.8, 1.44, 1.952, 2.3616].map(|t| format!("{:.3} s\n", 1.5 + t)).concat();
+    let cor = fit(&format!("Ball hits the floor at:\n{times}")).cor().expect("a COR").value;
+    assert!((cor - 0.8).abs() < 3e-3, "{cor}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::aside::{LeftAside, Part as Kind, Why};
 use super::columns::Columns;
 use super::foreign;
 use super::grid::{Grid, View};
-use super::heading::Heading;
+use super::heading::{Heading, What};
 use super::json;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
@@ -96,7 +96,7 @@ fn joined_up<'a>(
         stated.push(Note::Rate { rate: fps, line }.into());
     }
     filmed(&mut regions, metadata.frame_rate);
-    let (mut parts, mut failed, mut aside) = (Vec::new(), None, Vec::new());
+    let (mut parts, mut failed, mut nothing, mut aside) = (Vec::new(), None, None, Vec::new());
     for (n, region) in regions.iter_mut().enumerate() {
         let title = &titles[n];
         let own = Metadata {
@@ -115,16 +115,17 @@ fn joined_up<'a>(
                 table.doubts.extend(length.map(|(text, line)| Doubt::Length { text, line }));
                 parts.push((region.label.clone(), table));
             }
-            // A table below another, of something else.
-            Err(error) if n > 0 && error.is_of_nothing() => {
+            // A table beside another, of something else.
+            Err(error) if n > 0 && error.is_of_nothing() || !measures(region) => {
                 let text = region.header.join(" ");
                 let left = LeftAside::new(Kind::Text, super::grid::shown(&text), Why::NoTable);
                 aside.push(left.at(grid.line(region.header_row)));
+                nothing = nothing.or(Some(error));
             }
             Err(error) => failed = failed.or(Some(error)),
         }
     }
-    if let Some(error) = failed {
+    if let Some(error) = failed.or(nothing.filter(|_| parts.is_empty())) {
         return Err(error);
     }
     named(&regions, &titles, &mut parts);
@@ -138,6 +139,12 @@ fn joined_up<'a>(
         table.notes.push(Note::Still { tracks: still }.into());
     }
     Ok(table)
+}
+
+/// Whether a heading of a table names a quantity or a unit: `Item, Quantity` are of anything.
+fn measures(region: &Region<'_>) -> bool {
+    let named = |h: &Heading| h.unit.is_some() || h.value().is_some_and(|v| v.what != What::Unsaid);
+    region.header.iter().any(|name| named(&Heading::parse(name)))
 }
 
 /// What tables of one text are called: by themselves, by the lines above them, or by their number;

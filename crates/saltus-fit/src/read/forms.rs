@@ -19,6 +19,7 @@ pub(super) fn table(text: &str) -> Option<String> {
 /// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     let line = |line: &str| {
+        let line = remarked(line);
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         // Words by themselves are a title.
@@ -38,6 +39,7 @@ fn listed(text: &str) -> Option<String> {
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();
         let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
         // Words are a remark.
+        let name = name.trim_end().trim_end_matches(['~', '≈']);
         let read = values.iter().all(number);
         // What commas part from the name above a list is its title, `golf ball, heights in cm:`.
         if let Some((title, name)) = name.rsplit_once(',').filter(|_| read && values.len() >= LIST) {
@@ -59,6 +61,13 @@ fn listed(text: &str) -> Option<String> {
     let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// A line without the remark in brackets that it ends in: `64 cm (hard to see)`.
+fn remarked(line: &str) -> &str {
+    let remark = |inside: &str| inside.contains(' ') && !inside.contains(|c: char| c.is_ascii_digit());
+    let parts = line.trim_end().strip_suffix(')').and_then(|line| line.rsplit_once('('));
+    parts.filter(|(_, inside)| remark(inside)).map_or(line, |(line, _)| line.trim_end())
 }
 
 /// A line of so many words or more, of letters, tells something.

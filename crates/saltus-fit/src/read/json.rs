@@ -6,6 +6,7 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::heading::{Heading, Meaning};
 use super::workbook::{Content, Part};
 
 /// A longer text is none of records; a value of it takes some ten times its length, bytes.
@@ -53,6 +54,30 @@ impl Node {
         let Self::List(list) = self else { return None };
         list.iter().map(Self::cell).collect()
     }
+}
+
+/// What is called by numbers, `{"0": {"height_m": 1}, "1": {"height_m": 0.64}}`, as rows that bear
+/// them; `name` is that of the whole.
+fn numbered(name: &str, node: Node) -> Node {
+    let Node::Record(members) = node else { return node };
+    let numbers = members.len() > 1 && members.iter().all(|(name, _)| name.parse::<u32>().is_ok());
+    let cells =
+        |node: &Node| !node.members().is_empty() && node.members().iter().all(|(_, cell)| cell.cell().is_some());
+    let flat = |node: &Node| node.cell().is_some() || cells(node);
+    let counted = matches!(Heading::parse(name).meaning, Meaning::Number { .. } | Meaning::Trial);
+    if !numbers || !members.iter().all(|(_, node)| flat(node)) {
+        return Node::Record(members);
+    }
+    let row = |(number, node): (String, Node)| {
+        let count = if counted && node.cell().is_none() { name } else { "n" };
+        let mut row = vec![(count.to_owned(), Node::Cell(number))];
+        match node {
+            Node::Record(members) => row.extend(members),
+            cell => row.push((name.to_owned(), cell)),
+        }
+        Node::Record(row)
+    };
+    Node::List(members.into_iter().map(row).collect())
 }
 
 impl<'de> Deserialize<'de> for Node {
@@ -111,7 +136,9 @@ impl<'de> Visitor<'de> for Reader {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Node, A::Error> {
         let mut found = Vec::new();
         while let Some((name, node)) = map.next_entry::<String, Node>()? {
-            found.push((plain(&name), node));
+            let name = plain(&name);
+            let node = numbered(&name, node);
+            found.push((name, node));
         }
         Ok(Node::Record(found))
     }
@@ -125,7 +152,8 @@ pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
     }
     let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
     let mut values: Vec<Node> = values.collect::<Result<_, _>>().ok()?;
-    let whole = united::united(if values.len() == 1 { values.pop()? } else { Node::List(values) });
+    let whole = numbered("", if values.len() == 1 { values.pop()? } else { Node::List(values) });
+    let whole = united::united(whole);
     let mut found = Vec::new();
     tables("", &whole, "", &mut found);
     (!found.is_empty()).then_some(found)
@@ -143,6 +171,9 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     };
     if let Some(records) = node.records() {
         return push(rows(&records));
+    }
+    if let Some(cells) = named_rows(node) {
+        return push(Some(cells));
     }
     let columns = node.members().iter().filter_map(|(name, list)| Some((name.as_str(), list.cells()?)));
     let columns: Vec<(&str, Vec<&str>)> = columns.filter(|(_, cells)| !cells.is_empty()).collect();
@@ -162,6 +193,27 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }
+}
+
+/// Lists of as many cells each as rows, below the names that a list beside them has, or the first
+/// of them: `{"columns": ["t_s", "y_m"], "data": [[0, 1], [0.1, 0.95]]}`.
+fn named_rows(node: &Node) -> Option<String> {
+    let of = |node: &Node| -> Option<Vec<Vec<String>>> {
+        let Node::List(list) = node else { return None };
+        let owned = |row: Vec<&str>| row.into_iter().map(str::to_owned).collect::<Vec<_>>();
+        let rows: Vec<Vec<String>> = list.iter().map(|row| row.cells().map(owned)).collect::<Option<_>>()?;
+        let width = rows.first()?.len();
+        (rows.len() > 1 && (2..COLUMNS).contains(&width) && rows.iter().all(|row| row.len() == width)).then_some(rows)
+    };
+    let words = |row: &[String]| row.iter().all(|cell| cell.contains(char::is_alphabetic));
+    let owned = |node: &Node| node.cells().map(|row| row.into_iter().map(str::to_owned).collect::<Vec<_>>());
+    let rows = node.members().iter().find_map(|(_, node)| of(node)).or_else(|| of(node))?;
+    let beside = node.members().iter().filter_map(|(_, node)| owned(node));
+    let mut names = beside.filter(|names| names.len() == rows[0].len() && words(names));
+    let lines = names.next().filter(|_| !words(&rows[0])).into_iter().chain(rows);
+    let mut lines = lines.peekable();
+    lines.peek().filter(|first| words(first))?;
+    Some(lines.map(|row| row.join("\t") + "\n").collect())
 }
 
 /// Records as rows below all of their names; `None` where these are too many, or hardly any record

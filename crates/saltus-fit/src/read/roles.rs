@@ -101,7 +101,9 @@ impl Columns {
         let pairs: Vec<_> = region.rows.iter().map(|&row| (number(row, index), number(row, *other))).collect();
         let apart: BTreeSet<_> = pairs.iter().map(|(sum, _)| *sum).collect();
         let whole = pairs.len() > 1 && pairs.iter().all(|(sum, one)| sum.is_some() && one.is_some());
-        whole && !reading.position && apart.len() == pairs.len() && pairs.iter().any(|(sum, one)| sum != one)
+        // Places of a film have tops.
+        let filmed = reading.position && (self.any(What::Time, Some(At::Row)) || self.one(&Kind::Frame).is_some());
+        whole && !filmed && apart.len() == pairs.len() && pairs.iter().any(|(sum, one)| sum != one)
     }
 
     /// Whether the numbers of a column rise from row to row.

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::cell::{self, Cell};
 use super::forms;
+use super::heading::Heading;
 use crate::error::TableError;
 
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
@@ -35,6 +36,10 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         counted.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
         Cow::Owned(text)
     };
+    let text = match names_in_comment(&text) {
+        Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
+        None => text,
+    };
     let text = if text.len() > TYPED { text } else { forms::table(&text).map_or(text, Cow::Owned) };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
@@ -52,6 +57,34 @@ fn numeros(text: &str) -> Vec<usize> {
     let mut found: Vec<usize> = first.into_iter().chain(starts).filter(cell).collect();
     found.dedup();
     found
+}
+
+/// Where the `#` stands of a comment that names the columns of the numbers below it, `# t (s)  y
+/// (m)`: as many names as they have, each of them understood.
+fn names_in_comment(text: &str) -> Option<usize> {
+    let (mut at, mut comment) = (0, None);
+    let first = text.split_inclusive('\n').find(|line| {
+        if line.starts_with('#') {
+            comment = Some((at, line.trim_start_matches('#')));
+        }
+        at += line.len();
+        !line.starts_with('#') && !line.trim().is_empty()
+    })?;
+    let (at, comment) = comment?;
+    let cells = |line: &'_ str, mark: &str| -> Vec<String> {
+        line.split(mark).map(str::trim).filter(|cell| !cell.is_empty()).map(str::to_owned).collect()
+    };
+    let numbers = |mark: &str| {
+        let found = cells(first, mark);
+        Some(found.len()).filter(|count| *count > 1 && found.iter().all(|cell| cell.parse::<f64>().is_ok()))
+    };
+    let (mark, count) = [",", ";", "\t", "  ", " "].iter().find_map(|mark| Some((*mark, numbers(mark)?)))?;
+    let names = |mark: &str| {
+        let names = cells(comment, mark);
+        names.len() == count && names.iter().all(|name| Heading::parse(name).understood())
+    };
+    // Names that blanks part may hold one.
+    (names(mark) || mark == " " && names("  ")).then_some(at)
 }
 
 /// A text whose columns are made by runs of spaces, with a tab at the end of each run in their

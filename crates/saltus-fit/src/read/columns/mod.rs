@@ -391,13 +391,17 @@ impl Columns {
             // ball that only one of them bears.
             let named = |v: &Value| !(v.trial.is_empty() && v.group.is_empty());
             let apart = |v: &Value| named(v) == named(&value) || v.position == value.position;
-            let same = |v: &Value| {
-                // A name that only one of two bears does not tell them apart: `old height`, `height`.
-                let bare = v.group.is_empty() != value.group.is_empty();
+            let same = |n: usize, v: &Value| {
+                // A name that only one of two bears does not tell them apart, be it of a ball or of who
+                // read it: `old height`, `height`.
+                let person =
+                    |n: usize| self.columns[n].heading.has(Atom::Repeat) && !self.columns[n].heading.has(Atom::Trial);
+                let read_by = (v.trial.is_empty() != value.trial.is_empty()) && (person(n) || person(index));
+                let bare = v.group.is_empty() != value.group.is_empty() || read_by;
                 let alike = (&v.trial, &v.group) == (&value.trial, &value.group) || bare || !apart(v);
                 (v.what, v.at) == (value.what, value.at) && alike
             };
-            let Some((before, _)) = seen.iter().find(|(_, v)| same(v)) else {
+            let Some((before, _)) = seen.iter().find(|(n, v)| same(*n, v)) else {
                 seen.push((index, value));
                 continue;
             };

@@ -254,7 +254,14 @@ impl Columns {
     /// readings.
     pub(super) fn measured(&mut self, region: &Region<'_>) {
         for column in 0..self.columns.len() {
-            let key = matches!(self.columns[column].kind, Kind::Number { .. } | Kind::Trial | Kind::Event);
+            let heading = &self.columns[column].heading;
+            let met = || heading.has(Atom::Impact) || heading.has(Atom::Rebound);
+            let key = match self.columns[column].kind {
+                Kind::Number { .. } | Kind::Trial | Kind::Event => true,
+                // `Ball hits the floor at`.
+                Kind::Setting => met(),
+                _ => false,
+            };
             let cells: Vec<Cell> = region.rows.iter().map(|&row| region.view.read(row, column)).collect();
             let unit = |cell: &Cell| match cell {
                 Cell::Number(m) => m.unit.filter(|unit| unit.scale != Scale::Percent).map(|unit| unit.dimension),
