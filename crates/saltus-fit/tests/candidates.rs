@@ -6,7 +6,7 @@
 use proptest::prelude::*;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
-/// What may be called a height and is none that the ball reached, or that of another way to read it.
+/// What may be called a height and is none that the ball reached, or is that of another reading.
 const OTHERS: [&str; 73] = [
     "target height",
     "ideal height",

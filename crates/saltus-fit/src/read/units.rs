@@ -147,7 +147,7 @@ impl Unit {
         !matches!(self.scale, Scale::Si { .. })
     }
 
-    /// The units that a line states of all numbers, `Unit: cm`, `Units = cm, s`; `None` if it states
+    /// The units that a line states of all numbers, `Unit: cm`, `Units = cm, s`; none if it states
     /// none. Every word before them has to be understood.
     pub(super) fn listed(line: &str) -> Option<Vec<Self>> {
         let (name, units) = line.split_once([':', '=']).filter(|(name, _)| names_unit(name))?;

@@ -392,8 +392,8 @@ impl Columns {
             let named = |v: &Value| !(v.trial.is_empty() && v.group.is_empty());
             let apart = |v: &Value| named(v) == named(&value) || v.position == value.position;
             let same = |n: usize, v: &Value| {
-                // A name that only one of two bears does not tell them apart, be it of a ball or of who
-                // read it: `old height`, `height`.
+                // A name that one of two bears, of a ball or of who read it, does not tell them
+                // apart: `old height`, `height`.
                 let person =
                     |n: usize| self.columns[n].heading.has(Atom::Repeat) && !self.columns[n].heading.has(Atom::Trial);
                 let read_by = (v.trial.is_empty() != value.trial.is_empty()) && (person(n) || person(index));
