@@ -50,8 +50,8 @@ impl SceneError {
             column: 1 + count(&source[first..start]),
             width: count(&source[start..end]).max(1),
             text: String::from_utf8_lossy(&source[first..last]).into_owned(),
-            message: fault.message,
-            help: fault.help,
+            message: legible(&fault.message),
+            help: fault.help.as_deref().map(legible),
         }
     }
 
@@ -161,6 +161,23 @@ impl Fault {
         };
         Self { span, message, help }
     }
+}
+
+/// The text with numbers of more digits than anybody counts by powers of ten.
+pub(super) fn legible(text: &str) -> String {
+    const MOST: usize = 21;
+    let digit = |c: char| c.is_ascii_digit() || c == '.';
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(digit) {
+        let (before, from) = rest.split_at(at);
+        let (number, after) = from.split_at(from.find(|c| !digit(c)).unwrap_or(from.len()));
+        let value = number.parse::<f64>().ok().filter(|_| number.len() > MOST);
+        shown.push_str(before);
+        shown.push_str(&value.map_or_else(|| number.to_owned(), |value| format!("{value:e}")));
+        rest = after;
+    }
+    shown + rest
 }
 
 /// At most six significant digits.

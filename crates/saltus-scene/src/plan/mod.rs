@@ -465,9 +465,9 @@ impl From<saltus::Error> for RunError {
             _ => return Self(error.to_string()),
         };
         let (t, mode) = (error.t(), error.mode());
-        Self(format!(
+        Self(super::error::legible(&format!(
             "the run breaks off at {t} s, in mode {mode}: {what}; numbers of the scene are too far apart: bring masses, sizes, speeds, drags and stiffnesses nearer to each other"
-        ))
+        )))
     }
 }
 
