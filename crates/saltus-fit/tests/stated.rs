@@ -98,12 +98,13 @@ proptest! {
     /// A comment of which every word is understood says what a title says.
     #[test]
     fn simulated_readings_are_no_readings(
-        e in 0.5f64..0.85, mark in prop::sample::select(vec!["# ", ""]), said in prop::sample::select(vec!["simulated heights", "expected values", "output of the simulation", "theoretical bounce"]),
+        e in 0.5f64..0.85, mark in prop::sample::select(vec!["# ", ""]), said in prop::sample::select(vec!["simulated heights", "expected values", "output of the simulation", "theoretical bounce", "readings: simulated"]),
     ) {
         let rows: String = series(e).iter().enumerate().map(|(n, h)| format!("{n},{h}\n")).collect();
         let report = fit(&format!("{mark}{said}\nbounce,height (cm)\n{rows}"));
         prop_assert!(report.verdict() == Verdict::Doubtful && report.reason().contains("were the readings below it measured"), "{}", report);
-        let report = fit(&format!("# filmed by Zorb, who calls the expected scatter small\nbounce,height (cm)\n{rows}"));
+        let stated = "# filmed by Zorb, who calls the expected scatter small\n# gravity: 9.8 m/s^2\n# frame rate: 30\n";
+        let report = fit(&format!("{stated}bounce,height (cm)\n{rows}"));
         prop_assert!(report.verdict() == Verdict::Trusted, "{}", report);
     }
 

@@ -227,8 +227,12 @@ fn titled(region: &Region<'_>, table: &mut Table) {
     }
     let title = region.aside.iter().find(|aside| turned(&aside.name));
     let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
-    // Comments speak of much else: of one every word is understood.
-    let whole = |text: &str| Heading::parse(text).unknown.is_empty() && turned(text);
+    // Comments speak of much else: of one every word is understood, and what it states of
+    // something by name (`frame rate: 30`) is of that alone.
+    let whole = |text: &str| {
+        let said = text.split_once(':').map_or(text, |(_, said)| said);
+        Heading::parse(said).unknown.is_empty() && turned(said)
+    };
     let comment = || region.view.grid.comments().take(said::ROWS).find(|(_, text)| whole(text));
     let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
     table.doubts.extend(title.or_else(comment));

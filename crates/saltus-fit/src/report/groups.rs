@@ -4,7 +4,7 @@
 use std::fmt::{self, Formatter};
 
 use super::contract::{Difference, Group, Report};
-use super::lines::{capital, paragraph, section};
+use super::lines::{paragraph, section, sentence};
 use super::numbers::{digits, pair};
 use crate::finding::{Finding, FindingKind};
 use crate::read::Table;
@@ -129,7 +129,7 @@ pub(super) fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     }
     for group in &report.groups {
         writeln!(f, "\n{}", group.name)?;
-        paragraph(f, 2, 2, &format!("{}.", capital(group.report.reason())))?;
+        paragraph(f, 2, 2, &sentence(group.report.reason()))?;
         section(f, "  Left out or mended", group.report.repairs())?;
         section(f, "  Keep in mind", group.report.warnings())?;
     }

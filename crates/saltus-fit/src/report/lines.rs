@@ -23,6 +23,12 @@ pub(super) fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// A text as a sentence: with a capital first letter, and a full stop where it does not ask.
+pub(super) fn sentence(text: &str) -> String {
+    let end = if text.ends_with('?') { "" } else { "." };
+    format!("{}{end}", capital(text))
+}
+
 /// Writes a paragraph broken at spaces, with its own indent for the first line.
 pub(super) fn paragraph(f: &mut Formatter<'_>, first: usize, rest: usize, text: &str) -> fmt::Result {
     let mut line = " ".repeat(first);

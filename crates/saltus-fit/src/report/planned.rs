@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::lines::{capital, paragraph};
+use super::lines::{paragraph, sentence};
 use super::plan::{Plan, Planned};
 use super::words::{brings, every_bounce, way, widening};
 
@@ -27,7 +27,7 @@ impl Display for Plan {
         if !named.is_empty() {
             writeln!(f, "\nWhat more drops do not remove")?;
             for why in named {
-                paragraph(f, 2, 4, &format!("- {}.", capital(&why)))?;
+                paragraph(f, 2, 4, &format!("- {}", sentence(&why)))?;
             }
         }
         writeln!(f)?;

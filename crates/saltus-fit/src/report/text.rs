@@ -5,7 +5,7 @@ use std::fmt::{self, Formatter};
 
 use super::contract::Report;
 use super::groups;
-use super::lines::{capital, paragraph, section};
+use super::lines::{capital, paragraph, section, sentence};
 use super::numbers::{digits, duration, figures, length, measured, number, pair, signed};
 use super::recordings;
 use super::words::{chance, method_short, short, widening};
@@ -42,7 +42,7 @@ impl fmt::Display for Report {
 /// Writes the report.
 fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     writeln!(f, "{}: {}", report.table, report.verdict.to_string().to_uppercase())?;
-    paragraph(f, 2, 2, &format!("{}.", capital(&report.reason)))?;
+    paragraph(f, 2, 2, &sentence(&report.reason))?;
     if !report.groups.is_empty() {
         return groups::write(report, f);
     }
