@@ -4,9 +4,9 @@
 //! Each is `None` where the report has nothing that it would show.
 //!
 //! ```
-//! use saltus_fit::{Fit, Table};
+//! use saltus_fit::{Fit, ReadOptions, Table};
 //! let text = b"bounce,height_cm\n0,100\n1,36\n2,13\n3,4.7\n";
-//! let report = Fit::new().run(&Table::parse("drop.csv", text)?)?;
+//! let report = Fit::new().run(&Table::parse("drop.csv", text, &ReadOptions::default())?)?;
 //! let picture = saltus_plot::fit::motion(&report).ok_or("nothing to draw")??;
 //! assert!(picture.starts_with("<svg"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -28,7 +28,7 @@
 //!
 //! // Samples every 10 ms, for a spreadsheet; `record.json(..)` for programs.
 //! let csv = record.table(Some(Sampling::Every(0.01)))?.csv();
-//! assert!(csv.starts_with("t,"));
+//! assert!(csv.starts_with("time_s,"));
 //!
 //! // Keys for animators, 24 frames a second, within 0.1 mm; `glb.bytes` is the file.
 //! let stage = Staging::new(Frames::new("24".parse()?)).stage(&record)?;
