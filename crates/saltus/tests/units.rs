@@ -67,10 +67,9 @@ type Motion = fn(f64, Units, usize) -> Shown;
 /// The times and states of the jumps and of the end, in units of one, or what the run failed for.
 type Shown = Result<Vec<(f64, Vector2<f64>)>, ErrorKind>;
 
-fn shown<M: Copy + PartialEq, E: Copy + PartialEq>(
-    run: Result<Run<M, E, Vector2<f64>>, Box<Failed<M, E, Vector2<f64>>>>,
-    Units { state, .. }: Units,
-) -> Shown {
+type Outcome<M, E> = Result<Run<M, E, Vector2<f64>>, Box<Failed<M, E, Vector2<f64>>>>;
+
+fn shown<M: Copy + PartialEq, E: Copy + PartialEq>(run: Outcome<M, E>, Units { state, .. }: Units) -> Shown {
     let run = run.map_err(|failed| failed.error.kind())?;
     let jumps = run.trajectory.jumps().iter().map(|jump| (jump.t(), jump.after / state));
     Ok(jumps.chain([(run.end.time.seconds(), run.end.state / state)]).collect())
