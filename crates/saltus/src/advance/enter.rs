@@ -1,7 +1,6 @@
 //! What a mode's guards say as it is entered.
 
 use std::cell::Cell;
-use std::f64::consts::SQRT_2;
 use std::mem;
 
 use crate::automaton::refusal::guard_undefined;
@@ -247,11 +246,11 @@ fn is_moved<S: State>(x: &S, y: &S) -> bool {
     x.len() != y.len() || (0..x.len()).any(|i| (x.get(i) - y.get(i)).abs() > NOTHING * x.get(i).abs())
 }
 
-/// How far coordinate `i` is nudged beside the others, from 0 to 1: no two alike, so that a guard
+/// How far coordinate `i` is nudged beside the others, from 1 to 2: no two alike, so that a guard
 /// of their difference is nudged as well.
 #[inline]
 fn weight(i: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss)]
-    let turns = (i + 1) as f64 * SQRT_2;
-    turns.fract()
+    // What multiples of the golden ratio have behind the point, which lies as far apart as it can.
+    let turns = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    f64::from_bits(1.0_f64.to_bits() | turns >> 12)
 }
