@@ -16,7 +16,7 @@ use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::ticks::Due;
 use crate::time::{Span, Time};
-use crate::zeno::{Cascade, Contraction};
+use crate::zeno::{Ahead, Cascade, Contraction};
 
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody
 /// else, and for runs that must survive a pause.
@@ -68,10 +68,9 @@ struct Crossed<A: Automaton> {
 /// What comes after an arc and the jump at its end.
 enum Next<A: Automaton> {
     Arc,
-    /// Infinitely many jumps in the time that remains; not `certified` where rounding hides
-    /// whether.
+    /// Infinitely many jumps up to a limit `ahead`; not `certified` where rounding hides whether.
     Limit {
-        remaining: f64,
+        ahead: Ahead,
         certified: bool,
     },
     Stop(Stop<A::Edge>),
@@ -203,11 +202,11 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Ok(match self.arc_and_jump(stand, observer)? {
             Next::Arc => None,
             Next::Stop(stop) => Some(stop),
-            Next::Limit { remaining, certified } => {
+            Next::Limit { ahead, certified } => {
                 if let Some(stop) = self.stopped() {
                     return Ok(Some(stop));
                 }
-                let stop = self.at_limit(remaining, certified, observer)?;
+                let stop = self.at_limit(ahead, certified, observer)?;
                 *stand = self.stand();
                 stop.or_else(|| self.stopped())
             }
@@ -226,17 +225,21 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Span { start, end, .. } = self.at.span;
         let due = self.at.ticks.next(automaton, mode, &x, &Span { start, now, end })?;
         let end = due.as_ref().map_or(end, |due| later_stop(&automaton.stops(mode), due.time));
-        let remaining = end.since(now);
-        let begun = self.arc.begin(mode, &x, now, (remaining, now.since(start)))?;
+        let span = Span { start, now, end };
+        let only = automaton.edges(mode).only();
+        let begun = self.arc.begin((mode, only), &x, now, (span.remaining(), now.since(start)))?;
         if let Begun::Open { exact: true } = begun
             && !observer.wants_pieces()
-            && let Some(edge) = automaton.edges(mode).only()
+            && let Some(edge) = only
             && let Fall::In(s, before) = automaton.falls(mode, edge, now.seconds(), &x)
-            && self.arc.falls(mode, edge, (s, &before), now, remaining, observer)
+            && self.arc.falls(mode, edge, (s, &before), &span, observer)
         {
             return self.jump(stand, Crossed { edge, time: now.after(s), before, ticked: false }, observer);
         }
-        let next = self.go_and_jump(&Span { start, now, end }, due.as_ref(), begun, observer)?;
+        if let Some(edge) = only {
+            self.arc.wall_near(edge, &x, now);
+        }
+        let next = self.go_and_jump(&span, due.as_ref(), begun, observer)?;
         *stand = self.stand();
         Ok(next)
     }
@@ -273,8 +276,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             let (at, Crossed { edge, time, before, .. }) = (&mut self.at, crossed);
             (at.span.now, at.state) = (time, before);
             at.recent.push(edge);
-            let certified = at.contraction.remaining(time.since(at.span.start), true).is_some();
-            return Ok(Next::Limit { remaining: 0.0, certified });
+            let certified = at.contraction.limit(time.since(at.span.start), true).is_some();
+            return Ok(Next::Limit { ahead: Ahead::NOW, certified });
         }
         self.jump(&mut stand, crossed, observer)
     }
@@ -332,10 +335,9 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let elapsed = time.since(at.span.start);
         let (lapse, short) = if at_once { (0.0, true) } else { (duration, arc.memory.is_short(duration)) };
         at.contraction.push(lapse, short, &at.state);
-        let remaining =
-            if stands { Some(0.0) } else { at.contraction.remaining(elapsed, arc.memory.hides_durations()) };
-        if let Some(remaining) = remaining.filter(|&s| time.after(s).seconds() <= at.span.end.seconds()) {
-            return Ok(Next::Limit { remaining, certified: true });
+        let limit = if stands { Some(Ahead::NOW) } else { at.contraction.limit(elapsed, arc.memory.hides_durations()) };
+        if let Some(ahead) = limit.filter(|ahead| time.after(ahead.remaining).seconds() <= at.span.end.seconds()) {
+            return Ok(Next::Limit { ahead, certified: true });
         }
         let next = self.after_jump(edge, now, at_once);
         if matches!(next, Next::Arc) {
@@ -370,28 +372,32 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Self { arc: Advance { automaton, options, .. }, at } = self;
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
         if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
-            Some(Next::Limit { remaining: 0.0, certified: true })
+            Some(Next::Limit { ahead: Ahead::NOW, certified: true })
         } else {
             (at.cascade.jumps() >= options.longest_cascade).then_some(Next::Stop(Stop::Cascade { edge }))
         }
     }
 
-    /// Jumps have accumulated: the state stands for the rest of the time to the limit, too short to
-    /// resolve, and the model says what lies beyond.
+    /// Jumps have accumulated: the state goes on to their limit, and the model says what lies
+    /// beyond.
     #[cold]
     fn at_limit(
         &mut self,
-        remaining: f64,
+        ahead: Ahead,
         certified: bool,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<Stop<A::Edge>>, Error> {
         let Self { arc, at } = self;
         let automaton = arc.automaton;
-        let (mode, x) = (at.mode, at.state);
-        if remaining > 0.0 && observer.piece(mode, &Piece::new(at.span.now, remaining, 1.0, &[x])).is_break() {
-            return Ok(Some(Stop::Observer));
+        let (mode, last, remaining) = (at.mode, at.state, ahead.remaining);
+        let x = at.contraction.at(&ahead, &last);
+        if remaining > 0.0 {
+            let way = [last, x.with(|i| x.get(i) - last.get(i))];
+            if observer.piece(mode, &Piece::new(at.span.now, remaining, remaining, &way)).is_break() {
+                return Ok(Some(Stop::Observer));
+            }
         }
-        at.span.now = at.span.now.after(remaining);
+        (at.span.now, at.state) = (at.span.now.after(remaining), x);
         let limit = at.span.now.seconds();
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
         let Some((to, after)) = at.recent.cycle().with(beyond) else {

@@ -96,6 +96,20 @@ pub(crate) struct Span {
     pub(crate) end: Time,
 }
 
+impl Span {
+    /// How much of it is left.
+    #[inline]
+    pub(crate) fn remaining(&self) -> f64 {
+        self.end.since(self.now)
+    }
+
+    /// How far past its end is still at it: what rounding has made of times counted from its start.
+    #[inline]
+    pub(crate) fn grace(&self) -> f64 {
+        grace(self.end.seconds().abs().max(self.start.seconds().abs()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -113,8 +113,8 @@ impl<S: State> Contraction<S> {
         self.durations[(self.count - 1 - back) % MEMORY]
     }
 
-    /// The time from the last jump to the limit, if the durations contract and the next one is
-    /// shorter than the resolution of the time `elapsed`.
+    /// The limit after the last jump, if the durations contract and the next one is shorter than
+    /// the resolution of the time `elapsed`.
     ///
     /// With a cycle of p jumps the certificate is that the last four ratios d(n)/d(n-p) are alike
     /// and all below one; with r the largest of them and S the last cycle's duration, what remains
@@ -123,7 +123,7 @@ impl<S: State> Contraction<S> {
     /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing
     /// better can be had later: the ratios decide if they are clearly below one.
     #[inline]
-    pub(crate) fn remaining(&self, elapsed: f64, hidden: bool) -> Option<f64> {
+    pub(crate) fn limit(&self, elapsed: f64, hidden: bool) -> Option<Ahead> {
         if self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden {
             None
         } else if hidden {
@@ -133,7 +133,7 @@ impl<S: State> Contraction<S> {
         }
     }
 
-    fn certified(&self, resolution: f64, most: f64) -> Option<f64> {
+    fn certified(&self, resolution: f64, most: f64) -> Option<Ahead> {
         let known = self.count.min(MEMORY);
         let bound = |cycle| {
             if known < cycle + 4 {
@@ -150,12 +150,44 @@ impl<S: State> Contraction<S> {
             (ratio < most
                 && longest * ratio < resolution
                 && self.states.as_ref().is_some_and(|states| states.contract(cycle)))
-            .then(|| last_cycle * ratio / (1.0 - ratio))
+            .then(|| {
+                let cycles = ratio / (1.0 - ratio);
+                Ahead { remaining: last_cycle * cycles, cycle, cycles }
+            })
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of
         // one would seem to hardly contract.
-        (1..=LONGEST_CYCLE).filter_map(bound).reduce(|best, next| if next < 0.5 * best { next } else { best })
+        let shorter = |best: Ahead, next: Ahead| if next.remaining < 0.5 * best.remaining { next } else { best };
+        (1..=LONGEST_CYCLE).filter_map(bound).reduce(shorter)
     }
+
+    /// The state at the limit `ahead` of the last one, `x`: what its last cycle moved it by goes on
+    /// as the durations do, be it the last of its bounces or the way of what does not bounce.
+    pub(crate) fn at(&self, ahead: &Ahead, x: &S) -> S {
+        match &self.states {
+            Some(states) if ahead.cycle > 0 && states.last(ahead.cycle).len() == x.len() => {
+                let before = states.last(ahead.cycle);
+                x.with(|i| x.get(i) + ahead.cycles * moved(before.get(i), x.get(i)))
+            }
+            _ => *x,
+        }
+    }
+}
+
+/// Where jumps accumulate, ahead of the last one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ahead {
+    /// After how long.
+    pub(crate) remaining: f64,
+    /// How many jumps a cycle has, and how many times as long as the last one all further cycles
+    /// last.
+    cycle: usize,
+    cycles: f64,
+}
+
+impl Ahead {
+    /// At once.
+    pub(crate) const NOW: Self = Self { remaining: 0.0, cycle: 0, cycles: 0.0 };
 }
 
 /// Jumps at one time, one after the other, and how far they move the state.
@@ -205,12 +237,14 @@ fn square_way<S: State>(x: &S, y: &S) -> f64 {
     if x.len() != y.len() {
         return f64::INFINITY;
     }
-    let square = |i: usize| {
-        let (x, y) = (x.get(i), y.get(i));
-        let by = (y - x).abs();
-        if by <= ROUNDINGS * f64::EPSILON * x.abs().max(y.abs()) { 0.0 } else { by * by }
-    };
-    (0..x.len()).map(square).sum()
+    (0..x.len()).map(|i| moved(x.get(i), y.get(i)).powi(2)).sum()
+}
+
+/// From `x` to `y`, which is nothing within their rounding.
+#[inline]
+fn moved(x: f64, y: f64) -> f64 {
+    let by = y - x;
+    if by.abs() <= ROUNDINGS * f64::EPSILON * x.abs().max(y.abs()) { 0.0 } else { by }
 }
 
 #[cfg(test)]
@@ -225,12 +259,12 @@ mod tests {
         let mut contraction = Contraction::new();
         let mut d = 1.0;
         let mut sum = 0.0;
-        while contraction.remaining(LATE, false).is_none() {
+        while contraction.limit(LATE, false).is_none() {
             contraction.push(d, true, &d);
             sum += d;
             d *= 0.8;
         }
-        assert!((sum + contraction.remaining(LATE, false).unwrap() - 5.0).abs() < 1e-14);
+        assert!((sum + contraction.limit(LATE, false).unwrap().remaining - 5.0).abs() < 1e-14);
     }
 
     #[test]
@@ -242,7 +276,7 @@ mod tests {
                 for n in 0..400 {
                     x += by;
                     contraction.push(d, true, &if n % 2 == 0 { x } else { turn * x });
-                    assert_eq!(contraction.remaining(LATE, false), None);
+                    assert_eq!(contraction.limit(LATE, false), None);
                     (d, by) = (0.8 * d, growth * by);
                 }
             }
@@ -254,7 +288,7 @@ mod tests {
         let mut contraction = Contraction::new();
         for n in 1..100_000 {
             contraction.push(1e-3 / f64::from(n), true, &0.0);
-            assert_eq!(contraction.remaining(LATE, false), None);
+            assert_eq!(contraction.limit(LATE, false), None);
         }
     }
 
@@ -263,7 +297,7 @@ mod tests {
         let mut contraction = Contraction::new();
         for duration in [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] {
             contraction.push(duration, true, &0.0);
-            assert_eq!(contraction.remaining(LATE, false), None);
+            assert_eq!(contraction.limit(LATE, false), None);
         }
     }
 
@@ -273,7 +307,7 @@ mod tests {
         let mut contraction = Contraction::new();
         for duration in [1.0, 1.0_f64.next_down(), 0.9, 0.1, 1e-17] {
             contraction.push(duration, true, &0.0);
-            assert_eq!(contraction.remaining(LATE, false), None);
+            assert_eq!(contraction.limit(LATE, false), None);
         }
     }
 
@@ -317,8 +351,8 @@ mod tests {
                 sum += part;
             }
             d *= 0.5;
-            if let Some(rest) = contraction.remaining(LATE, false) {
-                assert!((sum + rest - 8.0).abs() < 1e-12);
+            if let Some(ahead) = contraction.limit(LATE, false) {
+                assert!((sum + ahead.remaining - 8.0).abs() < 1e-12);
                 return;
             }
         }

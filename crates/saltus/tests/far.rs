@@ -60,6 +60,30 @@ proptest! {
         bounces_as_it_should(&ball, Dop853, e, height, end);
         bounces_as_it_should(&ball, Rodas5P, e, height, end);
     }
+
+    /// A series that ends has no error: its steps would be as long as the span.
+    #[test]
+    fn nor_is_one_lost_in_a_series_that_ends(
+        e in 0.2..0.9_f64,
+        height in -3.0..3.0_f64,
+        power in 1.0..33.0_f64,
+        endless: bool,
+        digits in 3.0..14.0_f64,
+        affine: bool,
+    ) {
+        let (height, end) = (10_f64.powf(height), if endless { f64::INFINITY } else { 10_f64.powf(power) });
+        let ball = Hybrid::new()
+            .mode("flight", |_t, x: &[f64; 2]| [x[1], -GRAVITY])
+            .series("flight", |t, [_, v]| [v, t * 0.0 - GRAVITY])
+            .edge("flight", "flight", |_t, x| x[0], move |_t, x| [0.0, -e * x[1]]);
+        let ball = if affine { ball.affine() } else { ball };
+        let ball = ball.mode("rest", |_t, _x| [0.0, 0.0]).beyond("flight", "rest", |_t, _x| [0.0, 0.0]);
+        let run = Simulation::of(&ball).tolerance(10_f64.powf(-digits)).run("flight", [height, 0.0], 0.0..end).unwrap();
+        prop_assert!(run.trajectory.doubts().is_empty());
+        let limit = impact(20_000, e, height);
+        let rest = run.end.limits.last.map_or(f64::INFINITY, |rest| (rest - limit).abs());
+        prop_assert!(end < limit || rest < 1e-9 * limit, "rest after {:?} instead of {limit}", run.end.limits.last);
+    }
 }
 
 /// Energies after some jumps.

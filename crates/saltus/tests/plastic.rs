@@ -99,11 +99,12 @@ impl Floor {
         }
         for k in (0..trajectory.arcs().len()).filter(|&k| trajectory.arcs()[k].mode() == "flight") {
             for piece in trajectory.pieces(k) {
-                // For the rest of the time to a limit, too short to resolve, the state stands.
-                let stands = piece.at(0.0) == piece.at(piece.span());
+                // For the rest of the time to a limit the state goes on in a line, as it did before.
+                let [start, middle, end] = [0.0, 0.5, 1.0].map(|part| piece.at(part * piece.span())[0]);
+                let straight = middle == start.midpoint(end);
                 for part in 0..=16 {
                     let s = piece.span() * f64::from(part) / 16.0;
-                    above(piece.start().after(s).seconds(), &piece.at(s), if stands { s } else { 0.0 });
+                    above(piece.start().after(s).seconds(), &piece.at(s), if straight { s } else { 0.0 });
                 }
             }
         }

@@ -111,6 +111,26 @@ proptest! {
             }
         }
     }
+
+    /// Nor how many there are, and how steep each is beside the others.
+    #[test]
+    fn many_falls_a_hair_apart_are_taken_once_each(
+        first in 0.01..0.9_f64,
+        falls in prop::collection::vec((0_u64..100, -8.0..8.0_f64), 3..7),
+        near in 1_u64..100,
+        of_state: bool,
+    ) {
+        let mut counter = counter();
+        for &(apart, steepness) in &falls {
+            let (at, slope) = (f64::from_bits(first.to_bits() + apart % near), 10_f64.powf(steepness));
+            let guard = move |t: f64, x: &f64| slope * (at - if of_state { *x } else { t });
+            counter = counter.edge("run", "run", guard, |_t, x| *x).entry(Entry::Wait);
+        }
+        for mut places in [taken(&counter, Tsit5), taken(&counter, Dop853), taken(&counter, Rodas5P)] {
+            places.sort_unstable();
+            prop_assert_eq!(places, (0..falls.len()).collect::<Vec<_>>());
+        }
+    }
 }
 
 proptest! {

@@ -97,16 +97,16 @@ fn rodas5p_on_van_der_pol() {
     let system =
         Hybrid::new().mode("flow", |_t, x: &Vector2<f64>| vector![x[1], 1e3 * (1.0 - x[0] * x[0]) * x[1] - x[0]]);
     let exact = vector![1.706_167_732_170_469, -0.892_809_701_024_812_5e-3];
-    let pinned = [(1e-4, 2e-4, (146, 20)), (1e-6, 2e-6, (357, 17)), (1e-8, 2e-8, (946, 13))];
+    let pinned = [(1e-4, 2e-4, (146, 21)), (1e-6, 2e-6, (357, 16)), (1e-8, 2e-8, (946, 12))];
     for (tolerance, bound, counts) in pinned {
         let run = run(&system, Rodas5P, tolerance, vector![2.0, 0.0], 2000.0);
         let error = (run.end.state - exact).component_div(&exact).amax();
         assert!(error < bound, "{tolerance:e}: {error:e}");
         let (steps, rejected, flows) = cost(&run);
         assert_eq!((steps, rejected), counts, "{tolerance:e}");
-        // Eight for the stages, four for the Jacobian, one to see that time does not matter; now
-        // and then rounding asks for a second.
-        let least = 13 * (steps + rejected) + 2;
+        // Nine for the stages and half way, four for the Jacobian, one to see that time does not
+        // matter; now and then rounding asks for a second.
+        let least = 14 * (steps + rejected) + 2;
         assert!((least..least + least / 100).contains(&flows), "{tolerance:e}: {flows}");
     }
     // The rounding in the Jacobian does not yet show.
@@ -128,7 +128,7 @@ fn rodas5p_on_robertson() {
     let error = (run.end.state - exact).component_div(&exact).amax();
     assert!(error < 4e-8, "{error:e}");
     assert!((run.end.state.sum() - 1.0).abs() < 1e-13, "no matter is lost: {:e}", run.end.state.sum() - 1.0);
-    assert_eq!((run.end.stats.steps, run.end.stats.rejected), (435, 6));
+    assert_eq!((run.end.stats.steps, run.end.stats.rejected), (451, 3));
 }
 
 #[test]

@@ -34,12 +34,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let automaton = self.automaton;
         let (now, t) = (clock.now, clock.now.seconds());
         let at = |s: f64| formula(automaton, mode, t, x, s);
-        let remaining = clock.end.since(now);
+        let remaining = clock.remaining();
         let search = |this: &mut Self, edge, limit, start| {
             let natural = natural(&[*x, this.flow(mode, t, x)]);
             this.fall_in_windows(edge, now, natural, at, limit, start).map(|searched| (searched, false))
         };
-        let first = self.first_on_solution(mode, x, now, remaining, at, search, observer)?;
+        let first = self.first_on_solution(mode, x, clock, at, search, observer)?;
         let cut = self.cut_before(first.as_ref());
         if let Some((cut, stop)) = cut {
             let (told, reached) = self.interpolated(mode, x, now, cut, at, observer);

@@ -19,8 +19,9 @@ use crate::time::{Time, resolution};
 use super::Advance;
 use super::near::Near;
 
-/// So much larger states are taken that a guard's constant costs their difference no digits.
-const LARGER: f64 = (1_u128 << 70) as f64;
+/// The exponent of the largest coordinate of a state that a guard's constant, of an exponent far
+/// below it, costs no digits: half of what numbers have, so that the guard is one.
+const LARGER: i64 = 511;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within a range of a dense output; an observer is told how guards were
@@ -29,13 +30,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         step: Step<'_, A::State>,
-        Range { limit, first, roughly }: Range,
+        range: Range,
         mut observer: Option<&mut impl Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
         let mut undefined: Option<(f64, A::Edge)> = None;
         let Step { now, c, scale } = step;
+        let Range { limit, first, roughly } = range;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge));
             if !self.memory.walls.is_empty()
@@ -59,7 +61,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     near = (c.len() > LONG).then(|| Near::around(c, scale, s));
                     self.falls_by_powers(edge, step, &near, s, level)
                 }
-                FirstFall::Unclear => match self.falls_by_values(edge, step, limit, (start, level), along.as_ref()) {
+                FirstFall::Unclear => match self.falls_by_values(edge, step, range, (start, level), along.as_ref()) {
                     Ok(searched) => searched,
                     Err(Undefined(s)) => {
                         undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
@@ -125,7 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         edge: A::Edge,
         Step { now, c, scale }: Step<'_, A::State>,
-        limit: f64,
+        Range { limit, roughly, .. }: Range,
         (start, level): (Start, f64),
         along: Option<&Along<'_>>,
     ) -> Result<Searched, Undefined> {
@@ -146,10 +148,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         let mut above = |s: f64| guard(s) - level;
         let searched = match &p {
-            Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start)?,
+            Some((p, margin, bend)) => {
+                first_fall_of_polynomial(p, *margin, *bend, &mut above, (limit, roughly), start)?
+            }
             None => {
                 let tick = resolution(now.seconds().abs() + limit);
-                first_fall_on_arc(&mut above, value, limit, start, bend, tick)?
+                first_fall_on_arc(&mut above, value, limit, start, bend, (tick, roughly))?
             }
         };
         Ok(unlevelled(searched, level, &mut guard))
@@ -264,7 +268,7 @@ pub(super) struct Range {
     /// Whether it begins the arc.
     pub(super) first: bool,
     /// Whether the crossing is looked for again on a real step to it, and need not be settled
-    /// between neighbouring times here where powers show it.
+    /// between neighbouring times here.
     pub(super) roughly: bool,
 }
 
@@ -280,11 +284,35 @@ pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
 /// of two larger, so that the constant does not cost it digits.
 #[inline]
 pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
-    if constant == 0.0 {
-        return guard(x);
+    if constant == 0.0 { guard(x) } else { less(&guard, constant, x) }
+}
+
+fn less<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
+    let size = (0..x.len()).fold(0.0, |size: f64, i| size.max(x.get(i).abs()));
+    if size == 0.0 {
+        return 0.0;
     }
-    let far = guard(&x.with(|i| LARGER * x.get(i))) - constant;
-    if far.is_finite() { far / LARGER } else { guard(x) - constant }
+    // A guard that is large itself may have no number there.
+    for exponent in [LARGER, LARGER / 4] {
+        let by = power_of_two(exponent - exponent_of(size));
+        let far = guard(&x.with(|i| by * x.get(i))) - constant;
+        if far.is_finite() {
+            return far / by;
+        }
+    }
+    guard(x) - constant
+}
+
+/// The e of a number from 2ᵉ up to twice that.
+#[inline]
+fn exponent_of(x: f64) -> i64 {
+    (x.to_bits() >> 52 & 0x7ff).cast_signed() - 1023
+}
+
+/// 2ᵉ, as far as there is such a number.
+#[inline]
+fn power_of_two(e: i64) -> f64 {
+    f64::from_bits((e.clamp(-1022, 1023) + 1023).cast_unsigned() << 52)
 }
 
 /// Whether an affine guard of these `powers` that seems to fall from its root only touched zero

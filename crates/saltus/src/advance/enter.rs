@@ -6,12 +6,12 @@ use std::mem;
 use crate::automaton::refusal::guard_undefined;
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Entry};
-use crate::certainty::{FAR, NOTHING, ROUGHLY, ROUNDINGS, SURELY, TINY};
+use crate::certainty::{FAR, FEW, NOTHING, ROUGHLY, ROUNDINGS, SURELY, TINY};
 use crate::cross::AT_START;
 use crate::error::{Error, ErrorKind, Place};
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{Time, resolution};
+use crate::time::Time;
 
 use super::Advance;
 use super::crossing::Step;
@@ -21,9 +21,16 @@ use super::crossing::Step;
 const DRIVEN: f64 = 2.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// Looks at every guard as the mode is entered; an edge to be taken at once is returned.
+    /// Looks at every guard as the mode is entered; an edge to be taken at once is returned. A
+    /// guard above zero that is the `only` one is left to `wall_near`.
     #[inline]
-    pub(super) fn enter(&mut self, mode: A::Mode, x: &A::State, now: Time) -> Result<Option<A::Edge>, Error> {
+    pub(super) fn enter(
+        &mut self,
+        mode: A::Mode,
+        x: &A::State,
+        now: Time,
+        only: Option<A::Edge>,
+    ) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
         let (mut zero, mut nudged) = (None, None);
         self.memory.walls.clear();
@@ -40,21 +47,63 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     continue;
                 }
             } else if spent.is_none() && g > 0.0 {
-                // Clear of zero: a millionth of what it is made of does not bring it there.
-                let nudged = nudged.get_or_insert_with(|| x.with(|i| x.get(i) + TINY * weight(i) * self.size(x, i)));
-                self.memory.stats.guards += 1;
-                if g > (self.guard(edge, t + FAR * resolution(t), nudged) - g).abs() {
-                    continue;
+                if only.is_none() {
+                    let nudged = nudged.get_or_insert_with(|| self.nudged(x));
+                    self.look_near(edge, t, x, nudged, g);
                 }
+                continue;
             }
             let x = &{ *x };
             if self.is_entered(mode, edge, t, x, g, &mut zero)? {
                 let first = self.first_of(mode, t, x, zero, edge);
+                if first != edge {
+                    self.memory.slack = 0.0;
+                }
                 self.note_switch(first, x);
                 return Ok(Some(first));
             }
         }
         Ok(None)
+    }
+
+    /// Whether the state is at the wall of a mode's `only` edge as it is entered: counts where no
+    /// formula gives the edge's fall.
+    #[inline(never)]
+    pub(crate) fn wall_near(&mut self, only: A::Edge, x: &A::State, now: Time) {
+        if self.memory.spent_as(only).is_some() {
+            return;
+        }
+        let t = now.seconds();
+        self.memory.stats.guards += 1;
+        let g = self.guard(only, t, x);
+        if g > 0.0 {
+            let nudged = self.nudged(x);
+            self.look_near(only, t, x, &nudged, g);
+        }
+    }
+
+    /// The state with each coordinate moved by a millionth of what it is made of.
+    #[inline]
+    fn nudged(&self, x: &A::State) -> A::State {
+        x.with(|i| x.get(i) + TINY * weight(i) * self.size(x, i))
+    }
+
+    /// Whether a guard `g` above zero is clear of it: it moves by less between the state and the
+    /// one that is `nudged`. If not, rounding alone may have left it.
+    #[inline]
+    fn look_near(&mut self, edge: A::Edge, t: f64, x: &A::State, nudged: &A::State, g: f64) {
+        self.memory.stats.guards += 1;
+        if g <= (self.guard(edge, t + FAR * self.tick(t), nudged) - g).abs() {
+            self.find_wall(edge, t, x, g);
+        }
+    }
+
+    /// The state is at a wall if rounding alone may have left its guard `g`.
+    #[cold]
+    fn find_wall(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) {
+        if g <= ROUNDINGS * self.still(edge, t, x, g) {
+            self.memory.at_wall(edge, g);
+        }
     }
 
     /// Whether an edge whose guard is neither clear of zero nor spent is to be taken at once.
@@ -71,6 +120,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g.is_nan() {
             return Err(guard_undefined(self.automaton, mode, edge, t, x));
         }
+        self.memory.slack = 0.0;
         // Within its slack a spent root is here only where it was driven on, and is then no longer
         // spent.
         let spent = self.memory.spent_as(edge).is_some_and(|spent| g.abs() > spent.slack);
@@ -81,22 +131,24 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if !spent && g == 0.0 {
                 *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
                 self.memory.at_wall(edge, g);
-            } else if !spent && g <= ROUNDINGS * self.still(edge, t, x, g) {
-                self.memory.at_wall(edge, g);
+            } else if !spent {
+                self.find_wall(edge, t, x, g);
             }
             return Ok(false);
         }
         let still = self.entry_error(edge, t, x, g);
         let Leaving { slope, straight } = self.leaving(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
-        let rounding = if slope.is_nan() { still } else { slope.abs() * resolution(t) + still };
-        if -g <= ROUNDINGS * rounding {
+        let rounding = if slope.is_nan() { still } else { slope.abs() * self.tick(t) + still };
+        if -g <= ROUNDINGS * rounding || -g <= FEW * self.scatter(edge, t, x) {
             let sure = slope.abs() * self.glance() > SURELY * rounding;
             let leaves = sure && (slope < 0.0 || straight);
             if !spent && !leaves && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
                 return Ok(false);
             }
+            // As far from zero as this it may be after its jump.
+            self.memory.slack = FEW * -g;
             return Ok(!spent && slope < 0.0);
         }
         match self.automaton.about(edge).entry {
@@ -132,7 +184,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g > 0.0 {
             let still = self.still(edge, t, after, g);
             let slope = self.guard_slope(to, edge, t, after, g, still);
-            if g > SURELY * (slope.abs() * resolution(t) + still) {
+            if g > SURELY * (slope.abs() * self.tick(t) + still) {
                 self.unspend(edge);
             }
         }
@@ -195,7 +247,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// the guard's next root. A change by no more than `rounding` is none. That of a guard promised
     /// affine doubles over every time along a line: the longest one has the least rounding.
     fn leaving(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64, rounding: f64) -> Leaving {
-        let longest = self.glance();
+        let spacing = self.tick(t);
+        // An arc may be as short as rounding, over which nothing changes.
+        let longest = self.glance().max(FAR * spacing);
         let slope = self.flow(mode, t, x);
         if self.automaton.about(edge).affine && self.smooth.within(t + longest) == t + longest {
             self.memory.stats.guards += 1;
@@ -215,7 +269,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         // A guard that moves changes by no less than some roundings of time.
         guards.set(guards.get() + 1);
-        let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { resolution(t) };
+        let tick = if automaton.guard(edge, smooth.within(t + longest), x) == g { 0.0 } else { spacing };
         let shortest = (AT_START * longest).max(FAR * tick).min(longest);
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
@@ -249,7 +303,7 @@ fn is_moved<S: State>(x: &S, y: &S) -> bool {
 /// How far coordinate `i` is nudged beside the others, from 1 to 2: no two alike, so that a guard
 /// of their difference is nudged as well.
 #[inline]
-fn weight(i: usize) -> f64 {
+pub(super) fn weight(i: usize) -> f64 {
     // What multiples of the golden ratio have behind the point, which lies as far apart as it can.
     let turns = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     f64::from_bits(1.0_f64.to_bits() | turns >> 12)

@@ -30,7 +30,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<ArcEnd<A>, Error> {
         self.memory.stats.exact += 1;
         let c = solution.coefficients();
-        let (now, remaining) = (clock.now, clock.end.since(clock.now));
+        let (now, remaining) = (clock.now, clock.remaining());
         let natural = LazyCell::new(|| natural(c));
         let at = |s: f64| horner(c, s);
         let search = |this: &mut Self, edge, limit, start| {
@@ -39,7 +39,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             this.fall_in_windows(edge, now, *natural, at, limit, start).map(|searched| (searched, false))
         };
-        let first = self.first_on_solution(mode, &c[0], now, remaining, at, search, observer)?;
+        let first = self.first_on_solution(mode, &c[0], clock, at, search, observer)?;
         if let Some((cut, stop)) = self.cut_before(first.as_ref()) {
             let told = observer.piece(mode, &Piece::new(now, cut, 1.0, c));
             let stop = if told.is_break() { Stop::Observer } else { stop };
@@ -121,7 +121,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let tick = resolution(now.seconds().abs() + to);
             let mut above = |s| guard(from + s) - level;
             let value = above(0.0);
-            let searched = first_fall_on_arc(&mut above, value, to - from, start, 0.0, tick)
+            let searched = first_fall_on_arc(&mut above, value, to - from, start, 0.0, (tick, false))
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));

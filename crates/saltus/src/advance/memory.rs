@@ -80,6 +80,8 @@ pub(crate) struct Memory<E, S> {
     pub(super) hidden: u32,
     /// How many arcs there were.
     pub(super) arcs: u64,
+    /// How many steps there were before this arc.
+    pub(super) steps_before: u64,
     /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
     /// step.
     pub(super) resolved: bool,
@@ -111,6 +113,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             longest_duration: 0.0,
             hidden: 0,
             arcs: 0,
+            steps_before: 0,
             resolved: false,
             switched: Switched::none(),
             spurious: false,

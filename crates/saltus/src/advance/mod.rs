@@ -195,12 +195,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         list(&mut self.memory).truncate(kept);
     }
 
-    /// Looks at the guards as an arc from `x` in `mode` begins, with so much of the span
-    /// `remaining` and so much of the run `elapsed`.
+    /// Looks at the guards as an arc from `x` in `mode` begins, whose `only` edge it may have, with
+    /// so much of the span `remaining` and so much of the run `elapsed`.
     #[inline]
     pub(crate) fn begin(
         &mut self,
-        mode: A::Mode,
+        (mode, only): (A::Mode, Option<A::Edge>),
         x: &A::State,
         now: Time,
         (remaining, elapsed): (f64, f64),
@@ -210,7 +210,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !smooth {
             self.smooth_from(mode, now, &{ *x })?;
         }
-        if let Some(edge) = self.enter(mode, x, now)? {
+        if let Some(edge) = self.enter(mode, x, now, only)? {
             return Ok(Begun::Crossing(edge));
         }
         // What is left of the span may be the rounding of the jumps' times.
@@ -231,6 +231,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let &Span { now, .. } = clock;
+        self.memory.steps_before = self.memory.stats.steps;
         let stepped = self.options.stepped;
         let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
         let end = match solution {

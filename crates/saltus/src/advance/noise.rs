@@ -2,14 +2,19 @@
 //! of the steps.
 
 use crate::automaton::Automaton;
-use crate::certainty::{FAR, ROUGHLY, ROUNDINGS, SMALL, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, TINY};
 use crate::cross::{AT_START, Crossing};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::crossing::{Step, is_rounding, less_constant};
+use super::enter::weight;
 use super::{Advance, Spent, Wall};
+
+/// Of how many values a guard's scatter is seen: among so few, a typical one and a large one.
+/// Held by `scales::a_guard_of_its_own_arithmetic_is_entered`.
+const SAMPLES: usize = 9;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding each coordinate may move the guard: Σ |∂g/∂xᵢ| sᵢ units in the last place,
@@ -46,6 +51,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes)
     }
 
+    /// How far a guard scatters by its own arithmetic: how far its values at times and states some
+    /// roundings apart are from a line, as those of a cosine of many turns are.
+    #[cold]
+    pub(super) fn scatter(&mut self, edge: A::Edge, t: f64, x: &A::State) -> f64 {
+        self.memory.stats.guards += SAMPLES as u64;
+        let values: [f64; SAMPLES] = std::array::from_fn(|k| {
+            let by = k as f64 - 0.5 * (SAMPLES - 1) as f64;
+            let near = x.with(|i| x.get(i) + by * f64::EPSILON * weight(i) * self.size(x, i));
+            self.guard(edge, t + by * self.tick(t), &near)
+        });
+        let bend = |three: &[f64]| (three[1] - 0.5 * (three[0] + three[2])).abs();
+        values.windows(3).map(bend).filter(|bend| bend.is_finite()).fold(0.0, f64::max)
+    }
+
     /// How far a guard below zero may be off: by rounding, and at the start of a run, which is
     /// stated to within the absolute tolerance, by that.
     pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
@@ -54,12 +73,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.still(edge, t, x, g) + stated
     }
 
-    /// How far what the tolerance allows in each coordinate, step after step, may move the guard: Σ
-    /// |∂g/∂xᵢ| so many times that.
+    /// How far rounding may move the guard, and what the tolerance allows in each coordinate for
+    /// each step of this arc: Σ |∂g/∂xᵢ| so many times that. An exact arc has none.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let rounding = self.still(edge, t, x, g);
+        let rounding = FAR * self.still(edge, t, x, g);
+        let steps = (self.memory.stats.steps - self.memory.steps_before) as f64;
+        if steps == 0.0 {
+            return rounding;
+        }
         let tolerance = self.options.tolerance;
-        FAR * (rounding + self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i))))
+        rounding + FEW * steps * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
     /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance
@@ -85,11 +108,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         sum
     }
 
-    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| units in the last
-    /// place of t, seen over some of them.
+    /// How far apart times at the end `t` of an arc are: no nearer than those of its duration,
+    /// about zero either.
+    #[inline]
+    pub(super) fn tick(&self, t: f64) -> f64 {
+        resolution(t).max(f64::EPSILON * self.memory.last_duration)
+    }
+
+    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| ticks, seen over
+    /// some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         self.memory.stats.guards += 1;
-        let ahead = t + FAR * resolution(t);
+        let ahead = t + FAR * self.tick(t);
         let change = (self.guard(edge, ahead, x) - g).abs() / FAR;
         if change.is_finite() { change } else { 0.0 }
     }

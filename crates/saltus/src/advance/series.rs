@@ -20,7 +20,7 @@ use super::crossing::{OnStep, Range, Step};
 use super::exact::natural;
 use super::near::Near;
 use super::smooth::Arrival;
-use super::stepped::{SHORTEST, evened, remaining, searched, wrong_dimension};
+use super::stepped::{SHORTEST, evened, remaining, wrong_dimension};
 use super::{Advance, ArcEnd};
 
 /// The lowest order.
@@ -37,7 +37,8 @@ const SAFETY: f64 = 0.85;
 const SHORTER: f64 = 0.5;
 /// How often a step is shortened for a kink that may be on it.
 const MOST_HALVINGS: usize = 4;
-/// How many of its natural times a step takes whose series ends.
+/// How many of its natural times a step takes whose series ends: more, and falls on it are lost in
+/// the rounding of its end.
 const LONGEST: f64 = 16.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -53,6 +54,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let tolerance = self.options.tolerance;
         let order = order(tolerance.relative);
         let began = clock.now;
+        let unguarded = self.automaton.edges(mode).is_empty();
         let mut first = true;
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
@@ -66,10 +68,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Some(mut expansion) = self.expanded(mode, flow, clock.now, &x, order, &mut c)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
-            let mut ahead = self.ahead(&expansion, &c, longest);
+            let mut ahead = self.ahead(&expansion, &c, longest, unguarded);
             if ahead.kink.is_none() && expansion.reach < wanted {
                 self.expand_further(mode, flow, clock.now, &x, &mut expansion, &mut c);
-                ahead = self.ahead(&expansion, &c, longest);
+                ahead = self.ahead(&expansion, &c, longest, unguarded);
             }
             if let Some(place) = ahead.kink
                 && ahead.step <= SHORTEST * resolution(clock.now.seconds())
@@ -83,7 +85,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let slope = x.with(|i| c[1].get(i) / unit);
                 self.find_staying(mode, Step { now: clock.now, c, scale: unit }, &slope);
             }
-            let way = Way { mode, now: clock.now, since: clock.now.since(began), remaining, first };
+            let way = Way { mode, now: clock.now, remaining, grace: clock.grace(), first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
                 return self.stepped(mode, x, clock, first, observer);
             };
@@ -112,15 +114,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far a step may go by its series: no further than its last coefficients
     /// allow, nor beyond a kink.
     #[inline]
-    fn ahead(&self, expansion: &Expansion, c: &[A::State; MOST_COEFFICIENTS], longest: f64) -> Ahead {
+    fn ahead(&self, expansion: &Expansion, c: &[A::State; MOST_COEFFICIENTS], longest: f64, unguarded: bool) -> Ahead {
         let &Expansion { unit, order, reach } = expansion;
-        let mut step = reach.min(longest);
-        if step == f64::INFINITY {
-            let natural = unit * natural(&c[..=order]);
-            // A polynomial from zero has no time scale of its own.
-            step = if natural > 0.0 { LONGEST * natural } else { longest };
-        }
-        step = evened(step, longest);
+        let reach = if reach < f64::INFINITY || unguarded { reach } else { self.own_reach(unit, &c[..=order]) };
+        let mut step = evened(reach.min(longest), longest);
         for _ in 0..MOST_HALVINGS {
             match self.tape.next_kink(order, step / unit) {
                 NextKink::Nowhere => break,
@@ -129,6 +126,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         Ahead { step, kink: None }
+    }
+
+    /// How far a step goes whose series ends, and whose polynomial has no error: no farther than a
+    /// fall early on it is resolved.
+    #[cold]
+    fn own_reach(&self, unit: f64, c: &[A::State]) -> f64 {
+        let natural = unit * natural(c);
+        if natural > 0.0 {
+            return LONGEST * natural;
+        }
+        // Powers from zero have no time scale of their own, but for what the tolerance allows.
+        let speed = self.options.tolerance.norm(&c[1], &c[0], &c[0]) / unit;
+        LONGEST * self.memory.last_duration.max(if speed > 0.0 { 1.0 / speed } else { f64::INFINITY })
     }
 
     /// Works out the Taylor coefficients `c` of the solution from `x`, in units of a second, unless
@@ -195,9 +205,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// the flow at its end agrees, which it does not beyond a switch. Nothing if there is no such
     /// step.
     fn believed(&mut self, way: &Way<A>, c: &[A::State], unit: f64, mut h: f64) -> Result<Option<Believed<A>>, Error> {
-        let &Way { mode, now, since, remaining, first } = way;
+        let &Way { mode, now, remaining, grace, first } = way;
         while h > SHORTEST * resolution(now.seconds()) && h.is_finite() {
-            let limit = searched(h, remaining, since, now.after(remaining));
+            let limit = if h < remaining { h } else { h + grace };
             let mut held = std::mem::take(&mut self.held);
             held.0.clear();
             let found = self.first_crossing(
@@ -256,9 +266,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 struct Way<A: Automaton> {
     mode: A::Mode,
     now: Time,
-    /// How long the arc has lasted, and how much of the span is left.
-    since: f64,
+    /// How much of the span is left, and how far past its end is still at it.
     remaining: f64,
+    grace: f64,
     first: bool,
 }
 

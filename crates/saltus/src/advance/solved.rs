@@ -8,7 +8,7 @@ use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::{Time, grace};
+use crate::time::{Span, Time};
 
 use super::Advance;
 use super::crossing::{Close, together};
@@ -45,16 +45,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         x: &A::State,
-        now: Time,
-        remaining: f64,
+        clock: &Span,
         at: impl Fn(f64) -> A::State + Copy,
         mut search: impl FnMut(&mut Self, A::Edge, f64, Start) -> Result<(Searched, bool), Undefined>,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<First<A>>, Error> {
         let mut found: Option<First<A>> = None;
         let mut undefined = None;
+        let (now, past) = (clock.now, past(clock));
         for edge in self.automaton.edges(mode).iter() {
-            let fall = found.as_ref().map_or(past(now, remaining), |first| first.crossing.outside);
+            let fall = found.as_ref().map_or(past, |first| first.crossing.outside);
             let limit = undefined.map_or(fall, |(s, _)| fall.min(s));
             let mut arrival = None;
             let (Searched { fall, evidence, .. }, by_formula) = match self.automaton.falls(mode, edge, now.seconds(), x)
@@ -100,16 +100,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mode: A::Mode,
         edge: A::Edge,
         (s, state): (f64, &A::State),
-        now: Time,
-        remaining: f64,
+        clock: &Span,
         observer: &mut impl Observer<A>,
     ) -> bool {
+        let (now, remaining) = (clock.now, clock.remaining());
         if !(s < remaining && self.arrives(edge, now, s, state, remaining)) {
             return false;
         }
         self.memory.stats.exact += 1;
         self.arrived();
-        let span = past(now, remaining);
+        let span = past(clock);
         observer.inspection(&Inspection { mode, edge, start: now, span, evidence: Evidence::Isolated });
         true
     }
@@ -187,6 +187,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// A hair past the end of the span, so that a crossing that rounding puts just behind it is taken
 /// at it.
 #[inline]
-fn past(now: Time, remaining: f64) -> f64 {
-    remaining + grace(now.after(remaining).seconds())
+fn past(clock: &Span) -> f64 {
+    clock.remaining() + clock.grace()
 }

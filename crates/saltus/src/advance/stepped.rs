@@ -15,7 +15,7 @@ use crate::observe::Observer;
 use crate::piece::{Piece, horner};
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{LAST, Span, Time, grace, resolution};
+use crate::time::{LAST, Span, Time, resolution};
 
 use super::crossing::{OnStep, Range, Step, exceeds};
 use super::smooth::Arrival;
@@ -80,7 +80,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 trial.end
             } else {
                 let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
-                let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
+                let limit = if h < remaining { h } else { h + clock.grace() };
+                // What is shorter than the rounding of time is a line, followed beyond its end.
+                let line = [x, slope.with(|i| h * slope.get(i))];
+                let step = Step { now: clock.now, c: if limit > 2.0 * h { &line } else { dense.as_ref() }, scale: h };
                 if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                     self.memory.stats.steps -= 1;
                     self.memory.stats.rejected += 1;
@@ -90,7 +93,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if first {
                     self.find_staying(mode, step, &slope);
                 }
-                let limit = searched(h, remaining, clock.now.since(began), clock.end);
                 let range = Range { limit, first, roughly: true };
                 let found = if clear { None } else { self.first_crossing(mode, step, range, Some(&mut *observer))? };
                 if first && !self.memory.idle.is_empty() {
@@ -444,13 +446,6 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
     } else {
         h
     }
-}
-
-/// How far guards are looked at on a step with so much of the span `remaining`, `since` its arc
-/// began: the last one a few roundings past its end.
-#[inline]
-pub(super) fn searched(h: f64, remaining: f64, since: f64, end: Time) -> f64 {
-    if h >= remaining { h + (ROUNDINGS * f64::EPSILON * h.max(since)).max(grace(end.seconds())) } else { h }
 }
 
 /// The flow, or its series, has another `dimension` than the state `x`.

@@ -12,15 +12,13 @@ impl Search<'_> {
         let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
         let mut values = [0.0; 9];
         values[0] = if a == 0.0 { self.start()? } else { self.value(a)? };
-        for (value, x) in values[1..8].iter_mut().zip(&chebyshev::NODES[1..8]) {
-            *value = self.value(centre + radius * x)?;
-        }
+        self.values(&mut values[1..8], |k| centre + radius * chebyshev::NODES[k + 1])?;
         values[8] = self.value(b)?;
         let series = chebyshev::series(&values);
-        let mut off = 0.0_f64;
-        for x in CHECKS {
-            off = off.max((self.value(centre + radius * x)? - chebyshev::sum(&series, x)).abs());
-        }
+        let mut checks = [0.0; 2];
+        self.values(&mut checks, |k| centre + radius * CHECKS[k])?;
+        let far = |k: usize| (checks[k] - chebyshev::sum(&series, CHECKS[k])).abs();
+        let off = far(0).max(far(1));
         let off = (series[7].abs() + series[8].abs()).max(off);
         let varies = series[1..].iter().map(|c| c.abs()).sum();
         // The nodes themselves are rounded, and the state at them likewise.

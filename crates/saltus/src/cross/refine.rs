@@ -68,12 +68,11 @@ const TRIES: usize = 4;
 const TRUNCATION: f64 = 0.2;
 
 impl Search<'_> {
-    /// How the guard changes its sign at a crossing between neighbouring times; what is no root is
-    /// noted.
-    pub(super) fn passage(&mut self, &Crossing { inside, outside, .. }: &Crossing) -> Result<Passage, Undefined> {
-        let near = self.value(inside)?.abs() + self.value(outside)?.abs();
+    /// How the guard changes its sign at a crossing between neighbouring times, by so much; what is
+    /// no root is noted.
+    pub(super) fn passage(&mut self, &(Crossing { inside, outside, .. }, near): &(Crossing, f64)) -> Passage {
         if near.is_finite() && near <= MINUTE * self.largest {
-            return Ok(Passage::Root);
+            return Passage::Root;
         }
         // A root of up to the fourth order has grown fourfold there, and what comes from a pole of
         // the order 1/5 and higher has shrunk as much.
@@ -91,12 +90,12 @@ impl Search<'_> {
         if passage != Passage::Root {
             self.weaken(Evidence::doubtful(Doubt::Discontinuous, before, after));
         }
-        Ok(passage)
+        passage
     }
 
     /// The fall in `[a, b]`, where the guard is inside at `a` but for rounding, and close to a
-    /// `guess` if there is one.
-    pub(super) fn refined(&mut self, a: f64, b: f64, guess: Option<f64>) -> Result<Crossing, Undefined> {
+    /// `guess` if there is one; and by how much the guard changes there.
+    pub(super) fn refined(&mut self, a: f64, b: f64, guess: Option<f64>) -> Result<(Crossing, f64), Undefined> {
         if let Some(guess) = guess
             && let Some([inside, outside]) = self.around(guess, a, b)?
         {
@@ -104,23 +103,29 @@ impl Search<'_> {
         }
         let (mut a, mut b) = (a, b);
         let start = self.start()?;
-        if a == 0.0 && !self.spent && start >= 0.0 && self.value(self.span * AT_START)? < 0.0 {
-            b = self.span * AT_START;
-            if start == 0.0 {
-                return Ok(Crossing::at_start(b));
+        if a == 0.0 && !self.spent && start >= 0.0 {
+            let first = self.value(self.span * AT_START)?;
+            if first < 0.0 {
+                b = self.span * AT_START;
+                if start == 0.0 {
+                    return Ok((Crossing::at_start(b), -first));
+                }
             }
         }
         if a == 0.0 && self.spent {
             // Rounding may leave the guard negative at the spent root and after it: begin where it
             // is seen to have risen.
-            let mut middle = 0.5 * b;
-            while self.value(middle)? <= 0.0 {
-                if middle <= b * AT_START {
-                    return Ok(Crossing::at_start(middle));
+            a = 0.5 * b;
+            loop {
+                let value = self.value(a)?;
+                if value > 0.0 {
+                    break;
                 }
-                middle *= 0.5;
+                if a <= b * AT_START {
+                    return Ok((Crossing::at_start(a), start.abs() - value));
+                }
+                a *= 0.5;
             }
-            a = middle;
             let mut ahead = 2.0 * a;
             while ahead < b && self.value(ahead)? >= 0.0 {
                 a = ahead;
@@ -154,14 +159,14 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// The fall between an inner and an outer time at which the guard has these values, by ITP,
-    /// which is never slower than bisection by more than one step (I. Oliveira, R. Takahashi, ACM
-    /// TOMS 47 (2021) 5, doi:10.1145/3423597).
+    /// The fall between an inner and an outer time at which the guard has these values, and by how
+    /// much it changes there, by ITP, which is never slower than bisection by more than one step
+    /// (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
     fn narrowed(
         &mut self,
         (mut a, mut above): (f64, f64),
         (mut b, mut below): (f64, f64),
-    ) -> Result<Crossing, Undefined> {
+    ) -> Result<(Crossing, f64), Undefined> {
         let mut allowance = 2.0 * (b - a);
         let truncation = TRUNCATION / (b - a);
         while a.next_up() < b && b - a > f64::MIN_POSITIVE {
@@ -183,6 +188,7 @@ impl Search<'_> {
         }
         let rest = |side: f64| (b - a) * (side / (above - below));
         let (root, rest) = if above <= -below { (a, rest(above)) } else { (b, rest(below)) };
-        Ok(Crossing { inside: a, outside: b, root, rest: if rest.is_finite() { rest } else { 0.0 }, leaps: false })
+        let rest = if rest.is_finite() { rest } else { 0.0 };
+        Ok((Crossing { inside: a, outside: b, root, rest, leaps: false }, above - below))
     }
 }

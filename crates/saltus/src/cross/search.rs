@@ -54,6 +54,8 @@ pub(super) struct Search<'a> {
     evidence: Evidence,
     /// Between which times the samples of the whole interval turn up from their least.
     turn: Option<[f64; 2]>,
+    /// Whether a root is looked for again elsewhere, and need not be settled here.
+    pub(super) roughly: bool,
 }
 
 /// On which side of its zero the guard is.
@@ -154,7 +156,13 @@ impl<'a> Search<'a> {
             flat: None,
             evidence: Evidence::Excluded,
             turn: None,
+            roughly: false,
         }
+    }
+
+    /// The same, where a root is looked for again elsewhere.
+    pub(super) fn roughly(self, roughly: bool) -> Self {
+        Self { roughly, ..self }
     }
 
     /// The same, where the guard has this `value` at the start.
@@ -180,6 +188,18 @@ impl<'a> Search<'a> {
         if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
     }
 
+    /// The guard at some times in a row.
+    #[inline]
+    pub(super) fn values(&mut self, values: &mut [f64], time: impl Fn(usize) -> f64) -> Result<(), Undefined> {
+        for (k, value) in values.iter_mut().enumerate() {
+            *value = (self.guard)(time(k));
+        }
+        self.evaluations += values.len() as u32;
+        self.largest = values.iter().fold(self.largest, |largest, value| largest.max(value.abs()));
+        let undefined = values.iter().position(|value| value.is_nan());
+        undefined.map_or(Ok(()), |k| Err(Undefined(time(k))))
+    }
+
     /// The search, for a polynomial that is given to within a margin or for interpolants.
     pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Searched, Undefined> {
         let side = self.side_at(start)?;
@@ -191,12 +211,13 @@ impl<'a> Search<'a> {
                 Part::None(_) => break None,
                 Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
                 Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
+                Part::Fall { near: Some(near), .. } if self.roughly => break Some(Crossing::after(near)),
                 Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
                 Part::Fall { a, b, near: None } => (a, b, None),
                 Part::Falls { a, b, guess } => (a, b, Some(guess)),
             };
-            let crossing = self.refined(a, b, guess)?;
-            let passage = self.passage(&crossing)?;
+            let found = self.refined(a, b, guess)?;
+            let (passage, crossing) = (self.passage(&found), found.0);
             if passage != Passage::Pole {
                 break Some(Crossing { leaps: passage == Passage::Leap, ..crossing });
             }

@@ -335,12 +335,15 @@ impl<T: TwoSided> Filippov<T> {
         if missing == 0.0 {
             return *x;
         }
-        let y = if total > 0.0 {
-            x.with(|i| x.get(i) + missing * (weight(i) / total))
+        let by = if total > 0.0 {
+            x.with(|i| missing * (weight(i) / total))
         } else {
             let total: f64 = (0..x.len()).map(|i| n.get(i) * n.get(i)).sum();
-            x.with(|i| x.get(i) + missing * (n.get(i) / total))
+            x.with(|i| missing * (n.get(i) / total))
         };
+        // What cancels but for rounding is zero: what is left of it says nothing of its size.
+        let cancels = |i: usize| (x.get(i) + by.get(i)).abs() <= FEW * f64::EPSILON * x.get(i).abs();
+        let y = x.with(|i| if cancels(i) { 0.0 } else { x.get(i) + by.get(i) });
         if y.is_finite() { y } else { *x }
     }
 

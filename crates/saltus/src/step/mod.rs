@@ -12,6 +12,7 @@ mod auto;
 mod dop853;
 mod either;
 mod rodas5p;
+mod system;
 mod tsit5;
 
 pub use auto::Auto;

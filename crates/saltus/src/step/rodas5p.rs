@@ -1,6 +1,7 @@
-//! `Rodas5P`: L-stable, order 5(4), one Jacobian and eight linear solves a step, dense output of
+//! `Rodas5P`: L-stable, order 5(4), one Jacobian and ten linear solves a step, dense output of
 //! order 4.
 
+use super::system::{Room, System};
 use super::{Stepper, Trial, closing, moved, weighted};
 use crate::state::State;
 use crate::time::resolution;
@@ -11,7 +12,8 @@ use crate::time::resolution;
 /// nothing that can fail to converge. Stiffly accurate, with the stability function R(z) =
 /// P(z)/(1 - γ z)⁸ of a polynomial P of degree at most 7:
 /// |R(z)| ≤ 1 for Re z ≤ 0 and R(∞) = 0 (L-stable). On the problem of Prothero and Robinson its error is O(h⁴) however stiff that is.
-/// The error estimate has order 4; so has the dense output, which is continuous, with its first
+/// The error estimate has order 4, and counts what the dense output is off by half way where the
+/// flow is stiff; order 4 has the dense output too, which is continuous, with its first
 /// derivative where the flow is not stiff.
 ///
 /// Use it where a flow is *stiff*: where it forces nearby solutions together on a time scale far
@@ -21,8 +23,9 @@ use crate::time::resolution;
 ///
 /// The Jacobian J = ∂f/∂x comes from central differences of the flow, 2 n evaluations for n
 /// coordinates, and ∂f/∂t from one evaluation if it is zero and from two otherwise. They probe the
-/// flow within 1e-5 of the scale of each coordinate, |x|, |h f| or a millionth of the largest of
-/// either; where it is undefined on one side, the other side serves. Their rounding shows in the
+/// flow within 1e-5 of the scale of each coordinate, |x| or |h f|, or of what f changes by over a
+/// step where both are below a millionth of the largest; where it is undefined on one side, the
+/// other side serves. Their rounding shows in the
 /// work, not in the result: below a relative tolerance of about 1e-10 the steps shrink faster than
 /// the order would have it.
 ///
@@ -37,9 +40,6 @@ use crate::time::resolution;
 pub struct Rodas5P;
 
 const GAMMA: f64 = 0.211_937_563_194_290_14;
-/// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube
-/// root of the rounding of a double.
-const REACH: f64 = 6.06e-6;
 /// The times of stages 2 to 5; those of 6 to 8 are at the end.
 const C: [f64; 4] =
     [0.635_812_689_582_870_4, 0.409_579_839_339_753_5, 0.976_930_672_506_071_6, 0.428_840_360_955_866_4];
@@ -121,8 +121,8 @@ const H: [[f64; 8]; 3] = [
 ];
 
 impl Stepper for Rodas5P {
-    /// The stages, and the slope at the start.
-    type Stages<S: State> = ([S; 8], S);
+    /// The stages, the slope at the start, and how far the dense output is off half way.
+    type Stages<S: State> = ([S; 8], S, S);
     type Dense<S: State> = [S; 5];
 
     fn jacobians(&self) -> u64 {
@@ -146,7 +146,7 @@ impl Stepper for Rodas5P {
         x: &S,
         slope: &S,
         h: f64,
-    ) -> Trial<S, ([S; 8], S)> {
+    ) -> Trial<S, ([S; 8], S, S)> {
         let (mut few, mut some, mut many);
         let mut system = match x.len() {
             n @ 0..=4 => {
@@ -162,7 +162,7 @@ impl Stepper for Rodas5P {
                 System { matrix: &mut many.0, work: &mut many.1, order: &mut many.2 }
             }
         };
-        system.fill(flow, t, x, slope, h);
+        system.fill(flow, t, x, slope, (h, GAMMA));
         system.factor();
         let drift = time_derivative(flow, t, x, slope, h);
         let forced = |f: S, d: f64| f.with(|i| h * GAMMA * (f.get(i) + h * d * drift.get(i)));
@@ -188,12 +188,15 @@ impl Stepper for Rodas5P {
         let f = flow(t + h, &x8);
         let u8 = system.solve(&moved(&forced(f, 0.0), GAMMA, &G8, [&u1, &u2, &u3, &u4, &u5, &u6, &u7]));
         let end = x8.with(|i| x8.get(i) + u8.get(i));
-        Trial { end, slope: flow(t + h, &end), stages: ([u1, u2, u3, u4, u5, u6, u7, u8], *slope) }
+        let u = [u1, u2, u3, u4, u5, u6, u7, u8];
+        let off = off_half_way(&mut system, flow, (t, h), (x, &end), &u);
+        Trial { end, slope: flow(t + h, &end), stages: (u, *slope, off) }
     }
 
     #[inline]
-    fn error<S: State>(&self, _: f64, trial: Trial<&S, &([S; 8], S)>, square: impl Fn(&S) -> f64) -> f64 {
-        square(&trial.stages.0[7])
+    fn error<S: State>(&self, _: f64, trial: Trial<&S, &([S; 8], S, S)>, square: impl Fn(&S) -> f64) -> f64 {
+        let (end, half_way) = (square(&trial.stages.0[7]), square(&trial.stages.2));
+        if half_way > end { half_way } else { end }
     }
 
     #[inline]
@@ -203,12 +206,11 @@ impl Stepper for Rodas5P {
         _: f64,
         x: &S,
         h: f64,
-        trial: Trial<&S, &([S; 8], S)>,
+        trial: Trial<&S, &([S; 8], S, S)>,
     ) -> [S; 5] {
         // (1-θ) x + θ (end + (1-θ)(b₀ + θ (b₁ + θ b₂))), multiplied out.
         let (u, slope) = (trial.stages.0.each_ref(), &trial.stages.1);
-        let b = |h: &[f64; 8]| x.with(|i| weighted(h, u, i));
-        let (b0, b1, b2) = (b(&H[0]), b(&H[1]), b(&H[2]));
+        let [b0, b1, b2] = inner(x, u);
         // Where the slope at the start agrees with that of the flow to within the error estimate or
         // rounding, it becomes the flow's, by a multiple of θ (1-θ)³: an arc that ends in a small
         // part of the step sees nothing else. Where the flow is stiff the two do not agree, and
@@ -227,6 +229,35 @@ impl Stepper for Rodas5P {
     }
 }
 
+/// The b₀, b₁, b₂ of the dense output.
+#[inline]
+fn inner<S: State>(x: &S, u: [&S; 8]) -> [S; 3] {
+    H.each_ref().map(|h| x.with(|i| weighted(h, u, i)))
+}
+
+/// How far the dense output is off half way in the directions in which the flow is stiff.
+///
+/// There the ends of a step, and with them the error estimate, lie on the slow solution however
+/// long the step is. Between them it is off by e, from which the flow, less the slope of the dense
+/// output, differs by J e. Of that (1 - hγJ)⁻¹ hγ makes e where hγJ is large; what else there is of
+/// it, where it is not, is taken off by once more (1 - hγJ)⁻¹.
+#[inline]
+fn off_half_way<S: State>(
+    system: &mut System<'_>,
+    flow: &mut impl FnMut(f64, &S) -> S,
+    (t, h): (f64, f64),
+    (x, end): (&S, &S),
+    u: &[S; 8],
+) -> S {
+    let [b0, b1, b2] = inner(x, u.each_ref());
+    let bent = |i: usize| b0.get(i) + 0.5 * (b1.get(i) + 0.5 * b2.get(i));
+    let f = flow(t + 0.5 * h, &x.with(|i| 0.5 * (x.get(i) + end.get(i) + 0.5 * bent(i))));
+    let slope = |i: usize| end.get(i) - x.get(i) + 0.25 * (b1.get(i) + b2.get(i));
+    let off = system.solve(&x.with(|i| GAMMA * (h * f.get(i) - slope(i))));
+    let slow = system.solve(&off);
+    x.with(|i| off.get(i) - slow.get(i))
+}
+
 /// ∂f/∂t by a difference of order 2 that looks only ahead, within the step.
 #[inline]
 fn time_derivative<S: State>(flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S, slope: &S, h: f64) -> S {
@@ -241,108 +272,6 @@ fn time_derivative<S: State>(flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S,
     let f2 = flow(far, x);
     let (a, b) = (near - t, far - t);
     x.with(|i| ((f1.get(i) - slope.get(i)) * (b / a) - (f2.get(i) - slope.get(i)) * (a / b)) / (b - a))
-}
-
-/// Room for the linear systems of up to N coordinates.
-struct Room<const N: usize> {
-    matrix: [[f64; N]; N],
-    work: [f64; N],
-    order: [usize; N],
-}
-
-impl<const N: usize> Room<N> {
-    #[inline]
-    fn new() -> Self {
-        Self { matrix: [[0.0; N]; N], work: [0.0; N], order: [0; N] }
-    }
-
-    /// Room for `n` of them.
-    #[inline]
-    fn first(&mut self, n: usize) -> System<'_> {
-        let matrix = &mut self.matrix.as_flattened_mut()[..n * n];
-        System { matrix, work: &mut self.work[..n], order: &mut self.order[..n] }
-    }
-}
-
-/// Linear systems that share the matrix 1 - h γ J.
-struct System<'a> {
-    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal
-    /// of U on it.
-    matrix: &'a mut [f64],
-    work: &'a mut [f64],
-    /// Which row was taken first, second, …
-    order: &'a mut [usize],
-}
-
-impl System<'_> {
-    /// Writes 1 - h γ J, with J from central differences of the flow.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
-    fn fill<S: State>(&mut self, flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S, slope: &S, h: f64) {
-        let n = x.len();
-        let size = |i: usize| x.get(i).abs().max((h * slope.get(i)).abs());
-        let largest = (0..n).map(size).fold(0.0, f64::max);
-        let smallest = if largest > 0.0 { 1e-6 * largest } else { 1.0 };
-        for j in 0..n {
-            let reach = REACH * size(j).max(smallest);
-            let mut probe = |to: f64| (to, flow(t, &x.with(|i| if i == j { to } else { x.get(i) })));
-            let (mut above, mut below) = (probe(x.get(j) + reach), probe(x.get(j) - reach));
-            if !above.1.is_finite() {
-                above = (x.get(j), *slope);
-            } else if !below.1.is_finite() {
-                below = (x.get(j), *slope);
-            }
-            let scale = -h * GAMMA / (above.0 - below.0);
-            for i in 0..n {
-                let unit = if i == j { 1.0 } else { 0.0 };
-                self.matrix[i * n + j] = unit + scale * (above.1.get(i) - below.1.get(i));
-            }
-        }
-    }
-
-    /// Factors the matrix by Gaussian elimination with row interchanges. A singular one makes every
-    /// solution infinite or NaN.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
-    fn factor(&mut self) {
-        let n = self.order.len();
-        for (i, row) in self.order.iter_mut().enumerate() {
-            *row = i;
-        }
-        for k in 0..n {
-            let pivot = (k + 1..n).fold(k, |best, i| {
-                if self.matrix[i * n + k].abs() > self.matrix[best * n + k].abs() { i } else { best }
-            });
-            if pivot != k {
-                self.order.swap(k, pivot);
-                for j in 0..n {
-                    self.matrix.swap(k * n + j, pivot * n + j);
-                }
-            }
-            let reciprocal = 1.0 / self.matrix[k * n + k];
-            self.matrix[k * n + k] = reciprocal;
-            for i in k + 1..n {
-                let factor = self.matrix[i * n + k] * reciprocal;
-                self.matrix[i * n + k] = factor;
-                for j in k + 1..n {
-                    self.matrix[i * n + j] -= factor * self.matrix[k * n + j];
-                }
-            }
-        }
-    }
-
-    /// The solution for one right-hand side.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
-    fn solve<S: State>(&mut self, right: &S) -> S {
-        let n = self.order.len();
-        for i in 0..n {
-            let known: f64 = (0..i).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
-            self.work[i] = right.get(self.order[i]) - known;
-        }
-        for i in (0..n).rev() {
-            let known: f64 = (i + 1..n).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
-            self.work[i] = (self.work[i] - known) * self.matrix[i * n + i];
-        }
-        right.with(|i| self.work[i])
-    }
 }
 
 #[cfg(test)]

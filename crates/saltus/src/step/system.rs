@@ -1,0 +1,146 @@
+//! The linear systems of a step by `Rodas5P`: 1 - hγJ, with the Jacobian J from differences of the
+//! flow.
+
+use crate::state::State;
+
+/// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube
+/// root of the rounding of a double.
+const REACH: f64 = 6.06e-6;
+/// A coordinate smaller than this part of the largest may have come to be so by chance.
+const BESIDE: f64 = 1e-6;
+
+/// Room for the linear systems of up to N coordinates.
+pub(super) struct Room<const N: usize> {
+    matrix: [[f64; N]; N],
+    work: [f64; N],
+    order: [usize; N],
+}
+
+impl<const N: usize> Room<N> {
+    #[inline]
+    pub(super) fn new() -> Self {
+        Self { matrix: [[0.0; N]; N], work: [0.0; N], order: [0; N] }
+    }
+
+    /// Room for `n` of them.
+    #[inline]
+    pub(super) fn first(&mut self, n: usize) -> System<'_> {
+        let matrix = &mut self.matrix.as_flattened_mut()[..n * n];
+        System { matrix, work: &mut self.work[..n], order: &mut self.order[..n] }
+    }
+}
+
+/// Linear systems that share the matrix 1 - h γ J.
+pub(super) struct System<'a> {
+    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal
+    /// of U on it.
+    pub(super) matrix: &'a mut [f64],
+    pub(super) work: &'a mut [f64],
+    /// Which row was taken first, second, …
+    pub(super) order: &'a mut [usize],
+}
+
+impl System<'_> {
+    /// Writes 1 - h γ J, with J from central differences of the flow.
+    #[inline(always)] // with a dimension known at compile time the loops vanish
+    pub(super) fn fill<S: State>(
+        &mut self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        slope: &S,
+        (h, gamma): (f64, f64),
+    ) {
+        let n = x.len();
+        let mut sizes = x.with(|i| x.get(i).abs().max((h * slope.get(i)).abs()));
+        let largest = (0..n).map(|i| sizes.get(i)).fold(0.0, f64::max);
+        let smallest = if largest > 0.0 { BESIDE * largest } else { 1.0 };
+        if (0..n).any(|i| sizes.get(i) < smallest) {
+            sizes = grown(flow, t, x, slope, h, &sizes, smallest);
+        }
+        for j in 0..n {
+            let reach = REACH * sizes.get(j);
+            let mut probe = |to: f64| (to, flow(t, &x.with(|i| if i == j { to } else { x.get(i) })));
+            let (mut above, mut below) = (probe(x.get(j) + reach), probe(x.get(j) - reach));
+            if !above.1.is_finite() {
+                above = (x.get(j), *slope);
+            } else if !below.1.is_finite() {
+                below = (x.get(j), *slope);
+            }
+            let scale = -h * gamma / (above.0 - below.0);
+            for i in 0..n {
+                let unit = if i == j { 1.0 } else { 0.0 };
+                self.matrix[i * n + j] = unit + scale * (above.1.get(i) - below.1.get(i));
+            }
+        }
+    }
+
+    /// Factors the matrix by Gaussian elimination with row interchanges. A singular one makes every
+    /// solution infinite or NaN.
+    #[inline(always)] // with a dimension known at compile time the loops vanish
+    pub(super) fn factor(&mut self) {
+        let n = self.order.len();
+        for (i, row) in self.order.iter_mut().enumerate() {
+            *row = i;
+        }
+        for k in 0..n {
+            let pivot = (k + 1..n).fold(k, |best, i| {
+                if self.matrix[i * n + k].abs() > self.matrix[best * n + k].abs() { i } else { best }
+            });
+            if pivot != k {
+                self.order.swap(k, pivot);
+                for j in 0..n {
+                    self.matrix.swap(k * n + j, pivot * n + j);
+                }
+            }
+            let reciprocal = 1.0 / self.matrix[k * n + k];
+            self.matrix[k * n + k] = reciprocal;
+            for i in k + 1..n {
+                let factor = self.matrix[i * n + k] * reciprocal;
+                self.matrix[i * n + k] = factor;
+                for j in k + 1..n {
+                    self.matrix[i * n + j] -= factor * self.matrix[k * n + j];
+                }
+            }
+        }
+    }
+
+    /// The solution for one right-hand side.
+    #[inline(always)] // with a dimension known at compile time the loops vanish
+    pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
+        let n = self.order.len();
+        for i in 0..n {
+            let known: f64 = (0..i).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
+            self.work[i] = right.get(self.order[i]) - known;
+        }
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
+            self.work[i] = (self.work[i] - known) * self.matrix[i * n + i];
+        }
+        right.with(|i| self.work[i])
+    }
+}
+
+/// The `sizes` of coordinates, of which some are so small beside the largest that a step may make
+/// them larger: by what the slope changes by over it, up to `smallest`. One that is zero all the
+/// same, and has no size of its own, gets that.
+#[cold]
+fn grown<S: State>(
+    flow: &mut impl FnMut(f64, &S) -> S,
+    t: f64,
+    x: &S,
+    slope: &S,
+    h: f64,
+    sizes: &S,
+    smallest: f64,
+) -> S {
+    let ahead = flow(t, &x.with(|i| x.get(i) + h * slope.get(i)));
+    x.with(|i| {
+        let bend = (h * (ahead.get(i) - slope.get(i))).abs();
+        let grown = if bend > 0.0 { bend.min(smallest) } else { 0.0 };
+        match sizes.get(i).max(grown) {
+            0.0 => smallest,
+            size => size,
+        }
+    })
+}
