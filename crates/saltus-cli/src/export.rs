@@ -9,7 +9,7 @@ use saltus_motion::{Format, Space, Unit, Up};
 
 use crate::error::Error;
 use crate::output::{check_new, extension, say, write};
-use crate::parse::{FIRST_FRAME, one_of, positive, whole};
+use crate::parse::{FIRST_FRAME, number, one_of, positive};
 use crate::staging::Staging;
 
 /// Write the motion of a scene for animators: keys, scripts, models, moving pictures.
@@ -39,7 +39,7 @@ pub(crate) struct Export {
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Shown {
     /// The number of the frame at which the motion starts.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = whole(FIRST_FRAME))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = number(FIRST_FRAME))]
     pub(crate) first_frame: i32,
     #[command(flatten)]
     pub(crate) staging: Staging,

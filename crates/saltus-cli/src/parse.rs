@@ -64,30 +64,20 @@ pub(crate) fn target(text: &str) -> Result<Target, String> {
     Ok(target)
 }
 
-/// A number without a unit in a range.
-pub(crate) fn number(
-    range: RangeInclusive<f64>,
-) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let (low, high) = (range.start(), range.end());
-        let value = text.parse().ok().filter(|value| range.contains(value));
-        value.ok_or_else(|| format!("'{text}' is not a number from {low} to {high}"))
-    }
-}
-
-/// A whole number in a range.
-pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+/// A number without a unit in a range; a whole one if its type has no other.
+pub(crate) fn number<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: FromStr + PartialOrd + fmt::Display + Clone + Send + Sync + 'static,
 {
     move |text| {
+        let whole = if "0.5".parse::<T>().is_ok() { "" } else { "whole " };
         let (low, high) = (range.start(), range.end());
         let value = text.parse().ok().filter(|value| range.contains(value));
-        value.ok_or_else(|| format!("'{text}' is not a whole number from {low} to {high}"))
+        value.ok_or_else(|| format!("'{text}' is not a {whole}number from {low} to {high}"))
     }
 }
 
-/// After how many jumps a run may be told to end: any number.
+/// After how many jumps a run may end: any number.
 pub(crate) const JUMPS: RangeInclusive<u32> = 1..=u32::MAX;
 /// How many samples or frames a second may have: from one in a quarter of an hour to one in a
 /// microsecond.

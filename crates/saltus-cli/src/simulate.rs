@@ -13,7 +13,7 @@ use saltus_scene::{Kind, Sampling, Scene};
 use crate::accuracy;
 use crate::error::Error;
 use crate::output::{check_picture, extension, say, write};
-use crate::parse::{JUMPS, RATES, number, one_of, positive, quantity, target, whole};
+use crate::parse::{JUMPS, RATES, number, one_of, positive, quantity, target};
 use crate::scenes::{ended, ending, note, planned, scene};
 
 /// Simulate a scene, or a ball that bounces on a level floor.
@@ -42,7 +42,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
     /// After how many jumps to stop; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = whole(JUMPS))]
+    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS))]
     pub(crate) most_jumps: Option<u32>,
     /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]

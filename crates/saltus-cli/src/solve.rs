@@ -9,7 +9,7 @@ use saltus_scene::solve::{Clock, Wish, solve};
 
 use crate::error::Error;
 use crate::output::{check_new, say, write};
-use crate::parse::{FIRST_FRAME, whole};
+use crate::parse::{FIRST_FRAME, number};
 use crate::scenes::{note, read};
 
 /// What wishes look like.
@@ -50,7 +50,7 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "RATE", default_value = "24")]
     pub(crate) fps: Rate,
     /// The number of the frame at which the motion starts.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = whole(FIRST_FRAME))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = number(FIRST_FRAME))]
     pub(crate) first_frame: i32,
     /// Where to write the scene; `-` for standard output, as without it.
     #[arg(long, short, value_name = "FILE")]

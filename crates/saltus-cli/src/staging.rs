@@ -11,7 +11,7 @@ use saltus_scene::{Squash, Stage, length};
 
 use crate::error::Error;
 use crate::output::say;
-use crate::parse::{JUMPS, number, positive, whole};
+use crate::parse::{JUMPS, number, positive};
 use crate::scenes::{ended, ending, note, planned, scene};
 
 /// The parts of its height that a ball may lose, and by which it may be longer.
@@ -46,11 +46,11 @@ pub(crate) struct Staging {
     pub(crate) exaggerate: f64,
     /// Hold each contact for this many frames at least; what comes after is later. Where a contact
     /// is an instant, --squash holds it for 2.
-    #[arg(long, value_name = "FRAMES", value_parser = whole(FRAMES))]
+    #[arg(long, value_name = "FRAMES", value_parser = number(FRAMES))]
     pub(crate) hold: Option<u32>,
     /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole
     /// frames, its end its start.
-    #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = whole(JUMPS))]
+    #[arg(long = "loop", value_name = "HOP", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = number(JUMPS))]
     pub(crate) looped: Option<u32>,
     /// Turn left and right around.
     #[arg(long)]
@@ -116,8 +116,8 @@ impl Staging {
             "squash" => self.squash = Some(squash(value)?),
             "stretch" => self.stretch = Some(number(STRETCHES)(value)?),
             "exaggerate" => self.exaggerate = number(FACTORS)(value)?,
-            "hold" => self.hold = Some(whole(FRAMES)(value)?),
-            "loop" => self.looped = Some(whole(JUMPS)(value)?),
+            "hold" => self.hold = Some(number(FRAMES)(value)?),
+            "loop" => self.looped = Some(number(JUMPS)(value)?),
             _ => return Err(format!("'{option}' is no way to show a motion")),
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! A scene run many times with other values, and each run as a row: what of it a table of many runs
 //! wants.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 pub use crate::column::{Column, RowFormat};
@@ -54,6 +55,9 @@ pub struct Nothing {
     /// In one line.
     pub why: String,
 }
+
+/// How long a row is as a rule, in bytes.
+const ROW: usize = 200;
 
 impl<'a> Sweep<'a> {
     /// A sweep of the scene `toml`, which messages call `name`; what `run` says goes before what
@@ -188,6 +192,15 @@ enum Cell {
 }
 
 impl Cell {
+    fn text(&self) -> Cow<'_, str> {
+        match self {
+            Self::None => Cow::Borrowed(""),
+            Self::Number(value) => number(*value).into(),
+            Self::Written(text) | Self::Word(text) => text.into(),
+            Self::Count(count) => count.to_string().into(),
+        }
+    }
+
     #[allow(clippy::cast_precision_loss)] // 53 bits
     fn number(&self) -> Option<f64> {
         match self {
@@ -236,7 +249,7 @@ impl Rows {
     /// The first line, if the format has one.
     fn header(&self) -> String {
         match self.format {
-            RowFormat::Csv => self.headers.join(",") + "\n",
+            RowFormat::Csv => csv_line(&self.headers),
             RowFormat::Jsonl => String::new(),
         }
     }
@@ -253,16 +266,10 @@ impl Rows {
     fn cells(&self, line: &str) -> Option<Vec<String>> {
         let cells = match self.format {
             RowFormat::Csv => {
-                let mut quoted = false;
-                let ends = |c: char| {
-                    quoted ^= c == '"';
-                    c == ',' && !quoted
-                };
-                let plain = |cell: &str| match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
-                    Some(word) => word.replace("\"\"", "\""),
-                    None => cell.to_owned(),
-                };
-                line.split(ends).map(plain).collect()
+                let mut record = csv::StringRecord::new();
+                let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+                reader.read_record(&mut record).ok()?;
+                record.iter().map(str::to_owned).collect::<Vec<_>>()
             }
             RowFormat::Jsonl => {
                 let row: serde_json::Map<String, serde_json::Value> = serde_json::from_str(line).ok()?;
@@ -299,54 +306,45 @@ impl Rows {
 
     /// The row of a run, or of one that came to nothing: `end` says how, and `why`.
     fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> (String, Vec<Option<f64>>) {
-        let mut row = String::with_capacity(200);
-        let mut numbers = Vec::with_capacity(self.headers.len());
-        let mut names = self.headers.iter();
-        let mut put = |cell: Cell| {
-            self.put(&mut row, names.next().map_or("", String::as_str), &cell);
-            numbers.push(cell.number());
-        };
-        put(Cell::Count(run));
-        for value in values {
-            put(if value.word { Cell::Word(value.cell.clone()) } else { Cell::Written(value.cell.clone()) });
-        }
+        let mut cells = Vec::with_capacity(self.headers.len());
+        cells.push(Cell::Count(run));
+        let varied = |value: &Value| if value.word { Cell::Word } else { Cell::Written }(value.cell.clone());
+        cells.extend(values.iter().map(varied));
         for &column in &self.columns {
             let outcome = match came {
                 Ok(outcome) => outcome,
                 Err(nothing) => {
                     match column {
-                        Column::End => put(Cell::Word(nothing.end.to_owned())),
-                        Column::Why => put(Cell::Word(nothing.why.clone())),
-                        _ => self.names(column).iter().for_each(|_| put(Cell::None)),
+                        Column::End => cells.push(Cell::Word(nothing.end.to_owned())),
+                        Column::Why => cells.push(Cell::Word(nothing.why.clone())),
+                        _ => cells.extend(self.names(column).iter().map(|_| Cell::None)),
                     }
                     continue;
                 }
             };
             let cost = outcome.cost;
-            match column {
-                Column::Impacts => put(Cell::Count(outcome.impacts as u64)),
-                Column::FirstImpact => put(outcome.first_impact.into()),
-                Column::LastImpact => put(outcome.last_impact.into()),
-                Column::FirstApex => put(outcome.first_apex.map(|apex| apex.height).into()),
-                Column::Rest => put(outcome.rest.into()),
-                Column::End => put(Cell::Word(outcome.end.name().to_owned())),
-                Column::EndTime => put(Cell::Number(outcome.until)),
+            cells.push(match column {
+                Column::Impacts => Cell::Count(outcome.impacts as u64),
+                Column::FirstImpact => outcome.first_impact.into(),
+                Column::LastImpact => outcome.last_impact.into(),
+                Column::FirstApex => outcome.first_apex.map(|apex| apex.height).into(),
+                Column::Rest => outcome.rest.into(),
+                Column::End => Cell::Word(outcome.end.name().to_owned()),
+                Column::EndTime => Cell::Number(outcome.until),
                 Column::Position | Column::Velocity | Column::Spin => {
-                    for ball in &outcome.balls {
-                        self.parts(column, ball).for_each(&mut put);
-                    }
+                    cells.extend(outcome.balls.iter().flat_map(|ball| self.parts(column, ball)));
+                    continue;
                 }
-                Column::Jumps => put(Cell::Count(cost.jumps as u64)),
-                Column::Steps => put(Cell::Count(cost.steps)),
-                Column::Evaluations => put(Cell::Count(cost.flows + cost.guards)),
-                Column::Why => put(Cell::None),
-            }
+                Column::Jumps => Cell::Count(cost.jumps as u64),
+                Column::Steps => Cell::Count(cost.steps),
+                Column::Evaluations => Cell::Count(cost.flows + cost.guards),
+                Column::Why => Cell::None,
+            });
         }
-        row.push_str(if self.format == RowFormat::Csv { "\n" } else { "}\n" });
-        (row, numbers)
+        (self.line(&cells), cells.iter().map(Cell::number).collect())
     }
 
-    fn parts(&self, column: Column, moment: &Moment) -> impl Iterator<Item = Cell> {
+    fn parts(&self, column: Column, moment: &Moment) -> impl Iterator<Item = Cell> + use<> {
         let spin = column == Column::Spin;
         let vector = match column {
             Column::Position => moment.position,
@@ -364,31 +362,52 @@ impl Rows {
         parts.iter().map(move |&part| Cell::Number(sign * vector[part]))
     }
 
-    fn put(&self, row: &mut String, name: &str, cell: &Cell) {
-        if self.format == RowFormat::Csv {
-            if !row.is_empty() {
-                row.push(',');
+    /// Cells as a line, its end included.
+    fn line(&self, cells: &[Cell]) -> String {
+        match self.format {
+            RowFormat::Csv => csv_line(cells.iter().map(Cell::text)),
+            RowFormat::Jsonl => {
+                let pairs = self.headers.iter().zip(cells).map(|(name, cell)| {
+                    let value = match cell {
+                        Cell::Word(word) => Cow::Owned(serde_json::Value::from(word.as_str()).to_string()),
+                        number => Some(number.text()).filter(|text| !text.is_empty()).unwrap_or("null".into()),
+                    };
+                    format!("{}:{value}", serde_json::Value::from(name.as_str()))
+                });
+                format!("{{{}}}\n", pairs.collect::<Vec<_>>().join(","))
             }
-            match cell {
-                Cell::None => {}
-                Cell::Number(value) => row.push_str(&number(*value)),
-                Cell::Written(number) => row.push_str(number),
-                Cell::Count(count) => row.push_str(&count.to_string()),
-                Cell::Word(word) if word.contains([',', '"', '\n']) => {
-                    row.extend(["\"", &word.replace('"', "\"\""), "\""]);
-                }
-                Cell::Word(word) => row.push_str(word),
-            }
-            return;
         }
-        row.extend([if row.is_empty() { "{\"" } else { ",\"" }, name, "\":"]);
-        match cell {
-            Cell::None => row.push_str("null"),
-            Cell::Number(value) if !value.is_finite() => row.push_str("null"),
-            Cell::Number(value) => row.push_str(&number(*value)),
-            Cell::Written(number) => row.push_str(number),
-            Cell::Count(count) => row.push_str(&count.to_string()),
-            Cell::Word(word) => row.push_str(&serde_json::Value::from(word.as_str()).to_string()),
+    }
+}
+
+/// Cells as a line of CSV.
+fn csv_line(cells: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let mut writer = csv::WriterBuilder::new().buffer_capacity(ROW).from_writer(Vec::with_capacity(ROW));
+    let record: csv::StringRecord = cells.into_iter().collect();
+    // Memory takes all there is, and text stays text.
+    let written = writer.write_record(&record).ok().and_then(|()| writer.into_inner().ok());
+    written.and_then(|line| String::from_utf8(line).ok()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Cell, Column, RowFormat, Rows};
+
+    proptest! {
+        /// A row is read back as it was written, whatever its names and words are.
+        #[test]
+        fn rows_are_read_back(
+            words in prop::collection::vec("[ -~\"',\r\n\u{0}éß🎾]{0,6}", 2..5),
+            name in "[a-z\",\\\\]{1,4}",
+        ) {
+            for format in [RowFormat::Csv, RowFormat::Jsonl] {
+                let headers = (0..words.len()).map(|n| format!("{name}{n}")).collect();
+                let rows = Rows { format, columns: Vec::<Column>::new(), headers, dimensions: 1, balls: 1 };
+                let cells: Vec<_> = words.iter().cloned().map(Cell::Word).collect();
+                prop_assert_eq!(rows.cells(rows.line(&cells).trim_end_matches('\n')), Some(words.clone()));
+            }
         }
     }
 }

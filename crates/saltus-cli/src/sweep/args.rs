@@ -6,7 +6,7 @@ use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
 use saltus_scene::sweep::{Column, RowFormat};
 
-use crate::parse::{JUMPS, one_of, positive, whole};
+use crate::parse::{JUMPS, number, one_of, positive};
 use crate::varying::{VARIATIONS, Varying};
 
 /// Run a scene many times with other values, and write a table with a row for each run.
@@ -43,12 +43,12 @@ pub(crate) struct Sweep {
     #[arg(long)]
     pub(crate) force: bool,
     /// On how many threads to run; as many as there are cores unless given.
-    #[arg(long, visible_alias = "jobs", value_name = "COUNT", value_parser = whole(1_u16..=1024))]
+    #[arg(long, visible_alias = "jobs", value_name = "COUNT", value_parser = number(1_u16..=1024))]
     pub(crate) threads: Option<u16>,
     /// When to stop each run, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
     /// After how many jumps to stop each run; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = whole(JUMPS))]
+    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS))]
     pub(crate) most_jumps: Option<u32>,
 }
