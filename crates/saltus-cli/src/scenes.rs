@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 
 use saltus_scene::plan::{End, Plan, Record};
-use saltus_scene::{Law, ReadError, Run, Scene};
+use saltus_scene::{Law, Run, Scene};
 
 use crate::error::Error;
 use crate::output::{extension, say};
@@ -73,8 +73,8 @@ pub(crate) fn read(path: &Path) -> Result<(String, Vec<u8>), Error> {
         std::io::stdin().lock().take(most).read_to_end(&mut toml).map_err(Error::new)?;
         return Ok(("standard input".to_owned(), toml));
     }
-    let error = |error| Error::new(ReadError::File { path: path.to_owned(), error });
-    File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml)).map_err(error)?;
+    let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut toml));
+    read.map_err(|error| Error::reading(path, &error))?;
     Ok((path.to_string_lossy().into_owned(), toml))
 }
 

@@ -52,6 +52,8 @@ mod flattened;
 mod format;
 mod motion;
 mod rate;
+#[cfg(feature = "read")]
+pub mod read;
 mod shape;
 mod shown;
 mod snap;

@@ -1,33 +1,9 @@
-//! Heights over time out of a file, as its format has them.
+//! Heights over time out of each format, as it has them.
 
-use std::fs;
-use std::path::Path;
-
-use saltus_motion::Unit;
 use serde_json::Value;
 
-use super::package;
-use crate::error::Error;
-use crate::output::extension;
-
-/// One motion of a file.
-pub(super) struct Reading {
-    pub(super) name: String,
-    /// Whether it is made of frames.
-    pub(super) sampled: bool,
-    pub(super) balls: Vec<Ball>,
-}
-
-/// The height of one ball.
-pub(super) struct Ball {
-    /// At a time in s: in m, or of a picture above the start in units of which `from` says how many
-    /// radii each is.
-    pub(super) height: Box<dyn Fn(f64) -> f64>,
-    /// Radii per unit of a picture.
-    pub(super) from: Option<f64>,
-    /// When its last key is, in s.
-    pub(super) end: f64,
-}
+use super::{Ball, ReadError, Reading};
+use crate::space::Unit;
 
 /// What a value does after a key.
 #[derive(Clone, Copy)]
@@ -47,8 +23,8 @@ struct Key {
 }
 
 /// The value at a time, by keys that rise in time.
-fn curve(keys: Vec<Key>) -> Result<Ball, Error> {
-    let Some(last) = keys.last() else { return Err(Error::new("a ball has no keys")) };
+fn curve(keys: Vec<Key>) -> Result<Ball, ReadError> {
+    let Some(last) = keys.last() else { return Err(ReadError::new("a ball has no keys")) };
     let end = last.t;
     let height = move |t: f64| {
         let next = keys.partition_point(|key| key.t <= t);
@@ -58,7 +34,7 @@ fn curve(keys: Vec<Key>) -> Result<Ball, Error> {
             (None, None) => f64::NAN,
         }
     };
-    Ok(Ball { height: Box::new(height), from: None, end })
+    Ok(Ball { height: Box::new(height), radii: None, end })
 }
 
 fn between(a: &Key, b: &Key, t: f64) -> f64 {
@@ -83,38 +59,9 @@ fn between(a: &Key, b: &Key, t: f64) -> f64 {
     }
 }
 
-/// What a file holds, after its extension.
-pub(super) fn readings(path: &Path) -> Result<Vec<Reading>, Error> {
-    let extension = extension(path).unwrap_or_default();
-    if extension == "py" {
-        return Err(Error::new(
-            "a script can only be run by the program it is for: Blender's and Maya's say themselves how near their curves are to the motion",
-        ));
-    }
-    if !["glb", "usda", "usdz", "json", "lottie", "svg", "csv"].contains(&extension.as_str()) {
-        let scene = if extension == "toml" { "; `saltus explain` checks a scene" } else { "" };
-        return Err(Error::new(format!(
-            "'{}' cannot be checked: of what saltus export writes, .glb, .usda, .usdz, .json, .lottie, .svg and .csv can be read back{scene}",
-            path.display()
-        )));
-    }
-    let bytes = fs::read(path).map_err(|error| Error::reading(path, &error))?;
-    let text = |bytes| String::from_utf8(bytes).map_err(|_| Error::new("it is no text"));
-    let readings = match extension.as_str() {
-        "glb" => glb(&bytes),
-        "usda" => text(bytes).and_then(|text| usda(&text)),
-        "usdz" => package::layer(&bytes).and_then(|text| usda(&text)),
-        "svg" => text(bytes).and_then(|text| svg(&text)),
-        "csv" => text(bytes).and_then(|text| csv(&text)),
-        "lottie" => package::animation(&bytes).and_then(|text| json(&text)),
-        _ => text(bytes).and_then(|text| json(&text)),
-    };
-    readings.map_err(|error| Error::new(format!("'{}' cannot be read back: {error}", path.display())))
-}
-
 /// What is missing in a file.
-fn lacks(what: &str) -> Error {
-    Error::new(format!("there is no {what}"))
+fn lacks(what: &str) -> ReadError {
+    ReadError::new(format!("there is no {what}"))
 }
 
 /// A binary glTF: its document, and the bytes behind it.
@@ -147,8 +94,8 @@ fn floats(document: &Value, binary: &[u8], accessor: &Value, width: usize) -> Op
 }
 
 /// Balls are the root nodes that move; y is up.
-fn glb(bytes: &[u8]) -> Result<Vec<Reading>, Error> {
-    let (document, binary) = chunks(bytes).ok_or_else(|| Error::new("it is no binary glTF 2.0"))?;
+pub(super) fn glb(bytes: &[u8]) -> Result<Vec<Reading>, ReadError> {
+    let (document, binary) = chunks(bytes).ok_or_else(|| ReadError::new("it is no binary glTF 2.0"))?;
     let roots = &document["scenes"][0]["nodes"];
     let mut readings = Vec::new();
     for animation in document["animations"].as_array().into_iter().flatten() {
@@ -184,7 +131,7 @@ fn glb(bytes: &[u8]) -> Result<Vec<Reading>, Error> {
 
 /// Samples of places, or splines of heights; the unit and the axis that is up are those of the
 /// stage.
-fn usda(text: &str) -> Result<Vec<Reading>, Error> {
+pub(super) fn usda(text: &str) -> Result<Vec<Reading>, ReadError> {
     let number =
         |name: &str| -> Option<f64> { after(text, &format!("{name} = "))?.lines().next()?.trim().parse().ok() };
     let fps = number("timeCodesPerSecond").ok_or_else(|| lacks("timeCodesPerSecond"))?;
@@ -242,11 +189,11 @@ fn after<'a>(text: &'a str, start: &str) -> Option<&'a str> {
 }
 
 /// Rules that move a group up and down; the ball's size is the scale.
-fn svg(text: &str) -> Result<Vec<Reading>, Error> {
-    let document = roxmltree::Document::parse(text).map_err(Error::new)?;
+pub(super) fn svg(text: &str) -> Result<Vec<Reading>, ReadError> {
+    let document = roxmltree::Document::parse(text).map_err(ReadError::new)?;
     let style: String = document.descendants().filter(|n| n.has_tag_name("style")).filter_map(|n| n.text()).collect();
     let duration = after(&style, "animation-duration:").and_then(|rest| rest.split('s').next()?.parse::<f64>().ok());
-    let duration = duration.ok_or_else(|| Error::new("it does not move"))?;
+    let duration = duration.ok_or_else(|| ReadError::new("it does not move"))?;
     let (mut balls, mut sampled) = (Vec::new(), false);
     for circle in document.descendants().filter(|node| node.attribute("class") == Some("ball")) {
         let radius: f64 =
@@ -265,16 +212,16 @@ fn svg(text: &str) -> Result<Vec<Reading>, Error> {
         let keys: Option<Vec<Key>> = rules.trim().lines().map(key).collect();
         let keys = keys.ok_or_else(|| lacks("number where one should be"))?;
         sampled |= keys.iter().rev().skip(1).all(|key| matches!(key.after, After::Hold));
-        balls.push(Ball { from: Some(1.0 / radius), ..curve(keys)? });
+        balls.push(Ball { radii: Some(1.0 / radius), ..curve(keys)? });
     }
     Ok(vec![Reading { name: "SVG".to_owned(), sampled, balls }])
 }
 
 /// Keys with velocities on both sides, in the unit that the names of columns have; from frame to
 /// frame they are the slopes of the motion, not of lines.
-fn csv(text: &str) -> Result<Vec<Reading>, Error> {
+pub(super) fn csv(text: &str) -> Result<Vec<Reading>, ReadError> {
     let mut table = ::csv::Reader::from_reader(text.as_bytes());
-    let header = table.headers().map_err(Error::new)?.clone();
+    let header = table.headers().map_err(ReadError::new)?.clone();
     let column =
         |name: &str| header.iter().position(|cell| cell == name).ok_or_else(|| lacks(&format!("column '{name}'")));
     let unit = Unit::ALL.into_iter().find(|unit| column(&format!("height_{}", unit.symbol())).is_ok());
@@ -288,7 +235,7 @@ fn csv(text: &str) -> Result<Vec<Reading>, Error> {
     let ball = column("ball")?;
     let mut rows: Vec<(String, Vec<[f64; 4]>)> = Vec::new();
     for record in table.records() {
-        let record = record.map_err(Error::new)?;
+        let record = record.map_err(ReadError::new)?;
         let cell = |n: usize| record.get(n).and_then(|cell| cell.parse::<f64>().ok()).ok_or_else(|| lacks("number"));
         let row =
             [cell(columns[0])?, metres * cell(columns[1])?, metres * cell(columns[2])?, metres * cell(columns[3])?];
@@ -309,8 +256,8 @@ fn csv(text: &str) -> Result<Vec<Reading>, Error> {
 }
 
 /// Our own JSON, or Lottie's.
-fn json(text: &str) -> Result<Vec<Reading>, Error> {
-    let document: Value = serde_json::from_str(text).map_err(Error::new)?;
+pub(super) fn json(text: &str) -> Result<Vec<Reading>, ReadError> {
+    let document: Value = serde_json::from_str(text).map_err(ReadError::new)?;
     if document["layers"].is_array() {
         return lottie(&document);
     }
@@ -330,13 +277,13 @@ fn json(text: &str) -> Result<Vec<Reading>, Error> {
         };
         curve(keys.iter().enumerate().map(key).collect())
     });
-    let balls = balls.collect::<Result<_, Error>>()?;
+    let balls = balls.collect::<Result<_, ReadError>>()?;
     Ok(vec![Reading { name: "JSON".to_owned(), sampled, balls }])
 }
 
 /// The first layer that moves up and down below one that moves sideways; the ball's size is the
 /// scale.
-fn lottie(document: &Value) -> Result<Vec<Reading>, Error> {
+fn lottie(document: &Value) -> Result<Vec<Reading>, ReadError> {
     let layers = document["layers"].as_array().ok_or_else(|| lacks("`layers`"))?;
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let (fps, first) = (number(&document["fr"]), number(&document["ip"]));
@@ -372,7 +319,7 @@ fn lottie(document: &Value) -> Result<Vec<Reading>, Error> {
         };
         let keys: Vec<Key> = keys.iter().map(key).collect();
         sampled |= keys.iter().rev().skip(1).all(|key| matches!(key.after, After::Hold));
-        balls.push(Ball { from: Some(2.0 / size), ..curve(keys)? });
+        balls.push(Ball { radii: Some(2.0 / size), ..curve(keys)? });
     }
     Ok(vec![Reading { name: "Lottie".to_owned(), sampled, balls }])
 }
