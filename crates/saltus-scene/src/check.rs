@@ -59,17 +59,21 @@ fn endless(scene: &Scene) -> Option<&'static str> {
         _ => 0,
     });
     let deep = |floor: &Floor| matches!(floor.shape, Shape::Stairs { count: None, .. });
-    let lift = scene.effects.buoyancy(&balls[0], scene.gravity);
+    let floats =
+        |ball: &Ball| scene.effects.buoyancy(ball, scene.gravity).is_some_and(|lift| lift.net_gravity() <= 0.0);
     let drag = scene.effects.linear.is_some() || scene.effects.quadratic.is_some();
-    let elastic = |m: usize| scene.law(0, m).and_then(super::Law::constant).is_some_and(|cor| cor.value() == 1.0);
+    let elastic = |m: usize| {
+        let mut laws = (0..balls.len()).filter_map(|n| scene.law(n, m)?.constant());
+        laws.any(|cor| cor.value() == 1.0)
+    };
     let lasting = |floor: &Floor| floor.motion.as_ref().is_some_and(|motion| motion.ends().is_none());
     if !floors.iter().any(holds) {
         Some("there is no floor")
     } else if scene.gravity.value() == 0.0 {
         Some("there is no gravity to bring the ball down")
-    } else if lift.is_some_and(|lift| lift.net_gravity() <= 0.0) {
+    } else if balls.iter().any(floats) {
         Some("the ball is not heavier than the air")
-    } else if balls.len() > 1 {
+    } else if balls.len() > 1 && scene.dimensions > 1 {
         Some("there are several balls")
     } else if floors.iter().any(lasting) {
         Some("the floor moves for ever")

@@ -53,6 +53,23 @@ fn what_moves_sideways_may_end_by_itself() {
     assert_eq!(record.at(0, record.until()).unwrap().velocity.norm(), 0.0);
 }
 
+/// Balls above each other come to rest on one another; in air the limit of their impacts is the end.
+#[test]
+fn what_is_stacked_ends_by_itself() {
+    let stack =
+        "[[ball]]\nmass = 0.05\nradius = 0.02\nheight = 1\n[[ball]]\nmass = 0.003\nradius = 0.02\nheight = 1.05\n";
+    for (more, collision, rests) in [("", 0.85, true), ("", 1.0, true), ("drag = { coefficient = 0.5 }\n", 0.85, false)]
+    {
+        let scene = format!("restitution = 0.9\ncollisions = {{ restitution = {collision} }}\n{more}{stack}");
+        let record = run(&scene);
+        assert_eq!(record.end() == End::Time, rests, "{scene}");
+        assert_eq!(matches!(record.end(), End::Zeno { .. }), !rests, "{scene}");
+        assert_eq!(record.rest().is_some_and(|rest| rest < record.until()), rests, "{scene}");
+        let [low, high] = [0, 1].map(|ball| record.at(ball, record.until()).unwrap().height());
+        assert!(low.abs() < 1e-9 && (high - 0.04).abs() < 1e-9, "{low} {high}: {scene}");
+    }
+}
+
 /// What may go on for ever is refused with what makes it so.
 #[test]
 fn what_has_no_end_says_so() {
