@@ -7,8 +7,8 @@
 With --matrix every example scene at several frame rates, with and without squash, and a table for docs/motion.md at the end.
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed
-under target/readers: Pixar's USD, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender as a module (300 MB; its
-version 5.0 wants Python 3.11). The exit status is 1 if a file is wrong.
+under target/readers: Pixar's USD, rlottie, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender 4.5 and 5.0 as
+modules (300 MB each; they want Python 3.11). The exit status is 1 if a file is wrong.
 """
 import bisect
 import csv
@@ -27,8 +27,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 INSTALLED = ROOT / "target" / "readers"
-PYTHON = ["usd-core==26.11"]
-BLENDER = ["bpy==5.0.1"]
+PYTHON = ["usd-core==26.11", "rlottie-python==1.3.8", "numpy==1.26.4"]
+# One of them to a process, and so to an environment.
+BLENDERS = {"blender": "bpy==5.0.1", "blender-4.5": "bpy==4.5.15"}
 NODE = ["gltf-validator@2.0.0-dev.3.10", "three@0.187.0", "lottie-web@5.13.0", "@lottiefiles/dotlottie-web@0.80.0"]
 
 SQUASH = """gravity = "9.8 m/s^2"
@@ -53,7 +54,11 @@ RATES = ["24", "29.97", "60"]
 SHAPED = ["--squash", "0.3", "--stretch", "0.1"]
 MATRIX = [(name, ["--fps", rate, *shape], []) for name in SCENES for rate in RATES for shape in ([], SHAPED)]
 # What can be in another unit, with z upwards.
-SPACES = {"usd", "usd-splines", "usdz", "blender"}
+SPACES = {"usd", "usd-splines", "usdz", *BLENDERS}
+# Those that are read from pictures of whole frames.
+DRAWN = {"rlottie"}
+# What is read by more than one program, by the format's name.
+FORMATS = {"rlottie": "lottie", "blender-4.5": "blender"}
 # How exact a reader may be, beside what the export promises: single precision in Blender, glTF and on screens.
 READER = 2e-5
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
@@ -66,12 +71,20 @@ def run(*command, **more):
     return done
 
 
-def install(blender):
-    """The interpreter with the readers, and whether Node has its own."""
-    python = INSTALLED / "python" / "bin" / "python"
+def environment(name, packages):
+    """The interpreter of an environment with these packages."""
+    python = INSTALLED / name / "bin" / "python"
     if not python.exists():
-        venv.create(INSTALLED / "python", with_pip=True)
-    run(python, "-m", "pip", "install", "-q", *PYTHON, *(BLENDER if blender else []))
+        venv.create(INSTALLED / name, with_pip=True)
+    run(python, "-m", "pip", "install", "-q", *packages)
+    return python
+
+
+def install(blender):
+    """The interpreters with the readers, by name, and whether Node has its own."""
+    pythons = {"python": environment("python", PYTHON)}
+    for name, package in BLENDERS.items() if blender else []:
+        pythons[name] = environment(name, [package])
     node = shutil.which("node") and shutil.which("npm")
     if node:
         modules = INSTALLED / "node"
@@ -80,7 +93,7 @@ def install(blender):
         run("npm", "install", "--silent", *NODE, cwd=modules)
         for script in ("glb.mjs", "dotlottie.mjs"):
             shutil.copy(HERE / script, modules)
-    return python, bool(node)
+    return pythons, bool(node)
 
 
 def page(folder, svg, player, lottie, times):
@@ -124,13 +137,12 @@ def dumped(folder, text):
     return json.loads(found.group(1))
 
 
-def readers(python, node, blender, folder):
+def readers(pythons, node, folder):
     """For each format the reader of a file, at times in s."""
     last = lambda done: json.loads(done.stdout.strip().splitlines()[-1])
-    script = lambda name: lambda path, times: last(run(python, HERE / name, path, json.dumps(times)))
-    known = {"usd": script("usd.py"), "usd-splines": script("usd.py"), "usdz": script("usd.py")}
-    if blender:
-        known["blender"] = script("blender.py")
+    script = lambda name, python="python": lambda path, times: last(run(pythons[python], HERE / name, path, json.dumps(times)))
+    known = {kind: script("usd.py") for kind in ("usd", "usd-splines", "usdz")} | {"rlottie": script("rlottie.py")}
+    known |= {name: script("blender.py", name) for name in BLENDERS if name in pythons}
     if node:
         modules = INSTALLED / "node"
         known["glb"] = lambda path, times: last(run("node", "glb.mjs", path, json.dumps(times), cwd=modules))
@@ -212,19 +224,22 @@ def truth(saltus, path, options, balls, name):
     return heights
 
 
-def measure(found, truths, balls, start, flat):
-    """For an animation how far heights are off, in m, how far below the height 0 and the motion, and how far volumes are from 1."""
+def measure(found, truths, balls, start, flat, blur):
+    """For an animation how far heights are off, in m, beside what a picture is blurred by, how far below the height 0 and the motion, and how far volumes are from 1."""
     off = below = volume = 0.0
     for rows, heights in zip(found, truths):
         assert len(rows) == len(balls), "%d balls instead of %d" % (len(rows), len(balls))
-        for (low, size), height, ball in zip(rows, heights, balls):
+        for (low, size), height, ball, radii in zip(rows, heights, balls, blur):
             low = start + ball["radius"] * low if flat else low
+            # Towards the truth.
+            low += min(max(height - low, -radii * ball["radius"]), radii * ball["radius"])
             off, below = max(off, abs(low - height)), max(below, min(0.0, height) - low)
             volume = max(volume, abs(size - 1) if size is not None else 0.0)
     return off, below, volume
 
 
 SUFFIXES = {"usd-splines": "usda", "usd": "usda", "blender": "py", "lottie": "json", "dotlottie": "lottie"}
+FLAT = {"html", "svg", "lottie", "dotlottie"}
 
 
 def case(saltus, folder, known, name, options, space):
@@ -243,15 +258,17 @@ def case(saltus, folder, known, name, options, space):
     for kind, late, off, count, bad in [] if space else sounds(saltus, folder, path, options, shown):
         yield kind, "%d contacts" % count, (off, late), None, bad, []
     for kind, read in sorted(known.items()):
+        to = FORMATS.get(kind, kind)
         # Flat pictures are measured from the ground.
-        flat = kind in ("html", "svg", "lottie", "dotlottie")
+        flat = to in FLAT
         if space and kind not in SPACES or flat and start is None:
             continue
-        file = folder / ("ball." + SUFFIXES.get(kind, kind))
-        said = promised(run(saltus, "export", path, *options, *space, "--to", kind, "--force", "-o", file).stderr)
+        file = folder / ("ball." + SUFFIXES.get(to, to))
+        said = promised(run(saltus, "export", path, *options, *space, "--to", to, "--force", "-o", file).stderr)
         found = read(file, list(heights))
+        true = zip(*([frame[3] for frame in ball["frames"]] for ball in balls)) if kind in DRAWN else heights.values()
         for animation, rows in found["animations"].items():
-            off, below, volume = measure(rows, heights.values(), balls, start, flat)
+            off, below, volume = measure(rows, true, balls, start, flat, found.get("blur", [0.0] * len(balls)))
             height, moved, sunk, kept = said
             bad = off > height + moved + READER or volume > kept + READER or found["errors"]
             bad = bad or (level and below > height + sunk + READER)
@@ -308,12 +325,12 @@ def main():
     flags = [argument for argument in sys.argv[1:] if argument.startswith("--")]
     named = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
     saltus = Path(named[0] if named else ROOT / "target/release/saltus").resolve()
-    python, node = install("--blender" in flags)
+    pythons, node = install("--blender" in flags)
     wrong, table, times = 0, {}, {}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        known = readers(python, node, "--blender" in flags, folder)
-        for name in {"glb", "html", "svg", "lottie", "dotlottie", "blender"} - known.keys():
+        known = readers(pythons, node, folder)
+        for name in {"glb", "html", "svg", "lottie", "dotlottie", *BLENDERS} - known.keys():
             print("left out, for its reader is not here: %s" % name)
         for name, options, space in MATRIX if "--matrix" in flags else CASES:
             for kind, animation, measured, said, bad, issues in case(saltus, folder, known, name, options, space):

@@ -14,7 +14,7 @@ function start(line) {
 // How high a ball is above where the ground starts, in radii of the ball as it is drawn when it is round.
 function height(ball, ground) {
   const scale = ball.ownerSVGElement.getScreenCTM().a, drawn = ball.getBBox().height / 2;
-  // A ball that would be a dot is drawn larger about its centre, and says its own radius.
-  const radius = Number(ball.dataset.radius) || drawn;
-  return (start(ground) - low(ball, radius / drawn)) / (scale * radius);
+  // A ball that would be a dot is drawn larger about its centre, and says its own radius or how many times as large.
+  const radius = Number(ball.dataset.radius) || drawn, larger = Number(ball.dataset.larger) || drawn / radius;
+  return (start(ground) - low(ball, 1 / larger)) / (scale * radius);
 }

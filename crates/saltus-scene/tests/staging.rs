@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use saltus_motion::{Format, Frames, Snap};
+use saltus_scene::plan::With;
 use saltus_scene::solve::{Clock, Wish, solve};
 use saltus_scene::{Departure, Scene, Staging};
 
@@ -41,6 +42,30 @@ fn the_height_error_bounds_what_readers_measure() {
         }
     }
     assert!(cut >= 4, "some scenes end in hops that are left out");
+}
+
+/// Every impact is a contact of the balls that it stops or turns back, whether they fly, lie or
+/// roll.
+#[test]
+fn every_impact_is_a_contact_of_its_balls() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
+    let slides = "restitution = 0.5\nfriction = 0.2\n[ball]\nposition = [0, 0.03]\nvelocity = [3, 0]\nradius = 0.03\n\
+        [[floor]]\nkind = 'level'\n[[floor]]\nkind = 'wall'\nat = 0.5\n[run]\nuntil = 1\n";
+    let examples = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path());
+    let examples = examples.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    let mut all: Vec<_> = examples.map(|path| Scene::read(&path).unwrap()).collect();
+    all.push(Scene::parse("slides", slides.as_bytes()).unwrap());
+    for scene in all {
+        let record = scene.plan().unwrap().run().unwrap();
+        let motion = record.motion().unwrap();
+        for impact in record.impacts() {
+            let other = if let With::Ball(ball) = impact.with { Some(ball) } else { None };
+            for ball in [Some(impact.ball), other].into_iter().flatten() {
+                let shown = motion.tracks[ball].contacts().any(|t| t == impact.t);
+                assert!(shown, "{}: {impact:?}, ball {ball}", motion.title);
+            }
+        }
+    }
 }
 
 /// A top that was asked for is moved by snapping to frames with gravity kept: the closing line says

@@ -22,8 +22,9 @@ def collection():
     if found is not None and found.get("saltus"):
         for item in list(found.objects):
             data, action = item.data, item.animation_data.action if item.animation_data else None
+            paints = [(paint, (bpy.data.materials,)) for paint in getattr(data, "materials", None) or []]
             bpy.data.objects.remove(item, do_unlink=True)
-            for block, blocks in ((data, (bpy.data.meshes, bpy.data.cameras, bpy.data.lights)), (action, (bpy.data.actions,))):
+            for block, blocks in ((data, (bpy.data.meshes, bpy.data.cameras, bpy.data.lights)), (action, (bpy.data.actions,)), *paints):
                 for kept in blocks:
                     if block is not None and block.users == 0 and kept.get(block.name) == block:
                         kept.remove(block)

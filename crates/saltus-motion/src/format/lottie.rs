@@ -49,10 +49,15 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
             moved["ks"][key] = moving(export, &channel.eases, at);
             if innermost {
                 let r = ball.track.radius * view.scale;
+                // A ball that would be no more than a dot is drawn larger about its centre; its
+                // disc keeps its own size.
+                let mut larger = at_origin.clone();
+                let part = 100.0 * view.radius(ball.track.radius) / r;
+                larger["s"] = still(json!([part, part]));
                 let mut parts = vec![
                     json!({ "ty": "el", "p": still(json!([0, 0])), "s": still(json!([2.0 * r, 2.0 * r])) }),
                     json!({ "ty": "fl", "c": paint(colour(number)), "o": still(json!(100)), "r": 1 }),
-                    at_origin.clone(),
+                    larger.clone(),
                 ];
                 let mut shapes = vec![json!({ "ty": "gr", "nm": "ball", "it": parts })];
                 if turns {
@@ -61,7 +66,7 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
                     parts = vec![
                         json!({ "ty": "sh", "ks": still(line) }),
                         json!({ "ty": "st", "c": paint([0.95, 0.8, 0.6]), "o": still(json!(100)), "w": still(json!(0.3 * r)), "lc": 2, "lj": 2 }),
-                        at_origin.clone(),
+                        larger,
                     ];
                     shapes.insert(0, json!({ "ty": "gr", "nm": "mark", "it": parts }));
                 }

@@ -55,6 +55,8 @@ pub enum Departure {
         /// By how much the end is later, in s.
         later: f64,
     },
+    /// A floor moves, and is drawn where it is at the start.
+    StillFloor,
     /// A loop begins anew.
     Again {
         /// At this frame.
@@ -93,6 +95,7 @@ impl fmt::Display for Departure {
                 let what = if *drawings { "drawings" } else { "frames" };
                 write!(f, "contacts held for {count} {what}, the end {later:.4} s later")
             }
+            Self::StillFloor => write!(f, "the floor moves, and is drawn where it is at the start"),
             Self::Again { last, first } => write!(f, "frame {last} is frame {first} again"),
         }
     }

@@ -199,6 +199,9 @@ impl Staging {
             }
         };
         let (motion, shape) = self.shaped(&snapped, &mut departures)?;
+        if record.scene().floors.iter().any(|floor| floor.motion.is_some()) {
+            departures.push(Departure::StillFloor);
+        }
         if motion.loops {
             let count = (motion.end() / frames.rate.frame()).round();
             departures.push(Departure::Again { last: f64::from(frames.first) + count, first: frames.first });
@@ -303,12 +306,17 @@ fn motion(scene: &Scene, record: &Record) -> Result<(Motion, Option<f64>), Error
                     }
                 }
                 last => {
-                    let begins = last.is_some_and(|last| last.flight && (jumped || !segment.flight));
+                    let met = |impact: &&Impact| {
+                        impact.t == segment.start && (impact.ball == ball || impact.with == With::Ball(ball))
+                    };
+                    // What lies or rolls is struck too, by another ball or at a wall.
+                    let begins = last.is_some_and(|last| {
+                        jumped && impacts.iter().any(|impact| met(&impact))
+                            || last.flight && (jumped || !segment.flight)
+                    });
                     let contact = begins.then(|| {
                         let sides = jumps.get(from).filter(|_| jumped).map(|(_, sides)| *sides);
-                        let met =
-                            impacts.iter().filter(|impact| impact.ball == ball || impact.with == With::Ball(ball));
-                        contact(scene, met.filter(|impact| impact.t == segment.start), sides)
+                        contact(scene, impacts.iter().filter(met), sides)
                     });
                     stretches.push(Stretch { contact, flight: segment.flight, pieces: vec![piece] });
                 }
