@@ -2,9 +2,10 @@
 """Exports scenes in every format, reads the files by the programs they are for, and compares heights with the simulation.
 
     cargo build --release --bin saltus
-    python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix]
+    python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix] [--only=blender,usd]
 
-With --matrix every example scene at several frame rates, with and without squash, and a table for docs/motion.md at the end.
+With --matrix every example scene at several frame rates, with and without squash, and a table for docs/motion.md at the end. With --only those readers alone,
+and contacts and sounds.
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed
 under target/readers: Pixar's USD, rlottie, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender 4.5 and 5.0 as
@@ -266,7 +267,10 @@ def case(saltus, folder, known, name, options, space):
         file = folder / ("ball." + SUFFIXES.get(to, to))
         said = promised(run(saltus, "export", path, *options, *space, "--to", to, "--force", "-o", file).stderr)
         found = read(file, list(heights))
-        true = zip(*([frame[3] for frame in ball["frames"]] for ball in balls)) if kind in DRAWN else heights.values()
+        true = heights.values()
+        if kind in DRAWN:
+            frames = [k * shown["fps"][1] / shown["fps"][0] for k in range(len(balls[0]["frames"]))]
+            true = [[between(ball["keys"], t) for ball in balls] for t in frames]
         for animation, rows in found["animations"].items():
             off, below, volume = measure(rows, true, balls, start, flat, found.get("blur", [0.0] * len(balls)))
             height, moved, sunk, kept = said
@@ -332,6 +336,8 @@ def main():
         known = readers(pythons, node, folder)
         for name in {"glb", "html", "svg", "lottie", "dotlottie", *BLENDERS} - known.keys():
             print("left out, for its reader is not here: %s" % name)
+        only = [flag.removeprefix("--only=").split(",") for flag in flags if flag.startswith("--only=")]
+        known = {kind: read for kind, read in known.items() if not only or kind in only[0]}
         for name, options, space in MATRIX if "--matrix" in flags else CASES:
             for kind, animation, measured, said, bad, issues in case(saltus, folder, known, name, options, space):
                 wrong += bool(bad)
