@@ -148,7 +148,8 @@ impl KelvinVoigt {
 }
 
 /// The square of the part of its own time, 1/ω or 1/β, below which the way from rest is a short
-/// series: beyond it, what the closed form cancels is less than a factor of ten.
+/// series: beyond it, what the closed form cancels is less than a factor of ten. The test
+/// `shallow_contacts_have_all_digits` fails without it.
 const SOON: f64 = 0.25;
 
 /// The way w from rest to the static deformation, w'' + 2βw' + ω²w = ω² with w = w' = 0, by its
