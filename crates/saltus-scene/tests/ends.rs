@@ -53,7 +53,8 @@ fn what_moves_sideways_may_end_by_itself() {
     assert_eq!(record.at(0, record.until()).unwrap().velocity.norm(), 0.0);
 }
 
-/// Balls above each other come to rest on one another; in air the limit of their impacts is the end.
+/// Balls above each other come to rest on one another; in air the limit of their impacts is the
+/// end.
 #[test]
 fn what_is_stacked_ends_by_itself() {
     let stack =
