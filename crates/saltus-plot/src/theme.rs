@@ -40,6 +40,9 @@ pub enum Background {
     Adaptive,
 }
 
+/// How many motions have a colour of their own.
+const SERIES: usize = 5;
+
 /// What a stroke or a word is for. Each ink has a colour on light paper and one on dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Ink {
@@ -51,14 +54,14 @@ pub(crate) enum Ink {
     Grid,
     /// The floor and zero lines.
     Floor,
-    /// The first four motions, then again from the first.
+    /// The first five motions, then again from the first.
     Series(u8),
     /// The paper itself, when there is one.
     Paper,
 }
 
 impl Ink {
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Text,
         Self::Muted,
         Self::Grid,
@@ -67,11 +70,12 @@ impl Ink {
         Self::Series(1),
         Self::Series(2),
         Self::Series(3),
+        Self::Series(4),
         Self::Paper,
     ];
 
     pub(crate) fn series(index: usize) -> Self {
-        Self::Series((index % 4) as u8)
+        Self::Series((index % 5) as u8)
     }
 
     pub(crate) fn class(self) -> &'static str {
@@ -83,13 +87,14 @@ impl Ink {
             Self::Series(0) => "one",
             Self::Series(1) => "two",
             Self::Series(2) => "three",
-            Self::Series(_) => "four",
+            Self::Series(3) => "four",
+            Self::Series(_) => "five",
             Self::Paper => "paper",
         }
     }
 
     /// On light paper. Blue, vermilion, green and purple stay apart for every common kind of colour
-    /// blindness.
+    /// blindness; ochre, which is near vermilion for some, comes last.
     pub(crate) fn light(self) -> (u8, u8, u8) {
         match self {
             Self::Text => (0x1b, 0x20, 0x27),
@@ -99,7 +104,8 @@ impl Ink {
             Self::Series(0) => (0x0a, 0x62, 0xb5),
             Self::Series(1) => (0xcc, 0x51, 0x00),
             Self::Series(2) => (0x00, 0x7d, 0x5d),
-            Self::Series(_) => (0xa0, 0x4a, 0x98),
+            Self::Series(3) => (0xa0, 0x4a, 0x98),
+            Self::Series(_) => (0x8a, 0x6a, 0x00),
             Self::Paper => (0xff, 0xff, 0xff),
         }
     }
@@ -114,7 +120,8 @@ impl Ink {
             Self::Series(0) => (0x5a, 0xb0, 0xf7),
             Self::Series(1) => (0xff, 0x98, 0x52),
             Self::Series(2) => (0x3f, 0xd1, 0xa3),
-            Self::Series(_) => (0xe2, 0x9a, 0xda),
+            Self::Series(3) => (0xe2, 0x9a, 0xda),
+            Self::Series(_) => (0xd6, 0xb2, 0x3c),
             Self::Paper => (0x12, 0x16, 0x1c),
         }
     }
@@ -156,14 +163,14 @@ pub(crate) enum Dash {
 
 impl Dash {
     pub(crate) fn series(index: usize) -> Self {
-        // After as many as there are colours, each colour comes with another dash.
-        [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][(index + index / 4) % 4]
+        // One fewer than colours: each colour comes again with another dash.
+        [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][index % 4]
     }
 
-    /// Of lines that may be steep or have steps, whose own shape dashes would hide: the first four
+    /// Of lines that may be steep or have steps, whose own shape dashes would hide: the first five
     /// are solid, and differ by their inks alone.
     pub(crate) fn steep(index: usize) -> Self {
-        Self::series(index / 4 * 4)
+        Self::series(index / SERIES)
     }
 
     /// Lengths in units of the stroke's width; with round caps each dash grows by one such width.
