@@ -18,8 +18,10 @@ fn page() -> String {
 fn files() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         ["statistics.rs", "model/physics.rs", "model/altered.rs", "solve/outliers.rs", "solve/choice.rs"]
+            .into_iter()
+            .chain(["read/said.rs", "read/forms.rs", "read/order.rs", "read/vocabulary.rs"])
             .map(|file| root().join(file))
-            .to_vec();
+            .collect();
     for folder in ["evidence", "compare", "verdict"] {
         found.extend(fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()));
     }
@@ -34,11 +36,18 @@ fn every_constant_that_decides_is_listed() {
         let source = fs::read_to_string(&file).unwrap();
         let of = file.strip_prefix(root()).unwrap().with_extension("");
         for line in source.lines() {
-            let Some((name, rest)) =
-                line.trim_start_matches("pub(crate) ").strip_prefix("const ").and_then(|l| l.split_once(": "))
+            let Some((name, rest)) = line
+                .trim_start_matches("pub(crate) ")
+                .trim_start_matches("pub(super) ")
+                .strip_prefix("const ")
+                .and_then(|l| l.split_once(": "))
             else {
                 continue;
             };
+            // Words are no numbers.
+            if rest.starts_with("&str") || rest.starts_with("[&str") || rest.starts_with("[(&str") {
+                continue;
+            }
             let value = rest.split_once(" = ").expect("a value").1.trim_end_matches(';');
             let value = value.replace("std::f64::consts::SQRT_2", "√2");
             let row = format!("| {} | `{name}` | {value} | ", of.display());

@@ -39,6 +39,27 @@ pub enum Doubt {
         /// The column that was read.
         of: String,
     },
+    /// Releases are read at another end of the ball than rebounds.
+    Datum {
+        /// The column of the releases.
+        drop: String,
+        /// The column of the rebounds.
+        rebound: String,
+    },
+    /// Each height that a bounce begins at is that of the row before times one factor.
+    Repeated {
+        /// The column of the heights before.
+        column: String,
+        /// That of the heights after, which it repeats.
+        of: String,
+    },
+    /// A column was read of which a word is not understood, since no other holds what it does.
+    Word {
+        /// The column.
+        column: String,
+        /// The word.
+        word: String,
+    },
     /// Releases and rebounds are in different units, and their numbers are those of one.
     Units {
         /// The column of the releases.

@@ -73,6 +73,10 @@ pub enum Why {
     Computed,
     /// It hardly moves.
     Still,
+    /// The table says itself that it does not count.
+    Void,
+    /// Its time is that of the event before it: the clock does not tell them apart.
+    Unresolved,
     /// The event was not heard: the time is zero.
     NotHeard,
 }

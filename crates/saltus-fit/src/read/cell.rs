@@ -56,7 +56,12 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
             (false, false) => Cell::Wrong(Fault::NotFinite),
         };
     }
-    if MISSING.contains(&folded(text).as_str()) {
+    let spelt = folded(text);
+    // `missed it`, `no reading (too dark)`.
+    let told = |word: &&str| spelt.strip_prefix(*word).is_some_and(|rest| rest.starts_with([' ', ',', ':', '(', '!']));
+    let letters = |word: &&&str| word.len() > 2 && word.chars().all(|c| c.is_alphabetic() || c == ' ');
+    let words = !spelt.contains(|c: char| c.is_ascii_digit());
+    if MISSING.contains(&spelt.as_str()) || words && MISSING.iter().filter(letters).any(told) {
         return Cell::Empty;
     }
     if !text.contains(|c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|f| f.0 == c)) {
@@ -425,6 +430,8 @@ mod tests {
             ("-", Cell::Empty),
             ("n/a", Cell::Empty),
             ("Missed", Cell::Empty),
+            ("missed it", Cell::Empty),
+            ("lost 3 cm", Cell::Words),
             ("NaN", Cell::Lost),
             ("drop", Cell::Words),
             ("62 wobbles", Cell::Words),

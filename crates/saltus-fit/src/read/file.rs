@@ -12,7 +12,7 @@ use super::json;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
-use super::text::text;
+use super::text::{self, text};
 use super::title::{self, Stated};
 use super::vocabulary::Atom;
 use super::workbook::{self, Content, Part};
@@ -64,7 +64,7 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
     let first = if turnable && programs::turned_by_units(grid) { turned() } else { None };
     let found = match first {
         Some(table) => Ok(table),
-        None if regions.is_empty() => Err(no_table(grid, options)),
+        None if regions.is_empty() => lacking(grid, options, metadata),
         None => joined_up(grid, regions, tracks, options, metadata),
     };
     let found = match found {
@@ -185,13 +185,15 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
         said::mixed_units(region, &columns),
         said::of_another_motion(region),
         said::rival(region, &columns, options),
+        said::of_two_ends(&columns),
+        said::repeated(region, &columns),
     ];
     // A sound is sampled far more finely than a contact is heard.
     let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();
-    table.doubts.extend(doubts.into_iter().flatten());
+    table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts));
     Ok(table)
 }
 
@@ -217,10 +219,14 @@ fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
 /// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
 /// of.
 fn titled(region: &Region<'_>, table: &mut Table) {
-    // The rate of a recording is none of what it shows.
+    // The rate of a recording is none of what it shows, and the COR is what all is measured for.
+    let turns = |text: &str| {
+        let heading = Heading::parse(text);
+        heading.turns() && !(heading.has(Atom::Cor) && heading.turned_by().iter().all(|atom| *atom == Atom::Derived))
+    };
     let turned = |text: &str| match title::frame_rate(text) {
-        Some(_) => Heading::parse(&text.replace("rate", "")).turns(),
-        None => Heading::parse(text).turns(),
+        Some(_) => turns(&text.replace("rate", "")),
+        None => turns(text),
     };
     if region.header.iter().any(|name| turned(name)) {
         return;
@@ -238,14 +244,14 @@ fn titled(region: &Region<'_>, table: &mut Table) {
     table.doubts.extend(title.or_else(comment));
 }
 
-/// No table was found: the header that comes nearest tells why.
-fn no_table(grid: &Grid<'_>, options: &ReadOptions) -> TableError {
-    let view = View { grid, across: false };
-    let region = region::nearest(view);
-    match Columns::named(&region, options, false) {
-        Err(error) => error,
-        Ok(_) => region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"),
+/// No table was found whose names are understood: the header that comes nearest is read where a
+/// word alone is not, or tells why.
+fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
+    let region = region::nearest(View { grid, across: false });
+    if Columns::named(&region, options, false)?.values().next().is_some() {
+        return joined_up(grid, vec![region], false, options, metadata);
     }
+    Err(region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"))
 }
 
 /// Takes out the tracks of things that stand still while the ball moves.
@@ -345,9 +351,12 @@ fn joined(one: &str, other: &str) -> String {
 /// One sheet: a table; the reason why it is none; or an error in a table that is one.
 fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table, TableError>, TableError> {
     let inner = format!("{name}/{}", part.name);
-    let decoded;
+    let (decoded, plain);
     let (name, tab, content) = match &part.content {
-        Content::Cells(cells) => (name, Some(part.name.as_str()), cells.as_str()),
+        Content::Cells(cells) => {
+            plain = text::counted(cells);
+            (name, Some(part.name.as_str()), plain.as_deref().unwrap_or(cells))
+        }
         Content::Bytes(bytes) => match text(&inner, bytes) {
             Ok(found) => {
                 decoded = found;
@@ -364,10 +373,16 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table,
     if !(0..grid.rows()).any(|row| (0..grid.width(row)).any(|column| view.is_number(row, column))) {
         return Ok(Err(TableError::new(name, "there is no number in it").nothing()));
     }
+    // A sheet of notes names nothing that is measured, down or across.
+    let measured = |region: &Region<'_>| {
+        let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        Columns::named(region, options, false).is_ok_and(|columns| columns.values().any(|(n, _, _)| numbers(n)))
+    };
+    let notes = || region::tables(view).is_empty() && !programs::turned(&grid).as_ref().is_some_and(measured);
     match read(&grid, options) {
         Ok(table) => Ok(Ok(table)),
         // What is no table of bounces is left aside; a table that cannot be read is an error.
-        Err(problem) if problem.is_of_nothing() => Ok(Err(problem)),
+        Err(problem) if problem.is_of_nothing() || notes() => Ok(Err(problem)),
         Err(problem) => Err(problem),
     }
 }

@@ -2,8 +2,13 @@
 //! and of `MediaWiki`, lines that differ in their numbers only. Each becomes cells parted by tabs,
 //! and a line stays a line.
 
+mod blocks;
+
 use super::cell::{self, Cell};
+use super::heading::Heading;
+use super::title;
 use super::units::{Dimension, Unit};
+use super::vocabulary::Atom;
 
 /// The text with tabs between the cells of such a table; `None` if it holds none.
 pub(super) fn table(text: &str) -> Option<String> {
@@ -11,19 +16,36 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
-    latex(text).or_else(|| wiki(text)).or_else(|| listed(text)).or_else(|| headed(text)).or_else(|| patterned(text))
+    let forms = [latex, wiki, blocks::table, listed, headed, patterned];
+    forms.iter().find_map(|form| form(text))
 }
 
 /// Lines that all are a name and what was read, `Height after bounce 1: 64 cm`, `h1 = 64 cm`, with
 /// tabs between them; words may be read of some, `Ball: golf`, and lines between may tell
 /// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
+    // The only line that tells where the ball was dropped from.
+    let drop = || {
+        let mut found = text.lines().filter(|line| title::drop(line).is_some());
+        found.next().filter(|_| found.next().is_none()).map(remarked)
+    };
+    // Below a line that names bounces numbers by themselves are counted.
+    let mut counted: Option<usize> = None;
     let line = |line: &str| {
         let line = remarked(line);
+        if let (Some(n), Cell::Number(m)) = (&mut counted, cell::read(line.trim(), false))
+            && m.unit.is_some_and(|unit| unit.dimension == Dimension::Length)
+        {
+            *n += 1;
+            return Some((true, format!("bounce {n}\t{}", line.trim())));
+        }
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         // Words by themselves are a title.
         if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|')) {
+            let heading = Heading::parse(line.trim_end_matches(':'));
+            let names = !line.contains(',') && (heading.has(Atom::Rebound) || heading.has(Atom::Impact));
+            counted = names.then_some(0);
             return Some((false, format!("#{line}")));
         }
         // What an arrow leads to was read of what stands before it, unless that is a number too.
@@ -33,7 +55,9 @@ fn listed(text: &str) -> Option<String> {
         let arrow = || ARROWS.iter().find_map(|arrow| line.split_once(arrow)).filter(words);
         let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash).or_else(arrow);
         let Some((name, values)) = parted.or_else(|| measured(line)) else {
-            return prose(line).then(|| (false, format!("#{line}")));
+            let dropped = drop().filter(|of| *of == line).and_then(title::drop);
+            let dropped = dropped.map(|height| (true, format!("drop height\t{height} m")));
+            return dropped.or_else(|| prose(line).then(|| (false, format!("#{line}"))));
         };
         let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
         let values: Vec<&str> = values.split(", ").map(str::trim).collect();
@@ -115,7 +139,8 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     let last = found.last().filter(|_| rest.is_empty())?;
     let name = line.trim_end().strip_suffix(last.number)?;
     let unit = matches!(cell::read(last.number, false), Cell::Number(m) if m.unit.is_some());
-    let chained = ARROWS.iter().any(|arrow| name.contains(arrow));
+    // Blanks beside each other part cells.
+    let chained = ARROWS.iter().any(|arrow| name.contains(arrow)) || found.len() > 1 && name.trim_end().contains("  ");
     let words =
         !chained && found.len() < 3 && name.contains(char::is_alphabetic) && !name.contains([',', ';', '|', '\t']);
     (unit && words).then_some((name, last.number))
@@ -208,7 +233,9 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
         let blank = line[end..].len() - line[end..].trim_start_matches(' ').len();
         let spelt = &line[end + blank..];
         let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
-        let unit = (stop > 0 && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
+        // What stands before a sign is a name: `hit 1 t=3885 ms`.
+        let name = spelt[stop..].trim_start().starts_with(['=', ':']);
+        let unit = (stop > 0 && !name && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
         if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
             continue;
         }

@@ -53,6 +53,7 @@ impl<'a> Grid<'a> {
         let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false };
         grid.fill()?;
         grid.decimal = grid.comma() && grid.decimal_commas();
+        grid.united();
         grid.unfold();
         Ok(grid)
     }

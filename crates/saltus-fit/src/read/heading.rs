@@ -6,7 +6,7 @@ mod meaning;
 
 use super::aside::Why;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::{Atom, folded, misspelt, narrow};
+use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, split};
 pub(super) use inside::{DropHeight, Of, rate, release, released};
 
@@ -152,7 +152,7 @@ impl Heading {
             labels: Vec::new(),
         };
         // The format of a clock, such as `mm:ss.ms`.
-        if text.contains(':') && text.chars().all(|c| "hmsHMS:.,".contains(c)) {
+        if of_a_clock(text) {
             return Self::parse("time (s)").called(text);
         }
         // Programs put the run before the name: 'Latest: Time (s)'.
@@ -204,10 +204,14 @@ impl Heading {
         heading
     }
 
-    /// Words that are not known and differ from one that is by a letter are that one.
+    /// Words that are not known and differ from one that is by a letter are that one, and those
+    /// that only words of one meaning begin with are short for it.
     fn respell(&mut self, words: &mut [Word]) {
+        // A word by itself is a name.
+        let several = words.len() > 1;
         for word in words.iter_mut().filter(|word| matches!(word.kind, Kind::Unknown)) {
-            if let Some((meant, atoms)) = misspelt(&folded(&word.text)) {
+            let spelt = folded(&word.text);
+            if let Some((meant, atoms)) = misspelt(&spelt).or_else(|| short_for(&spelt).filter(|_| several)) {
                 self.misspelt.push((word.text.clone(), meant));
                 word.kind = Kind::Known(atoms);
             }
@@ -289,9 +293,21 @@ impl Heading {
         [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Error].iter().any(|atom| self.has(*atom))
     }
 
+    /// Whether it speaks of what was predicted, or is a goal, and of nothing that is not
+    /// understood.
+    pub(super) fn is_predicted(&self) -> bool {
+        self.unknown.is_empty() && (self.has(Atom::Predicted) || self.has(Atom::Goal))
+    }
+
+    /// What says that numbers are no readings.
+    pub(super) fn turned_by(&self) -> Vec<Atom> {
+        let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
+        turned.into_iter().filter(|atom| self.has(*atom)).collect()
+    }
+
     /// A word that says that numbers are no readings.
     pub(super) fn turns(&self) -> bool {
-        [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived].iter().any(|atom| self.has(*atom))
+        !self.turned_by().is_empty()
     }
 
     /// Whether the text names a statistic of the rows around it: `Mean`, `Std dev`, `COR`.
@@ -393,7 +409,8 @@ impl Heading {
         let named = |n: usize| matches!(words.get(n), Some(Word { kind: Kind::Known(_), .. }));
         let is_unit = |n: usize| match words[n].kind {
             Kind::Known([Atom::Unit(_)]) => true,
-            Kind::Known(_) => words[n].text == "in" && !named(n + 1),
+            // `v_in` beside `v_out`.
+            Kind::Known(_) => words[n].text == "in" && !named(n + 1) && !words[n - 1].is(Atom::Speed),
             _ => Unit::parse(&words[n].text).is_some(),
         };
         let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(n)).collect();
@@ -403,7 +420,10 @@ impl Heading {
         if let Some(&n) = found.first().filter(|_| self.unit.is_none()) {
             self.unit = Unit::parse(&words[n].text);
             words.remove(n);
-        } else if words.len() == 1 && matches!(words[0].kind, Kind::Known([Atom::Unit(_)])) {
+        } else if let [word] = words.as_slice()
+            && (matches!(word.kind, Kind::Known([Atom::Unit(_)]))
+                || matches!(word.kind, Kind::Unknown) && Unit::parse(&word.text).is_some())
+        {
             self.unit = self.unit.or(Unit::parse(&words[0].text));
             words.clear();
         }

@@ -175,6 +175,10 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     if let Some(cells) = named_rows(node) {
         return push(Some(cells));
     }
+    let columns = numbered_columns(node);
+    if columns.len() > 1 {
+        return push(side_by_side(&columns));
+    }
     let columns = node.members().iter().filter_map(|(name, list)| Some((name.as_str(), list.cells()?)));
     let columns: Vec<(&str, Vec<&str>)> = columns.filter(|(_, cells)| !cells.is_empty()).collect();
     let stated = node.members().iter().filter_map(|(name, node)| Some((name, node.cell()?)));
@@ -193,6 +197,26 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }
+}
+
+/// Members that all hold cells called by the same numbers, `{"drop_m": {"0": 1, "1": 2},
+/// "rebound_m": {"0": 0.64, "1": 1.28}}`, as columns; none where one holds something else.
+fn numbered_columns(node: &Node) -> Vec<(&str, Vec<&str>)> {
+    let column = |(name, node): &'_ (String, Node)| -> Option<Vec<(String, String)>> {
+        let pair = |row: &[(String, Node)]| match row {
+            [(_, number), (own, cell)] if own == name => Some((number.cell()?.to_owned(), cell.cell()?.to_owned())),
+            _ => None,
+        };
+        node.records()?.into_iter().map(pair).collect()
+    };
+    let found: Option<Vec<_>> = node.members().iter().map(column).collect();
+    let numbers = |cells: &[(String, String)]| cells.iter().map(|(number, _)| number.clone()).collect::<Vec<_>>();
+    let alike = found.is_some_and(|all| all.iter().all(|cells| numbers(cells) == numbers(&all[0])));
+    let columns = node.members().iter().filter(|_| alike).map(|(name, node)| {
+        let rows = node.records().into_iter().flatten();
+        (name.as_str(), rows.filter_map(|row| row.get(1)?.1.cell()).collect())
+    });
+    columns.collect()
 }
 
 /// Lists of as many cells each as rows, below the names that a list beside them has, or the first

@@ -12,6 +12,7 @@ mod forms;
 mod grid;
 mod heading;
 mod json;
+mod judged;
 mod layout;
 mod old_workbook;
 mod options;

@@ -91,8 +91,15 @@ fn runs(readings: impl Iterator<Item = Reading>, repairs: &mut Vec<Remark<Repair
     runs
 }
 
-/// Puts the readings in the order of the events and refuses clocks that run backwards.
-pub(super) fn in_order(region: &Region<'_>, column: usize, trial: &mut Trial, by_time: bool) -> Result<(), TableError> {
+/// Puts the readings in the order of the events and refuses clocks that run backwards. A list of
+/// contacts ends where the clock, or the camera, does not tell two of them apart any more; gives
+/// the lines from there on.
+pub(super) fn in_order(
+    region: &Region<'_>,
+    column: usize,
+    trial: &mut Trial,
+    by_time: bool,
+) -> Result<Vec<u64>, TableError> {
     let samples = trial.readings.iter().any(|r| r.event == Event::Sample);
     if by_time && trial.readings.iter().all(|r| r.event == Event::Contact) {
         trial.readings.sort_by(|a, b| a.time.partial_cmp(&b.time).unwrap_or(std::cmp::Ordering::Equal));
@@ -111,6 +118,7 @@ pub(super) fn in_order(region: &Region<'_>, column: usize, trial: &mut Trial, by
             r.event != Event::Release || seen == releases
         });
     }
+    let unresolved = merged(&trial.readings).map(|at| trial.readings.split_off(at)).unwrap_or_default();
     let mut last: Option<(f64, u64)> = None;
     for reading in trial.readings.iter().filter(|r| r.event != Event::Sample) {
         let Some(time) = reading.time else { continue };
@@ -128,7 +136,19 @@ pub(super) fn in_order(region: &Region<'_>, column: usize, trial: &mut Trial, by
         }
         last = Some((time, reading.line));
     }
-    Ok(())
+    Ok(unresolved.into_iter().map(|reading| reading.line).collect())
+}
+
+/// So many contacts in order show that those of one time are too close, and not in disorder.
+const ORDERED: usize = 3;
+
+/// Where in a list of contacts, and nothing else, the first stands whose time is that of the one
+/// before, no later one being earlier.
+fn merged(readings: &[Reading]) -> Option<usize> {
+    let ascends = |pair: &[Reading]| pair[0].time <= pair[1].time;
+    let contacts = readings.iter().all(|r| r.event == Event::Contact && r.time.is_some());
+    let at = readings.windows(2).position(|pair| pair[0].time == pair[1].time)? + 1;
+    (contacts && at >= ORDERED && readings.windows(2).all(ascends)).then_some(at)
 }
 
 /// Intervals as contact times, the first contact being at 0 s.

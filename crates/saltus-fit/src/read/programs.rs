@@ -2,7 +2,6 @@
 //! numbers.
 
 use std::collections::HashSet;
-use std::ops::Range;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
@@ -300,32 +299,9 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
         });
         return Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false });
     }
-    let groups = repeated(header)?;
+    let groups = region::repeated(header)?;
     let regions = groups.iter().enumerate().map(|(n, group)| part(format!("run {}", n + 1), &|c| group.contains(&c)));
     Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false })
-}
-
-/// The columns of each run, where the same names come again and again.
-fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> {
-    let mut groups: Vec<Range<usize>> = Vec::new();
-    for (n, _) in header.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
-        match groups.last_mut().filter(|group| group.end == n) {
-            Some(group) => group.end += 1,
-            None => groups.push(n..n + 1),
-        }
-    }
-    if let [one] = groups.as_slice() {
-        // Without blank columns between: the first name begins each.
-        let (start, end) = (one.start, one.end);
-        let period = (start + 1..end).find(|&n| header[n] == header[start])? - start;
-        if period < 2 || (end - start) % period != 0 {
-            return None;
-        }
-        groups = (start..end).step_by(period).map(|n| n..n + period).collect();
-    }
-    let first = groups.first()?.clone();
-    let same = groups.iter().all(|group| header[group.clone()] == header[first.clone()]);
-    (groups.len() > 1 && same).then_some(groups)
 }
 
 /// Numbers without names: a list, if the options say of what; a track of pixels, if they say how

@@ -8,9 +8,10 @@ use super::cell::Cell;
 use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning};
+use super::judged;
 use super::region::Region;
 use super::units::Unit;
-use super::vocabulary::{Atom, folded};
+use super::vocabulary::Atom;
 use super::words::{Kind as WordKind, Word, split};
 use crate::error::TableError;
 
@@ -45,6 +46,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         .collect();
     let key = columns.number().map(|(n, _)| n).or(columns.one(&Kind::Label));
     let diagram = columns.number().map_or_else(HashMap::new, |(key, _)| off_a_diagram(region, key));
+    let void = judged::void(region, columns);
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
         let line = region.view.line(row, key.unwrap_or(0));
@@ -61,6 +63,14 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Note, Part::Text));
             continue;
         }
+        if void.contains(&row) {
+            found.aside.push(leave(Why::Void, Part::Row));
+            continue;
+        }
+        if columns.all(&Kind::Setting).any(|n| Heading::parse(region.cell(row, n)).is_predicted()) {
+            found.aside.push(leave(Why::Predicted, Part::Row));
+            continue;
+        }
         match name(region, columns, row, &used) {
             Some((column, heading)) if numbers || values => {
                 if values && is_floor(&heading) {
@@ -70,7 +80,10 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
                 }
                 // What is a number elsewhere and words here sums the others up, or is no number.
                 let placed = bounce(region.cell(row, column)).is_some();
-                if heading.sums_up() && !placed {
+                // `Max` among names of persons is one.
+                let person =
+                    columns.columns[column].heading.has(Atom::Repeat) && heading.only() && heading.has(Atom::Max);
+                if heading.sums_up() && !placed && !person {
                     found.aside.push(leave(Why::Statistic, Part::Row));
                     continue;
                 }
@@ -134,8 +147,7 @@ fn is_floor(heading: &Heading) -> bool {
 
 /// Whether a word of a text is what a ball bounces on, at the zero of heights.
 pub(super) fn names_floor(text: &str) -> bool {
-    let floors = ["floor", "ground", "table", "desk", "boden", "tisch", "sol", "pavimento", "suelo"];
-    folded(text).split(|c: char| !c.is_alphanumeric()).any(|word| floors.contains(&word))
+    split(text).iter().any(|word| word.is(Atom::Floor))
 }
 
 /// The event that a cell names.

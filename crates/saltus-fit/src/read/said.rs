@@ -16,97 +16,6 @@ use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::statistics::median;
 
-/// Words of bounces that are of races, waves, jumpers, carts and markets too.
-const LOOSE: [&str; 56] = [
-    "lap",
-    "laps",
-    "collision",
-    "collisions",
-    "colisao",
-    "colisoes",
-    "choque",
-    "choques",
-    "botsing",
-    "botsingen",
-    "hit",
-    "hits",
-    "strike",
-    "strikes",
-    "struck",
-    "striking",
-    "tap",
-    "taps",
-    "touch",
-    "touched",
-    "landing",
-    "landings",
-    "landed",
-    "landung",
-    "spike",
-    "spikes",
-    "pulse",
-    "pulses",
-    "blip",
-    "blips",
-    "hop",
-    "jump",
-    "jumped",
-    "sprung",
-    "sprunge",
-    "salto",
-    "saltos",
-    "skok",
-    "up",
-    "return",
-    "returned",
-    "returns",
-    "rise",
-    "rises",
-    "rose",
-    "risen",
-    "ascent",
-    "attained",
-    "achieved",
-    "reached",
-    "recoil",
-    "kickback",
-    "hf",
-    "event",
-    "events",
-    "what",
-];
-
-/// Words of a release that say no more than that something begins.
-const BEGINS: [&str; 27] = [
-    "initial",
-    "initially",
-    "start",
-    "starting",
-    "started",
-    "begin",
-    "begins",
-    "beginning",
-    "original",
-    "origin",
-    "anfang",
-    "anfangs",
-    "anfangswert",
-    "ausgang",
-    "ursprung",
-    "depart",
-    "debut",
-    "initiale",
-    "iniziale",
-    "iniziali",
-    "partenza",
-    "inicial",
-    "iniciales",
-    "inicio",
-    "partida",
-    "kezdeti",
-    "initiales",
-];
-
 /// More rows than these are not looked through for words, nor comments.
 pub(super) const ROWS: usize = 200;
 
@@ -123,7 +32,7 @@ fn says(text: &str) -> bool {
             _ => return false,
         };
         let bounces = [Atom::Impact, Atom::Rebound, Atom::Release].iter().any(|atom| atoms.contains(atom));
-        let loose = LOOSE.contains(&plain) || BEGINS.contains(&plain) || atoms.contains(&Atom::Top) && plain != "apex";
+        let loose = atoms.contains(&Atom::Loose) || atoms.contains(&Atom::Top) && plain != "apex";
         bounces && !loose
     })
 }
@@ -185,57 +94,6 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
 /// Fewer rows than these fall alike by chance.
 const ALIKE: usize = 3;
 
-/// Words that say that numbers were read, and of a ball.
-const PLAIN: [&str; 47] = [
-    "ball",
-    "balls",
-    "balle",
-    "ballon",
-    "bille",
-    "kugel",
-    "pelota",
-    "balon",
-    "bola",
-    "palla",
-    "pallina",
-    "pallone",
-    "bal",
-    "boll",
-    "bold",
-    "pallo",
-    "labda",
-    "мяча",
-    "experiment",
-    "experience",
-    "versuch",
-    "messung",
-    "mesure",
-    "misura",
-    "medida",
-    "measured",
-    "measurement",
-    "observed",
-    "actual",
-    "experimental",
-    "real",
-    "raw",
-    "reached",
-    "recorded",
-    "obs",
-    "meas",
-    "gemessen",
-    "gemessene",
-    "gemessener",
-    "mesuree",
-    "atteinte",
-    "misurata",
-    "medido",
-    "gemeten",
-    "uppmatt",
-    "malt",
-    "измеренная",
-];
-
 /// Whether a heading says that its heights are those of a bounce, or no more than that they are
 /// heights: it names nothing else, `height (cm)`, `rebound`, but not `door height`.
 fn plain(heading: &Heading) -> bool {
@@ -247,7 +105,7 @@ fn plain(heading: &Heading) -> bool {
         Kind::Known(atoms) => atoms.iter().all(|a| matches!(a, Atom::Height | Atom::Max | Atom::Mean | Atom::Unit(_))),
         _ => true,
     };
-    of_bounces || words.iter().any(|word| PLAIN.contains(&&*folded(&word.text))) || words.iter().all(bare)
+    of_bounces || heading.has(Atom::Read) || words.iter().all(bare)
 }
 
 /// Words that say nothing and are longer than this name something.
@@ -315,6 +173,51 @@ pub(super) fn mixed_units(region: &Region<'_>, columns: &Columns) -> Option<Doub
     let stated = bare * (other.si(1.0) / one.si(1.0)).sqrt();
     (USUAL.contains(&bare) && !USUAL.contains(&stated))
         .then(|| Doubt::Units { drop: shown(&of_drop.heading.text), rebound: shown(&of_rebound.heading.text) })
+}
+
+/// The doubt whether releases and rebounds are read at the same end of the ball, where one names
+/// its bottom and the other its top.
+pub(super) fn of_two_ends(columns: &Columns) -> Option<Doubt> {
+    let names = |c: &Column, ends: Atom| split(&c.heading.text).iter().any(|word| word.is(ends));
+    let column = |release: bool, ends: Atom| {
+        let read = |v: &Value| v.role == Role::Reading && v.what == What::Height;
+        let mut found =
+            columns.values().filter(|(_, c, v)| read(v) && (v.at == At::Release) == release && names(c, ends));
+        found.next().map(|(_, c, _)| shown(&c.heading.text))
+    };
+    let ends = [(Atom::Bottom, Atom::Top), (Atom::Top, Atom::Bottom)];
+    let (drop, rebound) = ends.iter().find_map(|(one, other)| Some((column(true, *one)?, column(false, *other)?)))?;
+    Some(Doubt::Datum { drop, rebound })
+}
+
+/// The doubt whether the heights that bounces begin at were measured: where each is that of the row
+/// before times one factor, to its last digit, the column repeats the other and is no reading.
+pub(super) fn repeated(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
+    let column = |release: bool| {
+        let read = |v: &Value| v.role == Role::Reading && v.what == What::Height && v.trial.is_empty();
+        let mut found = columns
+            .values()
+            .filter(|(_, _, v)| read(v) && matches!(v.at, At::Release | At::Row) && (v.at == At::Release) == release);
+        found.next().filter(|_| found.next().is_none())
+    };
+    let ((drop, of_drop, _), (rebound, of_rebound, _)) = (column(true)?, column(false)?);
+    if !of_drop.heading.has(Atom::Before) {
+        return None;
+    }
+    let step = |pair: &[usize]| {
+        let (before, begins) = (columns.written(region, pair[0], rebound)?, columns.written(region, pair[1], drop)?);
+        let falls = columns.written(region, pair[0], drop)?.0 > begins.0;
+        // The factor, and how far the rounding of both may move it.
+        let factor = begins.0 / before.0;
+        (falls && before.0 > before.1).then(|| (factor, begins.1 / before.0 + factor * before.1 / before.0))
+    };
+    let steps: Vec<(f64, f64)> = region.rows.windows(2).map(step).collect::<Option<_>>()?;
+    let (low, high) = steps.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), (factor, by)| {
+        (low.max(factor - by), high.min(factor + by))
+    });
+    let other = low > 1.0 || high < 1.0;
+    (steps.len() + 1 >= ALIKE && low <= high && other)
+        .then(|| Doubt::Repeated { column: shown(&of_drop.heading.text), of: shown(&of_rebound.heading.text) })
 }
 
 /// Nobody calls fewer readings than these a mean.

@@ -1,7 +1,7 @@
 //! A series of heights in time: its order, its gaps and repeats, and which way is up.
 
 use super::region::Region;
-use super::{ReadOptions, Reading, Table, Trial};
+use super::{Event, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Note, Pace, Remark, Repair, Warning};
 use crate::orientation::falls_upwards;
@@ -40,6 +40,33 @@ pub(super) fn series(
         falls(table);
     }
     Ok(())
+}
+
+/// Heights of which every other is zero are those of the release, the contacts and the tops between
+/// them, one after the other: events, and no film; says whether all trials are of such.
+pub(super) fn touches(trials: &mut [Trial]) -> bool {
+    let zero = |r: &Reading| r.height == Some(0.0);
+    let in_turn = |trial: &Trial| {
+        let contacts = trial.readings.iter().filter(|r| zero(r)).count();
+        contacts > 1
+            && trial.readings.windows(2).all(|pair| zero(&pair[0]) != zero(&pair[1]) && pair[0].time < pair[1].time)
+    };
+    if trials.is_empty() || !trials.iter().all(in_turn) {
+        return false;
+    }
+    for trial in trials {
+        let mut bounce = 0;
+        for reading in &mut trial.readings {
+            if zero(reading) {
+                bounce += 1;
+                (reading.event, reading.height, reading.sigma_height) = (Event::Contact, None, None);
+            } else {
+                reading.event = if bounce == 0 { Event::Release } else { Event::Apex };
+            }
+            reading.bounce = bounce;
+        }
+    }
+    true
 }
 
 /// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says

@@ -96,8 +96,14 @@ impl Columns {
         if let Some(unit) = self.adopted(region, index, dimension) {
             return Ok(Some(unit));
         }
-        if let Some(unit) = self.by_size(region, index).filter(|_| dimension == Dimension::Time) {
+        if dimension == Dimension::Time
+            && let Some(unit) = self.by_size(region, index)
+        {
             return Ok(Some(unit));
+        }
+        // Of speeds before and after only the ratio counts.
+        if dimension == Dimension::Speed && self.values().all(|(_, _, v)| v.what == What::Speed) {
+            return Ok(Some(Unit::SPEED));
         }
         // Nobody asks in which unit nothing is.
         if region.rows.is_empty() {

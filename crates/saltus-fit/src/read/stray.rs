@@ -79,6 +79,11 @@ fn strays(trials: &[Trial]) -> Vec<Stray> {
         all.extend(falls(own));
         sizes.extend(own.iter().map(|h| h.2));
     }
+    // A ball that rises above where it fell from asks for a reason too: the falls of all others
+    // tell.
+    let mut falling: Vec<f64> = heights.iter().flat_map(|own| falls(own)).filter(|fall| *fall < RISE.ln()).collect();
+    let others = heights.len() > 1 && falling.len() > 1;
+    let of_all = median(&mut falling);
     let usual: HashMap<&str, (usize, Option<f64>, f64)> = alike
         .into_iter()
         .map(|(setting, (mut all, mut sizes))| {
@@ -87,7 +92,8 @@ fn strays(trials: &[Trial]) -> Vec<Stray> {
         .collect();
     let one = |(trial, own): (usize, &Vec<(usize, usize, f64)>)| {
         let (count, fall, size) = *usual.get(trials[trial].setting.as_str())?;
-        let fall = fall.filter(|_| count > own.len());
+        let rises = falls(own).any(|fall| fall > RISE.ln());
+        let fall = fall.filter(|_| count > own.len() && !rises).or(of_all.filter(|_| rises && others));
         in_trial(own, fall, size).map(|(reading, factor)| Stray { trial, reading, factor })
     };
     heights.iter().enumerate().filter_map(one).collect()
@@ -117,7 +123,7 @@ fn range(heights: &[(usize, usize, f64)], usual: Option<f64>) -> (f64, f64) {
 /// two the one that comes to the usual size.
 fn in_trial(heights: &[(usize, usize, f64)], usual: Option<f64>, size: f64) -> Option<(usize, f64)> {
     let (least, most) = range(heights, usual);
-    if most - least < UNLIKE.ln() {
+    if most - least < UNLIKE.ln() && (most < RISE.ln() || usual.is_none()) {
         return None;
     }
     // It stands at one of the falls that are unlike the others.

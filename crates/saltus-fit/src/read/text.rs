@@ -27,22 +27,41 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     // Old Macintosh files end their lines with a lone carriage return.
     let old = text.contains('\r') && !text.contains('\n');
     let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
-    let counted = numeros(&text);
-    let text = if counted.is_empty() {
-        text
-    } else {
-        // As long as before: what stands where does not change.
-        let mut text = text.into_owned();
-        counted.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
-        Cow::Owned(text)
-    };
+    let text = counted(&text).map_or(text, Cow::Owned);
     let text = match names_in_comment(&text) {
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
         None => text,
     };
+    let text = if text.len() > TYPED { text } else { unstamped(&text).map_or(text, Cow::Owned) };
     let text = if text.len() > TYPED { text } else { forms::table(&text).map_or(text, Cow::Owned) };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
+}
+
+/// A text without the time of day that a monitor writes before each of its lines, `15:21:07.112
+/// ->`; `None` where it writes none.
+fn unstamped(text: &str) -> Option<String> {
+    let bare = |line: &'_ str| -> Option<usize> {
+        let (stamp, _) = line.split_once("->")?;
+        (stamp.matches(':').count() == 2 && cell::clock(stamp.trim()).is_some()).then_some(stamp.len() + 2)
+    };
+    let filled = || text.lines().filter(|line| !line.trim().is_empty());
+    if filled().count() < 2 || !filled().all(|line| bare(line).is_some()) {
+        return None;
+    }
+    let lines = text.lines().map(|line| bare(line).map_or(line, |at| line[at..].trim_start()));
+    Some(lines.collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A text whose cells `#`, which name a count, are no comments; `None` where there are none.
+pub(super) fn counted(text: &str) -> Option<String> {
+    let found = numeros(text);
+    // As long as before: what stands where does not change.
+    (!found.is_empty()).then(|| {
+        let mut text = text.to_owned();
+        found.into_iter().for_each(|at| text.replace_range(at..=at, "n"));
+        text
+    })
 }
 
 /// Where lines begin with a `#` that is a cell, and no comment: `#,time (s)`, or `#,cm` below the
@@ -155,6 +174,9 @@ fn parted(line: &str) -> impl Iterator<Item = &str> {
     line.trim().split("  ").map(str::trim).filter(|cell| !cell.is_empty())
 }
 
+/// A line of so many words tells something.
+const TOLD: usize = 5;
+
 /// Whether two blanks or more part the cells of lines, some of them words: as many in most lines,
 /// and in two of these a number; a comma is a decimal one.
 fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> bool {
@@ -163,7 +185,9 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> boo
         let inside = |(at, _)| digit(line[..at].chars().next_back()) && digit(line[at + 1..].chars().next());
         line.match_indices(',').all(inside)
     };
-    if text.contains(['\t', ';', '|', '&']) {
+    // Lines that tell something may hold any mark.
+    let told = |line: &str| line.split_whitespace().filter(|word| word.contains(char::is_alphabetic)).count() >= TOLD;
+    if text.lines().any(|line| line.contains(['\t', ';', '|', '&']) && (line.contains("  ") || !told(line))) {
         return false;
     }
     let number = |line: &&str| {
@@ -175,7 +199,12 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> boo
     let alike = |line: &&str| parted(line).count() == width;
     let rows = lines.clone().filter(alike).filter(number).count();
     // A title may hold any comma.
-    rows > 1 && lines.clone().filter(alike).all(decimal) && 3 * lines.clone().filter(alike).count() >= 2 * lines.count()
+    let table = lines.clone().filter(alike).count();
+    // Of the lines around it most tell something, or greet.
+    let around = lines.clone().filter(|line| !alike(line) && parted(line).nth(1).is_none()).count();
+    rows > 1
+        && lines.clone().filter(alike).all(decimal)
+        && (3 * table >= 2 * lines.clone().count() || table > rows && rows > 2 && table + around == lines.count())
 }
 
 fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {

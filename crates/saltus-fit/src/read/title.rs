@@ -73,7 +73,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         } else if let Some((value, _)) = sigma {
             found.sigma.0 = found.sigma.0.or(Some(value));
         }
-        for unit in Unit::listed(&text).unwrap_or_else(|| unit(&text).into_iter().collect()) {
+        let of_clauses = || unit(&text).or_else(|| clauses(&text).find_map(of_all)).into_iter().collect();
+        for unit in Unit::listed(&text).unwrap_or_else(of_clauses) {
             match unit.dimension {
                 Dimension::Time => found.units.0 = found.units.0.or(Some(unit)),
                 Dimension::Length => found.units.1 = found.units.1.or(Some(unit)),
@@ -127,7 +128,7 @@ fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
 
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
-fn drop(text: &str) -> Option<f64> {
+pub(super) fn drop(text: &str) -> Option<f64> {
     clauses(text).find_map(|clause| {
         let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
         let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
@@ -184,6 +185,22 @@ fn unit(text: &str) -> Option<Unit> {
     unit.filter(|_| several && !counted)
 }
 
+/// `all in cm`: the unit that a clause of no other words states.
+fn of_all(clause: &str) -> Option<Unit> {
+    let bare = clause.trim().trim_matches(['(', ')', '.']);
+    let (name, unit) = bare.rsplit_once([' ', '('])?;
+    let unit = Unit::parse(unit.trim_matches(['(', ')'])).filter(|unit| !unit.unscaled())?;
+    let plain = |word: &Word| match word.kind {
+        Kind::Known(atoms) => {
+            atoms.iter().all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read))
+        }
+        _ => false,
+    };
+    let words = split(name);
+    let last = words.last().is_some_and(|word| matches!(&*folded(&word.text), "in" | "en" | "i"));
+    (last && words.len() > 1 && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
+}
+
 /// Whether a text states a length and speaks of heights, places or the floor: `the floor is at the
 /// 12 cm mark`.
 fn states_length(text: &str) -> bool {
@@ -234,6 +251,7 @@ mod tests {
             ("Times in ms", Some(0.001), None),
             ("Alle Höhen in cm", None, Some(0.01)),
             ("Height of the wobble in m", None, None),
+            ("They wobbled all in m", None, None),
             ("Drop height in cm", None, None),
             ("Ball diameter in cm", None, None),
             ("Bounce 1 in cm", None, None),

@@ -67,31 +67,9 @@ const JOULES: [(&str, f64); 8] = [
 /// By the international mile, m/s.
 const MILE_AN_HOUR: f64 = 0.447_04;
 
-/// What a unit is called.
-const UNITS: [&str; 18] = [
-    "unit",
-    "units",
-    "einheit",
-    "einheiten",
-    "unite",
-    "unites",
-    "unidad",
-    "unidades",
-    "unidade",
-    "unita",
-    "eenheid",
-    "eenheden",
-    "enhet",
-    "enhed",
-    "jednotka",
-    "jednostka",
-    "单位",
-    "単位",
-];
-
 /// Whether a name is that of a unit: `unit`, `height_unit`.
 pub(super) fn names_unit(name: &str) -> bool {
-    folded(name).split(|c: char| !c.is_alphanumeric()).any(|word| UNITS.contains(&word))
+    split(name).iter().any(|word| word.is(Atom::Measure))
 }
 
 /// A unit.
@@ -109,6 +87,8 @@ impl Unit {
     /// A joule, as a measure of the height it stands for.
     pub(super) const JOULE: Self =
         Self { dimension: Dimension::Length, scale: Scale::Energy { times: 1.0, over: 1.0 } };
+    /// A speed in a unit that nobody names.
+    pub(super) const SPEED: Self = Self { dimension: Dimension::Speed, scale: Scale::Pixels };
     pub(super) const PIXEL: Self = Self { dimension: Dimension::Length, scale: Scale::Pixels };
 
     /// One frame, in seconds.

@@ -54,10 +54,28 @@ pub(super) enum Atom {
     Sample,
     /// A rebound at its top, or the top itself.
     Top,
+    /// The lower end of the ball.
+    Bottom,
     Other,
     /// A motion that is none of a bounce, though heights or speeds fall in it alike.
     Motion,
     Note,
+    /// A word of bounces that is of races, waves, jumpers, carts and markets too.
+    Loose,
+    /// Numbers of this name were read, or are of a ball.
+    Read,
+    /// What a ball bounces on, at the zero of heights.
+    Floor,
+    /// What is derived is the COR.
+    Cor,
+    /// What a unit is called.
+    Measure,
+    /// A row counts where a column of this name says yes,
+    Counts,
+    /// and does not where one of this name does, or a remark.
+    Void,
+    Yes,
+    Nay,
     /// The word says nothing.
     Filler,
     /// A filler that readings are taken with, or by.
@@ -69,6 +87,16 @@ pub(super) enum Atom {
 }
 
 impl Atom {
+    /// Whether it has to do with what is measured: a quantity, an event, a statistic, what turns
+    /// the meaning.
+    pub(super) fn measures(self) -> bool {
+        use Atom::{Error, Filler, Group, Label, Measure, Motion, Note, Number, Ordinal, Other, Unit, Void};
+        !matches!(
+            self,
+            Filler | Label | Group | Motion | Other | Note | Number | Ordinal(_) | Unit(_) | Error | Measure | Void
+        )
+    }
+
     fn of(name: &'static str) -> Option<Self> {
         Some(match name {
             "height" => Self::Height,
@@ -107,9 +135,19 @@ impl Atom {
             "energy" => Self::Energy,
             "sample" => Self::Sample,
             "top" => Self::Top,
+            "bottom" => Self::Bottom,
             "other" => Self::Other,
             "motion" => Self::Motion,
             "note" => Self::Note,
+            "loose" => Self::Loose,
+            "read" => Self::Read,
+            "floor" => Self::Floor,
+            "cor" => Self::Cor,
+            "measure" => Self::Measure,
+            "counts" => Self::Counts,
+            "void" => Self::Void,
+            "yes" => Self::Yes,
+            "nay" => Self::Nay,
             "filler" => Self::Filler,
             "tool" => Self::Tool,
             _ => match name.split_once(':')? {
@@ -158,6 +196,29 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
     let mut found = entries().map(|(known, _)| known).filter(near).filter_map(|known| Some((known, meanings(known)?)));
     let first = found.next()?;
     found.all(|(_, atoms)| atoms == first.1).then_some(first)
+}
+
+/// An abbreviation has so many letters at least.
+const SHORT: usize = 3;
+
+/// The word that a beginning of one is short for, `reb`: of a quantity, an event or a statistic, as
+/// are all words that begin so, and of one meaning. `None` where they differ.
+pub(super) fn short_for(word: &str) -> Option<(&'static str, &'static [Atom])> {
+    if word.chars().count() < SHORT || word.contains(|c: char| !c.is_alphabetic()) {
+        return None;
+    }
+    let mut found = entries()
+        .map(|(known, _)| known)
+        .filter(|known| known.starts_with(word))
+        .filter_map(|k| Some((k, meanings(k)?)));
+    let first = found.next()?;
+    let alike = |(_, atoms): (&str, &'static [Atom])| meaning(atoms).eq(meaning(first.1));
+    (first.1.iter().all(|atom| atom.measures()) && found.all(alike)).then_some(first)
+}
+
+/// What a word means, without how loosely it is used.
+fn meaning(atoms: &'static [Atom]) -> impl Iterator<Item = &'static Atom> {
+    atoms.iter().filter(|atom| !matches!(atom, Atom::Loose | Atom::Read))
 }
 
 /// Whether a slip of one letter makes one word of the other.
@@ -313,6 +374,15 @@ mod tests {
         ] {
             assert_eq!(misspelt(word).map(|(known, _)| known), meant, "{word}");
         }
+    }
+
+    #[test]
+    fn a_beginning_of_words_of_one_meaning_is_short_for_it() {
+        let meant = |word: &str| short_for(word).map(|(_, atoms)| atoms.to_vec());
+        assert_eq!(meant("veloc"), Some(vec![Atom::Speed]));
+        assert_eq!(meant("theor"), Some(vec![Atom::Predicted]));
+        // Of several meanings, of balls, or too short.
+        assert_eq!(["pre", "ten", "re", "wob"].map(meant), [None, None, None, None]);
     }
 
     #[test]

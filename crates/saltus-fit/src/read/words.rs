@@ -115,11 +115,7 @@ const PART: usize = 4;
 fn compound(word: &str) -> Option<[(&str, &'static [Atom]); 2]> {
     let part = |text: &'_ str| {
         let atoms = meanings(text)?;
-        let says = |atom: &Atom| {
-            use Atom::{Error, Filler, Group, Label, Motion, Note, Number, Ordinal, Other, Unit};
-            !matches!(atom, Filler | Label | Group | Motion | Other | Note | Number | Ordinal(_) | Unit(_) | Error)
-        };
-        (text.chars().count() >= PART && atoms.iter().all(says)).then_some(atoms)
+        (text.chars().count() >= PART && atoms.iter().all(|atom| atom.measures())).then_some(atoms)
     };
     let cuts = word.char_indices().map(|(at, _)| word.split_at(at)).skip(PART);
     let mut found = cuts.filter_map(|(head, tail)| {
@@ -270,7 +266,7 @@ pub(super) fn numbers(words: &[Word]) -> Numbers {
     let of_trial = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && !w.is(Atom::Filler);
     let of_group = |w: &Word| w.is(Atom::Group) || w.is(Atom::Label);
     let counts =
-        |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler, ..] | [Atom::Number]));
+        |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler, ..] | [Atom::Number, ..]));
     let mut group: Vec<&str> = Vec::new();
     let mut labelled = false;
     for (n, word) in words.iter().enumerate() {

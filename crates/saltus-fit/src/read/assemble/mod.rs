@@ -6,7 +6,7 @@ mod stated;
 
 use std::collections::{HashMap, HashSet};
 
-use super::aside::LeftAside;
+use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::columns::{Columns, Kind};
 use super::grid::shown;
@@ -298,7 +298,13 @@ impl Builder<'_> {
         mut table: Table,
     ) -> Result<Table, TableError> {
         let what = read_as(self.layout, self.columns, tracks, flights);
-        let Self { region, columns, layout, trials, missing, aside, flights, .. } = self;
+        let Self { region, columns, layout, mut trials, missing, aside, flights, .. } = self;
+        let touches = layout == (Layout::Samples { frames: false }) && samples::touches(&mut trials);
+        let what = if touches {
+            Note::ReadAs { shape: Shape::Events, side_by_side: tracks.len(), speeds: false }
+        } else {
+            what
+        };
         table.notes.insert(0, what.into());
         table.notes.extend(columns.notes.drain(..).map(Remark::from));
         table.warnings.extend(columns.warnings.drain(..).map(Remark::from));
@@ -319,14 +325,19 @@ impl Builder<'_> {
             Layout::Numbered => renumbered(region, plain, key, &mut table.repairs)?,
             _ => plain,
         });
-        if let Layout::Samples { .. } = layout {
+        if let Layout::Samples { .. } = layout
+            && !touches
+        {
             if !missing.is_empty() {
                 table.repairs.push(Repair::NoPosition { lines: Lines::of(&missing) }.into());
             }
             samples::series(region, column, columns.unscaled, options, &mut table)?;
         }
         for trial in &mut table.trials {
-            in_order(region, column, trial, matches!(layout, Layout::Listed))?;
+            let unresolved = in_order(region, column, trial, matches!(layout, Layout::Listed))?;
+            let name = columns.columns.get(column).map_or_else(String::new, |c| shown(&c.heading.text));
+            let left = |line| LeftAside::new(Part::Cell, name.as_str(), Why::Unresolved).at(line);
+            table.left_aside.extend(unresolved.into_iter().map(left));
         }
         percent(region, columns, &mut table)?;
         energies(columns, &mut table.trials);

@@ -1,12 +1,15 @@
 //! Columns whose headings are not understood: what is left aside, and what is an error.
 
+use std::collections::HashSet;
+
 use super::{Column, Columns, Kind};
 use crate::error::TableError;
+use crate::finding::Doubt;
 use crate::read::Event;
 use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::{Cell, read};
 use crate::read::grid::shown;
-use crate::read::heading::{Heading, Meaning};
+use crate::read::heading::{At, Heading, Meaning, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::rows::event;
 use crate::read::units::Dimension;
@@ -63,6 +66,66 @@ impl Columns {
         Ok(())
     }
 
+    /// Columns of which a word is not understood, where none that is understood holds what they do,
+    /// are read and doubted; several are told apart by those words.
+    pub(super) fn lacking(&mut self, region: &Region<'_>, released: bool) {
+        if region.given || region.chosen {
+            return;
+        }
+        let reads = |v: &Value| !matches!(v.role, Role::Error | Role::Lost);
+        let of = |c: &Column, release: bool| c.value().is_some_and(|v| reads(v) && (v.at == At::Release) == release);
+        let known = [false, true].map(|release| {
+            self.columns.iter().any(|c| c.heading.unknown.is_empty() && of(c, release)) || release && released
+        });
+        let counted = self.columns.iter().any(|c| matches!(c.kind, Kind::Number { .. } | Kind::Event | Kind::Frame));
+        let bounces = known[1] || self.number().is_some_and(|(_, sure)| sure);
+        for release in [false, true] {
+            // Where bounces are counted, none need be the release.
+            if known[usize::from(release)] || release && (counted || !known[0]) {
+                continue;
+            }
+            // What bears no unit may be called in one that is not known.
+            let numbers = |n: usize| {
+                let unit = self.columns[n].unit.is_some();
+                let measured = |cell: Cell| matches!(cell, Cell::Number(m) if unit || m.unit.is_some());
+                region.rows.iter().any(|&row| measured(region.view.read(row, n)))
+            };
+            let open = |n: &usize| {
+                let column = &self.columns[*n];
+                let what = column.value().is_some_and(|v| v.role == Role::Reading && v.what != What::Unsaid);
+                what && !column.heading.unknown.is_empty()
+                    && !column.heading.turns()
+                    && of(column, release)
+                    && numbers(*n)
+            };
+            let found: Vec<usize> = (0..self.columns.len()).filter(open).collect();
+            // One by itself says that it is of a bounce, or a height; of several the table does.
+            let says = |n: &usize| {
+                let named = [Atom::Height, Atom::Rebound, Atom::Impact, Atom::Release, Atom::Top, Atom::Between];
+                named.iter().any(|atom| self.columns[*n].heading.has(*atom))
+            };
+            if !(found.iter().all(says) || bounces && found.len() > 1) {
+                return;
+            }
+            let kind = |n: usize| self.columns[n].value().map(|v| (v.what, v.at, v.drop.clone(), self.columns[n].unit));
+            if found.iter().any(|&n| kind(n) != kind(found[0])) {
+                return;
+            }
+            let words: Vec<String> = found.iter().map(|&n| self.columns[n].heading.unknown.join(" ")).collect();
+            if words.iter().enumerate().any(|(n, word)| words[..n].contains(word)) {
+                return;
+            }
+            for (&index, word) in found.iter().zip(words) {
+                let column = &mut self.columns[index];
+                column.heading.unknown.clear();
+                if let (Kind::Value(value), true) = (&mut column.kind, found.len() > 1) {
+                    value.group = [value.group.as_str(), &word].join(" ").trim().to_owned();
+                }
+                self.doubts.push(Doubt::Word { column: shown(&column.heading.text), word: shown(&word) });
+            }
+        }
+    }
+
     /// Columns whose words are not understood: left aside, unless their cells may tell balls or
     /// surfaces apart.
     pub(super) fn not_understood(&mut self, region: &Region<'_>) -> Result<(), TableError> {
@@ -102,6 +165,7 @@ impl Columns {
             let words = cells.iter().filter(|cell| !cell.is_empty()).all(|cell| read(cell, false) == Cell::Words);
             let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
             let differ = cells.iter().any(|cell| *cell != cells[0]);
+            let apart = cells.iter().collect::<HashSet<_>>().len();
             let values = self.columns.iter().filter(|c| c.value().is_some() && c.heading.unknown.is_empty()).count();
             if words
                 && filled > 1
@@ -110,6 +174,11 @@ impl Columns {
                 && values > 0
                 && self.columns[index].value().is_none()
             {
+                // Words that come again tell rows apart, whatever stands above them.
+                if 2 * apart <= cells.len() {
+                    (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Setting, Vec::new());
+                    continue;
+                }
                 let name = shown(&self.columns[index].heading.text);
                 return Err(region
                     .header_error(

@@ -16,10 +16,10 @@ use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::region::Region;
 use super::title;
-use super::units::{Dimension, Unit};
+use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
-use crate::finding::{Note, Warning};
+use crate::finding::{Doubt, Note, Warning};
 
 /// What a column is for.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +84,7 @@ pub(super) struct Columns {
     pub(super) aside: Vec<LeftAside>,
     pub(super) notes: Vec<Note>,
     pub(super) warnings: Vec<Warning>,
+    pub(super) doubts: Vec<Doubt>,
     /// Heights have no scale: only their ratios mean anything.
     pub(super) unscaled: bool,
 }
@@ -92,8 +93,14 @@ impl Columns {
     /// What the names of the columns say of them, and what they are beside one another; `released`
     /// where a height of release is stated.
     pub(super) fn named(region: &Region<'_>, options: &ReadOptions, released: bool) -> Result<Self, TableError> {
-        let mut found =
-            Self { columns: Vec::new(), aside: Vec::new(), notes: Vec::new(), warnings: Vec::new(), unscaled: false };
+        let mut found = Self {
+            columns: Vec::new(),
+            aside: Vec::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            doubts: Vec::new(),
+            unscaled: false,
+        };
         for text in &region.header {
             found.push(Heading::coordinate(text, &region.header).unwrap_or_else(|| Heading::parse(text)));
         }
@@ -115,6 +122,7 @@ impl Columns {
         found.shares(region);
         found.energies(region);
         found.one_sided();
+        found.lacking(region, released);
         found.not_understood(region)?;
         found.drops(region);
         found.statistics(region, released)?;
@@ -138,7 +146,8 @@ impl Columns {
         self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;
-        self.unscaled = self.columns.iter().any(|c| c.holds(What::Height) && c.unit.is_some_and(Unit::unscaled))
+        let bare = |c: &Column| c.unit.is_some_and(Unit::unscaled);
+        self.unscaled = self.columns.iter().any(|c| (c.holds(What::Height) || c.holds(What::Speed)) && bare(c))
             || self.one(&Kind::Share).is_some() && !self.any(What::Height, Some(At::Release));
         for column in self.columns.iter_mut().filter(|c| c.holds(What::Height)) {
             column.zero = options.zero.unwrap_or(0.0);
@@ -405,6 +414,22 @@ impl Columns {
                 seen.push((index, value));
                 continue;
             };
+            // Hundredths beside heights follow from them.
+            let percent = |n: usize| {
+                let column = &self.columns[n];
+                column.heading.has(Atom::Percent) || column.unit.is_some_and(|unit| unit.scale == Scale::Percent)
+            };
+            if percent(index) != percent(*before) && value.what == What::Height {
+                let first = *before;
+                if percent(index) {
+                    self.leave(index, Why::Derived);
+                } else {
+                    seen.retain(|(n, _)| *n != first);
+                    seen.push((index, value));
+                    self.leave(first, Why::Derived);
+                }
+                continue;
+            }
             if let Some(coarser) = self.alike(region, *before, index) {
                 if coarser != index {
                     let first = *before;
@@ -438,28 +463,6 @@ impl Columns {
             )));
         }
         Ok(())
-    }
-
-    /// The coarser of two columns that say the same in every row to their last digits, as in
-    /// centimetres and in inches.
-    fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
-        // A number, and half a unit in its last place.
-        let si = |row: usize, column: usize| match region.view.read(row, column) {
-            Cell::Number(m) => {
-                let unit = m.unit.or(self.columns[column].unit)?;
-                let text = region.cell(row, column);
-                let digits = text
-                    .find(['.', ','])
-                    .map_or(0, |at| text[at + 1..].chars().take_while(char::is_ascii_digit).count());
-                Some((unit.si(m.value), unit.si(0.5 * 0.1f64.powf(digits as f64))))
-            }
-            _ => None,
-        };
-        let pairs: Vec<_> = region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
-        let rounded = |((a, half), (b, other)): &((f64, f64), (f64, f64))| (a - b).abs() <= 1.001 * (half + other);
-        let alike = pairs.len() > 1 && self.columns[one].unit != self.columns[other].unit && pairs.iter().all(rounded);
-        let coarser = pairs.iter().map(|(a, b)| a.1 - b.1).sum::<f64>() > 0.0;
-        alike.then_some(if coarser { one } else { other })
     }
 }
 

@@ -8,10 +8,31 @@ use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::rows::{between, bounce};
-use crate::read::units::{Dimension, Scale};
+use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::Atom;
 
 impl Columns {
+    /// The coarser of two columns that say the same in every row to their last digits, as in
+    /// centimetres and in inches.
+    pub(super) fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
+        let si = |row: usize, column: usize| self.written(region, row, column);
+        let pairs: Vec<_> = region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
+        let rounded = |((a, half), (b, other)): &((f64, f64), (f64, f64))| (a - b).abs() <= 1.001 * (half + other);
+        let alike = pairs.len() > 1 && self.columns[one].unit != self.columns[other].unit && pairs.iter().all(rounded);
+        let coarser = pairs.iter().map(|(a, b)| a.1 - b.1).sum::<f64>() > 0.0;
+        alike.then_some(if coarser { one } else { other })
+    }
+
+    /// The number of a cell in SI units, and half a unit in its last place.
+    pub(in crate::read) fn written(&self, region: &Region<'_>, row: usize, column: usize) -> Option<(f64, f64)> {
+        let Cell::Number(m) = region.view.read(row, column) else { return None };
+        let unit = m.unit.or(self.columns[column].unit)?;
+        let text = region.cell(row, column);
+        let digits =
+            text.find(['.', ',']).map_or(0, |at| text[at + 1..].chars().take_while(char::is_ascii_digit).count());
+        Some((unit.si(m.value), unit.si(0.5 * 0.1f64.powf(digits as f64))))
+    }
+
     /// `Drop 1,Rebound 1,Drop 2,Rebound 2`: each drop with its own rebound; a single numbered drop
     /// is that of all bounces.
     pub(super) fn paired(&mut self, region: &Region<'_>) -> Result<(), TableError> {
@@ -65,7 +86,11 @@ impl Columns {
         let letter =
             |c: &super::Column| c.heading.text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
         let has = |c: &super::Column, atoms: &[Atom]| atoms.iter().any(|atom| c.heading.has(*atom));
-        let high = |v: &Value| v.what == What::Height && v.role == Role::Reading;
+        // Columns that are only counted, `1,2,3`, hold what stands beside them.
+        let high = |v: &Value| {
+            let height = v.what == What::Height || v.what == What::Unsaid && !v.trial.is_empty();
+            height && v.role == Role::Reading
+        };
         let plain = |c: &super::Column, v: &Value| {
             let other = [Atom::Release, Atom::Before, Atom::After, Atom::Top, Atom::Rebound, Atom::Impact];
             let named = c.heading.has(Atom::Height) && c.heading.unknown.is_empty() && !has(c, &other);
@@ -88,12 +113,17 @@ impl Columns {
         let read = || self.values().filter(|(_, _, v)| v.role == Role::Reading);
         let others: Vec<usize> = read().map(|(n, _, _)| n).filter(|n| *n != release).collect();
         let number = |row: usize, column: usize| match region.view.read(row, column) {
-            Cell::Number(m) => m.unit.or(self.columns[column].unit).map(|unit| unit.si(m.value)),
+            Cell::Number(m) => Some((m.unit.or(self.columns[column].unit), m.value)),
             _ => None,
+        };
+        let above = |release: (Option<Unit>, f64), below: (Option<Unit>, f64)| match (release.0, below.0) {
+            (Some(one), Some(other)) => one.si(release.1) > other.si(below.1),
+            (None, None) => release.1 > below.1,
+            _ => false,
         };
         let pairs = region.rows.iter().flat_map(|&row| others.iter().map(move |&n| (row, n)));
         let mut pairs = pairs.filter_map(|(row, n)| Some((number(row, release)?, number(row, n)?))).peekable();
-        if read().all(lower) && pairs.peek().is_some() && pairs.all(|(above, below)| above > below) {
+        if read().all(lower) && pairs.peek().is_some() && pairs.all(|(release, below)| above(release, below)) {
             self.place(release, At::Release, String::new());
         }
     }
@@ -143,8 +173,8 @@ impl Columns {
         self.place(after, At::After, String::new());
     }
 
-    /// `A: drop (cm)` beside `B: rebound (cm)`: what stands before a colon counts columns, and tells
-    /// no runs apart, where no two of them are of the same quantity and event.
+    /// `A: drop (cm)` beside `B: rebound (cm)`: what stands before a colon counts columns, and
+    /// tells no runs apart, where no two of them are of the same quantity and event.
     pub(super) fn enumerated(&mut self) {
         let runs: Vec<(usize, String, (What, At))> = self
             .values()

@@ -2,7 +2,8 @@
 
 use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
-use super::super::units::{Dimension, Unit};
+use super::super::said::ROWS;
+use super::super::units::{Dimension, Unit, names_unit};
 use super::Grid;
 
 /// What stands between readings of one cell; blanks last, since units stand behind them.
@@ -45,6 +46,43 @@ fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
 }
 
 impl Grid<'_> {
+    /// Moves the units that a column of its own names, `height,unit` above `150,cm` and `36,in`, to
+    /// the numbers before them.
+    pub(super) fn united(&mut self) {
+        let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
+        let bare = |cell: &str| matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_none());
+        let of = |column: usize| -> Option<(usize, usize)> {
+            let names = (0..self.rows().min(ROWS)).find(|&row| names_unit(self.cell(row, column)))?;
+            let rows = || (names + 1..self.rows()).filter(|&row| !self.cell(row, column).is_empty());
+            let unit =
+                |row: usize| Unit::parse(self.cell(row, column)).is_some_and(|u| u.dimension != Dimension::Other);
+            let number = (0..column).rev().find(|&n| rows().all(|row| bare(self.cell(row, n))))?;
+            (rows().count() > 1 && rows().all(unit)).then_some((names, number))
+        };
+        let found: Vec<(usize, usize, usize)> =
+            (1..width).filter_map(|n| of(n).map(|(row, of)| (n, row, of))).collect();
+        if found.is_empty() {
+            return;
+        }
+        let (mut cells, mut ends) = (String::new(), Vec::new());
+        for row in 0..self.rows() {
+            for column in 0..self.width(row) {
+                let below = |(_, names, _): &&(usize, usize, usize)| row > *names;
+                let unit = found.iter().filter(below).find(|(_, _, of)| *of == column).map(|(unit, _, _)| *unit);
+                let moved = found.iter().any(|(unit, names, _)| *unit == column && row >= *names);
+                if !moved {
+                    cells.push_str(self.cell(row, column));
+                }
+                if let Some(unit) = unit.map(|unit| self.cell(row, unit)).filter(|unit| !unit.is_empty()) {
+                    cells.push(' ');
+                    cells.push_str(unit);
+                }
+                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+            }
+        }
+        (self.cells, self.ends) = (cells, ends);
+    }
+
     /// Parts columns whose cells hold several readings into one for each, named as trials.
     pub(super) fn unfold(&mut self) {
         let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
@@ -104,6 +142,16 @@ impl Grid<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_may_stand_in_a_column_of_their_own() {
+        let grid = Grid::open("a", None, "bounce,height,unit,by\n0,150,cm,Kim\n1,36,in,Bob\n").unwrap();
+        let row = |n: usize| (0..4).map(|column| grid.cell(n, column)).collect::<Vec<_>>();
+        assert_eq!(row(0), ["bounce", "height", "", "by"]);
+        assert_eq!(row(2), ["1", "36 in", "", "Bob"]);
+        let grid = Grid::open("a", None, "ball,height,unit\na,150,A7\nb,36,A9\n").unwrap();
+        assert_eq!(grid.cell(1, 2), "A7");
+    }
 
     #[test]
     fn a_cell_may_hold_several_readings() {

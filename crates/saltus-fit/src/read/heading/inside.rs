@@ -92,7 +92,9 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
         let before = text[..*at].chars().next_back();
         c.is_ascii_digit() && before.is_none_or(|b| !b.is_alphanumeric() && !matches!(b, '.' | ',' | '_' | '±' | '-'))
     };
-    text.char_indices().filter(starts).find_map(|(at, _)| {
+    // What stands behind a sign of an error is no height.
+    let error = |at: usize| text[..at].trim_end().ends_with(['±', '+', '-', '−']);
+    text.char_indices().filter(starts).filter(|(at, _)| !error(*at)).find_map(|(at, _)| {
         let digits =
             text[at..].find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(text.len() - at);
         let value: f64 = text[at..at + digits].replace(',', ".").parse().ok()?;
@@ -210,25 +212,6 @@ fn counter(text: &str, last: Option<char>) -> Option<(usize, i8, &str)> {
 
 /// Whether words name the COR, and neither its square nor an energy.
 pub(super) fn is_cor(words: &[Word]) -> bool {
-    const NAMES: [&str; 16] = [
-        "cor",
-        "e",
-        "cr",
-        "restitution",
-        "restitucion",
-        "restituzione",
-        "restituicao",
-        "stosszahl",
-        "stossziffer",
-        "restitutionszahl",
-        "restitutionskoeffizient",
-        "restitutiecoefficient",
-        "coefrest",
-        "coeffrest",
-        "restcoeff",
-        "elastizitatszahl",
-    ];
     let text = |w: &Word| folded(&w.text);
-    words.iter().any(|w| NAMES.contains(&text(w).as_str()))
-        && !words.iter().any(|w| text(w) == "squared" || text(w).starts_with("energ"))
+    words.iter().any(|w| w.is(Atom::Cor)) && !words.iter().any(|w| text(w) == "squared" || text(w).starts_with("energ"))
 }

@@ -16,7 +16,8 @@ impl Heading {
         let has = |atom| self.has(atom);
         let numbers = numbers(words);
         let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
-        if has(Note) && self.unit.is_none() {
+        let judges = |w: &Word| w.is(Atom::Counts) && !w.is(Label);
+        if (has(Note) || has(Atom::Measure) || !words.is_empty() && words.iter().all(judges)) && self.unit.is_none() {
             return Meaning::Aside(Why::Note);
         }
         if has(Predicted) {

@@ -23,6 +23,8 @@ impl fmt::Display for Why {
             Self::Elsewhere => "all of its events stand in another",
             Self::Computed => "computed from the times by the program that wrote it",
             Self::Still => "it hardly moves (choose with --column)",
+            Self::Void => "marked as one that does not count",
+            Self::Unresolved => "at the time of the event before it, as is what follows",
             Self::NotHeard => "a time of 0 is one that was not heard",
         })
     }

@@ -20,6 +20,17 @@ pub(super) fn words(doubt: &Doubt) -> String {
             "'{column}' is not understood and was left aside, and its numbers fall as those of '{of}' do: which of the two were measured? Choose \
              by --column '{of}' or --column '{column}'"
         ),
+        Doubt::Datum { drop, rebound } => format!(
+            "'{drop}' and '{rebound}' are read at different ends of the ball: take its diameter off those of its top, so that all are of its bottom"
+        ),
+        Doubt::Repeated { column, of } => format!(
+            "'{column}' is '{of}' of the row before, times one factor other than 1, to the last digit: it was not measured. Which of the two has \
+             the right unit? Leave the other out by --header"
+        ),
+        Doubt::Word { column, word } => format!(
+            "the word '{word}' in '{column}' is not understood, and no other column holds what it does: was it measured? Choose it by --column \
+             '{column}'"
+        ),
         Doubt::Units { drop, rebound } => format!(
             "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \
              them wrong?"

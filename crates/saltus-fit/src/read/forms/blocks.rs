@@ -1,0 +1,91 @@
+//! Lists below titles, one for each ball or trial: `Ball A`, `Drop height,100 cm`, `Bounce 1,64
+//! cm`, and the same again for `Ball B`.
+
+use super::super::heading::Heading;
+
+/// A title and the names and values below it.
+struct Block<'a> {
+    line: usize,
+    title: &'a str,
+    names: Vec<String>,
+    values: Vec<&'a str>,
+}
+
+/// What parts a name from its value.
+const MARKS: [char; 5] = ['\t', ';', ',', ':', '='];
+
+/// The text as a table with a row for each of the lists, and tabs between its cells; `None` if it
+/// holds no two lists of the same names. A line stays a line.
+pub(super) fn table(text: &str) -> Option<String> {
+    let (first, blocks) = MARKS.iter().find_map(|mark| parted(text, *mark))?;
+    let of_trials = Heading::parse(blocks[0].title).value().is_some_and(|value| !value.trial.is_empty());
+    let header = format!("{}\t{}", if of_trials { "trial" } else { "ball" }, blocks[0].names.join("\t"));
+    let spelt = |(n, line): (usize, &str)| match blocks.iter().position(|block| block.line == n) {
+        Some(at) => {
+            let row = format!("{}\t{}", blocks[at].title, blocks[at].values.join("\t"));
+            // A lone carriage return ends a row, and no line.
+            if at == 0 { format!("{header}\r{row}") } else { row }
+        }
+        None if n < first => line.replace('\t', " "),
+        None => String::new(),
+    };
+    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// The lists of a text whose names a mark parts from their values, and the line that they begin at;
+/// `None` unless they are all below the first title, and of the same names.
+fn parted(text: &str, mark: char) -> Option<(usize, Vec<Block<'_>>)> {
+    let mut blocks: Vec<Block<'_>> = Vec::new();
+    for (n, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let bare = line.trim().trim_end_matches([mark, ' ']);
+        match bare.split_once(mark) {
+            None if bare.is_empty() => {}
+            None => {
+                blocks.push(Block {
+                    line: n,
+                    title: bare.trim_end_matches(':'),
+                    names: Vec::new(),
+                    values: Vec::new(),
+                });
+            }
+            Some((name, value)) => {
+                let last = blocks.last_mut()?;
+                let one = !value.trim().is_empty() && (mark == ':' || !value.contains(mark));
+                let named = name.contains(char::is_alphabetic) && value.contains(|c: char| c.is_ascii_digit());
+                if !one || !named {
+                    return None;
+                }
+                last.names.push(name.trim().trim_end_matches([':', '=']).trim_end().to_owned());
+                last.values.push(value.trim());
+            }
+        }
+    }
+    // Lines before the first list are its title, and those of the table.
+    let from = blocks.iter().position(|block| !block.names.is_empty())?;
+    let blocks = blocks.split_off(from);
+    let alike = blocks.iter().all(|block| block.names.len() > 1 && block.names == blocks[0].names);
+    (blocks.len() > 1 && alike).then(|| (blocks[0].line, blocks))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::table;
+
+    #[test]
+    fn lists_below_titles_are_rows() {
+        for mark in [",", ": ", ";", "\t"] {
+            let text =
+                "Lab 4\nBall A\nDrop,1 m\nBounce 1,64 cm\n\nBall B\nDrop,1 m\nBounce 1,49 cm\n".replace(',', mark);
+            let expected = "Lab 4\nball\tDrop\tBounce 1\rBall A\t1 m\t64 cm\n\n\n\nBall B\t1 m\t49 cm\n\n\n";
+            assert_eq!(table(&text).as_deref(), Some(expected), "{text}");
+        }
+        for text in [
+            "Ball A\nDrop,1 m\nBounce 1,64 cm\n",
+            "Ball A\nDrop,1 m\nBounce 1,64 cm\nBall B\nDrop,1 m\n",
+            "bounce,height_cm\n0,100\n1,64\n",
+            "Ball\nDrop (cm),Rebound (cm)\n100,64\n80,51\n",
+        ] {
+            assert_eq!(table(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Rows that a table says itself do not count: by a column that judges them, `valid?`, or by a
+//! remark, `discarded`.
+
+use std::collections::HashSet;
+
+use super::columns::{Column, Columns, Kind};
+use super::region::Region;
+use super::said::ROWS;
+use super::vocabulary::{Atom, folded};
+use super::words::split;
+
+/// What a cell answers.
+#[derive(Clone, Copy, PartialEq)]
+enum Answer {
+    Yes,
+    No,
+    /// Nothing stands in it.
+    Empty,
+    Other,
+}
+
+/// Marks that stand for words.
+const MARKS: [(&str, Answer); 10] = [
+    ("✓", Answer::Yes),
+    ("✔", Answer::Yes),
+    ("x", Answer::Yes),
+    ("y", Answer::Yes),
+    ("1", Answer::Yes),
+    ("✗", Answer::No),
+    ("✘", Answer::No),
+    ("n", Answer::No),
+    ("0", Answer::No),
+    ("-", Answer::No),
+];
+
+fn answer(cell: &str) -> Answer {
+    let spelt = folded(cell.trim());
+    if spelt.is_empty() {
+        return Answer::Empty;
+    }
+    if let Some((_, answer)) = MARKS.iter().find(|(mark, _)| *mark == spelt) {
+        return *answer;
+    }
+    match split(cell).first() {
+        Some(word) if word.is(Atom::Nay) || word.is(Atom::Void) => Answer::No,
+        Some(word) if word.is(Atom::Yes) || word.is(Atom::Counts) => Answer::Yes,
+        _ => Answer::Other,
+    }
+}
+
+/// Whether a remark says that its row does not count: `discarded`, `not used`.
+fn voids(cell: &str) -> bool {
+    let words = split(cell);
+    let not = |text: &str| matches!(text, "not" | "don't" | "dont" | "nicht" | "pas" | "non" | "no" | "niet");
+    let denied = |n: usize| words[..n].iter().any(|word| not(&word.text.to_lowercase()));
+    words.iter().enumerate().any(|(n, word)| word.is(Atom::Void) && !denied(n) || word.is(Atom::Counts) && denied(n))
+}
+
+/// Marks of notes below a table.
+const NOTES: [char; 4] = ['*', '†', '‡', '§'];
+
+/// The marks whose note says that what bears them was not measured, or does not count: `*
+/// calculated`.
+fn notes(region: &Region<'_>) -> Vec<char> {
+    let grid = region.view.grid;
+    let says = |mark: char| {
+        let line = |row: usize| (0..grid.width(row)).map(|n| grid.cell(row, n)).collect::<Vec<_>>().join(" ");
+        (0..grid.rows().min(ROWS)).map(line).any(|line| {
+            let note = line.trim().trim_start_matches('(').strip_prefix(mark).unwrap_or_default().to_owned();
+            let turned = [Atom::Predicted, Atom::Derived, Atom::Goal];
+            let words = split(&note);
+            words.len() > 1 && turned.iter().any(|atom| words.iter().any(|word| word.is(*atom))) || voids(&note)
+        })
+    };
+    NOTES.into_iter().filter(|mark| says(*mark)).collect()
+}
+
+/// The rows that do not count.
+pub(super) fn void(region: &Region<'_>, columns: &Columns) -> HashSet<usize> {
+    let mut found = HashSet::new();
+    if region.rows.len() <= ROWS {
+        let marks = notes(region);
+        let marked = |cell: &str| marks.iter().any(|mark| cell.len() > mark.len_utf8() && cell.ends_with(*mark));
+        let number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit());
+        found
+            .extend(region.rows.iter().filter(|&&row| region.view.cells(row).any(|cell| number(cell) && marked(cell))));
+    }
+    for (index, column) in columns.columns.iter().enumerate() {
+        let judges = column.heading.has(Atom::Counts) || column.heading.has(Atom::Void);
+        if judges && matches!(column.kind, Kind::Aside | Kind::Setting) {
+            found.extend(judged(region, index, column));
+        } else if remarks(column) && region.rows.len() <= ROWS {
+            found.extend(region.rows.iter().filter(|&&row| voids(region.cell(row, index))));
+        }
+    }
+    // A table of which no row counts says something else.
+    if region.rows.iter().all(|row| found.contains(row)) { HashSet::new() } else { found }
+}
+
+/// Whether a column holds remarks.
+fn remarks(column: &Column) -> bool {
+    column.kind == Kind::Aside && column.heading.unit.is_none() && !column.heading.turns()
+}
+
+/// The rows that a column says do not count: where it says no, or nothing where it marks others; of
+/// one that names what does not count, where it says so.
+fn judged(region: &Region<'_>, index: usize, column: &Column) -> Vec<usize> {
+    let answers: Vec<(usize, Answer)> = region.rows.iter().map(|&row| (row, answer(region.cell(row, index)))).collect();
+    let any = |of: Answer| answers.iter().any(|(_, answer)| *answer == of);
+    let leaves_out = |answer: Answer| match answer {
+        Answer::No => !column.heading.has(Atom::Void),
+        Answer::Yes => column.heading.has(Atom::Void),
+        // Marks of those that count leave the others out; else what is said is a reason.
+        Answer::Empty => !column.heading.has(Atom::Void) && any(Answer::Yes) && !any(Answer::No) && !any(Answer::Other),
+        Answer::Other => column.heading.has(Atom::Void),
+    };
+    answers.iter().filter(|(_, answer)| leaves_out(*answer)).map(|(row, _)| *row).collect()
+}

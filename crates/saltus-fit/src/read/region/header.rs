@@ -1,0 +1,313 @@
+//! Which lines name the columns of a table, and what they say together.
+
+use std::ops::Range;
+
+use super::super::cell::Cell;
+use super::super::columns::{LEVEL, of_samples};
+use super::super::grid::View;
+use super::super::heading::{Heading, Meaning, What};
+use super::super::units::{Dimension, Unit};
+
+/// A header: its names, the first of its lines, the first row below, and how much of it is
+/// understood.
+pub(super) struct Header {
+    pub(super) names: Vec<String>,
+    pub(super) at: usize,
+    pub(super) below: usize,
+    pub(super) score: usize,
+}
+
+/// What a column of numbers adds to the score of a header; a column of names adds one.
+pub(super) const VALUE: usize = 100;
+/// What a column of ratios of heights, or of energies, adds, which are read where nothing else is.
+pub(super) const SHARE: usize = 50;
+
+/// The headers that may begin in a row: one line, or two.
+pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
+    let mut found = Vec::new();
+    if !names_only(view, row) {
+        if let Some(header) = counted(view, row, end) {
+            found.push(header);
+        }
+        return found;
+    }
+    let line = |n: usize| -> Vec<String> { view.cells(n).map(str::to_owned).collect() };
+    let one = line(row);
+    let below = |n: usize| n < end && names_only(view, n);
+    // Units are no names; and one name alone above several is a title.
+    let names = |n: usize| view.cells(n).filter(|cell| !cell.is_empty()).count();
+    let titled =
+        names(row) == 1 && !one[0].is_empty() && row + 1 < end && names_only(view, row + 1) && names(row + 1) > 1;
+    if of_units(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
+        return found;
+    }
+    let mut push = |names: Vec<String>, next: usize| {
+        let score = score(&names);
+        let counted = measured(view, &names, next) || sampled(view, &names, next..end);
+        let score = if (1..VALUE).contains(&score) && counted { score + VALUE } else { score };
+        let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));
+        // A row of words may stand between, such as of units that are not known, and remarks; a
+        // header without rows is one too.
+        let remarks = (next..end).take_while(|&n| remark(view, n, &names)).count();
+        let rows = next + remarks;
+        if score > 0 && (rows >= end || numbers(rows) || rows + 1 < end && numbers(rows + 1) || events(view, rows)) {
+            found.push(Header { names, at: row, below: next, score });
+        }
+    };
+    push(one.clone(), row + 1);
+    if let Some(names) = (row + 1 < end).then(|| numbered(view, &one, row + 1)).flatten() {
+        push(names, row + 2);
+    }
+    // Units may stand below remarks.
+    let remarks = (row + 1..end).take_while(|&n| remark(view, n, &one)).count();
+    let units = row + 1 + remarks;
+    if remarks > 0
+        && below(units)
+        && of_units(&line(units))
+        && let Some(names) = both(&one, &line(units))
+    {
+        push(names, units + 1);
+    }
+    if below(row + 1)
+        && !events(view, row + 1)
+        && let Some(names) = both(&one, &line(row + 1))
+    {
+        if below(row + 2)
+            && let Some(names) = both(&names, &line(row + 2)).filter(|_| of_units(&line(row + 2)))
+        {
+            push(names, row + 3);
+        }
+        push(names, row + 2);
+    }
+    found
+}
+
+/// Whether a row holds a cell of words and nothing else, where several columns are named: it is no
+/// header of theirs, nor of a table below them.
+pub(super) fn remark(view: View<'_>, row: usize, names: &[String]) -> bool {
+    names.iter().filter(|name| !name.is_empty()).count() > 1
+        && names_only(view, row)
+        && view.cells(row).filter(|cell| !cell.is_empty()).count() == 1
+        && !events(view, row)
+        && !of_units(&view.cells(row).map(str::to_owned).collect::<Vec<_>>())
+}
+
+/// Whether a cell of a row bears a unit, below a name that is understood.
+fn measured(view: View<'_>, names: &[String], row: usize) -> bool {
+    names.iter().enumerate().any(|(n, name)| {
+        let unit = matches!(view.read(row, n), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension != Dimension::Other && !u.unscaled()));
+        unit && Heading::parse(name).understood()
+    })
+}
+
+/// Whether a name of samples stands above numbers of them, in the first rows.
+fn sampled(view: View<'_>, names: &[String], rows: Range<usize>) -> bool {
+    names
+        .iter()
+        .enumerate()
+        .any(|(n, name)| of_samples(&Heading::parse(name), rows.clone().take(2).map(|row| view.cell(row, n))))
+}
+
+/// Whether a row holds the name of an event and nothing else.
+fn events(view: View<'_>, row: usize) -> bool {
+    let alone = (1..view.width(row)).all(|n| view.cell(row, n).is_empty());
+    alone && matches!(view.cell(row, 0).to_lowercase().as_str(), "release" | "drop" | "start" | "contact" | "apex")
+}
+
+/// Whether a row holds words and no number.
+pub(super) fn names_only(view: View<'_>, row: usize) -> bool {
+    let (mut words, mut numbers) = (0, 0);
+    for column in 0..view.width(row) {
+        numbers += usize::from(view.is_number(row, column));
+        words += usize::from(!view.cell(row, column).is_empty());
+    }
+    words > 0 && numbers == 0
+}
+
+/// `Drop height (cm),1,2,3` above rows of numbers: the trials are only counted.
+fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
+    let width = view.width(row);
+    let named = (0..width).take_while(|&c| !view.cell(row, c).is_empty() && !view.is_number(row, c)).count();
+    let count = (named..width).take_while(|&c| view.cell(row, c).parse() == Ok(c + 1 - named)).count();
+    let rest = (named + count..width).all(|c| !view.is_number(row, c));
+    if named == 0 || count < 2 || !rest || row + 1 >= end || !view.is_number(row + 1, 0) {
+        return None;
+    }
+    let first = Heading::parse(view.cell(row, 0));
+    let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
+    let names: Vec<String> = (0..width)
+        .map(|c| match view.cell(row, c) {
+            cell if (named..named + count).contains(&c) => format!("{of} {cell}"),
+            cell => cell.to_owned(),
+        })
+        .collect();
+    let score = score(&names);
+    first.understood().then_some(Header { names, at: row, below: row + 1, score })
+}
+
+/// Whether numbers fall from column to column in every row that has any, each to less than `LEVEL`
+/// of the one before: bounces one after the other, and no repeats.
+fn falling(view: View<'_>, rows: Range<usize>, first: usize, count: usize) -> bool {
+    let number = |row: usize, column: usize| match view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let mut pairs = rows
+        .flat_map(|row| (first + 1..first + count).filter_map(move |c| number(row, c - 1).zip(number(row, c))))
+        .peekable();
+    pairs.peek().is_some() && pairs.all(|(before, after)| after < LEVEL * before)
+}
+
+/// `Rebound (cm)` over `1,2,3`: the columns that a name spans are counted in the line below it.
+fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>> {
+    let width = view.width(row).max(upper.len());
+    let above = |n: usize| upper.get(n).filter(|cell| !cell.is_empty());
+    let (mut spanning, mut count, mut names, mut counted) = (String::new(), 0, Vec::new(), 0);
+    for n in 0..width {
+        if let Some(name) = above(n) {
+            (spanning, count) = (name.clone(), 0);
+        }
+        let cell = view.cell(row, n);
+        if cell.is_empty() {
+            names.push(above(n).cloned().unwrap_or_default());
+            continue;
+        }
+        count += 1;
+        if cell.parse() != Ok(count) || spanning.is_empty() {
+            return None;
+        }
+        counted += usize::from(count > 1);
+        names.push(format!("{spanning} {count}"));
+    }
+    (counted > 0 && view.cell(row, 0).is_empty()).then_some(names)
+}
+
+/// How much of a header is understood.
+fn score(names: &[String]) -> usize {
+    let of = |name: &String| {
+        let heading = Heading::parse(name);
+        match heading.meaning {
+            _ if !heading.unknown.is_empty() => 0,
+            Meaning::Value(_) => VALUE + usize::from(heading.unit.is_some()),
+            // A frame tells a time.
+            Meaning::Frame => VALUE,
+            Meaning::Aside(_) if heading.share.is_some() || heading.energy.is_some() => SHARE,
+            Meaning::Empty | Meaning::Aside(_) => 0,
+            _ => 1,
+        }
+    };
+    names.iter().map(of).sum()
+}
+
+/// The names that two lines give together; `None` where the upper is a title.
+pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
+    let width =
+        upper.iter().rposition(|cell| !cell.is_empty())?.max(lower.iter().rposition(|cell| !cell.is_empty())?) + 1;
+    let cell = |line: &[String], n: usize| line.get(n).cloned().unwrap_or_default();
+    if of_units(lower) {
+        let name = |n: usize| match (cell(upper, n), cell(lower, n)) {
+            (name, unit) if !name.is_empty() && !unit.is_empty() && !UNITLESS.contains(&unit.as_str()) => {
+                format!("{name} ({})", unit.trim_matches(['(', ')', '[', ']']).trim())
+            }
+            (name, _) => name,
+        };
+        // What has a unit has a name.
+        return (0..width)
+            .all(|n| cell(lower, n).is_empty() || !cell(upper, n).is_empty())
+            .then(|| (0..width).map(name).collect());
+    }
+    // A title stands alone, above the first name.
+    let first = |line: &[String]| line.iter().position(|cell| !cell.is_empty());
+    if upper.iter().filter(|cell| !cell.is_empty()).count() == 1 && first(upper) <= first(lower) {
+        return None;
+    }
+    // A merged cell holds its text in the first of the columns that it spans.
+    let mut spanning = String::new();
+    let above: Vec<String> = (0..width)
+        .map(|n| {
+            if !cell(upper, n).is_empty() {
+                spanning = cell(upper, n);
+            } else if cell(lower, n).is_empty() {
+                spanning.clear();
+            }
+            spanning.clone()
+        })
+        .collect();
+    let merged = (0..width).any(|n| cell(upper, n).is_empty() != cell(lower, n).is_empty());
+    let repeated = (0..width).any(|n| !cell(lower, n).is_empty() && (0..n).any(|m| cell(lower, m) == cell(lower, n)));
+    // `Ball,Golf,,Tennis` above names that come again: of each block what stands above it.
+    let above = if repeated { blocks(upper, lower).unwrap_or(above) } else { above };
+    let name = |n: usize| match (above[n].as_str(), cell(lower, n)) {
+        (name, lower) if lower.is_empty() => name.to_owned(),
+        ("", lower) => lower,
+        // `Trial 1` above `Time (s)`, and `Trial 2` above another: runs side by side.
+        (name, lower) if repeated => format!("{name}: {lower}"),
+        (name, lower) => spanned(name, &lower),
+    };
+    merged.then(|| (0..width).map(name).collect())
+}
+
+/// What stands above each column of blocks of the same names: the cells above its block, of which
+/// one that names balls or surfaces at large says nothing; `None` where the names make no blocks.
+fn blocks(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
+    let found = repeated(lower)?;
+    let mut above = vec![String::new(); lower.len().max(upper.len())];
+    for block in found {
+        let cells = upper.get(block.start..block.end.min(upper.len())).unwrap_or_default();
+        let plain = |cell: &&String| matches!(Heading::parse(cell).meaning, Meaning::Setting);
+        let filled: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
+        let says: Vec<&str> = match filled.as_slice() {
+            [first, rest @ ..] if !rest.is_empty() && plain(first) => rest.iter().map(|cell| cell.as_str()).collect(),
+            all => all.iter().map(|cell| cell.as_str()).collect(),
+        };
+        above[block].fill(says.join(" "));
+    }
+    Some(above)
+}
+
+/// The columns of each block, where the same names come again and again.
+pub(in crate::read) fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> {
+    let mut groups: Vec<Range<usize>> = Vec::new();
+    for (n, _) in header.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
+        match groups.last_mut().filter(|group| group.end == n) {
+            Some(group) => group.end += 1,
+            None => groups.push(n..n + 1),
+        }
+    }
+    if let [one] = groups.as_slice() {
+        // Without blank columns between: the first name begins each.
+        let (start, end) = (one.start, one.end);
+        let period = (start + 1..end).find(|&n| header[n] == header[start])? - start;
+        if period < 2 || (end - start) % period != 0 {
+            return None;
+        }
+        groups = (start..end).step_by(period).map(|n| n..n + period).collect();
+    }
+    let first = groups.first()?.clone();
+    let same = groups.iter().all(|group| header[group.clone()] == header[first.clone()]);
+    (groups.len() > 1 && same).then_some(groups)
+}
+
+/// What an upper name adds to a lower: `Rebound (cm)` above `Trial 1`, whose unit is for both.
+fn spanned(name: &str, lower: &str) -> String {
+    let own = Heading::parse(lower);
+    let said = own.value().is_some_and(|v| v.what != What::Unsaid);
+    if said || matches!(own.meaning, Meaning::Aside(_)) && own.unknown.is_empty() {
+        lower.to_owned()
+    } else {
+        format!("{lower}, {name}")
+    }
+}
+
+/// What stands for the unit of a count, in a line of units.
+const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
+
+/// Whether a line holds units and nothing else.
+pub(super) fn of_units(line: &[String]) -> bool {
+    let unit = |cell: &str| Unit::parse(cell.trim_matches(['(', ')', '[', ']'])).is_some();
+    let line = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
+    // In brackets there may be others that are not known.
+    let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
+    let known = line().any(|cell| unit(cell));
+    known && line().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
+}
