@@ -12,9 +12,11 @@ use saltus::{
 
 const GRAVITY: f64 = 9.81;
 
+type Outcome<M, E, S> = Result<Run<M, E, S>, Box<Failed<M, E, S>>>;
+
 /// The times of a run's jumps, or what it failed for; none of its searches is in doubt.
 fn times<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq + fmt::Debug, S: saltus::State>(
-    run: Result<Run<M, E, S>, Box<Failed<M, E, S>>>,
+    run: Outcome<M, E, S>,
 ) -> Result<Vec<f64>, ErrorKind> {
     let run = run.map_err(|failed| failed.error.kind())?;
     assert!(run.trajectory.doubts().is_empty(), "{:?}", run.trajectory.doubts().first());

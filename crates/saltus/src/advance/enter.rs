@@ -68,12 +68,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether the state is at the wall of a mode's `only` edge as it is entered: counts where no
     /// formula gives the edge's fall.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn wall_near(&mut self, only: A::Edge, x: &A::State, now: Time) {
-        if self.memory.spent_as(only).is_some() {
-            return;
+        if self.memory.spent_as(only).is_none() {
+            self.look_at_wall(only, x, now.seconds());
         }
-        let t = now.seconds();
+    }
+
+    #[inline(never)]
+    fn look_at_wall(&mut self, only: A::Edge, x: &A::State, t: f64) {
         self.memory.stats.guards += 1;
         let g = self.guard(only, t, x);
         if g > 0.0 {

@@ -80,10 +80,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 trial.end
             } else {
                 let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
-                let limit = if h < remaining { h } else { h + clock.grace() };
-                // What is shorter than the rounding of time is a line, followed beyond its end.
-                let line = [x, slope.with(|i| h * slope.get(i))];
-                let step = Step { now: clock.now, c: if limit > 2.0 * h { &line } else { dense.as_ref() }, scale: h };
+                let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
                 if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
                     self.memory.stats.steps -= 1;
                     self.memory.stats.rejected += 1;
@@ -93,8 +90,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 if first {
                     self.find_staying(mode, step, &slope);
                 }
+                let limit = if h < remaining { h } else { h + clock.grace() };
                 let range = Range { limit, first, roughly: true };
-                let found = if clear { None } else { self.first_crossing(mode, step, range, Some(&mut *observer))? };
+                let found = if clear {
+                    None
+                } else if limit > 2.0 * h {
+                    self.on_line(mode, (&slope, step), range, observer)?
+                } else {
+                    self.first_crossing(mode, step, range, Some(&mut *observer))?
+                };
                 if first && !self.memory.idle.is_empty() {
                     let reached = found.as_ref().map_or(limit, |found| found.crossing.inside);
                     if let Some(edge) = self.chatters(mode, step, reached) {
@@ -124,6 +128,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.keep_staying(mode, clock.now, &x, h);
             }
         }
+    }
+
+    /// The first crossing on a last step that is shorter than the rounding of time: on a line, which
+    /// goes on beyond its end.
+    #[cold]
+    #[inline(never)]
+    fn on_line<O: Observer<A>>(
+        &mut self,
+        mode: A::Mode,
+        (slope, step): (&A::State, Step<'_, A::State>),
+        range: Range,
+        observer: &mut O,
+    ) -> Result<Option<OnStep<A>>, Error> {
+        let line = [step.c[0], slope.with(|i| step.scale * slope.get(i))];
+        self.first_crossing(mode, Step { c: &line, ..step }, range, Some(observer))
     }
 
     /// The end of the arc at a crossing that the dense output of a `step` shows only roughly:
