@@ -129,7 +129,8 @@ impl<S: State> Contraction<S> {
         } else if hidden {
             self.certified(f64::INFINITY, 1.0 - SMALL)
         } else {
-            self.certified(resolution(elapsed), 1.0)
+            // Too short to resolve: nothing moves.
+            self.certified(resolution(elapsed), 1.0).map(|ahead| Ahead { cycle: 0, ..ahead })
         }
     }
 

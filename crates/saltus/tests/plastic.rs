@@ -99,7 +99,7 @@ impl Floor {
         }
         for k in (0..trajectory.arcs().len()).filter(|&k| trajectory.arcs()[k].mode() == "flight") {
             for piece in trajectory.pieces(k) {
-                // For the rest of the time to a limit the state goes on in a line, as it did before.
+                // For the rest of the time to a limit the state goes on in a line.
                 let [start, middle, end] = [0.0, 0.5, 1.0].map(|part| piece.at(part * piece.span())[0]);
                 let straight = middle == start.midpoint(end);
                 for part in 0..=16 {

@@ -233,8 +233,9 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
         let blank = line[end..].len() - line[end..].trim_start_matches(' ').len();
         let spelt = &line[end + blank..];
         let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
-        // What stands before a sign is a name: `hit 1 t=3885 ms`.
-        let name = spelt[stop..].trim_start().starts_with(['=', ':']);
+        // What stands before a sign is a name, `hit 1 t=3885 ms`, and a unit before an arrow.
+        let sign = spelt[stop..].trim_start();
+        let name = sign.starts_with(['=', ':']) && !ARROWS.iter().any(|arrow| sign.starts_with(arrow));
         let unit = (stop > 0 && !name && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
         if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
             continue;

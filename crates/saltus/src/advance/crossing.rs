@@ -292,12 +292,16 @@ fn less<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
     if size == 0.0 {
         return 0.0;
     }
-    // A guard that is large itself may have no number there.
+    // A guard that is large itself may have no number there, or a constant beside which this is
+    // nothing.
     for exponent in [LARGER, LARGER / 4] {
         let by = power_of_two(exponent - exponent_of(size));
         let far = guard(&x.with(|i| by * x.get(i))) - constant;
-        if far.is_finite() {
+        if far.abs() >= constant.abs() && far.is_finite() {
             return far / by;
+        }
+        if far.is_finite() {
+            break;
         }
     }
     guard(x) - constant

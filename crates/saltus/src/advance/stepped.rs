@@ -130,8 +130,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// The first crossing on a last step that is shorter than the rounding of time: on a line, which
-    /// goes on beyond its end.
+    /// The first crossing on a last step that is shorter than the rounding of time: on a line,
+    /// which goes on beyond its end.
     #[cold]
     #[inline(never)]
     fn on_line<O: Observer<A>>(
