@@ -378,8 +378,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
     }
 
-    /// Jumps have accumulated: the state goes on to their limit, and the model says what lies
-    /// beyond.
+    /// Jumps have accumulated: the state goes on to their limit, or stands for a time too short to
+    /// resolve, and the model says what lies beyond.
     #[cold]
     fn at_limit(
         &mut self,
