@@ -61,7 +61,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     near = (c.len() > LONG).then(|| Near::around(c, scale, s));
                     self.falls_by_powers(edge, step, &near, s, level)
                 }
-                FirstFall::Unclear => match self.falls_by_values(edge, step, range, (start, level), along.as_ref()) {
+                FirstFall::Unclear => match self.falls_by_values(edge, step, limit, (start, level), along.as_ref()) {
                     Ok(searched) => searched,
                     Err(Undefined(s)) => {
                         undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
@@ -127,7 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         edge: A::Edge,
         Step { now, c, scale }: Step<'_, A::State>,
-        Range { limit, roughly, .. }: Range,
+        limit: f64,
         (start, level): (Start, f64),
         along: Option<&Along<'_>>,
     ) -> Result<Searched, Undefined> {
@@ -148,12 +148,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         let mut above = |s: f64| guard(s) - level;
         let searched = match &p {
-            Some((p, margin, bend)) => {
-                first_fall_of_polynomial(p, *margin, *bend, &mut above, (limit, roughly), start)?
-            }
+            Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start)?,
             None => {
                 let tick = resolution(now.seconds().abs() + limit);
-                first_fall_on_arc(&mut above, value, limit, start, bend, (tick, roughly))?
+                first_fall_on_arc(&mut above, value, limit, start, bend, tick)?
             }
         };
         Ok(unlevelled(searched, level, &mut guard))

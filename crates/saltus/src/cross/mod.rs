@@ -118,17 +118,16 @@ pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) ->
 }
 
 /// The same for a guard of this `value` at the start of a stretch of an arc, where times are `tick`
-/// apart; on the dense output of a step it bends by `bend`. A root that is looked for again
-/// elsewhere is found `roughly`.
+/// apart; on the dense output of a step it bends by `bend`.
 pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
     value: f64,
     span: f64,
     start: Start,
     bend: f64,
-    (tick, roughly): (f64, bool),
+    tick: f64,
 ) -> Result<Searched, Undefined> {
-    Search::new(guard, span, bend, tick).at_start(value).roughly(roughly).first_fall(start, None)
+    Search::new(guard, span, bend, tick).at_start(value).first_fall(start, None)
 }
 
 /// The same for a guard on a step that is the polynomial `p(s / span)` to within
@@ -138,7 +137,7 @@ pub(crate) fn first_fall_of_polynomial(
     margin: f64,
     bend: f64,
     guard: &mut dyn FnMut(f64) -> f64,
-    (span, roughly): (f64, bool),
+    span: f64,
     start: Start,
 ) -> Result<Searched, Undefined> {
     if start == Start::Spent {
@@ -146,11 +145,11 @@ pub(crate) fn first_fall_of_polynomial(
         // wall.
         let change = p.less_start();
         let margin = change.rounding();
-        Search::new(guard, span, bend, 0.0).roughly(roughly).first_fall(start, Some((change, margin)))
+        Search::new(guard, span, bend, 0.0).first_fall(start, Some((change, margin)))
     } else if p.shape(margin) == Shape::Above {
         Ok(Searched::solved(None))
     } else {
-        Search::new(guard, span, bend, 0.0).roughly(roughly).first_fall(start, Some((*p, margin)))
+        Search::new(guard, span, bend, 0.0).first_fall(start, Some((*p, margin)))
     }
 }
 

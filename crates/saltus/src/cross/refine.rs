@@ -64,9 +64,6 @@ pub(super) enum Passage {
 /// How often a fall is looked for around its guess.
 const TRIES: usize = 4;
 
-/// κ₁ of the ITP method, in parts of the interval: its authors' choice.
-const TRUNCATION: f64 = 0.2;
-
 impl Search<'_> {
     /// How the guard changes its sign at a crossing between neighbouring times, by so much; what is
     /// no root is noted.
@@ -160,30 +157,26 @@ impl Search<'_> {
     }
 
     /// The fall between an inner and an outer time at which the guard has these values, and by how
-    /// much it changes there, by ITP, which is never slower than bisection by more than one step
-    /// (I. Oliveira, R. Takahashi, ACM TOMS 47 (2021) 5, doi:10.1145/3423597).
-    fn narrowed(
-        &mut self,
-        (mut a, mut above): (f64, f64),
-        (mut b, mut below): (f64, f64),
-    ) -> Result<(Crossing, f64), Undefined> {
-        let mut allowance = 2.0 * (b - a);
-        let truncation = TRUNCATION / (b - a);
+    /// much it changes there. A guess keeps away from both ends by a distance that doubles with
+    /// each guess that has not halved the interval, so that at most twice as many are needed as by
+    /// halves.
+    fn narrowed(&mut self, inner: (f64, f64), outer: (f64, f64)) -> Result<(Crossing, f64), Undefined> {
+        let ((mut a, mut above), (mut b, mut below)) = (inner, outer);
+        let (mut guess, mut distance) = ((b * above - a * below) / (above - below), 1.0);
         while a.next_up() < b && b - a > f64::MIN_POSITIVE {
-            let (middle, width) = (0.5 * (a + b), b - a);
-            let slack = (allowance - 0.5 * width).max(0.0);
-            allowance *= 0.5; // without a floor: a guard that is zero on a stretch is not crept along number by number
-            let secant = (b * above - a * below) / (above - below);
-            let towards = (middle - secant).signum();
-            let shift = truncation * width * width;
-            let guess = if shift <= (middle - secant).abs() { secant + towards * shift } else { middle };
-            let guess = if (guess - middle).abs() <= slack { guess } else { middle - towards * slack };
-            let guess = if guess.is_finite() { guess.clamp(a.next_up(), b.next_down()) } else { middle };
-            let value = self.value(guess)?;
+            let width = b - a;
+            let least = (distance * (b.next_up() - b)).min(0.5 * width);
+            let s = if guess.is_finite() { guess.max(a + least).min(b - least) } else { a + 0.5 * width };
+            let value = self.value(s)?;
             if value >= 0.0 {
-                (a, above) = (guess, value);
+                guess = interpolated((s, value), (b, below), (a, above));
+                (a, above) = (s, value);
             } else {
-                (b, below) = (guess, value);
+                guess = interpolated((s, value), (a, above), (b, below));
+                (b, below) = (s, value);
+            }
+            if b - a > 0.5 * width {
+                distance *= 2.0;
             }
         }
         let rest = |side: f64| (b - a) * (side / (above - below));
@@ -191,4 +184,19 @@ impl Search<'_> {
         let rest = if rest.is_finite() { rest } else { 0.0 };
         Ok((Crossing { inside: a, outside: b, root, rest, leaps: false }, above - below))
     }
+}
+
+/// Where a guard of these values at its latest time, at the other end of the interval and at the
+/// end that the latest has replaced is zero: by inverse quadratic interpolation where that does not
+/// turn between them, else the middle (T. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145,
+/// doi:10.1016/s0965-9978(96)00051-8).
+fn interpolated((x1, f1): (f64, f64), (x2, f2): (f64, f64), (x3, f3): (f64, f64)) -> f64 {
+    let (place, part) = ((x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2));
+    let turnless = part * part < place && (1.0 - part) * (1.0 - part) < 1.0 - place;
+    let along = if turnless {
+        f1 / (f2 - f1) * (f3 / (f2 - f3)) + (x3 - x1) / (x2 - x1) * (f1 / (f3 - f1)) * (f2 / (f3 - f2))
+    } else {
+        0.5
+    };
+    x1 + along * (x2 - x1)
 }

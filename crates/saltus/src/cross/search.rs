@@ -54,8 +54,6 @@ pub(super) struct Search<'a> {
     evidence: Evidence,
     /// Between which times the samples of the whole interval turn up from their least.
     turn: Option<[f64; 2]>,
-    /// Whether a root is looked for again elsewhere, and need not be settled here.
-    pub(super) roughly: bool,
 }
 
 /// On which side of its zero the guard is.
@@ -156,13 +154,7 @@ impl<'a> Search<'a> {
             flat: None,
             evidence: Evidence::Excluded,
             turn: None,
-            roughly: false,
         }
-    }
-
-    /// The same, where a root is looked for again elsewhere.
-    pub(super) fn roughly(self, roughly: bool) -> Self {
-        Self { roughly, ..self }
     }
 
     /// The same, where the guard has this `value` at the start.
@@ -211,7 +203,6 @@ impl<'a> Search<'a> {
                 Part::None(_) => break None,
                 Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
                 Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
-                Part::Fall { near: Some(near), .. } if self.roughly => break Some(Crossing::after(near)),
                 Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
                 Part::Fall { a, b, near: None } => (a, b, None),
                 Part::Falls { a, b, guess } => (a, b, Some(guess)),
