@@ -222,7 +222,11 @@ proptest! {
         let low = (0.1 / GRAVITY).sqrt() * (1.0 + e) / (1.0 - e);
         prop_assume!(low < 0.9 * lands);
         let landed = run.iter().copied().find(|t| (t - lands).abs() < 0.05).unwrap();
-        prop_assert!((landed - lands).abs() < 1e-9 * lands, "{:e} late", landed - lands);
+        // Bounces lower than this are hidden by the rounding of the height. While they last, the
+        // other goes on straight instead of along its parabola.
+        let hidden = 65_536.0 * f64::EPSILON * (floor + above) * ((1.0 + e) / (1.0 - e)).powi(2);
+        let late = (hidden / (GRAVITY * lands)).max(1e-9 * lands);
+        prop_assert!((landed - lands).abs() < late, "{:e} late", landed - lands);
     }
 
     /// Whatever the time at which a span ends, zero too, a crossing at its end is taken, and none
