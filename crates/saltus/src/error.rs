@@ -97,7 +97,7 @@ pub enum ErrorKind {
     /// A clock cannot tick: see [`Clock`](crate::Clock).
     Clock,
     /// A tick whose time may depend on a parameter, where a derivative by it was asked for and that
-    /// of the time is not given: see [`Linearize::tick_over`](crate::Linearize::tick_over).
+    /// of the time is not given: see `Linearize::tick_over`.
     ClockDerivative,
     /// The flow has not as many coordinates as the state.
     Dimension,
