@@ -11,6 +11,9 @@ use saltus::{
 };
 
 const GRAVITY: f64 = 9.81;
+/// Bounces lower than so many roundings of their height are hidden by these: what `FAR` times
+/// `SURELY` of them are.
+const HIDDEN: f64 = 65_536.0;
 
 type Outcome<M, E, S> = Result<Run<M, E, S>, Box<Failed<M, E, S>>>;
 
@@ -222,10 +225,10 @@ proptest! {
         let low = (0.1 / GRAVITY).sqrt() * (1.0 + e) / (1.0 - e);
         prop_assume!(low < 0.9 * lands);
         let landed = run.iter().copied().find(|t| (t - lands).abs() < 0.05).unwrap();
-        // Bounces lower than this are hidden by the rounding of the height. While they last, the
-        // other goes on straight instead of along its parabola.
-        let hidden = 65_536.0 * f64::EPSILON * (floor + above) * ((1.0 + e) / (1.0 - e)).powi(2);
-        let late = (hidden / (GRAVITY * lands)).max(1e-9 * lands);
+        // Dropped from the height that is hidden, a ball comes to rest in so long a time that the
+        // other, going straight, is off its parabola by this.
+        let off = HIDDEN * f64::EPSILON * (floor + above) * ((1.0 + e) / (1.0 - e)).powi(2);
+        let late = (off / (GRAVITY * lands)).max(1e-9 * lands);
         prop_assert!((landed - lands).abs() < late, "{:e} late", landed - lands);
     }
 

@@ -159,7 +159,7 @@ impl Search<'_> {
     /// The fall between an inner and an outer time at which the guard has these values, and by how
     /// much it changes there. A guess keeps away from both ends by a distance that doubles with
     /// each guess that has not halved the interval, so that at most twice as many are needed as by
-    /// halves.
+    /// halves (`at_most_twice_as_many_values_as_by_halves`).
     fn narrowed(&mut self, inner: (f64, f64), outer: (f64, f64)) -> Result<(Crossing, f64), Undefined> {
         let ((mut a, mut above), (mut b, mut below)) = (inner, outer);
         let (mut guess, mut distance) = ((b * above - a * below) / (above - below), 1.0);
@@ -199,4 +199,65 @@ fn interpolated((x1, f1): (f64, f64), (x2, f2): (f64, f64), (x3, f3): (f64, f64)
         0.5
     };
     x1 + along * (x2 - x1)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// How many values of a guard that falls in 0..=1 are taken: narrowed by interpolation, and by
+    /// halves.
+    fn counts(guard: impl Fn(f64) -> f64) -> (u32, u32) {
+        let count = Cell::new(0);
+        let mut counted = |s: f64| {
+            count.set(count.get() + 1);
+            guard(s)
+        };
+        let (found, _) =
+            Search::new(&mut counted, 1.0, 0.0, 0.0).narrowed((0.0, guard(0.0)), (1.0, guard(1.0))).unwrap();
+        assert!(found.inside.next_up() == found.outside);
+        assert!(guard(found.inside) >= 0.0 && guard(found.outside) < 0.0);
+        let by_interpolation = count.replace(0);
+        narrowed(&mut counted, 0.0, 1.0);
+        (by_interpolation, count.get())
+    }
+
+    proptest! {
+        /// Powers flat and steep at the root, what is flatter than any of them, leaps, plateaus of
+        /// zeros, and values of any size with the right signs.
+        #[test]
+        fn at_most_twice_as_many_values_as_by_halves(
+            root in 0.001..0.999_f64,
+            power in -6_i32..=7,
+            shape in 0..6_u32,
+            decades in -12_i32..=12,
+            odd in 1_u64..,
+        ) {
+            let steep = 10.0_f64.powi(decades);
+            let (interpolated, halves) = counts(|s| {
+                let by = root - s;
+                let value = by.signum() * by.abs().powf(2.0_f64.powi(power));
+                match shape {
+                    0 => value,
+                    1 => if by >= 0.0 { steep } else { -1.0 },
+                    2 => if by >= 0.0 { 0.0 } else { value.min(-f64::MIN_POSITIVE) },
+                    3 => if by >= 0.0 { value * steep } else { value.min(-f64::MIN_POSITIVE) },
+                    4 => by.signum() * (-1.0 / by.abs()).exp().max(f64::MIN_POSITIVE),
+                    _ => by.signum() * 10.0_f64.powi((s.to_bits().wrapping_mul(odd | 1) >> 32) as i32 % 13),
+                }
+            });
+            prop_assert!(interpolated <= 2 * halves, "{interpolated} and {halves}");
+        }
+
+        /// A smooth guard that would turn up again a thousandth after its end or later.
+        #[test]
+        fn a_smooth_fall_takes_few_values(root in 0.05..0.95_f64, apart in 0.001..1.0_f64) {
+            let (interpolated, halves) = counts(|s| (root - s) * (1.0 + apart - s) * (s + 1.0));
+            prop_assert!(2 * interpolated < halves, "{interpolated} and {halves}");
+        }
+    }
 }
