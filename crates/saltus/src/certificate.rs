@@ -10,7 +10,6 @@ use crate::inspection::{Doubts, Inspection, InspectionOf};
 use crate::jump::JumpOf;
 use crate::observe::Observer;
 use crate::piece::Piece;
-use crate::time::Time;
 
 /// An observer that keeps, for each edge, how the searches of its guard came out, and every doubt.
 ///
@@ -100,26 +99,25 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Certificate<M, E> {
     pub fn doubts(&self) -> &[Inspection<M, E>] {
         self.doubts.list()
     }
+}
 
+impl<M, E: PartialEq> Certificate<M, E> {
     fn row(&mut self, edge: E) -> &mut Tally {
-        let found = self.rows.iter().position(|row| row.0 == edge);
-        let place = found.unwrap_or_else(|| {
-            if self.rows.len() < MOST_ROWS {
-                self.rows.push((edge, Tally::default()));
-                self.rows.len() - 1
-            } else {
-                MOST_ROWS
-            }
-        });
-        self.rows.get_mut(place).map_or(&mut self.others, |row| &mut row.1)
+        row(&mut self.rows, &mut self.others, edge)
     }
+}
 
-    fn settle(&mut self, end: Time) {
-        while let Some((edge, stands)) = self.doubts.settle_next(end) {
-            let row = self.row(edge);
-            *(if stands { &mut row.doubtful } else { &mut row.isolated }) += 1;
+fn row<'a, E: PartialEq>(rows: &'a mut Vec<(E, Tally)>, others: &'a mut Tally, edge: E) -> &'a mut Tally {
+    let found = rows.iter().position(|row| row.0 == edge);
+    let place = found.unwrap_or_else(|| {
+        if rows.len() < MOST_ROWS {
+            rows.push((edge, Tally::default()));
+            rows.len() - 1
+        } else {
+            MOST_ROWS
         }
-    }
+    });
+    rows.get_mut(place).map_or(others, |row| &mut row.1)
 }
 
 impl<M: Copy + PartialEq, E: Copy + PartialEq> Default for Certificate<M, E> {
@@ -130,12 +128,17 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Default for Certificate<M, E> {
 
 impl<A: Automaton> Observer<A> for Certificate<A::Mode, A::Edge> {
     fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
-        self.settle(piece.start().after(piece.span()));
+        let Self { rows, others, doubts } = self;
+        doubts.settle(piece.start().after(piece.span()), |edge| row(rows, others, edge).doubtful += 1);
         ControlFlow::Continue(())
     }
 
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        self.settle(jump.time);
+        let Self { rows, others, doubts } = self;
+        doubts.end_arc(jump.time, jump.edge(), |edge, stands| {
+            let row = row(rows, others, edge);
+            *(if stands { &mut row.doubtful } else { &mut row.isolated }) += 1;
+        });
         if let Some(edge) = jump.edge() {
             self.row(edge).taken += 1;
         }

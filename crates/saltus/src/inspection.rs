@@ -56,9 +56,15 @@ impl<M: Copy, E: Copy> Inspection<M, E> {
 
     /// The same doubt up to `end`; `None` if it lies after that.
     pub(crate) fn until(self, end: Time) -> Option<Self> {
+        let (from, _) = when(self.evidence)?;
+        (from < end.since(self.start)).then(|| self.up_to(end))
+    }
+
+    /// The same doubt cut at `end`, where it begins at the latest.
+    fn up_to(self, end: Time) -> Self {
         let span = self.span.min(end.since(self.start));
-        let (from, to) = when(self.evidence)?;
-        (from < span).then(|| Self { span, evidence: between(self.evidence, from, to.min(span)), ..self })
+        let cut = |(from, to): (f64, f64)| between(self.evidence, from.min(span), to.min(span));
+        Self { span, evidence: when(self.evidence).map_or(self.evidence, cut), ..self }
     }
 
     /// Takes in a later doubt of the same kind that follows without a gap; says whether it did.
@@ -157,6 +163,9 @@ pub(crate) struct Doubts<M, E> {
     settled: usize,
 }
 
+/// So many doubts back an edge has its last one: as many as a step is likely to raise.
+const LATELY: usize = 16;
+
 impl<M, E> Doubts<M, E> {
     pub(crate) fn list(&self) -> &[Inspection<M, E>] {
         &self.list
@@ -172,43 +181,62 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Doubts<M, E> {
         self.list.push(*inspection);
     }
 
-    /// The step in progress ends here, and what lies after it was not gone through.
+    /// The step in progress ends here: what is doubted after it was not gone through, unless the
+    /// edge is taken. Each that stands is `noted`.
     #[inline]
-    pub(crate) fn settle(&mut self, end: Time) {
+    pub(crate) fn settle(&mut self, end: Time, noted: impl FnMut(E)) {
         if self.settled < self.list.len() {
-            self.settle_all(end);
+            self.settle_all(end, noted);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn settle_all(&mut self, end: Time) {
-        while self.settle_next(end).is_some() {}
-    }
-
-    /// Settles one doubt, of the edge returned; says whether it stands.
-    #[inline]
-    pub(crate) fn settle_next(&mut self, end: Time) -> Option<(E, bool)> {
-        let doubt = *self.list.get(self.settled)?;
-        let edge = doubt.edge;
-        match doubt.until(end) {
-            None => {
-                self.list.remove(self.settled);
-                Some((edge, false))
-            }
-            Some(doubt) => {
-                // The last of this edge, among as many as a step is likely to raise.
-                let (stand, _) = self.list.split_at_mut(self.settled);
-                let last = stand.iter_mut().rev().take(16).find(|last| last.edge == edge && last.mode == doubt.mode);
-                if last.is_some_and(|last| last.extended_by(&doubt)) {
-                    self.list.remove(self.settled);
-                } else {
-                    self.list[self.settled] = doubt;
-                    self.settled += 1;
+    fn settle_all(&mut self, end: Time, mut noted: impl FnMut(E)) {
+        let mut next = self.settled;
+        while let Some(doubt) = self.list.get(next) {
+            match doubt.until(end) {
+                Some(doubt) => {
+                    self.list.remove(next);
+                    noted(doubt.edge);
+                    next += usize::from(self.stands(doubt));
                 }
-                Some((edge, true))
+                None => next += 1,
             }
         }
+    }
+
+    /// An arc ended at this time, by the edge `taken` if one was. Its search ended where its guard
+    /// falls: what is doubted of it stands, but for a leap, which lies where it is.
+    #[inline]
+    pub(crate) fn end_arc(&mut self, time: Time, taken: Option<E>, noted: impl FnMut(E, bool)) {
+        if self.settled < self.list.len() {
+            self.end_doubted(time, taken, noted);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn end_doubted(&mut self, time: Time, taken: Option<E>, mut noted: impl FnMut(E, bool)) {
+        for doubt in self.list.split_off(self.settled) {
+            let leaps = doubt.evidence.doubt() == Some(Doubt::Discontinuous);
+            let of_taken = || (taken == Some(doubt.edge) && !leaps).then(|| doubt.up_to(time));
+            let stands = doubt.until(time).or_else(of_taken);
+            noted(doubt.edge, stands.is_some());
+            stands.map(|doubt| self.stands(doubt));
+        }
+    }
+
+    /// Puts a doubt to those that stand, or to the last of this edge; says whether the list grew.
+    fn stands(&mut self, doubt: Inspection<M, E>) -> bool {
+        let alike = |last: &&mut Inspection<M, E>| last.edge == doubt.edge && last.mode == doubt.mode;
+        let last = self.list.iter_mut().take(self.settled).rev().take(LATELY).find(alike);
+        if last.is_some_and(|last| last.extended_by(&doubt)) {
+            return false;
+        }
+        self.list.insert(self.settled, doubt);
+        self.settled += 1;
+        true
     }
 }
 

@@ -161,7 +161,7 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
         let len = piece.coefficients().len();
         self.pieces.push(Stored { start, span, scale, first, len });
         self.end = start.after(span);
-        self.doubts.settle(self.end);
+        self.doubts.settle(self.end, |_| ());
         size_of::<Stored>() + size_of_val(piece.coefficients())
     }
 
@@ -171,8 +171,8 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
         self.end = jump.time;
         let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
         self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
+        self.doubts.end_arc(start, jump.edge(), |_, _| ());
         self.jumps.push(jump);
-        self.doubts.settle(jump.time);
         size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>()
     }
 
@@ -183,7 +183,7 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
     /// The run ended at this moment, which the end of its last piece may miss by a rounding.
     pub fn finish(&mut self, end: Time) {
         self.end = end;
-        self.doubts.settle(end);
+        self.doubts.end_arc(end, None, |_, _| ());
     }
 
     /// How much memory what is recorded takes.
@@ -197,7 +197,7 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
 
     /// The run got no further than this.
     pub(crate) fn settle(&mut self, end: Time) {
-        self.doubts.settle(end);
+        self.doubts.end_arc(end, None, |_, _| ());
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::{Vector2, vector};
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Dop853, Entry, Filippov, Hybrid, Rodas5P, Side, Sides, Simulation, Tsit5};
@@ -45,12 +46,50 @@ fn falls(
         _ => simulation.stepper(Rodas5P).drive("swing", x, span, &mut certificate),
     };
     let doubts = certificate.doubts();
-    assert!(doubts.iter().all(|doubt| doubt.evidence.doubt() == Some(Doubt::Grazing)), "{doubts:?}");
+    // Which of the others it is, rounding decides.
+    let far = |doubt: Doubt| matches!(doubt, Doubt::Unresolved | Doubt::Missed);
+    assert!(!doubts.iter().any(|doubt| doubt.evidence.doubt().is_some_and(far)), "{doubts:?}");
     (end.unwrap().jumps, doubts.len())
+}
+
+/// How often an edge is taken that changes nothing but a count, and whose guard falls once, at
+/// `fall`, with a `slope` that may be below what the steps are off by; and whether that is certain.
+fn slow_falls(method: usize, tolerance: f64, slope: f64, (rate, fall): (f64, f64)) -> (f64, bool) {
+    let wave = Hybrid::new()
+        .mode("run", move |t, _: &Vector2<f64>| vector![rate * (rate * t).cos(), 0.0])
+        .edge("run", "run", move |t, x| slope * (fall - t) + (x[0] - (rate * t).sin()), |_t, x| x + Vector2::y())
+        .entry(Entry::Wait);
+    let simulation = Simulation::of(&wave).tolerance(tolerance).most_jumps(300);
+    let (start, span) = (Vector2::zeros(), 0.0..10.0);
+    let run = match method {
+        0 => simulation.run("run", start, span),
+        1 => simulation.stepper(Tsit5).run("run", start, span),
+        _ => simulation.stepper(Dop853).run("run", start, span),
+    }
+    .unwrap();
+    // What the tolerance allows in x, |x| ≤ 1, after so many steps.
+    let allowed = 4.0 * run.end.stats.steps as f64 * 2.0 * tolerance;
+    let missed = run.end.jumps == 0 && slope * (10.0 - fall) <= allowed;
+    (run.end.state[1], run.trajectory.doubts().is_empty() && !missed)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// A fall that is slower than the error of the steps, or than rounding shows, is taken once, or
+    /// in doubt.
+    #[test]
+    fn a_fall_slower_than_its_error_is_taken_once_or_doubted(
+        method in 0..3_usize,
+        digits in 3.0..14.0_f64,
+        share in -1.0..9.0_f64,
+        rate in 0.5..10.0_f64,
+        fall in 0.7..9.0_f64,
+    ) {
+        let tolerance = 10.0_f64.powf(-digits);
+        let (count, certain) = slow_falls(method, tolerance, tolerance * 10.0_f64.powf(share), (rate, fall));
+        prop_assert!(count == 1.0 || !certain, "{count}");
+    }
 
     /// What the error of the steps decides is doubted, and nothing else is.
     #[test]
@@ -115,6 +154,7 @@ proptest! {
         };
         let run = run.unwrap();
         prop_assert!(run.trajectory.jumps().len() > 6);
-        prop_assert!(run.trajectory.doubts().is_empty(), "{:?}", run.trajectory.doubts());
+        let left = |t| run.trajectory.jumps().iter().any(|jump| jump.from == Side::Sliding && jump.time == t);
+        prop_assert!(!run.trajectory.doubts().iter().any(|doubt| left(doubt.start)), "{:?}", run.trajectory.doubts());
     }
 }

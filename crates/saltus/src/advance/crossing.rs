@@ -4,8 +4,7 @@ use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
 use crate::certainty::{FAR, FEW, ROUGHLY, SURELY, TINY};
 use crate::cross::{
-    AT_START, Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc,
-    settle,
+    Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
 };
 use crate::error::Error;
 use crate::inspection::Inspection;
@@ -43,8 +42,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if !self.memory.walls.is_empty()
                 && let Some(wall) = self.memory.wall(edge).filter(|wall| wall.stays || wall.falls)
             {
-                let at_start = wall.falls.then(|| Crossing::at_start(limit * AT_START));
-                if let Some(crossing) = at_start.or_else(|| self.leaves(mode, edge, step, limit)) {
+                let wall = *wall;
+                if let Some(crossing) = self.leaves(mode, wall, step, (limit, start)) {
+                    if let Some(observer) = &mut observer
+                        && let Some(evidence) = self.sank(edge, step, crossing.root)
+                    {
+                        observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+                    }
                     keep_earlier(&mut found, OnStep { edge, crossing, near: None, slope: None });
                 }
                 continue;
@@ -76,13 +80,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             if let Some(observer) = &mut observer {
                 let grazing = if let Some(crossing) = fall {
-                    self.dips(edge, step, crossing.root, derivatives)
-                        .or_else(|| self.unresolved(edge, step, crossing.root))
+                    self.grazes(edge, (step, range), crossing.root, derivatives)
                 } else {
                     let by_powers = || along.as_ref()?.powers.turns().map(|turn| turn.map(|u| u * limit));
                     turn.or_else(by_powers).and_then(|turn| {
                         let leaves = first && (start == Start::Spent || self.memory.wall(edge).is_some());
-                        self.missed(edge, step, turn, leaves)
+                        self.missed(edge, (step, range), turn, leaves)
                     })
                 };
                 evidence = grazing.map_or(evidence, |grazing| evidence.and(grazing));

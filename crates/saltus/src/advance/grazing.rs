@@ -4,10 +4,11 @@
 use crate::automaton::Automaton;
 use crate::certainty::{ROUGHLY, ROUNDINGS, SMALL, SURELY};
 use crate::cross::{Doubt, Evidence};
+use crate::state::State;
 use crate::step::Stepper;
 
 use super::Advance;
-use super::crossing::Step;
+use super::crossing::{Range, Step};
 
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
 /// below what the tolerance allows off by the square of 0.618⁴⁰.
@@ -22,7 +23,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn missed(
         &mut self,
         edge: A::Edge,
-        step: Step<'_, A::State>,
+        (step, range): (Step<'_, A::State>, Range),
         turn: [f64; 2],
         leaves: bool,
     ) -> Option<Evidence> {
@@ -32,26 +33,41 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !(least >= 0.0 && least <= ROUGHLY * rise) {
             return None;
         }
-        let room = self.error_of(edge, step, s, least) - least;
+        let room = self.error_of(edge, (step, range), s, least) - least;
         // As far to both sides as a parabola through the least value and an end stays within it.
         let half = |end: usize| (turn[end] - s).abs() * (room / (ends[end] - least)).sqrt().min(1.0);
         let (from, to) = (s - half(0), s + half(1));
         (room >= 0.0 && !(leaves && from <= 0.0)).then(|| Evidence::doubtful(Doubt::Grazing, from, to))
     }
 
-    /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
-    /// and when. Its first two derivatives there are given where its powers are.
+    /// Of a guard that falls at `root`: whether the error of the step decides that. Its first two
+    /// derivatives there are given where its powers are.
     #[inline]
-    pub(super) fn dips(
+    pub(super) fn grazes(
         &mut self,
         edge: A::Edge,
-        step: Step<'_, A::State>,
+        (step, range): (Step<'_, A::State>, Range),
+        root: f64,
+        derivatives: Option<[f64; 2]>,
+    ) -> Option<Evidence> {
+        self.dips(edge, (step, range), root, derivatives)
+            .or_else(|| self.unresolved(edge, step, root))
+            .or_else(|| self.hovers(edge, (step, range), root))
+    }
+
+    /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
+    /// and when.
+    #[inline]
+    fn dips(
+        &mut self,
+        edge: A::Edge,
+        (step, range): (Step<'_, A::State>, Range),
         root: f64,
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
         let [slope, bend] = derivatives.or_else(|| self.derivatives(edge, step, root))?;
         let soon = bend > 0.0 && -slope < bend * (ROUGHLY * step.scale);
-        soon.then(|| self.shallow(edge, step, root, (-slope / bend, bend)))?
+        soon.then(|| self.shallow(edge, (step, range), root, (-slope / bend, bend)))?
     }
 
     /// The first two derivatives of a guard at its `root`, by differences, unless that is at the
@@ -72,7 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn shallow(
         &mut self,
         edge: A::Edge,
-        step: Step<'_, A::State>,
+        (step, range): (Step<'_, A::State>, Range),
         root: f64,
         (turn, bend): (f64, f64),
     ) -> Option<Evidence> {
@@ -80,7 +96,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return None;
         }
         let depth = 0.5 * bend * turn * turn;
-        let close = depth <= self.error_of(edge, step, root, 0.0);
+        let close = depth <= self.error_of(edge, (step, range), root, 0.0);
         close.then(|| Evidence::doubtful(Doubt::Grazing, (root - turn.abs()).max(0.0), root + 2.0 * turn.abs()))
     }
 
@@ -88,7 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// absolute tolerance leaves open, nor any other on a step of this run before: all that moves
     /// is of a size that this tolerance does not resolve.
     #[inline]
-    pub(super) fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+    fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         if self.memory.resolved { None } else { self.resolve(edge, step, root) }
     }
 
@@ -103,6 +119,47 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 
+    /// Whether the error of the step decides that a guard falls at `root`: on an arc that goes on
+    /// as before its jump, which gave the guard no cause to fall again, or at the edge's wall, on
+    /// which it may have stayed.
+    #[inline]
+    pub(super) fn hovers(
+        &mut self,
+        edge: A::Edge,
+        (step, range): (Step<'_, A::State>, Range),
+        root: f64,
+    ) -> Option<Evidence> {
+        let may = self.memory.goes_on || !self.memory.walls.is_empty();
+        if may { self.hovering(edge, (step, range), root) } else { None }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hovering(&mut self, edge: A::Edge, (step, range): (Step<'_, A::State>, Range), root: f64) -> Option<Evidence> {
+        let goes_on = self.memory.goes_on;
+        if !goes_on && self.memory.wall(edge).is_none() {
+            return None;
+        }
+        let [middle, after] = [0.5 * root, root + ROUGHLY * range.limit];
+        let mut within = |s: f64| {
+            let g = self.on(edge, step, s);
+            let rounding = ROUNDINGS * self.still(edge, step.time(s), &step.at(s), g);
+            g.abs() <= rounding + self.error_of(edge, (step, range), s, g)
+        };
+        // From the jump on, or for a good part of a step.
+        let close = within(0.0) && within(middle) && (range.first && goes_on || within(after));
+        close.then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
+    }
+
+    /// Whether the guard of an edge that stays where its own jump has left it, and falls at `root`,
+    /// has sunk beyond rounding up to there: it may have gone on falling from that jump.
+    pub(super) fn sank(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
+        self.memory.spent_as(edge)?;
+        let g = self.on(edge, step, root);
+        let sunk = g < -self.still(edge, step.time(root), &step.at(root), g);
+        sunk.then(|| Evidence::doubtful(Doubt::Grazing, 0.0, root))
+    }
+
     /// The guard of `edge` a time `s` after the start of a step.
     #[inline(never)]
     pub(super) fn on(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
@@ -110,10 +167,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.guard(edge, step.time(s), &step.at(s))
     }
 
-    /// By how much a step may be off in the guard of `edge`, which is `g`, a time `s` after its
-    /// start.
-    fn error_of(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64, g: f64) -> f64 {
-        self.step_error(edge, step.time(s), &step.at(s), g)
+    /// By how much a step, searched over a `range`, may be off in the guard of `edge`, which is `g`
+    /// a time `s` after its start: Σ |∂g/∂xᵢ| so many times what the tolerance allows.
+    ///
+    /// The error estimate is that of a step's end, to the order below the method's own; within the
+    /// step and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
+    fn error_of(&mut self, edge: A::Edge, (step, range): (Step<'_, A::State>, Range), s: f64, g: f64) -> f64 {
+        let (tolerance, start, end) = (self.options.tolerance, step.c[0], step.at(range.limit));
+        let allowed = |i| tolerance.allowed(start.get(i), end.get(i));
+        ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, allowed)
     }
 
     /// Where a guard that turns up between two times is least, and its value there.
@@ -135,4 +197,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         (a.midpoint(b), values[0].min(values[1]))
     }
+}
+
+/// Whether two states, or two slopes, agree in each coordinate.
+#[inline]
+pub(super) fn is_alike<S: State>(x: &S, y: &S) -> bool {
+    let agree = |a: f64, b: f64| (a - b).abs() <= ROUGHLY * a.abs().max(b.abs());
+    x.len() == y.len() && (0..x.len()).all(|i| agree(x.get(i), y.get(i)))
 }

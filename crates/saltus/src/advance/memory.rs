@@ -85,6 +85,13 @@ pub(crate) struct Memory<E, S> {
     /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
     /// step.
     pub(super) resolved: bool,
+    /// x' where a real step has ended near a crossing.
+    pub(super) arrived: Option<S>,
+    /// x⁻ of the last crossing on a step, and x' there.
+    pub(super) before: Option<(S, S)>,
+    /// Whether this arc goes on with the slope with which the last one ended, or from its state in
+    /// a mode that has the edge just taken.
+    pub(super) goes_on: bool,
     /// Edges that were taken in the last stop because their guards switch there.
     pub(super) switched: Switched<E>,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from
@@ -115,6 +122,9 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             arcs: 0,
             steps_before: 0,
             resolved: false,
+            arrived: None,
+            before: None,
+            goes_on: false,
             switched: Switched::none(),
             spurious: false,
         }

@@ -3,7 +3,7 @@
 
 use crate::automaton::Automaton;
 use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, TINY};
-use crate::cross::{AT_START, Crossing};
+use crate::cross::{AT_START, Crossing, Start};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
@@ -83,16 +83,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let tolerance = self.options.tolerance;
         rounding + FEW * steps * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
-    }
-
-    /// How far the error of a step may move the guard: Σ |∂g/∂xᵢ| so many times what the tolerance
-    /// allows.
-    ///
-    /// The error estimate is that of a step's end, to the order below the method's own; within the
-    /// step and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
-    pub(super) fn step_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        let tolerance = self.options.tolerance;
-        ROUNDINGS * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
     /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all
@@ -300,23 +290,28 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         lasts(ahead) && lasts([rate, self.guard_rate(mode, edge, t, x, 0.5 * by)])
     }
 
-    /// Where on a step `c` from `now` an edge that stays is left after all: where the flow begins
-    /// to carry its guard down, if it does so at the end of the search, after `limit`.
+    /// Where on a step an edge leaves its wall, on which it stays or from which it falls: where the
+    /// flow begins to carry its guard down, if it does so at the end of the search, after `limit`.
+    /// From a spent root at the start of an arc it goes on falling.
     #[cold]
     pub(super) fn leaves(
         &mut self,
         mode: A::Mode,
-        edge: A::Edge,
+        Wall { edge, falls, .. }: Wall<A::Edge>,
         step: Step<'_, A::State>,
-        limit: f64,
+        (limit, start): (f64, Start),
     ) -> Option<Crossing> {
+        let at_start = Crossing::at_start(limit * AT_START);
+        if falls {
+            return Some(at_start);
+        }
         let mut carried = |s: f64| self.carried(mode, edge, step.time(s), &step.at(s), step.scale);
         if carried(limit) != Carried::Down {
             return None;
         }
         let (mut on, mut off) = (0.0, limit);
         if carried(on) == Carried::Down {
-            return Some(Crossing::at_start(limit * AT_START));
+            return (start == Start::Open).then_some(at_start);
         }
         while off - on > resolution(step.time(off)).max(off.next_up() - off) {
             let middle = on.midpoint(off);
@@ -325,20 +320,25 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Some(Crossing::after(on))
     }
 
-    /// After a step without a crossing to `x`: which edges stay, whose guards the flow carries
-    /// neither up nor down.
+    /// After a step without a crossing to `x`: which edges stay, whose guards are zero to within
+    /// the tolerance and are carried neither up nor down. One that is farther below has fallen by
+    /// less than rounding showed: it is taken now, unless it falls on from a spent root.
     #[cold]
     pub(super) fn keep_staying(&mut self, mode: A::Mode, now: Time, x: &A::State, h: f64) {
         let t = now.seconds();
         self.sift(
             |memory| &mut memory.walls,
-            |this, Wall { edge, level, stays, .. }| {
-                *stays = *stays && this.carried(mode, *edge, t, x, h) == Carried::Along;
-                if *stays {
-                    this.memory.stats.guards += 1;
-                    *level = this.guard(*edge, t, x);
+            |this, wall| {
+                let edge = wall.edge;
+                if !wall.stays || this.carried(mode, edge, t, x, h) != Carried::Along {
+                    return false;
                 }
-                *stays
+                this.memory.stats.guards += 1;
+                let g = this.guard(edge, t, x);
+                let allowed = this.within_tolerance(edge, t, x, g);
+                wall.stays = g.abs() <= allowed;
+                wall.falls = g < -allowed && this.memory.spent_as(edge).is_none();
+                wall.stays || wall.falls
             },
         );
     }

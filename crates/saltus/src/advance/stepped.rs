@@ -13,11 +13,13 @@ use crate::error::{Error, ErrorKind, Place, not_finite};
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{Piece, horner};
+use crate::poly::value_and_slope;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
 use crate::time::{LAST, Span, Time, resolution};
 
 use super::crossing::{OnStep, Range, Step, exceeds};
+use super::grazing::is_alike;
 use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
 
@@ -48,6 +50,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<ArcEnd<A>, Error> {
         self.stepper = self.stepper.adapted(self.memory.gait.stiff);
         let mut slope = self.slope(mode, clock.now, &x)?;
+        let before = self.memory.before.take();
+        self.memory.goes_on = before.is_some_and(|(y, fell)| {
+            let again = || self.memory.last.is_some_and(|edge| self.has(mode, edge));
+            is_alike(&fell, &slope) || is_alike(&y, &x) && again()
+        });
         if !slope.is_finite() {
             let which = Some(not_finite(&slope));
             return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &x, which));
@@ -185,6 +192,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> ArcEnd<A> {
         self.memory.slope = c.get(1).map(|c| c.with(|i| c.get(i) / scale));
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
+        let slope = self.memory.arrived.take();
+        self.memory.before = Some((close.state, slope.unwrap_or_else(|| slope_of(c, scale, found.crossing.root))));
         let told = if close.span > 0.0 {
             observer.piece(mode, &Piece::new(now, close.span, scale, c))
         } else {
@@ -424,6 +433,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             // A correction this small leaves its square of what the dense output errs by within.
             if shift.abs() <= SMALL * h {
                 let ahead = (h + 2.0 * shift.abs() + ROUNDINGS * f64::EPSILON * h).min(limit);
+                self.memory.arrived = Some(trial.slope);
                 return Some(Closer { dense, h, ahead });
             }
             h = (h + shift).min(limit);
@@ -445,6 +455,13 @@ struct Closer<D> {
     dense: D,
     h: f64,
     ahead: f64,
+}
+
+/// x' a time `s` after the start of a dense output.
+#[cold]
+#[inline(never)]
+fn slope_of<S: State>(c: &[S], scale: f64, s: f64) -> S {
+    c[0].with(|i| value_and_slope(c, |c| c.get(i), s / scale).1 / scale)
 }
 
 /// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
