@@ -1,0 +1,260 @@
+//! `saltus.fit`: a table in, a report out.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use saltus_bounce::units::Quantity;
+use saltus_fit::{Ball, CorModel, Fit, Loss, ReadOptions, Table};
+use saltus_plot::fit as pictures;
+
+use crate::fail;
+
+/// A number in SI units, or text with a unit.
+#[derive(FromPyObject)]
+enum Amount {
+    Number(f64),
+    Text(String),
+}
+
+impl Amount {
+    fn of(&self, quantity: Quantity) -> PyResult<f64> {
+        match self {
+            Self::Number(value) => Ok(*value),
+            Self::Text(text) => quantity.parse(text).map_err(fail::value),
+        }
+    }
+}
+
+/// What may be stated of the table and of the fit; all in SI units.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Options {
+    #[pyo3(default)]
+    height_unit: Option<String>,
+    #[pyo3(default)]
+    time_unit: Option<String>,
+    #[pyo3(default)]
+    column: Option<String>,
+    #[pyo3(default)]
+    sheet: Option<String>,
+    #[pyo3(default)]
+    header: Option<Vec<String>>,
+    #[pyo3(default)]
+    fps: Option<f64>,
+    #[pyo3(default)]
+    scale: Option<Amount>,
+    #[pyo3(default)]
+    drop: Option<Amount>,
+    #[pyo3(default)]
+    zero: Option<f64>,
+    #[pyo3(default)]
+    y_down: Option<bool>,
+    #[pyo3(default)]
+    group: Option<Vec<String>>,
+    #[pyo3(default)]
+    filter: Option<Vec<(String, String)>>,
+    #[pyo3(default)]
+    sigma_height: Option<Amount>,
+    #[pyo3(default)]
+    sigma_time: Option<Amount>,
+    #[pyo3(default)]
+    sigma_zero: Option<Amount>,
+    #[pyo3(default)]
+    sigma_scale: Option<f64>,
+    #[pyo3(default)]
+    gravity: Option<Amount>,
+    #[pyo3(default)]
+    drag: Option<f64>,
+    #[pyo3(default)]
+    ball: Option<Amount>,
+    #[pyo3(default)]
+    model: Option<String>,
+    #[pyo3(default)]
+    losses: Option<Vec<String>>,
+    #[pyo3(default)]
+    repair: Option<bool>,
+    #[pyo3(default)]
+    profiles: Option<bool>,
+    #[pyo3(default)]
+    tolerance_height: Option<Amount>,
+    #[pyo3(default)]
+    tolerance_time: Option<Amount>,
+    #[pyo3(default)]
+    bootstrap: Option<usize>,
+    #[pyo3(default)]
+    seed: Option<u64>,
+    /// Always there: a dict of nothing at all is no set of options.
+    want: Option<f64>,
+}
+
+/// One of a list of things that have names.
+fn named<T: Copy>(wanted: &str, what: &str, all: &[T], name: impl Fn(T) -> &'static str) -> PyResult<T> {
+    all.iter().copied().find(|one| name(*one) == wanted).ok_or_else(|| {
+        let known: Vec<_> = all.iter().map(|one| name(*one)).collect();
+        fail::value(format!("'{wanted}' is no {what}: use one of {}", known.join(", ")))
+    })
+}
+
+impl Options {
+    fn read(&self) -> PyResult<ReadOptions> {
+        let mut options = ReadOptions::default();
+        for (unit, quantity) in [(&self.height_unit, Quantity::Length), (&self.time_unit, Quantity::Time)] {
+            let Some(unit) = unit else { continue };
+            let pixels = quantity == Quantity::Length && unit == "px";
+            if !pixels && quantity.scale(unit).is_none() {
+                let known: Vec<_> = quantity.units().iter().map(|&(name, _)| name).collect();
+                return Err(fail::value(format!(
+                    "'{unit}' is not a unit of {quantity}: use one of {}",
+                    known.join(", ")
+                )));
+            }
+            let length = quantity == Quantity::Length;
+            options = if length { options.height_unit(unit) } else { options.time_unit(unit) };
+        }
+        let with = |options: ReadOptions, text: &Option<String>, set: fn(ReadOptions, &str) -> ReadOptions| match text {
+            Some(text) => set(options, text),
+            None => options,
+        };
+        options = with(options, &self.column, |options, name| options.column(name));
+        options = with(options, &self.sheet, |options, name| options.sheet(name));
+        if let Some(header) = &self.header {
+            options = options.header(&header.iter().map(String::as_str).collect::<Vec<_>>());
+        }
+        if let Some(fps) = self.fps {
+            options = options.fps(fps);
+        }
+        if let Some(scale) = &self.scale {
+            options = options.scale(scale.of(Quantity::Length)?);
+        }
+        if let Some(drop) = &self.drop {
+            options = options.drop_height(drop.of(Quantity::Length)?);
+        }
+        if let Some(zero) = self.zero {
+            options = options.zero(zero);
+        }
+        if let Some(down) = self.y_down {
+            options = options.y_down(down);
+        }
+        for column in self.group.iter().flatten() {
+            options = options.group(column);
+        }
+        for (column, value) in self.filter.iter().flatten() {
+            options = options.filter(column, value);
+        }
+        Ok(options)
+    }
+
+    fn fit(&self) -> PyResult<Fit> {
+        let losses = self.losses.iter().flatten().map(|name| named(name, "loss", &Loss::ALL, Loss::name));
+        let losses = losses.collect::<PyResult<Vec<_>>>()?;
+        let mut fit = Fit::new().losses(&losses).repair(self.repair.unwrap_or(true));
+        fit = fit.profiles(self.profiles.unwrap_or(false));
+        if let Some(model) = &self.model {
+            fit = fit.model(named(model, "model of the COR", &CorModel::ALL, CorModel::name)?);
+        }
+        fit = match &self.ball {
+            None => fit,
+            Some(Amount::Text(text)) if Ball::named(text).is_some() => Ball::named(text).map_or(fit, |b| fit.kind(b)),
+            Some(Amount::Text(text)) if text.trim_start().starts_with(char::is_alphabetic) => {
+                return named(text, "ball", &Ball::ALL, Ball::name).map(|ball| fit.kind(ball));
+            }
+            Some(diameter) => fit.ball(diameter.of(Quantity::Length)?),
+        };
+        type Set = fn(Fit, f64) -> Fit;
+        let amounts: [(&Option<Amount>, Quantity, Set); 6] = [
+            (&self.sigma_height, Quantity::Length, Fit::sigma_height),
+            (&self.sigma_time, Quantity::Time, Fit::sigma_time),
+            (&self.sigma_zero, Quantity::Length, Fit::sigma_zero),
+            (&self.gravity, Quantity::Acceleration, Fit::gravity),
+            (&self.tolerance_height, Quantity::Length, Fit::tolerance_height),
+            (&self.tolerance_time, Quantity::Time, Fit::tolerance_time),
+        ];
+        for (amount, quantity, set) in amounts {
+            if let Some(amount) = amount {
+                fit = set(fit, amount.of(quantity)?);
+            }
+        }
+        if let Some(drag) = self.drag {
+            fit = fit.drag(drag);
+        }
+        if let Some(part) = self.sigma_scale {
+            fit = fit.sigma_scale(part);
+        }
+        if let Some(rounds) = self.bootstrap {
+            fit = fit.bootstrap(rounds, self.seed.unwrap_or(1));
+        }
+        Ok(fit)
+    }
+}
+
+/// Fits the tables at `paths`, or the one whose text is `bytes`.
+#[pyfunction]
+#[pyo3(signature = (options, *, name="table", bytes=None, paths=Vec::new()))]
+pub(crate) fn fit(
+    py: Python<'_>,
+    options: Options,
+    name: &str,
+    bytes: Option<&[u8]>,
+    paths: Vec<PathBuf>,
+) -> PyResult<Report> {
+    let (read, fit) = (options.read()?, options.fit()?);
+    let table = py.detach(|| match bytes {
+        Some(bytes) => Table::parse(name, bytes, &read),
+        None => Table::read_all(&paths, &read),
+    });
+    let table = table.map_err(|error| fail::table(py, &error))?;
+    let report = py.detach(|| fit.run(&table).and_then(|report| fit.advised(&table, report, options.want)));
+    report.map(Report).map_err(fail::saltus)
+}
+
+/// What a unit is of: "length", "time"; `None` for any other.
+#[pyfunction]
+pub(crate) fn quantity(unit: &str) -> Option<&'static str> {
+    let known = [("length", Quantity::Length), ("time", Quantity::Time)];
+    known.into_iter().find(|(_, quantity)| quantity.scale(unit).is_some()).map(|(name, _)| name)
+}
+
+/// What a fit found.
+#[pyclass(frozen, module = "saltus._core")]
+pub(crate) struct Report(saltus_fit::Report);
+
+#[pymethods]
+impl Report {
+    /// Read back from JSON.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        serde_json::from_str(text).map(Self).map_err(|error| fail::value(format!("this is no report: {error}")))
+    }
+
+    fn json(&self) -> PyResult<String> {
+        serde_json::to_string_pretty(&self.0).map_err(fail::value)
+    }
+
+    /// For people.
+    fn text(&self) -> String {
+        self.0.to_string()
+    }
+
+    /// One of the pictures, as SVG; none where the report has nothing to draw.
+    fn picture(&self, kind: &str) -> PyResult<Option<String>> {
+        type Draw = fn(&saltus_fit::Report) -> Option<Result<String, saltus_plot::PlotError>>;
+        let pictures: [(&'static str, Draw); 4] = [
+            ("motion", pictures::motion),
+            ("cor", pictures::cor),
+            ("ladder", pictures::ladder),
+            ("profile", pictures::profile),
+        ];
+        let (_, draw) = named(kind, "picture of a fit", &pictures, |(name, _)| name)?;
+        draw(&self.0).transpose().map_err(fail::saltus)
+    }
+
+    /// The fitted motion as a scene.
+    fn scene(&self) -> Option<String> {
+        self.0.scene()
+    }
+
+    /// The groups of the table by name, each with its own report.
+    fn groups(&self) -> Vec<(String, Self)> {
+        self.0.groups().iter().map(|group| (group.name.clone(), Self(group.report.clone()))).collect()
+    }
+}

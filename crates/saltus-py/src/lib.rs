@@ -1,0 +1,22 @@
+//! The compiled part of the Python package `saltus`: what `python/saltus` wraps for people.
+
+mod fail;
+mod fit;
+
+use pyo3::prelude::*;
+
+/// What `python/saltus` is made of; its functions are documented there.
+#[pymodule(name = "_core", gil_used = false)]
+mod core {
+    #[pymodule_export]
+    use super::fail::{RunError, SaltusError, SceneError, TableError};
+    #[pymodule_export]
+    use super::fit::{Report, fit, quantity};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
