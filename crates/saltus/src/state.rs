@@ -140,6 +140,41 @@ impl<const CAP: usize, const N: usize> From<[f64; N]> for Coords<CAP> {
     }
 }
 
+/// As many coordinates as the list has; [`TooMany`] where there is no room for them.
+///
+/// ```
+/// use saltus::{Coords, State};
+/// let read = vec![1.0, -0.5];
+/// assert_eq!(Coords::<4>::try_from(&read[..]).unwrap().len(), 2);
+/// assert!(Coords::<1>::try_from(&read[..]).is_err());
+/// ```
+impl<const CAP: usize> TryFrom<&[f64]> for Coords<CAP> {
+    type Error = TooMany;
+    fn try_from(list: &[f64]) -> Result<Self, TooMany> {
+        let (mut values, len) = ([0.0; CAP], list.len());
+        values.get_mut(..len).ok_or(TooMany { coordinates: len, room: CAP })?.copy_from_slice(list);
+        Ok(Self { values, len })
+    }
+}
+
+/// A list has more coordinates than there is room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TooMany {
+    /// How many it has.
+    pub coordinates: usize,
+    /// For how many there is room.
+    pub room: usize,
+}
+
+impl std::fmt::Display for TooMany {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} coordinates are more than there is room for, {}", self.coordinates, self.room)
+    }
+}
+
+impl std::error::Error for TooMany {}
+
 /// Written as the list of the coordinates there are.
 #[cfg(feature = "serde")]
 impl<const CAP: usize> serde::Serialize for Coords<CAP> {

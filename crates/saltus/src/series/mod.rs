@@ -1,5 +1,6 @@
 //! The Taylor series of a solution, from a flow written over numbers that carry one.
 
+mod formula;
 mod functions;
 mod jet;
 mod kinks;
@@ -7,6 +8,7 @@ mod kinks;
 use std::cell::Cell;
 use std::fmt;
 
+pub use formula::{Formula, Op};
 pub use jet::Jet;
 use kinks::Kinks;
 pub(crate) use kinks::NextKink;
