@@ -2,6 +2,7 @@
 
 mod fail;
 mod fit;
+mod hybrid;
 
 use pyo3::prelude::*;
 
@@ -12,6 +13,8 @@ mod core {
     use super::fail::{RunError, SaltusError, SceneError, TableError};
     #[pymodule_export]
     use super::fit::{Report, fit, quantity};
+    #[pymodule_export]
+    use super::hybrid::{Hybrid, Run, Tape};
 
     use pyo3::prelude::*;
 

@@ -1,6 +1,9 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 __version__: str
 
 class SaltusError(Exception): ...
@@ -9,7 +12,11 @@ class TableError(SaltusError):
     data: dict[str, Any]
 
 class SceneError(SaltusError): ...
-class RunError(SaltusError): ...
+class RunError(SaltusError):
+    t: float
+    mode: str
+    state: list[float]
+
 
 class Report:
     @staticmethod
@@ -22,3 +29,43 @@ class Report:
 
 def fit(options: dict[str, Any], *, name: str = "table", bytes: bytes | None = None, paths: Sequence[str] = ()) -> Report: ...
 def quantity(unit: str) -> str | None: ...
+
+class Tape:
+    def __new__(
+        cls, ops: list[tuple[str, int, int, int, float]], outputs: list[int], coordinates: int, parameters: int
+    ) -> Tape: ...
+
+class Run:
+    def at(self, times: NDArray[np.float64], before: bool) -> NDArray[np.float64]: ...
+    def modes(self, times: NDArray[np.float64]) -> NDArray[np.int64]: ...
+    def jumps(self) -> dict[str, Any]: ...
+    def end(self) -> tuple[str, float | None, float, int, list[float], int]: ...
+    def cost(self) -> dict[str, int]: ...
+    def doubts(self) -> list[str]: ...
+    def picture(self, names: list[str]) -> str: ...
+    def phase(self, across: int, up: int, names: list[str]) -> str: ...
+
+class Hybrid:
+    def __new__(cls, coordinates: int, parameters: int, modes: list[Any]) -> Hybrid: ...
+    def run(
+        self,
+        start: tuple[int, list[float], tuple[float, float]],
+        p: list[float],
+        named: Any,
+        options: dict[str, Any],
+    ) -> Run: ...
+    def gradient(
+        self,
+        start: tuple[int, list[float], tuple[float, float]],
+        p: list[float],
+        wrt: list[tuple[bool, int]],
+        options: dict[str, Any],
+    ) -> list[tuple[list[float], list[float]]]: ...
+    def ensemble(
+        self,
+        start: tuple[int, tuple[float, float]],
+        states: NDArray[np.float64],
+        p: NDArray[np.float64],
+        count: int,
+        options: dict[str, Any],
+    ) -> dict[str, Any]: ...

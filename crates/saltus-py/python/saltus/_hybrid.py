@@ -1,0 +1,437 @@
+"""Hybrid systems of plain functions: flows, guards, resets."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._picture import Svg
+from ._trace import Formula, Parameters, Untraceable, trace
+
+Function = Callable[..., Any]
+Numbers = NDArray[np.float64]
+Kept = Union[Formula, Function]
+
+METHODS = ("auto", "series", "steps", "tsit5", "dop853", "rodas5p")
+
+
+class TracingWarning(UserWarning):
+    """A function could not be traced: it is called in Python, a hundred times slower."""
+
+
+@dataclass
+class _Edge:
+    to: str
+    guard: Kept
+    reset: Kept | None
+    entry: str
+    terminal: bool
+
+
+@dataclass
+class _Mode:
+    flow: Kept | None
+    edges: list[_Edge]
+    beyond: tuple[str, Kept | None] | None
+
+
+class Hybrid:
+    """A hybrid system: in each mode a flow x' = f(t, x), out of each mode edges.
+
+    ``coordinates`` is how many numbers a state has (at most 64), or their names; ``parameters``
+    the names of the parameters (at most 64), or their values by name. Functions take ``(t, x)``,
+    or ``(t, x, p)`` where there are parameters, which stand in ``p`` by name.
+
+    Each function is called once with symbols, and runs as a formula from then on: numbers of
+    Python that it reads are taken as they are at that time. Arithmetic, powers, ``abs``,
+    ``numpy.where``, ``minimum``, ``maximum``, ``clip``, ``sqrt``, ``exp``, ``log``, ``sin``,
+    ``cos``, ``tan``, ``arctan``, ``arctan2``, ``tanh``, ``sinh``, ``cosh`` and ``hypot`` are
+    formulas. A function that is none is called where its value is wanted, and a
+    :class:`TracingWarning` says so once.
+
+    >>> import saltus
+    >>> ball = (
+    ...     saltus.Hybrid(["height", "velocity"], {"g": 9.81, "e": 0.8})
+    ...     .mode("flight", lambda t, x, p: [x[1], -p.g])
+    ...     .edge("flight", "flight", lambda t, x, p: x[0], lambda t, x, p: [0.0, -p.e * x[1]])
+    ... )
+    >>> run = ball.run("flight", [1.0, 0.0], (0.0, 6.0))
+    >>> run.stop, round(run.limit, 9)
+    ('zeno', 4.063712769)
+    >>> run.jumps["t"][:2].round(4).tolist()
+    [0.4515, 1.174]
+    """
+
+    def __init__(
+        self,
+        coordinates: int | Sequence[str],
+        parameters: Sequence[str] | Mapping[str, float] = (),
+    ) -> None:
+        counted = isinstance(coordinates, int)
+        self.names = [f"x{i}" for i in range(coordinates)] if counted else list(coordinates)  # type: ignore[arg-type]
+        self.parameters = list(parameters)
+        self.values = {k: float(v) for k, v in parameters.items()} if isinstance(parameters, Mapping) else {}
+        self._modes: dict[str, _Mode] = {}
+        self._said: set[str] = set()
+        self._built: _core.Hybrid | None = None
+
+    def _kept(self, function: Function | Formula, scalar: bool, what: str) -> Kept:
+        if isinstance(function, Formula):
+            return function
+        if not callable(function):
+            raise TypeError(f"{what} is a {type(function).__name__} and no function of (t, x)")
+        try:
+            return trace(function, len(self.names), self.parameters, scalar)
+        except Untraceable as why:
+            if what not in self._said:
+                self._said.add(what)
+                says = f"{what} is called in Python, a hundred times slower than a formula: {why}"
+                warnings.warn(says, TracingWarning, stacklevel=4)
+            return function
+
+    def _mode(self, name: str) -> _Mode:
+        self._built = None
+        return self._modes.setdefault(name, _Mode(None, [], None))
+
+    def mode(self, name: str, flow: Function) -> Hybrid:
+        """Declares a mode by its flow, in units of the state per second."""
+        self._mode(name).flow = self._kept(flow, False, f"the flow of {name}")
+        return self
+
+    def edge(
+        self,
+        source: str,
+        to: str,
+        guard: Function,
+        reset: Function | None = None,
+        *,
+        entry: str = "refuse",
+        terminal: bool = False,
+    ) -> Hybrid:
+        """Adds an edge, taken where its guard falls through zero.
+
+        ``reset`` gives the state after it, which is that before it otherwise. ``entry`` says what to
+        do where the guard is below zero as the mode is entered: ``"refuse"``, ``"wait"`` until it
+        has risen, or ``"fire"`` at once. A ``terminal`` edge ends the run.
+        """
+        what = f"the edge {source} -> {to}"
+        kept = None if reset is None else self._kept(reset, False, f"the reset of {what}")
+        edge = _Edge(to, self._kept(guard, True, f"the guard of {what}"), kept, entry, terminal)
+        self._mode(source).edges.append(edge)
+        return self
+
+    def beyond(self, source: str, to: str, reset: Function | None = None) -> Hybrid:
+        """Says in which mode and state a run goes on where jumps out of ``source`` accumulate."""
+        kept = None if reset is None else self._kept(reset, False, f"what lies beyond {source}")
+        self._mode(source).beyond = (to, kept)
+        return self
+
+    @property
+    def called(self) -> bool:
+        """Whether a function is called in Python, for it could not be traced."""
+        kept = [f for m in self._modes.values() for f in [m.flow, *(g for e in m.edges for g in (e.guard, e.reset))]]
+        kept += [mode.beyond[1] for mode in self._modes.values() if mode.beyond]
+        return any(function is not None and not isinstance(function, Formula) for function in kept)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_built": None}
+
+    def _core(self) -> _core.Hybrid:
+        if self._built is not None:
+            return self._built
+        places = {name: place for place, name in enumerate(self._modes)}
+
+        def place(name: str, says: str) -> int:
+            if self._modes.get(name, _Mode(None, [], None)).flow is None:
+                raise ValueError(f"{says} mode {name!r}, which is not declared: there are {', '.join(places)}")
+            return places[name]
+
+        def given(kept: Kept | None) -> Any:
+            return kept.core if isinstance(kept, Formula) else kept
+
+        modes = []
+        for name, mode in self._modes.items():
+            place(name, "an edge leads out of")
+            edges = [
+                (place(e.to, "an edge leads to"), given(e.guard), given(e.reset), e.entry, e.terminal)
+                for e in mode.edges
+            ]
+            beyond = mode.beyond and (place(mode.beyond[0], "beyond a limit lies"), given(mode.beyond[1]))
+            modes.append((name, given(mode.flow), edges, beyond))
+        self._built = _core.Hybrid(len(self.names), len(self.parameters), modes)
+        return self._built
+
+    def _place(self, mode: str) -> int:
+        names = list(self._modes)
+        if mode not in names:
+            raise ValueError(f"there is no mode {mode!r}: there are {', '.join(names) or 'none'}")
+        return names.index(mode)
+
+    def _values(self, parameters: Mapping[str, Any] | None) -> dict[str, Any]:
+        values: dict[str, Any] = {**self.values, **(parameters or {})}
+        for name in values:
+            if name not in self.parameters:
+                raise ValueError(f"there is no parameter {name!r}: there are {', '.join(self.parameters) or 'none'}")
+        missing = [name for name in self.parameters if name not in values]
+        if missing:
+            raise ValueError(f"parameters without a value: {', '.join(missing)}")
+        return {name: values[name] for name in self.parameters}
+
+    def run(
+        self,
+        mode: str,
+        state: ArrayLike,
+        span: tuple[float, float],
+        parameters: Mapping[str, float] | None = None,
+        *,
+        method: str = "auto",
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        longest_step: float | None = None,
+        most_jumps: int = 10_000_000,
+        most_steps: int = 100_000_000,
+        most_bytes: int = 1 << 30,
+    ) -> Run:
+        """Runs from a state in a mode, over a span of time in seconds, and records.
+
+        ``method`` is ``"auto"``: a polynomial where the flow has one, else its Taylor series;
+        ``"steps"``: a method by tolerance, and one for stiff flows where a flow is stiff;
+        ``"tsit5"``, ``"dop853"`` or ``"rodas5p"`` (for stiff flows). ``rtol`` is the error
+        allowed per step, relative to each coordinate, ``atol`` that near zero.
+
+        Raises :class:`saltus.RunError` where the run fails, with ``.t``, ``.mode`` and ``.state``;
+        what a called function raised is its cause.
+        """
+        options = _options(method, rtol, atol, longest_step, most_jumps, most_steps, most_bytes)
+        values = self._values(parameters)
+        numbers = [float(value) for value in values.values()]
+        named = Parameters(values) if values else None
+        start = np.asarray(state, dtype=float).ravel().tolist()
+        begin = self._place(mode), start, (float(span[0]), float(span[1]))
+        core = self._core().run(begin, numbers, named, options)
+        return Run(self, core, (mode, start, span, parameters), options)
+
+    def gradient(
+        self,
+        mode: str,
+        state: ArrayLike,
+        span: tuple[float, float],
+        parameters: Mapping[str, float] | None = None,
+        *,
+        by: Iterable[str] | None = None,
+        method: str = "auto",
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        longest_step: float | None = None,
+        most_jumps: int = 10_000_000,
+        most_steps: int = 100_000_000,
+    ) -> Gradient:
+        """How the state at the end, and the times of the jumps, depend on parameters and coordinates.
+
+        ``by`` are names of parameters, and of coordinates for the state at the start; all parameters
+        unless given. Derivatives are carried along the flow and through every jump (saltation), not
+        differences of runs. All functions must be formulas.
+
+        >>> import saltus
+        >>> ball = (
+        ...     saltus.Hybrid(["height", "velocity"], {"g": 9.81, "e": 0.8})
+        ...     .mode("flight", lambda t, x, p: [x[1], -p.g])
+        ...     .edge("flight", "flight", lambda t, x, p: x[0], lambda t, x, p: [0.0, -p.e * x[1]])
+        ... )
+        >>> gradient = ball.gradient("flight", [1.0, 0.0], (0.0, 1.0), by=["g", "height"])
+        >>> gradient.times.round(6).tolist()  # t = √(2 h/g)
+        [[-0.023013], [0.225762]]
+        """
+        if self.called:
+            raise ValueError("derivatives need formulas: a function of this system is called in Python")
+        options = _options(method, rtol, atol, longest_step, most_jumps, most_steps, 1 << 62)
+        values = self._values(parameters)
+        names = list(self.parameters if by is None else by)
+        places = []
+        for name in names:
+            if name not in self.parameters and name not in self.names:
+                known = ", ".join([*self.parameters, *self.names])
+                raise ValueError(f"there is neither a parameter nor a coordinate {name!r}: there are {known}")
+            initial = name not in self.parameters
+            places.append((initial, (self.names if initial else self.parameters).index(name)))
+        start = np.asarray(state, dtype=float).ravel().tolist()
+        numbers = [float(value) for value in values.values()]
+        begin = self._place(mode), start, (float(span[0]), float(span[1]))
+        rows = self._core().gradient(begin, numbers, places, options)
+        end = np.array([row[0] for row in rows]).reshape(len(names), len(self.names))
+        return Gradient(names, end, np.array([row[1] for row in rows], dtype=float).reshape(len(names), -1))
+
+    def ensemble(
+        self,
+        mode: str,
+        states: ArrayLike,
+        span: tuple[float, float],
+        parameters: Mapping[str, ArrayLike] | None = None,
+        *,
+        method: str = "auto",
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        longest_step: float | None = None,
+        most_jumps: int = 10_000_000,
+        most_steps: int = 100_000_000,
+    ) -> Ensemble:
+        """Runs from many states, or with many values of the parameters, on all cores.
+
+        ``states`` has a row for each run, or one row for all; a parameter is a number, or has a
+        value for each run. A run that fails is a row with ``stop`` ``"failed"``, and says why in
+        ``why``. The arrays are the same to the bit on any number of cores.
+        """
+        options = _options(method, rtol, atol, longest_step, most_jumps, most_steps, 1 << 62)
+        values = {name: np.asarray(value, dtype=float).ravel() for name, value in self._values(parameters).items()}
+        rows = np.atleast_2d(np.asarray(states, dtype=float))
+        count = max([len(rows), *map(len, values.values())])
+        for what, length in [("states", len(rows)), *((name, len(value)) for name, value in values.items())]:
+            if length not in (1, count):
+                raise ValueError(f"{what} has {length} rows, and others have {count}: give as many, or one")
+        if rows.shape[1] != len(self.names):
+            raise ValueError(f"the states have {rows.shape[1]} coordinates and not {len(self.names)}")
+        if self.called and self.parameters:
+            raise ValueError("many runs with parameters need formulas: a function of this system is called in Python")
+        flat = np.ascontiguousarray(np.broadcast_to(rows, (count, rows.shape[1]))).ravel()
+        columns = [np.broadcast_to(value, count) for value in values.values()]
+        table = np.ascontiguousarray(np.column_stack(columns)).ravel() if columns else np.empty(0)
+        begin = self._place(mode), (float(span[0]), float(span[1]))
+        came = self._core().ensemble(begin, flat, table, count, options)
+        names = np.array([*self._modes, ""])
+        stops = np.array(came["stop"])
+        return Ensemble(
+            came["t"], came["state"], names[came["mode"]], came["jumps"], stops, came["limit"], dict(came["why"])
+        )
+
+
+def _options(
+    method: str,
+    rtol: float,
+    atol: float | None,
+    longest_step: float | None,
+    most_jumps: int,
+    most_steps: int,
+    most_bytes: int,
+) -> dict[str, Any]:
+    if method not in METHODS:
+        raise ValueError(f"{method!r} is no method: use one of {', '.join(METHODS)}")
+    return {
+        "method": method,
+        "rtol": rtol,
+        "atol": atol,
+        "longest_step": longest_step,
+        "most_jumps": most_jumps,
+        "most_steps": most_steps,
+        "most_bytes": most_bytes,
+    }
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """Derivatives of a run.
+
+    ``by`` names what they are by; ``end[k]`` is how the state at the end depends on ``by[k]``, at
+    fixed time; ``times[k, n]`` how the time of jump n does.
+    """
+
+    by: list[str]
+    end: Numbers
+    times: Numbers
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """What came of many runs, a row each: when, where and why each ended.
+
+    ``limit`` is when jumps accumulate, where that ended a run; ``why`` says of runs that failed why.
+    """
+
+    t: Numbers
+    state: Numbers
+    mode: NDArray[np.str_]
+    jumps: NDArray[np.int64]
+    stop: NDArray[np.str_]
+    limit: Numbers
+    why: dict[int, str]
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+class Run:
+    """A recorded run of a :class:`Hybrid`.
+
+    ``stop`` says why it ended: ``"time"``, ``"terminal"``, ``"forever"`` (nothing happens any
+    more), ``"zeno"`` (jumps accumulate at ``limit``), ``"resolution"`` (they come closer together
+    than rounding can tell), or the limit that was reached: ``"jumps"``, ``"steps"``, ``"bytes"``,
+    ``"cascade"``.
+    """
+
+    def __init__(self, hybrid: Hybrid, core: _core.Run, start: tuple[Any, ...], options: dict[str, Any]) -> None:
+        self._hybrid, self._core, self._start, self._options = hybrid, core, start, options
+        self._modes = np.array([*hybrid._modes, ""])
+        self.stop, self.limit, self.t, mode, state, self.count = core.end()
+        self.mode = str(self._modes[mode])
+        self.state: Numbers = np.array(state)
+
+    def __reduce__(self) -> Any:
+        # A run is the same to the bit wherever it is made again.
+        return _again, (self._hybrid, self._start, self._options)
+
+    @property
+    def jumps(self) -> NDArray[np.void]:
+        """The jumps: ``t``, ``from``, ``to``, ``edge`` (its place among those out of its mode, -1 at a
+        limit), and the states ``before`` and ``after``."""
+        columns = self._core.jumps()
+        n, names = len(self._hybrid.names), self._modes.dtype
+        kinds = [("t", float), ("from", names), ("to", names), ("edge", int)]
+        table = np.empty(len(columns["t"]), dtype=[*kinds, ("before", float, (n,)), ("after", float, (n,))])
+        for name, values in columns.items():
+            table[name] = self._modes[values] if name in ("from", "to") else values
+        return table
+
+    def at(self, t: ArrayLike, *, before: bool = False) -> Numbers:
+        """The states at the times, after any jumps there, or before them; NaN outside the run."""
+        times = np.asarray(t, dtype=float)
+        states = self._core.at(np.ascontiguousarray(times.ravel()), before)
+        return states.reshape(*times.shape, len(self._hybrid.names))
+
+    def mode_at(self, t: ArrayLike) -> NDArray[np.str_]:
+        """The modes at the times; empty outside the run."""
+        times = np.asarray(t, dtype=float)
+        modes = self._modes[self._core.modes(np.ascontiguousarray(times.ravel()))]
+        return modes.reshape(times.shape)
+
+    @property
+    def cost(self) -> dict[str, int]:
+        """What it cost: jumps, steps accepted and rejected, exact arcs, stiff steps, evaluations."""
+        return self._core.cost()
+
+    @property
+    def doubts(self) -> list[str]:
+        """Where a crossing may have been missed, and what to do; empty where none was."""
+        return self._core.doubts()
+
+    def plot(self, across: str | None = None, up: str | None = None) -> Svg:
+        """A picture: the coordinates against time, or one of them against another."""
+        names = self._hybrid.names
+        if across is None or up is None:
+            return Svg(self._core.picture(names))
+        return Svg(self._core.phase(names.index(across), names.index(up), names))
+
+    def _repr_svg_(self) -> str:
+        return self.plot()
+
+    def __repr__(self) -> str:
+        limit = "" if self.limit is None else f" at {self.limit:.6g} s"
+        return f"<saltus.Run: {self.count} jumps, {self.stop}{limit}, in {self.mode!r} at t = {self.t:.6g} s>"
+
+
+def _again(hybrid: Hybrid, start: tuple[Any, ...], options: dict[str, Any]) -> Run:
+    return hybrid.run(*start, **options)

@@ -1,0 +1,318 @@
+//! An automaton of traced and called functions, with its parameters as numbers.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use saltus::{
+    About, Automaton, Coords, Edges, Entry, Formula, Lift, Limit, Linearize, Number, Over, Polynomial, Refusal, Series,
+    Solution,
+};
+
+use super::called::{Called, Raised};
+use super::names::{Edge, Mode};
+use super::tape::Tape;
+
+/// How many parameters a model may have.
+pub(crate) const MOST_PARAMETERS: usize = 64;
+
+/// How many coordinates a guard or a reset that is called is handed without asking for room.
+const FEW: usize = 16;
+
+/// The state of a model: a list of coordinates known only as a program runs.
+pub(crate) trait Vector: Lift + Send + Sync + 'static {
+    fn of(values: &[f64]) -> Option<Self>;
+
+    fn list(&self) -> Vec<f64> {
+        (0..self.len()).map(|i| self.get(i)).collect()
+    }
+}
+
+impl Vector for [f64; 2] {
+    fn of(values: &[f64]) -> Option<Self> {
+        values.try_into().ok()
+    }
+}
+
+impl<const CAP: usize> Vector for Coords<CAP> {
+    fn of(values: &[f64]) -> Option<Self> {
+        values.try_into().ok()
+    }
+}
+
+/// A function as it is given.
+pub(crate) enum Function {
+    Traced(Arc<Tape>),
+    Called(Called),
+}
+
+impl Function {
+    pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Traced(tape) => Self::Traced(Arc::clone(tape)),
+            Self::Called(called) => Self::Called(called.clone_ref(py)),
+        }
+    }
+}
+
+/// A function with its parameters bound.
+struct Ready {
+    /// As it is given: for numbers that carry a derivative by a parameter.
+    given: Function,
+    bound: Option<Tape>,
+}
+
+impl Ready {
+    fn new(given: Function, p: &[f64]) -> Self {
+        let bound = match &given {
+            Function::Traced(tape) => Some(tape.bound(p)),
+            Function::Called(_) => None,
+        };
+        Self { given, bound }
+    }
+
+    /// The same over numbers that carry a derivative; a function that is called has none.
+    fn over<D: Number>(&self, t: D, x: impl Fn(usize) -> D, p: impl Fn(usize) -> D, mut out: impl FnMut(usize, D)) {
+        match &self.given {
+            Function::Traced(tape) => tape.run(t, x, p, out),
+            Function::Called(_) => out(0, D::from(f64::NAN)),
+        }
+    }
+}
+
+/// An edge as it is given.
+pub(crate) struct EdgeOf {
+    pub(crate) to: Mode,
+    pub(crate) guard: Function,
+    pub(crate) reset: Option<Function>,
+    pub(crate) entry: Entry,
+    pub(crate) terminal: bool,
+}
+
+/// A mode as it is given.
+pub(crate) struct ModeOf {
+    pub(crate) mode: Mode,
+    pub(crate) flow: Function,
+    pub(crate) edges: Vec<EdgeOf>,
+    pub(crate) beyond: Option<(Mode, Option<Function>)>,
+}
+
+struct ReadyEdge {
+    id: Edge,
+    guard: Ready,
+    reset: Option<Ready>,
+    about: About,
+}
+
+struct ReadyMode {
+    flow: Ready,
+    edges: Vec<ReadyEdge>,
+    beyond: Option<(Mode, Option<Ready>)>,
+    /// The rows of A, where x' = A x + b with A³ = 0.
+    nilpotent: Option<Vec<Vec<f64>>>,
+    series: Option<Formula>,
+}
+
+/// A model with its parameters, for states of one kind.
+pub(crate) struct Model<S> {
+    modes: Vec<ReadyMode>,
+    p: Vec<f64>,
+    /// The same for functions that are called.
+    named: Option<Py<PyAny>>,
+    pub(crate) raised: Raised,
+    /// A state of the model's dimension.
+    like: S,
+}
+
+/// Whether x' = A x + b comes to an end as a polynomial of degree three: A³ = 0.
+fn is_nilpotent(a: &[Vec<f64>]) -> bool {
+    let times = |x: &[f64]| -> Vec<f64> { a.iter().map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum()).collect() };
+    (0..a.len()).all(|j| {
+        let column: Vec<f64> = a.iter().map(|row| row[j]).collect();
+        times(&times(&column)).iter().all(|value| *value == 0.0)
+    })
+}
+
+impl<S: Vector> Model<S> {
+    /// A model whose states are like this one; `stepped`: neither solved nor expanded in series.
+    pub(crate) fn new(modes: Vec<ModeOf>, like: S, p: Vec<f64>, named: Option<Py<PyAny>>, stepped: bool) -> Self {
+        let n = like.len();
+        let ready = |function: Function| Ready::new(function, &p);
+        let made = modes.into_iter().map(|ModeOf { mode, flow, edges, beyond }| {
+            let flow = ready(flow);
+            let edges = edges.into_iter().zip(0..).map(|(edge, place)| {
+                let guard = ready(edge.guard);
+                let affine = guard.bound.as_ref().is_some_and(|tape| tape.affine(n).is_some());
+                let about = About::new().entry(edge.entry).terminal_if(edge.terminal).affine_if(affine);
+                let id = Edge { from: mode, to: edge.to, place };
+                ReadyEdge { id, guard, reset: edge.reset.map(ready), about }
+            });
+            let edges = edges.collect();
+            let linear = flow.bound.as_ref().filter(|_| !stepped).and_then(|tape| tape.affine(n));
+            let rows = linear.map(|rows| rows.into_iter().map(|(row, _)| row).collect::<Vec<_>>());
+            let nilpotent = rows.filter(|rows| is_nilpotent(rows));
+            let series = flow.bound.as_ref().filter(|_| !stepped && nilpotent.is_none());
+            let series = series.and_then(|tape| tape.formula(n));
+            let beyond = beyond.map(|(to, reset)| (to, reset.map(ready)));
+            ReadyMode { flow, edges, beyond, nilpotent, series }
+        });
+        let modes = made.collect();
+        Self { modes, p, named, raised: Raised::default(), like }
+    }
+
+    fn mode(&self, mode: Mode) -> &ReadyMode {
+        &self.modes[mode.place as usize]
+    }
+
+    fn edge(&self, edge: Edge) -> &ReadyEdge {
+        &self.mode(edge.from).edges[edge.place as usize]
+    }
+
+    /// What a function comes to, output by output.
+    #[inline]
+    fn run(&self, function: &Ready, t: f64, x: &S, out: impl FnMut(usize, f64)) {
+        match (&function.bound, &function.given) {
+            (Some(tape), _) => tape.run(t, |i| x.get(i), |i| self.p[i], out),
+            (None, Function::Called(called)) => {
+                let (mut few, n) = ([0.0; FEW], x.len());
+                let named = self.named.as_ref();
+                if n > FEW {
+                    return called.run(t, &x.list(), named, &self.raised, out);
+                }
+                few.iter_mut().zip(0..n).for_each(|(place, i)| *place = x.get(i));
+                called.run(t, &few[..n], named, &self.raised, out);
+            }
+            (None, Function::Traced(_)) => {}
+        }
+    }
+
+    #[inline]
+    fn vector(&self, function: &Ready, t: f64, x: &S) -> S {
+        if x.len() <= FEW {
+            let mut list = [f64::NAN; FEW];
+            self.run(function, t, x, |i, value| list[i % FEW] = value);
+            return x.with(|i| list[i % FEW]);
+        }
+        let mut list = vec![f64::NAN; x.len()];
+        self.run(function, t, x, |i, value| list[i] = value);
+        x.with(|i| list[i])
+    }
+
+    fn vector_over<D: Number>(&self, function: &Ready, t: D, x: &Over<S, D>, p: &[D]) -> Over<S, D> {
+        let (mut list, like) = (vec![D::from(f64::NAN); self.like.len()], &self.like);
+        function.over(t, |i| like.pick(x, i), |i| p[i], |i, value| list[i] = value);
+        like.lift(|i| list[i])
+    }
+
+    fn series(&self, mode: Mode, series: &mut Series<'_, S>) {
+        if let Some(formula) = &self.mode(mode).series {
+            series.formula(formula);
+        }
+    }
+
+    fn refused(&self) -> Result<(), Refusal> {
+        self.raised.says().map_or(Ok(()), |says| Err(Refusal::new(says)))
+    }
+}
+
+impl<S: Vector> Automaton for Model<S> {
+    type Mode = Mode;
+    type State = S;
+    type Edge = Edge;
+
+    fn flow(&self, mode: Mode, t: f64, x: &S) -> S {
+        self.vector(&self.mode(mode).flow, t, x)
+    }
+
+    fn edges(&self, mode: Mode) -> Edges<'_, Edge> {
+        self.mode(mode).edges.iter().map(|edge| edge.id).collect()
+    }
+
+    fn guard(&self, edge: Edge, t: f64, x: &S) -> f64 {
+        let mut value = f64::NAN;
+        self.run(&self.edge(edge).guard, t, x, |_, guard| value = guard);
+        value
+    }
+
+    fn reset(&self, _: Mode, edge: Edge, t: f64, x: &S) -> Result<(Mode, S), Refusal> {
+        let after = self.edge(edge).reset.as_ref().map_or(*x, |reset| self.vector(reset, t, x));
+        self.refused()?;
+        Ok((edge.to, after))
+    }
+
+    fn about(&self, edge: Edge) -> About {
+        self.edge(edge).about
+    }
+
+    fn solution(&self, mode: Mode, t: f64, x: &S) -> Solution<Self> {
+        let of = self.mode(mode);
+        if let Some(rows) = &of.nilpotent {
+            let times =
+                |x: &S, by: f64| x.with(|i| by * rows[i].iter().zip(0..).map(|(a, j)| a * x.get(j)).sum::<f64>());
+            let first = self.vector(&of.flow, t, x);
+            let second = times(&first, 0.5);
+            return Solution::Polynomial([*x, first, second, times(&second, 1.0 / 3.0)].into());
+        }
+        if of.series.is_some() { Solution::Series(Self::series) } else { Solution::Steps }
+    }
+
+    fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Mode, S)> {
+        let (to, reset) = self.mode(limit.mode).beyond.as_ref()?;
+        Some((*to, reset.as_ref().map_or(*limit.x, |reset| self.vector(reset, limit.t, limit.x))))
+    }
+
+    fn refusal(&self, _: Mode, _: Option<Edge>, _: f64, _: &S) -> Option<Refusal> {
+        self.refused().err()
+    }
+}
+
+impl<S: Vector> Linearize for Model<S> {
+    type Parameters = Coords<MOST_PARAMETERS>;
+
+    fn parameters(&self) -> Self::Parameters {
+        // As many as there is room for: see `Hybrid`.
+        self.p[..self.p.len().min(MOST_PARAMETERS)].try_into().unwrap_or_else(|_| [0.0].into())
+    }
+
+    fn flow_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Over<S, D> {
+        self.vector_over(&self.mode(mode).flow, t, &x, &p)
+    }
+
+    fn guard_over<D: Number>(&self, edge: Edge, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> D {
+        let (mut value, like) = (D::from(f64::NAN), &self.like);
+        self.edge(edge).guard.over(t, |i| like.pick(&x, i), |i| p[i], |_, guard| value = guard);
+        value
+    }
+
+    fn reset_over<D: Number>(&self, edge: Edge, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Over<S, D> {
+        match &self.edge(edge).reset {
+            Some(reset) => self.vector_over(reset, t, &x, &p),
+            None => x,
+        }
+    }
+
+    fn beyond_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Option<Over<S, D>> {
+        let (_, reset) = self.mode(mode).beyond.as_ref()?;
+        Some(reset.as_ref().map_or(x, |reset| self.vector_over(reset, t, &x, &p)))
+    }
+
+    fn exact_over<D: Number>(
+        &self,
+        mode: Mode,
+        t: D,
+        x: Over<S, D>,
+        p: [D; MOST_PARAMETERS],
+    ) -> Option<Polynomial<Over<S, D>>> {
+        let (of, like) = (self.mode(mode), &self.like);
+        of.nilpotent.as_ref()?;
+        let flow = |x: &Over<S, D>| self.vector_over(&of.flow, t, x, &p);
+        let rest = flow(&like.lift(|_| D::zero()));
+        // A v is the flow at v, less that at zero.
+        let times = |v: &Over<S, D>, by: f64| {
+            let at = flow(v);
+            like.lift(|i| (like.pick(&at, i) - like.pick(&rest, i)) * D::from(by))
+        };
+        let first = flow(&x);
+        let second = times(&first, 0.5);
+        Some([x, first, second, times(&second, 1.0 / 3.0)].into())
+    }
+}

@@ -1,0 +1,324 @@
+"""Hybrid systems of plain functions: laws of the tracing, of runs, and of what fails."""
+
+import gc
+import math
+import os
+import pickle
+import resource
+import signal
+import threading
+import time
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+import saltus
+from saltus._trace import trace
+
+
+def ball(**values):
+    return (
+        saltus.Hybrid(["height", "velocity"], {"g": 9.81, "e": 0.8, **values})
+        .mode("flight", lambda t, x, p: [x[1], -p.g])
+        .edge("flight", "flight", lambda t, x, p: x[0], lambda t, x, p: [0.0, -p.e * x[1]])
+    )
+
+
+def drag_ball():
+    return (
+        saltus.Hybrid(2, {"k": 0.1, "e": 0.9})
+        .mode("flight", lambda t, x, p: [x[1], -9.8 - p.k * x[1] * abs(x[1])])
+        .edge("flight", "flight", lambda t, x, p: x[0], lambda t, x, p: [0.0, -p.e * x[1]])
+    )
+
+
+# -- what is traced
+
+
+FUNCTIONS = {
+    "arithmetic": lambda t, x, p: [x[0] + 2 * x[1] - t / 3, -x[0] * x[1] / (1 + x[0] ** 2) + p.k],
+    "powers": lambda t, x, p: [-x[0] ** 3 + abs(x[1]) ** 1.5 + 2.0 ** -x[0], (1 + x[0] ** 2) ** -0.5 + (2 + t) ** x[1]],
+    "circle": lambda t, x, p: [np.sin(x[0]) * np.cos(t), np.tan(0.3 * x[1]) + np.arctan2(x[1], x[0] + 2.5)],
+    "growth": lambda t, x, p: [np.exp(-(x[0] ** 2)) + np.log(2 + x[1] ** 2), np.tanh(p.k * x[0]) + np.arctan(x[1])],
+    "roots": lambda t, x, p: [np.sqrt(1 + x[0] ** 2), np.hypot(x[0], x[1]) + np.square(x[1]) + np.sinh(x[0])],
+    "choices": lambda t, x, p: [np.minimum(x[0], x[1]), np.maximum(x[0], p.k) + np.clip(x[1], -0.5, 0.5)],
+    "where": lambda t, x, p: [np.where(x[0] > x[1], x[0], 2 * x[1] - x[0]), np.where(x[0] < 0, 0.0, x[0] ** 2)],
+    "arrays": lambda t, x, p: np.sin(x) * p.k - 0.5 * x[::-1] + np.maximum(x, 0) + np.array([[0, 1], [-1, 0]]) @ x,
+    "sums": lambda t, x, p: [np.sum(x), np.dot(x, x)],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@settings(max_examples=40, deadline=None)
+@given(t=st.floats(0, 2), x=st.tuples(st.floats(-2, 2), st.floats(-2, 2)), k=st.floats(-1, 1))
+def test_a_formula_has_the_values_of_its_function(name, t, x, k):
+    function = FUNCTIONS[name]
+    system = saltus.Hybrid(2, {"k": k}).mode("m", function)
+    assert not system.called
+    # A step so short that the slope is all there is to see.
+    h = 2.0**-20
+    slope = np.asarray(function(t, np.array(x), saltus._trace.Parameters({"k": k})), dtype=float)
+    run = system.run("m", x, (t, t + h), method="tsit5")
+    assert (run.state - x) / h == pytest.approx(slope, abs=2e-5 * (1 + np.abs(slope).max()) ** 3)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_series_and_steppers_agree(name):
+    system = saltus.Hybrid(2, {"k": 0.4}).mode("m", FUNCTIONS[name])
+    ends = {m: system.run("m", [0.7, -0.4], (0, 0.8), method=m, rtol=1e-10).state for m in ("series", "tsit5", "dop853", "rodas5p")}
+    reference = ends["dop853"]
+    for method, end in ends.items():
+        assert end == pytest.approx(reference, rel=2e-7), method
+
+
+def test_guards_that_are_affine_are_found():
+    exact = ball().run("flight", [1.0, 0.0], (0, 3))
+    assert exact.cost["exact"] == exact.count + 1 and exact.cost["steps"] == 0
+
+
+@pytest.mark.parametrize(
+    ("flow", "says"),
+    [
+        (lambda t, x: [x[1], -1 if x[0] > 0 else 1], "numpy.where"),
+        (lambda t, x: [min(x[0], 0.0), x[1]], "numpy.minimum"),
+        (lambda t, x: [math.sin(x[0]), x[1]], "numpy.sin"),
+        (lambda t, x: [x[0] % 1.0, x[1]], "remainder"),
+        (lambda t, x: [np.floor(x[0]), x[1]], "numpy.floor"),
+        (lambda t, x: np.linalg.solve(np.eye(2), np.array([x[0], x[1]], dtype=float)), "numpy"),
+    ],
+)
+def test_what_cannot_be_traced_is_called_and_said_once(flow, says):
+    with pytest.warns(saltus.TracingWarning, match=says) as warned:
+        system = saltus.Hybrid(2).mode("m", flow)
+    assert len(warned) == 1 and system.called
+    run = system.run("m", [0.3, 0.2], (0, 0.1))
+    peer = solve_ivp(lambda t, x: np.asarray(flow(t, x), dtype=float), (0, 0.1), [0.3, 0.2], rtol=1e-9, atol=1e-12)
+    assert run.state == pytest.approx(peer.y[:, -1], rel=1e-7)
+
+
+# -- runs
+
+
+def test_a_ball_comes_to_its_limit_and_goes_on_beyond():
+    run = ball().run("flight", [1.0, 0.0], (0, 6))
+    limit = math.sqrt(2 / 9.81) * 1.8 / 0.2
+    assert run.stop == "zeno" and run.limit == pytest.approx(limit, abs=1e-9)
+    rests = ball().mode("rest", lambda t, x, p: [0.0, 0.0]).beyond("flight", "rest", lambda t, x, p: [0.0, 0.0])
+    run = rests.run("flight", [1.0, 0.0], (0, 6))
+    assert (run.stop, run.mode, run.jumps["edge"][-1]) == ("time", "rest", -1)
+    assert run.mode_at([1.0, 5.0, 7.0]).tolist() == ["flight", "rest", ""]
+    assert np.all(run.at(np.linspace(0, 6, 1000))[:, 0] >= 0)
+
+
+def test_both_limits_at_a_jump():
+    run = ball().run("flight", [1.0, 0.0], (0, 1))
+    jump = run.jumps[0]
+    assert run.at(jump["t"], before=True).tolist() == jump["before"].tolist()
+    assert run.at(jump["t"]).tolist() == jump["after"].tolist() == [0.0, -0.8 * jump["before"][1]]
+    assert run.at([[0.0, 0.1], [0.2, 2.0]]).shape == (2, 2, 2) and np.isnan(run.at(2.0)).all()
+
+
+def test_drag_has_the_times_of_a_closed_form():
+    run = drag_ball().run("flight", [10.0, 0.0], (0, 5), method="series", rtol=1e-12)
+    a = math.sqrt(9.8 * 0.1)
+    assert run.jumps["t"][0] == pytest.approx(math.acosh(math.exp(0.1 * 10)) / a, abs=1e-11)
+
+
+def test_terminal_edges_and_entries():
+    drain = saltus.Hybrid(1).mode("drain", lambda t, x: [-1.0])
+    drain.edge("drain", "drain", lambda t, x: x[0], terminal=True)
+    assert drain.run("drain", [2.0], (0, 3)).stop == "terminal"
+    with pytest.raises(saltus.RunError, match="already negative") as failed:
+        drain.run("drain", [-1.0], (0, 3))
+    assert (failed.value.t, failed.value.mode, failed.value.state) == (0.0, "drain", [-1.0])
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 16, 17, 40, 64])
+def test_any_number_of_coordinates_up_to_64(n):
+    rates = 0.5 + np.arange(n) / n
+    system = saltus.Hybrid(n).mode("m", lambda t, x: -rates * x)
+    for method in ("series", "dop853", "rodas5p"):
+        run = system.run("m", np.ones(n), (0, 1), method=method)
+        assert run.state == pytest.approx(np.exp(-rates), abs=1e-7)
+
+
+def test_stiff_flows():
+    rod = saltus.Hybrid(1).mode("heat", lambda t, x: [1e6 * (np.sin(t) - x[0])])
+    for method in ("steps", "rodas5p"):
+        run = rod.run("heat", [0.0], (0, 3), method=method)
+        assert run.state[0] == pytest.approx(math.sin(3.0), abs=1e-5) and run.cost["flows"] < 20_000
+
+
+# -- derivatives
+
+
+@pytest.mark.parametrize("make", [ball, drag_ball])
+def test_derivatives_are_those_of_neighbouring_runs(make):
+    system = make()
+    state, span = [1.0, 0.5], (0.0, 1.7)
+    by = [*system.parameters, *system.names]
+    gradient = system.gradient("flight", state, span, by=by, rtol=1e-11)
+    for k, name in enumerate(by):
+        ends = []
+        for sign in (1, -1):
+            h, start, values = 1e-5 * sign, list(state), {}
+            if name in system.names:
+                start[system.names.index(name)] += h
+            else:
+                values[name] = system.values[name] + h
+            ends.append(system.run("flight", start, span, values, rtol=1e-12))
+        assert gradient.end[k] == pytest.approx((ends[0].state - ends[1].state) / 2e-5, rel=1e-4, abs=1e-5)
+        times = (ends[0].jumps["t"] - ends[1].jumps["t"]) / 2e-5
+        assert gradient.times[k] == pytest.approx(times, rel=1e-4, abs=1e-6)
+
+
+# -- many runs
+
+
+def test_an_ensemble_is_its_runs_to_the_bit():
+    system, e = drag_ball(), np.linspace(0.5, 0.95, 50)
+    many = system.ensemble("flight", [[1.0, 0.0]], (0, 3), {"e": e, "k": 0.2})
+    assert len(many) == 50
+    for n in (0, 17, 49):
+        one = system.run("flight", [1.0, 0.0], (0, 3), {"e": e[n], "k": 0.2})
+        assert many.state[n].tolist() == one.state.tolist() and many.jumps[n] == one.count
+        assert many.stop[n] == one.stop and many.mode[n] == one.mode
+
+
+def test_a_run_that_fails_is_a_row():
+    growth = saltus.Hybrid(1).mode("grow", lambda t, x: x**2)
+    many = growth.ensemble("grow", [[0.1], [1.0]], (0, 2))
+    assert many.stop.tolist() == ["time", "failed"] and "the solution may blow up" in many.why[1]
+    assert many.state[0, 0] == pytest.approx(1 / 8) and np.isnan(many.state[1, 0])
+
+
+def test_systems_and_runs_are_pickled():
+    run = ball().run("flight", [1.0, 0.0], (0, 3), {"e": 0.7})
+    again = pickle.loads(pickle.dumps(run))
+    assert again.jumps.tobytes() == run.jumps.tobytes() and again.state.tolist() == run.state.tolist()
+
+
+def test_another_thread_runs_meanwhile():
+    system, ticks, done = drag_ball(), [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    system.ensemble("flight", [[1.0, 0.0]], (0, 10), {"e": np.linspace(0.5, 0.95, 4000)})
+    done.set()
+    thread.join()
+    assert len(ticks) > 3 and np.max(np.diff(ticks)) < 0.2
+
+
+# -- what fails
+
+
+class Broken(Exception):
+    pass
+
+
+def test_what_a_function_raises_is_the_cause():
+    def flow(t, x):
+        if float(x[0]) > 0.5:
+            raise Broken("the sensor is gone")
+        return [1.0]
+
+    with pytest.warns(saltus.TracingWarning):
+        system = saltus.Hybrid(1).mode("m", flow)
+    with pytest.raises(saltus.RunError, match="the sensor is gone") as failed:
+        system.run("m", [0.0], (0, 2))
+    assert isinstance(failed.value.__cause__, Broken) and 0 < failed.value.t <= 0.6
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "says"),
+    [
+        (lambda: saltus.Hybrid(0).mode("m", lambda t, x: []).run("m", [], (0, 1)), ValueError, "1 to 64"),
+        (lambda: saltus.Hybrid(65).mode("m", lambda t, x: -x).run("m", np.ones(65), (0, 1)), ValueError, "1 to 64"),
+        (lambda: saltus.Hybrid(2).mode("m", lambda t, x: [x[0]]).run("m", [1, 2], (0, 1)), ValueError, "gives 1 numbers and not 2"),
+        (lambda: saltus.Hybrid(1).mode("m", 3.0), TypeError, "no function"),
+        (lambda: ball().run("flight", [1.0], (0, 1)), ValueError, "1 coordinates and not 2"),
+        (lambda: ball().run("fly", [1.0, 0.0], (0, 1)), ValueError, "no mode 'fly'"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), {"x": 1}), ValueError, "no parameter 'x'"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), method="euler"), ValueError, "'euler' is no method"),
+        (lambda: ball().run("flight", ["one", 0.0], (0, 1)), ValueError, "could not convert"),
+        (lambda: ball().run("flight", [math.nan, 0.0], (0, 1)), saltus.RunError, "not finite"),
+        (lambda: ball().run("flight", [1.0, 0.0], (1, 0)), saltus.RunError, "span"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), rtol=-1), saltus.RunError, "tolerances"),
+        (lambda: ball().edge("flight", "gone", lambda t, x, p: x[0]).run("flight", [1, 0], (0, 1)), ValueError, "'gone', which is not declared"),
+        (lambda: ball().ensemble("flight", np.ones((3, 2)), (0, 1), {"e": [0.1, 0.2]}), ValueError, "e has 2 rows, and others have 3"),
+        (lambda: ball().gradient("flight", [1.0, 0.0], (0, 1), by=["mass"]), ValueError, "'mass'"),
+        (lambda: saltus.Hybrid(1, ["k"]).mode("m", lambda t, x, p: [p.k]).run("m", [1], (0, 1)), ValueError, "without a value: k"),
+    ],
+)  # fmt: skip
+def test_what_makes_no_sense_is_refused_in_words(given, error, says):
+    with pytest.raises(error, match=says):
+        given()
+
+
+@pytest.mark.parametrize("traced", [True, False])
+def test_ctrl_c_ends_a_run(traced):
+    flow = (lambda t, x: [x[1], -x[0]]) if traced else (lambda t, x: [float(x[1]), -float(x[0])])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        system = saltus.Hybrid(2).mode("swing", flow)
+    pressed = []
+
+    def press():
+        time.sleep(0.3)
+        pressed.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=press)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        system.run("swing", [1.0, 0.0], (0, 1e12), method="dop853")
+    took = time.perf_counter() - pressed[0]
+    thread.join()
+    assert took < 0.25
+
+
+def test_runs_leave_no_memory_behind():
+    def flow(t, x):
+        return [float(x[1]), -9.81]
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        called = saltus.Hybrid(2).mode("m", flow).edge("m", "m", lambda t, x: x[0], lambda t, x: [0.0, -0.5 * x[1]])
+    traced = ball()
+
+    def some(count):
+        for _ in range(count):
+            traced.run("flight", [1.0, 0.0], (0, 1)).jumps  # noqa: B018
+            try:
+                traced.run("flight", [-1.0, 0.0], (0, 1))
+            except saltus.RunError:
+                pass
+        for _ in range(count // 50):
+            called.run("m", [1.0, 0.0], (0, 0.6))
+        gc.collect()
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    some(2000)
+    first = some(1000)
+    assert some(20_000) - first < 4_000  # kB
+
+
+def test_a_limit_on_bytes_ends_a_run():
+    swing = saltus.Hybrid(2).mode("swing", lambda t, x: [x[1], -x[0]])
+    run = swing.run("swing", [1.0, 0.0], (0, math.inf), most_bytes=1_000_000)
+    assert run.stop == "bytes" and run.t > 1.0
+
+
+def test_the_trace_shares_what_is_the_same():
+    formula = trace(lambda t, x: [np.sin(x[0]) * np.sin(x[0]), np.sin(x[0])], 2, [], False)
+    ops, _, _, _ = formula.__reduce__()[1]
+    assert len(ops) == 3
