@@ -80,6 +80,23 @@ def test_guards_that_are_affine_are_found():
     assert exact.cost["exact"] == exact.count + 1 and exact.cost["steps"] == 0
 
 
+@settings(max_examples=60, deadline=None)
+@given(
+    weights=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    level=st.floats(0.05, 2),
+    g=st.floats(0, 5),
+    start=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+)
+def test_falls_by_formula_are_those_that_are_searched_for(weights, level, g, start):
+    a, b = weights
+    offset = level - a * start[0] - b * start[1]
+    system = saltus.Hybrid(2).mode("m", lambda t, x: [x[1], -g])
+    system.edge("m", "m", lambda t, x: a * x[0] + b * x[1] + offset, terminal=True)
+    exact, searched = (system.run("m", start, (0, 9), method=method) for method in ("auto", "dop853"))
+    assert exact.stop == searched.stop
+    assert exact.t == pytest.approx(searched.t, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("flow", "says"),
     [

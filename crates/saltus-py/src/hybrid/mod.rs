@@ -327,7 +327,7 @@ impl Run {
         Ok(columns)
     }
 
-    /// How it ended: why, where jumps accumulate, when, in which mode and state, after how many jumps.
+    /// How it ended: why, where jumps accumulate, when, in which mode and state, how many jumps.
     fn end(&self) -> (&'static str, Option<f64>, f64, u32, Vec<f64>, usize) {
         let End { stop, limit, t, mode, state, jumps, .. } = &self.end;
         (stop, *limit, *t, mode.place, state.clone(), *jumps)

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use saltus::{
-    About, Automaton, Coords, Edges, Entry, Formula, Lift, Limit, Linearize, Number, Over, Polynomial, Refusal, Series,
-    Solution,
+    About, Automaton, Coords, Edges, Entry, Fall, Formula, Lift, Limit, Linearize, Number, Over, Polynomial, Refusal,
+    Series, Solution,
 };
 
 use super::called::{Called, Raised};
@@ -101,6 +101,8 @@ struct ReadyEdge {
     guard: Ready,
     reset: Option<Ready>,
     about: About,
+    /// The row a and the constant b of an affine guard a·x + b.
+    affine: Option<(Vec<f64>, f64)>,
 }
 
 struct ReadyMode {
@@ -141,10 +143,11 @@ impl<S: Vector> Model<S> {
             let flow = ready(flow);
             let edges = edges.into_iter().zip(0..).map(|(edge, place)| {
                 let guard = ready(edge.guard);
-                let affine = guard.bound.as_ref().is_some_and(|tape| tape.affine(n).is_some());
-                let about = About::new().entry(edge.entry).terminal_if(edge.terminal).affine_if(affine);
+                let affine = guard.bound.as_ref().and_then(|tape| tape.affine(n)?.pop());
+                let about = About::new().entry(edge.entry).terminal_if(edge.terminal);
+                let about = about.affine_if(affine.is_some());
                 let id = Edge { from: mode, to: edge.to, place };
-                ReadyEdge { id, guard, reset: edge.reset.map(ready), about }
+                ReadyEdge { id, guard, reset: edge.reset.map(ready), about, affine }
             });
             let edges = edges.collect();
             let linear = flow.bound.as_ref().filter(|_| !stepped).and_then(|tape| tape.affine(n));
@@ -203,6 +206,17 @@ impl<S: Vector> Model<S> {
         like.lift(|i| list[i])
     }
 
+    /// The coefficients of the state as a polynomial in time, where it is one.
+    #[inline]
+    fn polynomial(&self, mode: Mode, t: f64, x: &S) -> Option<[S; 4]> {
+        let of = self.mode(mode);
+        let rows = of.nilpotent.as_ref()?;
+        let times = |x: &S, by: f64| x.with(|i| by * rows[i].iter().zip(0..).map(|(a, j)| a * x.get(j)).sum::<f64>());
+        let first = self.vector(&of.flow, t, x);
+        let second = times(&first, 0.5);
+        Some([*x, first, second, times(&second, 1.0 / 3.0)])
+    }
+
     fn series(&self, mode: Mode, series: &mut Series<'_, S>) {
         if let Some(formula) = &self.mode(mode).series {
             series.formula(formula);
@@ -244,15 +258,31 @@ impl<S: Vector> Automaton for Model<S> {
     }
 
     fn solution(&self, mode: Mode, t: f64, x: &S) -> Solution<Self> {
-        let of = self.mode(mode);
-        if let Some(rows) = &of.nilpotent {
-            let times =
-                |x: &S, by: f64| x.with(|i| by * rows[i].iter().zip(0..).map(|(a, j)| a * x.get(j)).sum::<f64>());
-            let first = self.vector(&of.flow, t, x);
-            let second = times(&first, 0.5);
-            return Solution::Polynomial([*x, first, second, times(&second, 1.0 / 3.0)].into());
+        if let Some(solution) = self.polynomial(mode, t, x) {
+            let [c0, c1, c2, c3] = solution;
+            let is_parabola = (0..c3.len()).all(|i| c3.get(i) == 0.0);
+            return Solution::Polynomial(if is_parabola { [c0, c1, c2].into() } else { solution.into() });
         }
+        let of = self.mode(mode);
         if of.series.is_some() { Solution::Series(Self::series) } else { Solution::Steps }
+    }
+
+    /// The root of an affine guard on a parabola: that to which its value falls.
+    fn falls(&self, mode: Mode, edge: Edge, t: f64, x: &S) -> Fall<S> {
+        let Some((row, rest)) = &self.edge(edge).affine else { return Fall::Unknown };
+        let Some(solution) = self.polynomial(mode, t, x) else { return Fall::Unknown };
+        let along = |c: &S| row.iter().zip(0..).map(|(a, i)| a * c.get(i)).sum::<f64>();
+        let [c0, c1, c2, c3] = solution.each_ref().map(along);
+        let c0 = c0 + rest;
+        if c0 < 0.0 || c3 != 0.0 || c2 > 0.0 {
+            return Fall::Unknown;
+        }
+        if c2 == 0.0 && c1 >= 0.0 {
+            return Fall::Never;
+        }
+        let root = (c1 * c1 - 4.0 * c2 * c0).sqrt();
+        let s = if c1 > 0.0 { (c1 + root) / (-2.0 * c2) } else { 2.0 * c0 / (root - c1) };
+        if s > 0.0 && s.is_finite() { Fall::After(s) } else { Fall::Unknown }
     }
 
     fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Mode, S)> {

@@ -13,7 +13,7 @@ use saltus::{
 use super::model::{Model, Vector};
 use super::names::{Edge, Mode};
 
-/// How often Python is asked for a signal, such as Ctrl-C: within the patience of whoever pressed it.
+/// How often Python is asked for a signal, such as Ctrl-C: sooner than one who waits notices.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
 
 /// How many pieces and jumps pass between looks at the clock.
