@@ -16,6 +16,24 @@ pub(crate) fn value(error: impl fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
+/// A scene that cannot be run.
+pub(crate) fn scene(error: impl fmt::Display) -> PyErr {
+    SceneError::new_err(error.to_string())
+}
+
+/// A run that failed.
+pub(crate) fn run(error: impl fmt::Display) -> PyErr {
+    RunError::new_err(error.to_string())
+}
+
+/// One of a list of things that have names.
+pub(crate) fn named<T: Copy>(wanted: &str, what: &str, all: &[T], name: impl Fn(T) -> &'static str) -> PyResult<T> {
+    all.iter().copied().find(|one| name(*one) == wanted).ok_or_else(|| {
+        let known: Vec<_> = all.iter().map(|one| name(*one)).collect();
+        value(format!("'{wanted}' is no {what}: use one of {}", known.join(", ")))
+    })
+}
+
 /// What saltus cannot do, in its own words.
 pub(crate) fn saltus(error: impl fmt::Display) -> PyErr {
     SaltusError::new_err(error.to_string())

@@ -7,7 +7,7 @@ use saltus_bounce::units::Quantity;
 use saltus_fit::{Ball, CorModel, Fit, Loss, ReadOptions, Table};
 use saltus_plot::fit as pictures;
 
-use crate::fail;
+use crate::fail::{self, named};
 
 /// A number in SI units, or text with a unit.
 #[derive(FromPyObject)]
@@ -85,14 +85,6 @@ pub(crate) struct Options {
     seed: Option<u64>,
     /// Always there: a dict of nothing at all is no set of options.
     want: Option<f64>,
-}
-
-/// One of a list of things that have names.
-fn named<T: Copy>(wanted: &str, what: &str, all: &[T], name: impl Fn(T) -> &'static str) -> PyResult<T> {
-    all.iter().copied().find(|one| name(*one) == wanted).ok_or_else(|| {
-        let known: Vec<_> = all.iter().map(|one| name(*one)).collect();
-        fail::value(format!("'{wanted}' is no {what}: use one of {}", known.join(", ")))
-    })
 }
 
 impl Options {

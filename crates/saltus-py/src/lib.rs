@@ -3,6 +3,7 @@
 mod fail;
 mod fit;
 mod hybrid;
+mod scene;
 
 use pyo3::prelude::*;
 
@@ -15,6 +16,8 @@ mod core {
     use super::fit::{Report, fit, quantity};
     #[pymodule_export]
     use super::hybrid::{Hybrid, Run, Tape};
+    #[pymodule_export]
+    use super::scene::{Motion, explain, simulate, solve};
 
     use pyo3::prelude::*;
 

@@ -2,12 +2,14 @@
 
 - :class:`Hybrid`: flows, guards and resets as plain functions, run at compiled speed
 - :func:`fit`: from a table of bounces to a COR with its uncertainty and a verdict
+- :func:`simulate`, :func:`explain`, :func:`solve`: scenes of bouncing balls
 """
 
 from ._core import RunError, SaltusError, SceneError, TableError, __version__
 from ._fit import Cor, Finding, Fit, fit
 from ._hybrid import Ensemble, Gradient, Hybrid, Run, TracingWarning
 from ._picture import Svg
+from ._scene import Moment, Motion, Scene, Solved, explain, simulate, solve
 
 __all__ = [
     "Cor",
@@ -16,13 +18,20 @@ __all__ = [
     "Fit",
     "Gradient",
     "Hybrid",
+    "Moment",
+    "Motion",
     "Run",
     "RunError",
     "SaltusError",
+    "Scene",
     "SceneError",
+    "Solved",
     "Svg",
     "TableError",
     "TracingWarning",
     "__version__",
+    "explain",
     "fit",
+    "simulate",
+    "solve",
 ]
