@@ -221,8 +221,10 @@ impl Maker<'_> {
         }
         let end = ending(staging.until, None);
         let scene = self.template.scene(&of_scene, end).map_err(|error| refused(&error))?;
+        let staging = staging.staging(args.shown.first_frame);
+        staging.holds(&scene).map_err(|error| error.to_string())?;
         let record = scene.plan().map_err(|error| error.to_string())?.run().map_err(|error| error.to_string())?;
-        let mut stage = staging.stage(&record, args.shown.first_frame).map_err(|error| error.to_string())?;
+        let mut stage = staging.stage(&record).map_err(|error| error.to_string())?;
         stage.space = args.shown.space();
         let name = self.name(run, &values);
         let (mut files, mut written, mut miss) = (Vec::new(), Map::new(), 0.0_f64);

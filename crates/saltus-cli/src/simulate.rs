@@ -93,6 +93,11 @@ pub(crate) fn run(args: &Simulate, quiet: bool) -> Result<ExitCode, Error> {
         say(quiet, &chosen);
         scene = aimed;
     }
+    let sampling = args.every.map(Sampling::Every).or(args.fps.map(Sampling::Rate));
+    let sampled = matches!(format, Some(MotionFormat::Csv | MotionFormat::Json));
+    if let (true, Some(sampling), Some(until)) = (sampled, sampling, scene.run.until) {
+        sampling.holds(until).map_err(Error::new)?;
+    }
     let plan = planned(&scene, args.scene.as_deref())?;
     let record = plan.run().map_err(Error::new)?;
     ended(&record, quiet);
@@ -100,7 +105,6 @@ pub(crate) fn run(args: &Simulate, quiet: bool) -> Result<ExitCode, Error> {
         let picture = record::svg(&record, args.kind.unwrap_or(scene.picture.kind)).map_err(Error::new)?;
         write(drawn, picture.as_bytes())?;
     }
-    let sampling = args.every.map(Sampling::Every).or(args.fps.map(Sampling::Rate));
     let text = match format {
         None => return Ok(ExitCode::SUCCESS),
         Some(MotionFormat::Text) => record.to_string(),

@@ -6,7 +6,6 @@ use std::path::Path;
 use clap::{Args as ClapArgs, ValueEnum};
 use saltus_bounce::units::Quantity;
 use saltus_motion::{Frames, Rate, Snap};
-use saltus_scene::plan::Record;
 use saltus_scene::{Squash, Stage, length};
 
 use crate::error::Error;
@@ -83,17 +82,19 @@ impl Staging {
         if let Some(note) = note(&scene) {
             say(quiet, &note);
         }
+        let staging = self.staging(first);
+        staging.holds(&scene).map_err(Error::new)?;
         let record = planned(&scene, Some(path))?.run().map_err(Error::new)?;
         ended(&record, quiet);
-        let stage = self.stage(&record, first)?;
+        let stage = staging.stage(&record).map_err(Error::new)?;
         if let Some(drawn) = drawn(&stage) {
             say(quiet, &drawn);
         }
         Ok(stage)
     }
 
-    /// A run as it is to be shown.
-    pub(crate) fn stage(&self, record: &Record, first: i32) -> Result<Stage, Error> {
+    /// How a run is to be shown.
+    pub(crate) fn staging(&self, first: i32) -> saltus_scene::Staging {
         let mut staging = saltus_scene::Staging::new(Frames { rate: self.fps, first, on_twos: self.on_twos });
         staging.snap = self.snap.map(|snap| match snap {
             SnapBy::Gravity => Snap::Gravity,
@@ -102,7 +103,7 @@ impl Staging {
         (staging.squash, staging.stretch) = (self.squash, self.stretch.unwrap_or(0.0));
         (staging.exaggerate, staging.hold) = (self.exaggerate, self.hold);
         (staging.looped, staging.mirror, staging.apexes) = (self.looped, self.mirror, self.apexes);
-        staging.stage(record).map_err(Error::new)
+        staging
     }
 
     /// Sets one of [`Staging::VARIED`] to what would stand behind it.

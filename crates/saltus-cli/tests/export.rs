@@ -251,3 +251,18 @@ fn what_animators_ask_for() {
         "{message}"
     );
 }
+
+#[test]
+fn what_the_request_alone_shows_to_be_too_much_is_refused_before_the_run() {
+    let scene = root().join("examples/scenes/topspin.toml");
+    let folder = TempDir::new().unwrap();
+    let picture = folder.path().join("path.svg");
+    // A run says where it stopped, which is sooner, and what else had to be said of it.
+    let until = [scene.to_str().unwrap(), "--until", "1e12s"];
+    let said = refused(&[&["export", "--to", "glb"], &until[..]].concat());
+    assert!(said.starts_with("error: 1000000000000 s are more than 1000000 frames"), "{said}");
+    let drawn = ["--fps", "24", "--format", "csv", "--plot", picture.to_str().unwrap()];
+    let said = refused(&[&["simulate"], &until[..], &drawn[..]].concat());
+    assert!(said.starts_with("error: the samples are more than 10000000"), "{said}");
+    assert!(!picture.exists());
+}

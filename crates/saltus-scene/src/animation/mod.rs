@@ -157,6 +157,15 @@ impl Staging {
         }
     }
 
+    /// Refuses a scene that asks itself for a longer time than frames can show, before it is run;
+    /// [`Staging::stage`] refuses it too.
+    ///
+    /// # Errors
+    /// [`Error`], with the longest time that there may be.
+    pub fn holds(&self, scene: &Scene) -> Result<(), Error> {
+        scene.run.until.map_or(Ok(()), |until| self.frames.holds(until)).map_err(Error::new)
+    }
+
     /// A run as it is to be shown.
     ///
     /// # Errors

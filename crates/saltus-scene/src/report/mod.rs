@@ -24,6 +24,19 @@ pub enum Sampling {
 }
 
 impl Sampling {
+    /// Refuses more than ten million samples of a run that ends at `until` in s; a step that is not
+    /// above zero is refused with those that are too short.
+    ///
+    /// # Errors
+    /// [`Error`], with how many there may be.
+    pub fn holds(self, until: f64) -> Result<(), Error> {
+        let step = self.step();
+        if step > 0.0 && until / step <= f64::from(MOST_SAMPLES) {
+            return Ok(());
+        }
+        Err(Error::new(format!("the samples are more than {MOST_SAMPLES}: sample less often, or end the run earlier")))
+    }
+
     fn step(self) -> f64 {
         match self {
             Self::Every(step) => step,
@@ -122,13 +135,8 @@ impl<'a> View<'a> {
     /// The motion on a grid of times, each with how many jumps came before.
     fn samples(&self, events: &[Event], sampling: Option<Sampling>) -> Result<Vec<Sample>, Error> {
         let Some(sampling) = sampling else { return Ok(Vec::new()) };
-        let (end, step) = (self.record.until(), sampling.step());
-        // A step that is not above zero is refused with those that are too short.
-        if !(step > 0.0 && end / step <= f64::from(MOST_SAMPLES)) {
-            return Err(Error::new(format!(
-                "the samples are more than {MOST_SAMPLES}: sample less often, or end the run earlier"
-            )));
-        }
+        let end = self.record.until();
+        sampling.holds(end)?;
         let mut samples = Vec::new();
         for t in (0_u32..).map(|k| sampling.time(k)).take_while(|&t| t <= end) {
             let j = events.partition_point(|event| event.t <= t);
