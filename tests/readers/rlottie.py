@@ -1,16 +1,18 @@
 """What rlottie draws of a Lottie: the lowest point of each ball in every frame, in radii above where the ground starts, and how much of that a fifth of a pixel is."""
 import json
+import math
 import sys
 
 import numpy
 from rlottie_python import LottieAnimation
 
-LARGEST = 2000  # pixels along the longer side
+LEAST = 2000  # pixels along the longer side
 BLUR = 0.2  # of a pixel: what an edge that is drawn in 256 shades does not tell
 
 document = json.loads(open(sys.argv[1]).read())
-scale = LARGEST / max(document["w"], document["h"])
-width, height = (round(scale * document[side]) for side in ("w", "h"))
+# A whole number: both sides have whole pixels, and the picture fills them.
+scale = math.ceil(LEAST / max(document["w"], document["h"]))
+width, height = (scale * document[side] for side in ("w", "h"))
 drawn = [layer for layer in document["layers"] if layer["ty"] == 4]
 # Layers with shapes: the balls in order, and the ground last.
 *balls, ground = drawn
