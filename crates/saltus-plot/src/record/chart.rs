@@ -2,9 +2,10 @@
 
 use crate::{Chart, Measure, PlotError, Stroke};
 use saltus_bounce::effects::Buoyancy;
+use saltus_scene::Contact;
 use saltus_scene::plan::{Moment, Record, Segment};
-use saltus_scene::{Contact, Shape};
 
+use super::height::ground;
 use super::title;
 
 /// One coordinate of a segment's motion, by powers of the time since its start.
@@ -25,11 +26,16 @@ fn jumps(record: &Record, ball: usize, point: impl Fn(f64, &Moment) -> [f64; 2])
     own.map(|(t, sides)| [point(t, &sides.before), point(t, &sides.after)]).collect()
 }
 
+/// Whether no ball moves up or down.
+fn level(record: &Record) -> bool {
+    let still = |segment: &Segment| segment.coefficients.iter().all(|moment| moment.velocity.z == 0.0);
+    (0..record.balls()).all(|ball| record.segments(ball).iter().all(still))
+}
+
 pub(super) fn velocity(record: &Record) -> Chart {
     let scene = record.scene();
     // Of several balls one velocity is drawn: upwards, unless none of them moves that way.
-    let level = |ball: usize| record.segments(ball).iter().all(|segment| segment.at(0.0).velocity.z == 0.0);
-    let sideways = record.balls() > 1 && (0..record.balls()).all(level);
+    let sideways = record.balls() > 1 && level(record);
     let what = if sideways { "Velocity along x" } else { "Velocity" };
     let mut chart = Chart::new(&title(scene), ("Time", Measure::Time), (what, Measure::Speed));
     let axes: &[(&str, usize)] = match (scene.dimensions, record.balls()) {
@@ -130,9 +136,14 @@ pub(super) fn energy(record: &Record) -> Chart {
 }
 
 /// Velocity over height; an arrow on each of the first arcs.
-pub(super) fn phase(record: &Record) -> Chart {
+pub(super) fn phase(record: &Record) -> Result<Chart, PlotError> {
     let scene = record.scene();
     const ARROWS: usize = 6;
+    if level(record) {
+        return Err(PlotError::Missing(
+            "velocity over height needs a ball that moves up or down, and this run has none: draw another kind",
+        ));
+    }
     let mut chart = Chart::new(&title(scene), ("Height", Measure::Length), ("Velocity", Measure::Speed));
     for ball in 0..record.balls() {
         let label = if record.balls() > 1 { scene.ball_name(ball) } else { String::new() };
@@ -150,28 +161,24 @@ pub(super) fn phase(record: &Record) -> Chart {
             .map(|segment| Stroke::new(segment.span, part(segment, Moment::height), part(segment, |m| m.velocity.z)));
         chart = chart.line(&label, strokes).jumps(jumps(record, ball, |_, m| point(m))).arrows(arrows);
     }
-    chart
+    Ok(chart)
 }
 
-/// Apex heights above the floor, bounce by bounce; a start at rest is bounce 0.
+/// Apex heights above the floor then below the ball, bounce by bounce; a start at rest is bounce 0.
 pub(super) fn ladder(record: &Record) -> Result<Chart, PlotError> {
     let scene = record.scene();
     /// Apexes below this part of the first are of no bounce that is seen.
     const LEAST: f64 = 1e-6;
-    let level = scene.floors.iter().find_map(|floor| match floor.shape {
-        Shape::Level { height } => Some(height),
-        _ => None,
-    });
-    let level = level.unwrap_or(0.0);
     let mut chart = Chart::new(&title(scene), ("Bounce", Measure::Count), ("Apex", Measure::Length)).logarithmic();
     let mut count = 0;
     for ball in 0..record.balls() {
         let mut heights: Vec<f64> = Vec::new();
+        let ground = |t: f64| ground(record, ball, t).unwrap_or(0.0);
         if scene.balls[ball].velocity.z == 0.0 {
-            heights.push(scene.balls[ball].lowest().z - level);
+            heights.push(scene.balls[ball].lowest().z - ground(0.0));
         }
         let first = usize::from(heights.is_empty());
-        heights.extend(record.apexes(ball).iter().map(|apex| apex.height - level));
+        heights.extend(record.apexes(ball).iter().map(|apex| apex.height - ground(apex.t)));
         let most = heights.iter().copied().fold(0.0, f64::max);
         let numbers = (0_u32..).map(|n| f64::from(n) + if first == 1 { 1.0 } else { 0.0 });
         let points: Vec<[f64; 2]> =
@@ -217,6 +224,51 @@ mod tests {
 
     use super::*;
 
+    fn run(toml: &str) -> Record {
+        Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap()
+    }
+
+    /// A ball that is dropped from `h` above what is below it rises to COR² of that, wherever the
+    /// floor is.
+    #[test]
+    fn rungs_are_above_the_floor_that_the_ball_meets() {
+        let ball =
+            "restitution = 0.5\nball = { position = [0.01, 0.8], velocity = [1e-4, 0] }\nrun = { until = 1.5 }\n";
+        for (floor, h) in [
+            ("{ height = 0.3 }", 0.5),
+            ("[{ height = -0.5 }, { height = -0.2 }]", 1.0),
+            ("{ kind = 'stairs', from = 0, tread = 0.3, rise = 0.2, count = 5 }", 1.0),
+            ("{ kind = 'stairs', from = -0.5, tread = 0.3, rise = 0.2, count = 5 }", 1.2),
+            ("{ kind = 'polyline', points = [[-1, -0.7], [1, -0.7]] }", 1.5),
+        ] {
+            let chart = ladder(&run(&format!("{ball}floor = {floor}\n"))).unwrap();
+            let ends: Vec<f64> = chart.lines[0].1.iter().flat_map(|line| [line.start().1, line.end().1]).collect();
+            for (n, power) in [(0, 0), (1, 2)] {
+                let due = h * 0.5_f64.powi(power);
+                assert!((ends[n] - due).abs() < 1e-9, "{floor}: {ends:?} instead of {due}");
+            }
+        }
+    }
+
+    /// Velocity over height shows arcs, or says that there are none; velocities are drawn upwards
+    /// while anything moves up or down.
+    #[test]
+    fn what_stays_at_its_height_has_no_portrait() {
+        let two = |velocity: &str| {
+            let ball = |x: f64| format!("{{ mass = 1, radius = 0.01, position = [{x}, 1], velocity = {velocity} }}");
+            format!("ball = [{}, {}]\nrun = {{ until = 0.1 }}\n", ball(0.0), ball(1.0))
+        };
+        for (toml, moves) in [
+            (format!("gravity = 0\nrestitution = 1\nfloor = []\n{}", two("[1, 0]")), false),
+            (format!("gravity = 0\nrestitution = 1\nfloor = []\n{}", two("[0, 1]")), true),
+            (format!("restitution = 1\n{}", two("[0, 0]")), true),
+        ] {
+            let record = run(&toml);
+            assert_eq!(phase(&record).is_ok(), moves, "{toml}");
+            assert_eq!(level(&record), !moves, "{toml}");
+        }
+    }
+
     /// Of a ball in a contact that takes time the total never rises, and falls no further than what
     /// the damper took: an elastic one keeps it to a hundred thousandth.
     #[test]
@@ -229,7 +281,7 @@ mod tests {
             ("law = 'hunt-crossley', stiffness = 1e6, cor = 0.8, speed = 4", 0.5),
         ] {
             let toml = format!("contact = {{ {law} }}\nball = {{ mass = 0.1, height = 1 }}\nrun = {{ until = 0.7 }}\n");
-            let record = Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
+            let record = run(&toml);
             assert_eq!(record.impacts().len(), 1);
             let lines = energy(&record).lines;
             let [(_, total), .., (name, spring)] = &lines[..] else { panic!("{} lines", lines.len()) };

@@ -30,6 +30,12 @@ pub(super) fn picture(record: &Record) -> HeightTime {
     picture.contacts(contacts).background(Background::Adaptive)
 }
 
+/// The height of the highest floor where a ball is at a time.
+pub(super) fn ground(record: &Record, ball: usize, t: f64) -> Option<f64> {
+    let x = record.at(ball, t)?.position.x;
+    record.scene().floors.iter().filter_map(|floor| floor.level(x, t)).reduce(f64::max)
+}
+
 /// The ground below each ball over time, each once; none where all of it lies at height zero, or
 /// where there is none.
 pub(super) fn grounds(record: &Record) -> Vec<Vec<Arc>> {
@@ -41,13 +47,9 @@ pub(super) fn grounds(record: &Record) -> Vec<Vec<Arc>> {
     let count = fast.fold(PIECES, f64::max).min(MOST).ceil();
     let mut grounds: Vec<Vec<Arc>> = Vec::new();
     for ball in 0..record.balls() {
-        let level = |t: f64| {
-            let x = record.at(ball, t)?.position.x;
-            scene.floors.iter().filter_map(|floor| floor.level(x, t)).reduce(f64::max)
-        };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
         let times = (0..=count as u32).map(|k| until * (f64::from(k) / count));
-        let points: Vec<[f64; 2]> = times.filter_map(|t| Some([t, level(t)?])).collect();
+        let points: Vec<[f64; 2]> = times.filter_map(|t| Some([t, ground(record, ball, t)?])).collect();
         let ground = joined(&points);
         if ground.iter().any(|arc| arc.extent() != (0.0, 0.0)) && !grounds.contains(&ground) {
             grounds.push(ground);

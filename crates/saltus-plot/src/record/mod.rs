@@ -28,7 +28,7 @@ pub fn svg(record: &Record, kind: Kind) -> Result<String, PlotError> {
         Kind::Height => return height::picture(record).svg(),
         Kind::Velocity => chart::velocity(record),
         Kind::Energy => chart::energy(record),
-        Kind::Phase => chart::phase(record),
+        Kind::Phase => chart::phase(record)?,
         Kind::Ladder => chart::ladder(record)?,
         Kind::Hysteresis => chart::hysteresis(record)?,
         Kind::Path => space::path(record)?,
