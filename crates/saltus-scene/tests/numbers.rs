@@ -21,6 +21,8 @@ fn numbers() -> String {
     let mut text = String::new();
     for path in paths {
         let record = Scene::read(&path).unwrap().plan().unwrap().run().unwrap();
+        // What these scenes show is decided.
+        assert!(record.doubts().is_empty(), "{}: {:?}", path.display(), record.doubts());
         let row = |numbers: Vec<f64>| numbers.iter().map(|x| format!(" {x:.16e}")).collect::<String>();
         let times: Vec<f64> = record.events().iter().map(|event| event.t).collect();
         let _ = writeln!(

@@ -121,7 +121,7 @@ where
     fn modes(&self, _: &Ball<F, R>) -> Vec<Mode> {
         vec![Mode::Flight, Mode::Rest]
     }
-    fn edge(&self, _: &Ball<F, R>, _: Floor) -> String {
+    fn edge(&self, _: &Ball<F, R>, _: Mode, _: Floor) -> String {
         "floor".to_owned()
     }
     fn why(&self, mode: Mode, advance: Advance) -> &'static str {
@@ -172,7 +172,7 @@ impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
     fn modes(&self, _: &Ball<QuadraticDragFlight, R>) -> Vec<Phase> {
         vec![Phase::Rising, Phase::Falling, Phase::Rest]
     }
-    fn edge(&self, _: &Ball<QuadraticDragFlight, R>, turn: Turn) -> String {
+    fn edge(&self, _: &Ball<QuadraticDragFlight, R>, _: Phase, turn: Turn) -> String {
         match turn {
             Turn::Apex => "apex: the velocity falls through zero".to_owned(),
             Turn::Floor => "floor".to_owned(),

@@ -171,7 +171,7 @@ impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
     fn modes(&self, _: &Cloud<3, N, Law>) -> Vec<()> {
         vec![()]
     }
-    fn edge(&self, _: &Cloud<3, N, Law>, touch: Touch) -> String {
+    fn edge(&self, _: &Cloud<3, N, Law>, (): (), touch: Touch) -> String {
         match touch {
             Touch::Balls(..) => "each pair of balls".to_owned(),
             Touch::Low { .. } | Touch::High { .. } => "each ball and each wall".to_owned(),

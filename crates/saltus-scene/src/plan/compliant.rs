@@ -93,7 +93,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
     fn modes(&self, _: &Compliant<L>) -> Vec<Stage> {
         vec![Stage::Fall, Stage::Compression, Stage::Restitution, Stage::Rise, Stage::Lying]
     }
-    fn edge(&self, _: &Compliant<L>, edge: Edge) -> String {
+    fn edge(&self, _: &Compliant<L>, _: Stage, edge: Edge) -> String {
         match edge {
             Edge::FirstContact => "first contact: the height falls through the floor's",
             Edge::GreatestDeformation => "greatest deformation: its rate falls through zero",

@@ -112,12 +112,21 @@ impl SceneView<Model> for FlockView {
         }
         modes
     }
-    fn edge(&self, _: &Model, _: Meeting) -> String {
-        "each pair of balls".to_owned()
+    fn edge(&self, model: &Model, stances: Stances<MOST_IN_SPACE>, meeting: Meeting) -> String {
+        match model.happens(meeting, &stances) {
+            Happens::Balls(i, j) => format!("balls {} and {}", i + 1, j + 1),
+            Happens::To(ball, event) => {
+                let listed = self.among.listed(model.balls()[ball].1.walls(), event);
+                let between = if matches!(event, Event::Meet(_)) { " and" } else { "," };
+                format!("ball {}{between} {listed}", ball + 1)
+            }
+            Happens::Change => "schedule".to_owned(),
+            Happens::Nothing => "nothing".to_owned(),
+        }
     }
     fn edges(&self, model: &Model, stances: Stances<MOST_IN_SPACE>) -> Vec<String> {
         let edges = model.edges(stances);
-        let mut list: Vec<String> = edges.iter().take(1).map(|first| self.edge(model, first)).collect();
+        let mut list = vec!["each pair of balls".to_owned()];
         let events = edges.iter().filter_map(|meeting| match model.happens(meeting, &stances) {
             Happens::To(0, event) => Some(event),
             _ => None,

@@ -414,7 +414,7 @@ where
         }
         modes
     }
-    fn edge(&self, model: &SceneFlyer<N, S, E, G>, event: Event<N>) -> String {
+    fn edge(&self, model: &SceneFlyer<N, S, E, G>, _: Stance<N>, event: Event<N>) -> String {
         self.listed(model.walls(), event)
     }
     fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {

@@ -149,7 +149,7 @@ impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
     fn modes(&self, _: &Line<N, Law>) -> Vec<Lying> {
         vec![Lying::NONE]
     }
-    fn edge(&self, _: &Line<N, Law>, Contact(contact): Contact) -> String {
+    fn edge(&self, _: &Line<N, Law>, _: Lying, Contact(contact): Contact) -> String {
         match contact.checked_sub(1) {
             None => format!("ball {} meets the floor", self.order[0] + 1),
             Some(below) => format!("ball {} meets ball {}", self.order[below] + 1, self.order[contact.min(N - 1)] + 1),

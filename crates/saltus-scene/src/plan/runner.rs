@@ -317,10 +317,15 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
 
     fn doubts(&self) -> Vec<String> {
         let said = |doubt: &InspectionOf<A>| {
-            let edge = self.view.edge(&self.automaton, doubt.edge);
+            let edge = self.view.edge(&self.automaton, doubt.mode, doubt.edge);
             // What follows a colon says what the edge is.
             let name = edge.split(':').next().unwrap_or(&edge);
-            let mode = self.view.mode(doubt.mode, 0);
+            // Of several balls each is in a mode of its own.
+            let mode = if self.view.balls() > 1 {
+                String::new()
+            } else {
+                format!(" in mode {}", self.view.mode(doubt.mode, 0))
+            };
             let times = doubt.doubt().unwrap_or_default();
             let why = match doubt.evidence.doubt() {
                 Some(Doubt::Grazing) => "the error of the steps decides whether it came to that",
@@ -329,7 +334,7 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
                 Some(Doubt::Missed) => "it was passed by the end, and its time was not found",
                 _ => "the search for it was given up",
             };
-            format!("{name} in mode {mode}, {:.9} s to {:.9} s: {why}", times.start, times.end)
+            format!("{name}{mode}, {:.9} s to {:.9} s: {why}", times.start, times.end)
         };
         self.run.trajectory.doubts().iter().map(said).collect()
     }

@@ -57,11 +57,11 @@ pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     fn scene_event(&self, model: &A, jump: &JumpOf<A>, edge: A::Edge) -> SceneEvent;
     /// The modes a run may enter, as far as they differ in how they are advanced.
     fn modes(&self, model: &A) -> Vec<A::Mode>;
-    /// How an edge is listed.
-    fn edge(&self, model: &A, edge: A::Edge) -> String;
+    /// How an edge is listed, as it is in a mode.
+    fn edge(&self, model: &A, mode: A::Mode, edge: A::Edge) -> String;
     /// How the edges of a mode are listed.
     fn edges(&self, model: &A, mode: A::Mode) -> Vec<String> {
-        model.edges(mode).iter().map(|edge| self.edge(model, edge)).collect()
+        model.edges(mode).iter().map(|edge| self.edge(model, mode, edge)).collect()
     }
     /// Why a mode is advanced as it is.
     fn why(&self, mode: A::Mode, advance: Advance) -> &'static str;

@@ -9,6 +9,7 @@ use crate::step::Stepper;
 
 use super::Advance;
 use super::crossing::{Range, Step};
+use super::memory::Kept;
 
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
 /// below what the tolerance allows off by the square of 0.618⁴⁰.
@@ -105,7 +106,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// is of a size that this tolerance does not resolve.
     #[inline]
     fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
-        if self.memory.resolved { None } else { self.resolve(edge, step, root) }
+        let at_start = root < SMALL * step.scale; // no way to be far from zero
+        if self.memory.resolved || at_start { None } else { self.resolve(edge, step, root) }
     }
 
     #[cold]
@@ -119,9 +121,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 
-    /// Whether the error of the step decides that a guard falls at `root`: on an arc that goes on
-    /// as before its jump, which gave the guard no cause to fall again, or at the edge's wall, on
-    /// which it may have stayed.
+    /// Whether the error of the step decides that a guard falls at `root`: where the jump before
+    /// gave it no cause to fall again, or at the edge's wall, on which it may have stayed.
     #[inline]
     pub(super) fn hovers(
         &mut self,
@@ -129,14 +130,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (step, range): (Step<'_, A::State>, Range),
         root: f64,
     ) -> Option<Evidence> {
-        let may = self.memory.goes_on || !self.memory.walls.is_empty();
+        let may = self.memory.kept.is_some() || !self.memory.walls.is_empty();
         if may { self.hovering(edge, (step, range), root) } else { None }
     }
 
     #[cold]
     #[inline(never)]
     fn hovering(&mut self, edge: A::Edge, (step, range): (Step<'_, A::State>, Range), root: f64) -> Option<Evidence> {
-        let goes_on = self.memory.goes_on;
+        let goes_on = match self.memory.kept {
+            Some(Kept::Slope) => true,
+            Some(Kept::State) => self.memory.last == Some(edge),
+            None => false,
+        };
         if !goes_on && self.memory.wall(edge).is_none() {
             return None;
         }

@@ -89,14 +89,23 @@ pub(crate) struct Memory<E, S> {
     pub(super) arrived: Option<S>,
     /// x⁻ of the last crossing on a step, and x' there.
     pub(super) before: Option<(S, S)>,
-    /// Whether this arc goes on with the slope with which the last one ended, or from its state in
-    /// a mode that has the edge just taken.
-    pub(super) goes_on: bool,
+    /// What the last jump has left as it was, if anything.
+    pub(super) kept: Option<Kept>,
     /// Edges that were taken in the last stop because their guards switch there.
     pub(super) switched: Switched<E>,
     /// Whether the last crossing was the rounding of its guard, on an arc that leads away from
     /// zero: jumps have accumulated as far as numbers resolve.
     pub(crate) spurious: bool,
+}
+
+/// What a jump has left as it was, so that it gave no guard a cause to fall that had fallen.
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy)]
+pub(crate) enum Kept {
+    /// The slope: no guard moves otherwise than before.
+    Slope,
+    /// The state alone: the edge just taken is where it was.
+    State,
 }
 
 impl<E: Copy + PartialEq, S: State> Memory<E, S> {
@@ -124,7 +133,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             resolved: false,
             arrived: None,
             before: None,
-            goes_on: false,
+            kept: None,
             switched: Switched::none(),
             spurious: false,
         }

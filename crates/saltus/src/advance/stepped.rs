@@ -20,6 +20,7 @@ use crate::time::{LAST, Span, Time, resolution};
 
 use super::crossing::{OnStep, Range, Step, exceeds};
 use super::grazing::is_alike;
+use super::memory::Kept;
 use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
 
@@ -51,9 +52,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.stepper = self.stepper.adapted(self.memory.gait.stiff);
         let mut slope = self.slope(mode, clock.now, &x)?;
         let before = self.memory.before.take();
-        self.memory.goes_on = before.is_some_and(|(y, fell)| {
-            let again = || self.memory.last.is_some_and(|edge| self.has(mode, edge));
-            is_alike(&fell, &slope) || is_alike(&y, &x) && again()
+        self.memory.kept = before.and_then(|(y, fell)| match (is_alike(&fell, &slope), is_alike(&y, &x)) {
+            (true, _) => Some(Kept::Slope),
+            (false, true) => Some(Kept::State),
+            (false, false) => None,
         });
         if !slope.is_finite() {
             let which = Some(not_finite(&slope));
