@@ -85,6 +85,7 @@ pub(crate) fn note(scene: &Scene) -> Option<String> {
     let cor = law.constant()?;
     let taken = format!("this run takes {:.4}; `restitution = {{ pick = 0 }}` to `1` takes another", cor.value());
     match law {
+        Law::Preset { preset, .. } if low == high => Some(preset.to_string()),
         Law::Preset { preset, .. } => Some(format!("{preset}: {taken}")),
         Law::Range { .. } => Some(format!("COR between {low} and {high}: {taken}")),
         _ => None,

@@ -10,6 +10,11 @@ use crate::unit::superscript;
 /// An axis of more powers of ten than this is labelled by their exponents.
 pub(crate) const MANY_DECADES: f64 = 5.0;
 
+/// An axis of powers of ten has at least so many numbers: fewer do not show that it is one.
+const FEWEST: usize = 3;
+/// And in how many parts it is divided where 1, 2 and 5 times a power are fewer.
+const PARTS: f64 = 8.0;
+
 /// An axis in the units it is labelled with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axis {
@@ -20,6 +25,8 @@ pub(crate) struct Axis {
     step: f64,
     /// Whether the values are powers of ten.
     decades: bool,
+    /// Of powers of ten so near to each other that multiples of this stand between them.
+    part: Option<f64>,
     /// Where everything stands that is no more than this.
     least: Option<f64>,
 }
@@ -28,18 +35,20 @@ impl Axis {
     /// An axis from `low` to `high` with at most `most` ticks, all inside `ticked`.
     pub(crate) fn new(low: f64, high: f64, ticked: (f64, f64), most: usize) -> Self {
         let span = ticked.1 - ticked.0;
-        Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false, least: None }
+        Self { low, high, ticked, step: nice(span / most.max(1) as f64), decades: false, part: None, least: None }
     }
 
     /// An axis without ticks.
     pub(crate) const fn bare(low: f64, high: f64) -> Self {
-        Self { low, high, ticked: (1.0, 0.0), step: 1.0, decades: false, least: None }
+        Self { low, high, ticked: (1.0, 0.0), step: 1.0, decades: false, part: None, least: None }
     }
 
     /// An axis of powers of ten from 10^`low` to 10^`high`.
     pub(crate) fn decades(low: f64, high: f64) -> Self {
         let step = ((high - low) / 8.0).ceil().max(1.0);
-        Self { low, high, ticked: (low, high), step, decades: true, least: None }
+        let even = Self { low, high, ticked: (low, high), step, decades: true, part: None, least: None };
+        let part = (even.regular().len() < FEWEST).then(|| nice((10f64.powf(high) - 10f64.powf(low)) / PARTS));
+        Self { part, ..even }
     }
 
     /// The same axis with a tick at `least` that says that what stands there is no more.
@@ -81,6 +90,11 @@ impl Axis {
 
     fn regular(&self) -> Vec<f64> {
         let slack = 1e-9;
+        if let Some(part) = self.part {
+            let [from, to] = [self.low, self.high].map(|end| 10f64.powf(end) / part);
+            let count = (to.floor() - from.ceil()).max(0.0) as usize;
+            return (0..=count).map(|n| ((from.ceil() + n as f64) * part).log10()).collect();
+        }
         let first = (self.ticked.0 / self.step - slack).ceil();
         let last = (self.ticked.1 / self.step + slack).floor();
         let mut ticks = Vec::new();
@@ -112,6 +126,10 @@ impl Axis {
     fn plain(&self, value: f64) -> String {
         if self.decades && self.high - self.low > MANY_DECADES {
             return format!("10{}", superscript(value.round() as i32));
+        }
+        if let Some(part) = self.part {
+            let decimals = (-(part.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+            return typeset(&format!("{:.decimals$}", 10f64.powf(value)));
         }
         if self.decades {
             let decimals = (-value.floor()).clamp(0.0, 12.0) as usize;
@@ -170,6 +188,18 @@ pub(crate) fn nice(least: f64) -> f64 {
     times * power
 }
 
+/// A reach that has a width.
+pub(crate) fn opened((low, high): (f64, f64)) -> (f64, f64) {
+    let least = 1e-9 * low.abs().max(high.abs());
+    if high - low > least {
+        (low, high)
+    } else if high == 0.0 {
+        (-0.5, 0.5)
+    } else {
+        (low - 0.5 * high.abs(), high + 0.5 * high.abs())
+    }
+}
+
 /// A number with a true minus sign, and thin spaces between thousands from five digits on.
 pub(crate) fn typeset(plain: &str) -> String {
     let (negative, digits) = match plain.strip_prefix('-') {
@@ -225,6 +255,25 @@ mod tests {
         let texts: Vec<_> = axis.ticks().iter().map(|&t| axis.text(t)).collect();
         assert_eq!(texts, ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²"]);
         assert_eq!(Axis::decades(-2.0, 1.0).text(-1.0), "0.1");
+    }
+
+    /// However short a part of a power of ten an axis is, it has numbers, each another.
+    #[test]
+    fn powers_of_ten_that_are_near_have_numbers_too() {
+        for from in 0..97 {
+            for width in [0.06, 0.1, 0.3, 0.61, 1.0, 2.0, 3.4, 3.6, 7.0] {
+                let low = -3.0 + f64::from(from) / 16.0;
+                let axis = Axis::decades(low, low + width);
+                let ticks = axis.ticks();
+                let mut texts: Vec<_> = ticks.iter().map(|&t| axis.text(t)).collect();
+                assert!((FEWEST..=11).contains(&ticks.len()), "{low} + {width}: {texts:?}");
+                assert!(ticks.iter().all(|t| (low..=low + width).contains(t)), "{low} + {width}: {texts:?}");
+                texts.dedup();
+                assert_eq!(texts.len(), ticks.len(), "{low} + {width}: {texts:?}");
+            }
+        }
+        let texts = |axis: Axis| axis.ticks().iter().map(|&t| axis.text(t)).collect::<Vec<_>>();
+        assert_eq!(texts(Axis::decades(24f64.log10(), 47f64.log10())), ["25", "30", "35", "40", "45"]);
     }
 
     #[test]

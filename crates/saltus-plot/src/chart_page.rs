@@ -8,7 +8,7 @@ use plotters::element::EmptyElement;
 use plotters::style::FontStyle;
 use plotters_backend::text_anchor::{HPos, VPos};
 
-use crate::axis::{Axis, MANY_DECADES};
+use crate::axis::{Axis, MANY_DECADES, opened};
 use crate::callout;
 use crate::chart::Chart;
 use crate::curve::Affine;
@@ -135,7 +135,7 @@ fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, PlotError> {
     for trace in traces(chart, &place, edges.1, ty) {
         panel.draw_series([trace]).map_err(failed)?;
     }
-    for (data, ink, full) in discs(chart, x, y) {
+    for (data, ink, full) in discs(chart, x, y, ty) {
         let mut canvas = canvas.try_borrow_mut().map_err(|e| PlotError::Drawing(e.to_string()))?;
         canvas.glaze(&data, ink, if full { 1.0 } else { 0.35 });
     }
@@ -161,18 +161,6 @@ fn legend(chart: &Chart) -> Vec<(Sign, String)> {
     let lines = named.map(|(i, (label, _))| (sign(i), label.clone()));
     let tones = chart.map.iter().flat_map(crate::map::Map::legend);
     tones.chain(lines).chain(chart.limits.iter().map(|(label, _)| (Sign::Limit, label.clone()))).collect()
-}
-
-/// A reach that has a width.
-pub(crate) fn opened((low, high): (f64, f64)) -> (f64, f64) {
-    let least = 1e-9 * low.abs().max(high.abs());
-    if high - low > least {
-        (low, high)
-    } else if high == 0.0 {
-        (-0.5, 0.5)
-    } else {
-        (low - 0.5 * high.abs(), high + 0.5 * high.abs())
-    }
 }
 
 /// A reach by powers of ten, in the unit.
@@ -239,13 +227,16 @@ fn traces(chart: &Chart, on: &Place, [top, bottom]: [f64; 2], ty: Type) -> Vec<T
     traces
 }
 
+/// A disc to scale whose radius would be less than this many widths of a line would be hidden by
+/// the line through it.
+const LEAST_DISC: f64 = 1.5;
+
 /// Discs as paths, pale ones first.
-fn discs(chart: &Chart, x: Affine, y: Affine) -> Vec<(String, Ink, bool)> {
+fn discs(chart: &Chart, x: Affine, y: Affine, ty: Type) -> Vec<(String, Ink, bool)> {
     let mut discs: Vec<_> = chart.discs.clone();
     discs.sort_by_key(|(_, disc)| disc.full);
     let circle = |(line, disc): &(usize, crate::chart::Disc)| {
-        // To scale, but never too small to see.
-        let r = (disc.radius * x.scale.abs()).max(2.0);
+        let r = (disc.radius * x.scale.abs()).max(LEAST_DISC * ty.line());
         let (cx, cy) = (x.at(disc.at[0]), y.at(disc.at[1]));
         let [r2, x0, y0, d] = [r, cx - r, cy, 2.0 * r].map(|v| number(v, 2));
         (format!("M{x0} {y0}a{r2} {r2} 0 1 0 {d} 0a{r2} {r2} 0 1 0 -{d} 0Z"), Ink::series(*line), disc.full)

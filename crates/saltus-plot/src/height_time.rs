@@ -1,5 +1,6 @@
 //! Height against time: what is measured, what the model says, and how far apart they are.
 
+use crate::axis::opened;
 use crate::data::{Arc, Mark, Measured, Residual};
 use crate::error::{PlotError, finite};
 use crate::residuals;
@@ -56,6 +57,7 @@ pub struct HeightTime {
     pub(crate) measured: Vec<Measured>,
     pub(crate) contacts: Vec<f64>,
     pub(crate) grounds: Vec<Vec<Arc>>,
+    floorless: bool,
     pub(crate) residuals: Vec<Residual>,
     unit: Option<HeightUnit>,
     size: Option<(f64, f64)>,
@@ -74,6 +76,7 @@ impl HeightTime {
             measured: Vec::new(),
             contacts: Vec::new(),
             grounds: Vec::new(),
+            floorless: false,
             residuals: Vec::new(),
             unit: None,
             size: None,
@@ -116,6 +119,18 @@ impl HeightTime {
     pub fn ground(mut self, arcs: impl IntoIterator<Item = Arc>) -> Self {
         self.grounds.push(arcs.into_iter().collect());
         self
+    }
+
+    /// No floor is drawn at height zero: there is none.
+    #[must_use]
+    pub fn floorless(mut self) -> Self {
+        self.floorless = true;
+        self
+    }
+
+    /// Whether the floor is at height zero all the time.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.grounds.is_empty() && !self.floorless
     }
 
     /// How high the floor is at `t` in s under the motion that is nearest to it.
@@ -179,7 +194,7 @@ impl HeightTime {
     pub(crate) fn bounds(&self) -> Result<Bounds, PlotError> {
         let mut time = Reach::default();
         let mut height = Reach::default();
-        if self.grounds.is_empty() {
+        if self.is_flat() {
             height.include(0.0);
         }
         let motions = self.motions.iter().map(|motion| ("motion", &motion.arcs));
@@ -214,7 +229,14 @@ impl HeightTime {
         finite(time.high - time.low, || "the length of the time axis".to_owned())?;
         finite(height.high - height.low, || "the length of the height axis".to_owned())?;
         let time = time.opened();
-        let height = if height.largest() < NEAREST { Reach { low: 0.0, high: 1.0 } } else { height };
+        let height = match height {
+            _ if height.largest() < NEAREST => Reach { low: 0.0, high: 1.0 },
+            Reach { low, high } if !self.is_flat() => {
+                let (low, high) = opened((low, high));
+                Reach { low, high }
+            }
+            from_floor => from_floor,
+        };
         Ok(Bounds {
             time_unit: Unit::of_time(time.largest(), time.high - time.low),
             height_unit: Unit::of_height(self.unit, height.largest(), height.high - height.low),

@@ -163,7 +163,7 @@ fn panels(
     w: f64,
 ) -> Result<(), PlotError> {
     let b = ty.base;
-    let (height, sole) = height_axis(bounds, parts.main, ty, picture.grounds.is_empty());
+    let (height, sole) = height_axis(bounds, parts.main, ty, picture.is_flat());
     let below = parts.residuals.map(|(_, _, length)| residuals::axis(&picture.residuals, length, ty));
     let widest = |axis: &Axis| axis.ticks().iter().map(|&t| width(&axis.text(t), b, false)).fold(0.0, f64::max);
     let numbers = widest(&height).max(below.as_ref().map_or(0.0, widest));
@@ -265,7 +265,7 @@ fn heights(
             .map_err(failed)?;
     }
     let (x, y) = (x.per_unit(bounds.time_unit.size), y.per_unit(bounds.height_unit.size));
-    if picture.grounds.is_empty() {
+    if picture.is_flat() {
         let floor = PathElement::new(vec![(t0, 0.0), (t1, 0.0)], Ink::Floor.stroke(1.6 * ty.hairline()));
         chart.draw_series([floor]).map_err(failed)?;
     }

@@ -91,7 +91,8 @@ impl Preset {
 impl fmt::Display for Preset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.cor().map(Cor::value);
-        write!(f, "{} on {}: e = {low:.3} to {high:.3} ({}; {})", self.ball, self.floor, self.note, self.source)
+        let to = if low == high { String::new() } else { format!(" to {high:.3}") };
+        write!(f, "{} on {}: e = {low:.3}{to} ({}; {})", self.ball, self.floor, self.note, self.source)
     }
 }
 

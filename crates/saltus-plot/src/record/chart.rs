@@ -28,7 +28,8 @@ fn jumps(record: &Record, ball: usize, point: impl Fn(f64, &Moment) -> [f64; 2])
 
 /// Whether no ball moves up or down.
 fn level(record: &Record) -> bool {
-    let still = |segment: &Segment| segment.coefficients.iter().all(|moment| moment.velocity.z == 0.0);
+    let rises = |segment: &Segment| segment.coefficients.iter().any(|moment| moment.velocity.z != 0.0);
+    let still = |segment: &Segment| segment.span == 0.0 || !rises(segment);
     (0..record.balls()).all(|ball| record.segments(ball).iter().all(still))
 }
 

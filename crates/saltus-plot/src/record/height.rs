@@ -25,6 +25,9 @@ pub(super) fn picture(record: &Record) -> HeightTime {
     for ground in grounds(record) {
         picture = picture.ground(ground);
     }
+    if scene.floors.is_empty() {
+        picture = picture.floorless();
+    }
     let impacts = record.impacts().into_iter();
     let contacts = impacts.filter(|impact| matches!(impact.with, With::Floor(_))).map(|impact| impact.t);
     picture.contacts(contacts).background(Background::Adaptive)
