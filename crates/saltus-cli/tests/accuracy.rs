@@ -37,7 +37,7 @@ fn the_advice_comes_first() {
     let (all, _) = done(&["accuracy", TOPSPIN, "--all"]);
     assert!(rows(&text) < 15 && rows(&all) >= 30, "{text}{all}");
     let shows: usize = text.split("(--all shows ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
-    assert_eq!(all.lines().count() - text.lines().count(), shows + 2, "two gaps between three steppers");
+    assert_eq!(all.lines().count() - text.lines().count(), shows + 3, "three gaps between four methods");
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn programs_get_the_same_as_json() {
     let (text, _) = done(&["accuracy", TOPSPIN, "--target", "10um, 1us", "--format", "json"]);
     let json: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["schema"], 1);
-    assert_eq!(json["trials"].as_array().unwrap().len(), 35);
+    assert_eq!(json["trials"].as_array().unwrap().len(), 45);
     assert_eq!((json["target"]["length_m"].as_f64(), json["target"]["time_s"].as_f64()), (Some(1e-5), Some(1e-6)));
     let recommended = &json["recommended"];
     let run = json["trials"].as_array().unwrap().iter().find(|trial| trial["run"] == recommended["run"]).unwrap();
@@ -133,7 +133,7 @@ fn a_picture_is_drawn() {
         "frame by frame",
         "10⁻",
         ">target 1 mm<",
-        ">Tsit5 1e-3: ",
+        ">series 1e-3: ",
     ] {
         assert!(svg.contains(words), "{words}: {svg}");
     }

@@ -262,9 +262,10 @@ impl Accuracy {
         if solved {
             attempt(planned, Way::Formulas);
         }
-        for stepper in [Stepper::Tsit5, Stepper::Dop853, Stepper::Rodas5p] {
+        for stepper in [Stepper::Tsit5, Stepper::Dop853, Stepper::Rodas5p, Stepper::Series] {
             for tolerance in TOLERANCES {
-                if let Some(plan) = scene.steppable() {
+                let plan = if stepper == Stepper::Series { scene.expandable() } else { scene.steppable() };
+                if let Some(plan) = plan {
                     attempt(plan, Way::Steps { stepper, tolerance });
                 }
             }

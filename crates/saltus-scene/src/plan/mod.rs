@@ -157,8 +157,9 @@ impl Plan {
         match way {
             Way::Formulas => {}
             Way::Steps { stepper, tolerance } => {
+                // A series is a solution of the flow, which pure steps do not ask for.
                 (self.options.method, self.options.tolerance, self.options.stepped) =
-                    (Method(stepper), tolerance, true);
+                    (Method(stepper), tolerance, stepper != Stepper::Series);
             }
             Way::Frames { rate } => self.options.frames = Some(rate),
         }
@@ -218,6 +219,14 @@ impl Scene {
             Model::Flyer => Some(plan),
             _ => (!plan.options.solved).then_some(plan),
         }
+    }
+
+    /// The same scene with flights advanced by Taylor series; `None` if none of its modes is.
+    pub(super) fn expandable(&self) -> Option<Plan> {
+        let mut scene = self.clone();
+        scene.run.stepper = Some(Stepper::Series);
+        let plan = scene.plan().ok()?;
+        plan.explanation.modes.iter().any(|mode| mode.advance == Advance::Series).then_some(plan)
     }
 
     fn planned(&self, (model, runner, absolute): Chosen) -> Plan {
