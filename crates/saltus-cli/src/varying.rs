@@ -31,6 +31,6 @@ pub(crate) struct Varying {
 
 impl Varying {
     pub(crate) fn vary(&self) -> Vary {
-        Vary { variations: self.variations.clone(), random: self.random, seed: self.seed }
+        Vary { variations: self.variations.clone(), random: self.random, seed: self.seed, rows: false }
     }
 }

@@ -1,5 +1,7 @@
 //! What a table of many runs may have of each, and how it is written.
 
+use crate::cell::Cells;
+
 /// A result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -95,6 +97,15 @@ impl Column {
             Self::Steps => "How many steps were tried",
             Self::Evaluations => "How often flows and guards were evaluated",
             Self::Why => "Why there was no run",
+        }
+    }
+
+    /// A column of its kind, without cells.
+    pub(crate) const fn cells(self) -> Cells {
+        match self {
+            Self::Impacts | Self::Jumps | Self::Steps | Self::Evaluations => Cells::COUNTS,
+            Self::End | Self::Why => Cells::WORDS,
+            _ => Cells::NUMBERS,
         }
     }
 }

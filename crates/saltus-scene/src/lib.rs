@@ -46,6 +46,7 @@ pub mod accuracy;
 mod air;
 mod animation;
 mod ball;
+mod cell;
 mod check;
 mod column;
 mod contact;

@@ -4,8 +4,8 @@
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
+pub use crate::cell::{Cell, Cells};
 pub use crate::column::{Column, RowFormat};
-use crate::number::number;
 use crate::plan::{Moment, Outcome};
 use crate::vary::{Value, Variation, Vary, refused};
 use crate::{Error, Run, Scene, Template};
@@ -14,7 +14,7 @@ use crate::{Error, Run, Scene, Template};
 /// be made in any order and anywhere.
 ///
 /// ```
-/// use saltus_scene::sweep::{RowFormat, Sweep};
+/// use saltus_scene::sweep::{Cells, RowFormat, Sweep};
 /// use saltus_scene::{Run, vary::Vary};
 /// let vary = Vary::new(&["restitution=0.5:0.9:5"])?;
 /// let toml = b"restitution = 0.8\nball = { height = '1 m' }\n";
@@ -24,6 +24,13 @@ use crate::{Error, Run, Scene, Template};
 /// assert_eq!(sweep.text(), sweep.header() + &rows.iter().map(|row| row.text.as_str()).collect::<String>());
 /// assert!(rows.iter().all(|row| sweep.read(&row.text).as_ref() == Some(row)));
 /// assert!(rows.len() == 5 && rows[4].text.starts_with("4,0.9,") && rows[4].why.is_none());
+///
+/// // By columns.
+/// let mut columns = sweep.columns();
+/// for run in 0..sweep.runs() {
+///     columns.iter_mut().zip(sweep.cells(run)).for_each(|(column, cell)| column.push(cell));
+/// }
+/// assert_eq!(columns[1], Cells::Numbers(vec![Some(0.5), Some(0.6), Some(0.7), Some(0.8), Some(0.9)]));
 /// # Ok::<(), saltus_scene::Error>(())
 /// ```
 #[derive(Debug)]
@@ -143,8 +150,28 @@ impl<'a> Sweep<'a> {
     pub fn row(&self, run: u64) -> Row {
         let values = self.vary.values(run);
         let came = self.came(&values);
-        let (text, numbers) = self.rows.row(run, &values, &came);
-        Row { text, numbers, why: came.err().map(|nothing| nothing.why) }
+        let cells = self.rows.row(run, &values, &came);
+        let numbers = cells.iter().map(Cell::number).collect();
+        Row { text: self.rows.line(&cells), numbers, why: came.err().map(|nothing| nothing.why) }
+    }
+
+    /// The cells of a run, counted from 0, in the order of [`Sweep::headers`].
+    #[must_use]
+    pub fn cells(&self, run: u64) -> Vec<Cell> {
+        let values = self.vary.values(run);
+        self.rows.row(run, &values, &self.came(&values))
+    }
+
+    /// A column without cells for each of [`Sweep::headers`], to be filled from [`Sweep::cells`].
+    #[must_use]
+    pub fn columns(&self) -> Vec<Cells> {
+        let varied = |of: &Variation| if of.is_words() { Cells::WORDS } else { Cells::NUMBERS };
+        let mut columns = vec![Cells::COUNTS];
+        columns.extend(self.vary.variations.iter().map(varied));
+        for &column in &self.rows.columns {
+            columns.extend(self.rows.names(column).iter().map(|_| column.cells()));
+        }
+        columns
     }
 
     /// A row read back from its line; `None` if the line has other cells than the table.
@@ -179,43 +206,6 @@ impl<'a> Sweep<'a> {
 fn made(template: &Template<'_>, values: &[Value], end: Run) -> Result<Scene, crate::SceneError> {
     let values: Vec<&str> = values.iter().map(|value| value.toml.as_str()).collect();
     template.scene(&values, end)
-}
-
-/// What stands in a cell.
-enum Cell {
-    None,
-    Number(f64),
-    /// A number as text.
-    Written(String),
-    Count(u64),
-    Word(String),
-}
-
-impl Cell {
-    fn text(&self) -> Cow<'_, str> {
-        match self {
-            Self::None => Cow::Borrowed(""),
-            Self::Number(value) => number(*value).into(),
-            Self::Written(text) | Self::Word(text) => text.into(),
-            Self::Count(count) => count.to_string().into(),
-        }
-    }
-
-    #[allow(clippy::cast_precision_loss)] // 53 bits
-    fn number(&self) -> Option<f64> {
-        match self {
-            Self::Number(value) => Some(*value).filter(|value| value.is_finite()),
-            Self::Count(count) => Some(*count as f64),
-            Self::Written(number) => number.parse().ok(),
-            Self::None | Self::Word(_) => None,
-        }
-    }
-}
-
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Self {
-        value.map_or(Self::None, Self::Number)
-    }
 }
 
 /// The rows of a table.
@@ -305,7 +295,7 @@ impl Rows {
     }
 
     /// The row of a run, or of one that came to nothing: `end` says how, and `why`.
-    fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> (String, Vec<Option<f64>>) {
+    fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> Vec<Cell> {
         let mut cells = Vec::with_capacity(self.headers.len());
         cells.push(Cell::Count(run));
         let varied = |value: &Value| if value.word { Cell::Word } else { Cell::Written }(value.cell.clone());
@@ -341,7 +331,7 @@ impl Rows {
                 Column::Why => Cell::None,
             });
         }
-        (self.line(&cells), cells.iter().map(Cell::number).collect())
+        cells
     }
 
     fn parts(&self, column: Column, moment: &Moment) -> impl Iterator<Item = Cell> + use<> {

@@ -28,6 +28,8 @@ pub struct Vary {
     pub random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
     pub seed: u64,
+    /// Run n takes value n of each instead: rows of a design.
+    pub rows: bool,
 }
 
 impl Vary {
@@ -38,7 +40,7 @@ impl Vary {
     /// `KEY=A,B,C`.
     pub fn new(texts: &[&str]) -> Result<Self, Error> {
         let variations = texts.iter().map(|text| text.parse().map_err(Error::new)).collect::<Result<_, _>>()?;
-        Ok(Self { variations, random: None, seed: 1 })
+        Ok(Self { variations, random: None, seed: 1, rows: false })
     }
 
     /// The variations as they were written.
@@ -66,6 +68,7 @@ impl Vary {
     pub fn runs(&self) -> Result<u64, Error> {
         let runs = match self.random {
             Some(count) => u128::from(count),
+            None if self.rows => u128::from(self.length()?),
             None => self.variations.iter().try_fold(1_u128, |runs, variation| {
                 let count = variation.count().ok_or_else(|| {
                     let (key, text) = (&variation.key, &variation.text);
@@ -84,12 +87,28 @@ impl Vary {
         }
     }
 
+    /// How many values each variation has, of a design.
+    fn length(&self) -> Result<u64, Error> {
+        let count = |variation: &Variation| variation.count().unwrap_or(0);
+        let length = self.variations.first().map_or(0, count);
+        match self.variations.iter().find(|variation| count(variation) != length) {
+            None => Ok(length),
+            Some(other) => {
+                let (key, there, first) = (&other.key, count(other), &self.variations[0].key);
+                Err(Error::new(format!("`{first}` has {length} values, and `{key}` {there}: a design has rows")))
+            }
+        }
+    }
+
     /// The values of a run, counted from 0, one for each variation.
     #[must_use]
     pub fn values(&self, run: u64) -> Vec<Value> {
         if self.random.is_some() {
             let mut draws = Draws::of(self.seed, run);
             return self.variations.iter().map(|variation| draws.next(variation)).collect();
+        }
+        if self.rows {
+            return self.variations.iter().map(|variation| variation.value(run)).collect();
         }
         // Every value with every other, the last variation fastest.
         let mut rest = run;
@@ -121,4 +140,38 @@ impl Vary {
 pub fn refused(error: &SceneError) -> String {
     let says: Vec<&str> = [Some(error.message()), error.help()].into_iter().flatten().collect();
     says.join(": ").replace('\n', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Variation, Vary};
+
+    proptest! {
+        /// Run n of a design has value n of every key, to the bit; unequal lengths are refused.
+        #[test]
+        fn a_design_has_rows(rows in prop::collection::vec((-1e6..1e6_f64, "[a-z0-9 ]{1,6}"), 1..20), more in 1..3_usize) {
+            let numbers: Vec<f64> = rows.iter().map(|row| row.0).collect();
+            let words: Vec<String> = rows.iter().map(|row| row.1.clone()).collect();
+            let of = |numbers: Vec<f64>| Vary {
+                variations: vec![
+                    Variation::numbers("restitution", numbers).expect("a list"),
+                    Variation::words("gravity", &words).expect("a list"),
+                ],
+                random: None,
+                seed: 1,
+                rows: true,
+            };
+            let vary = of(numbers.clone());
+            prop_assert_eq!(vary.runs().ok(), Some(rows.len() as u64));
+            for (n, (number, word)) in rows.iter().enumerate() {
+                let values = vary.values(n as u64);
+                prop_assert_eq!(values[0].cell.parse::<f64>().map(f64::to_bits), Ok((number + 0.0).to_bits()));
+                prop_assert!(values[1].word && values[1].cell == *word);
+            }
+            let longer = numbers.iter().copied().cycle().take(rows.len() + more).collect();
+            prop_assert!(of(longer).runs().is_err());
+        }
+    }
 }

@@ -74,17 +74,27 @@ impl FromStr for Variation {
     fn from_str(text: &str) -> Result<Self, String> {
         let (key, values) =
             text.split_once('=').ok_or("a key and its values have `=` between them, such as restitution=0.5:0.9:41")?;
-        let (key, values) = (key.trim(), values.trim());
-        let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-        if !key.split('.').all(|step| !step.is_empty() && step.chars().all(plain)) {
-            return Err(format!("'{key}' is no key: write a path such as ball.height or floor.0.friction"));
-        }
-        if values.contains(['"', '\'', '\\']) || values.contains(char::is_control) {
-            return Err("values stand without quotes, such as ball.height=1m:10m:100".to_owned());
-        }
+        let (key, values) = (path(key.trim())?, bare(values.trim())?);
         let values = if values.contains(':') { range(values)? } else { list(values)? };
-        Ok(Self { key: key.to_owned(), text: text.trim().to_owned(), values })
+        Ok(Self { key, text: text.trim().to_owned(), values })
     }
+}
+
+/// A key, if it is the path of a value.
+fn path(key: &str) -> Result<String, String> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    if key.split('.').all(|step| !step.is_empty() && step.chars().all(plain)) {
+        return Ok(key.to_owned());
+    }
+    Err(format!("'{key}' is no key: write a path such as ball.height or floor.0.friction"))
+}
+
+/// Values, if nothing in them is more than text in TOML.
+fn bare(values: &str) -> Result<&str, String> {
+    if values.contains(['"', '\'', '\\']) || values.contains(char::is_control) {
+        return Err("values stand without quotes, such as ball.height=1m:10m:100".to_owned());
+    }
+    Ok(values)
 }
 
 /// FROM:TO:COUNT, with `:log` behind it or not; for random draws without COUNT.
@@ -159,6 +169,32 @@ fn ratio(unit: &str, other: &str) -> Result<f64, String> {
 }
 
 impl Variation {
+    /// A list of numbers, in the unit that the key has.
+    ///
+    /// # Errors
+    /// What is wrong with the key, numbers that are not finite, and no numbers.
+    pub fn numbers(key: &str, values: Vec<f64>) -> Result<Self, String> {
+        if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(format!("a value of `{key}` is {value}"));
+        }
+        Self::listed(key, values.into_iter().map(|value| Value::number(value, None)).collect())
+    }
+
+    /// A list of words, amounts with their unit among them.
+    ///
+    /// # Errors
+    /// What is wrong with the key or a word, and no words.
+    pub fn words(key: &str, words: &[String]) -> Result<Self, String> {
+        Self::listed(key, words.iter().map(|word| bare(word).map(Value::word)).collect::<Result<_, _>>()?)
+    }
+
+    fn listed(key: &str, list: Vec<Value>) -> Result<Self, String> {
+        if list.is_empty() {
+            return Err(format!("`{key}` has no values"));
+        }
+        Ok(Self { key: path(key)?, text: key.to_owned(), values: Values::List { list, unit: None } })
+    }
+
     /// How many values it takes; `None` for a range without a count.
     #[must_use]
     pub fn count(&self) -> Option<u64> {
