@@ -8,6 +8,7 @@ use saltus_fit::{Ball, CorModel, Fit, Loss, ReadOptions, Table};
 use saltus_plot::fit as pictures;
 
 use crate::fail::{self, named};
+use crate::signal::patiently;
 
 /// A number in SI units, or text with a unit.
 #[derive(FromPyObject)]
@@ -181,22 +182,23 @@ impl Options {
 
 /// Fits the tables at `paths`, or the one whose text is `bytes`.
 #[pyfunction]
-#[pyo3(signature = (options, *, name="table", bytes=None, paths=Vec::new()))]
+#[pyo3(signature = (options, *, name="table".to_owned(), bytes=None, paths=Vec::new()))]
 pub(crate) fn fit(
     py: Python<'_>,
     options: Options,
-    name: &str,
-    bytes: Option<&[u8]>,
+    name: String,
+    bytes: Option<Vec<u8>>,
     paths: Vec<PathBuf>,
 ) -> PyResult<Report> {
-    let (read, fit) = (options.read()?, options.fit()?);
-    let table = py.detach(|| match bytes {
-        Some(bytes) => Table::parse(name, bytes, &read),
-        None => Table::read_all(&paths, &read),
-    });
-    let table = table.map_err(|error| fail::table(py, &error))?;
-    let report = py.detach(|| fit.run(&table).and_then(|report| fit.advised(&table, report, options.want)));
-    report.map(Report).map_err(fail::saltus)
+    let (read, fit, want) = (options.read()?, options.fit()?, options.want);
+    let report = patiently(py, move || {
+        let table = match bytes {
+            Some(bytes) => Table::parse(&name, &bytes, &read),
+            None => Table::read_all(&paths, &read),
+        };
+        table.map(|table| fit.run(&table).and_then(|report| fit.advised(&table, report, want)))
+    })?;
+    report.map_err(|error| fail::table(py, &error))?.map(Report).map_err(fail::saltus)
 }
 
 /// What a unit is of: "length", "time"; `None` for any other.

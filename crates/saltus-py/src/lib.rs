@@ -4,6 +4,7 @@ mod fail;
 mod fit;
 mod hybrid;
 mod scene;
+mod signal;
 
 use pyo3::prelude::*;
 

@@ -1,14 +1,9 @@
 """Hybrid systems of plain functions: laws of the tracing, of runs, and of what fails."""
 
-import gc
 import math
-import os
 import pickle
-import resource
-import signal
 import threading
 import time
-import warnings
 
 import numpy as np
 import pytest
@@ -238,23 +233,6 @@ def test_another_thread_runs_meanwhile():
 # -- what fails
 
 
-class Broken(Exception):
-    pass
-
-
-def test_what_a_function_raises_is_the_cause():
-    def flow(t, x):
-        if float(x[0]) > 0.5:
-            raise Broken("the sensor is gone")
-        return [1.0]
-
-    with pytest.warns(saltus.TracingWarning):
-        system = saltus.Hybrid(1).mode("m", flow)
-    with pytest.raises(saltus.RunError, match="the sensor is gone") as failed:
-        system.run("m", [0.0], (0, 2))
-    assert isinstance(failed.value.__cause__, Broken) and 0 < failed.value.t <= 0.6
-
-
 @pytest.mark.parametrize(
     ("given", "error", "says"),
     [
@@ -279,54 +257,6 @@ def test_what_a_function_raises_is_the_cause():
 def test_what_makes_no_sense_is_refused_in_words(given, error, says):
     with pytest.raises(error, match=says):
         given()
-
-
-@pytest.mark.parametrize("traced", [True, False])
-def test_ctrl_c_ends_a_run(traced):
-    flow = (lambda t, x: [x[1], -x[0]]) if traced else (lambda t, x: [float(x[1]), -float(x[0])])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        system = saltus.Hybrid(2).mode("swing", flow)
-    pressed = []
-
-    def press():
-        time.sleep(0.3)
-        pressed.append(time.perf_counter())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    thread = threading.Thread(target=press)
-    thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        system.run("swing", [1.0, 0.0], (0, 1e12), method="dop853")
-    took = time.perf_counter() - pressed[0]
-    thread.join()
-    assert took < 0.25
-
-
-def test_runs_leave_no_memory_behind():
-    def flow(t, x):
-        return [float(x[1]), -9.81]
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        called = saltus.Hybrid(2).mode("m", flow).edge("m", "m", lambda t, x: x[0], lambda t, x: [0.0, -0.5 * x[1]])
-    traced = ball()
-
-    def some(count):
-        for _ in range(count):
-            traced.run("flight", [1.0, 0.0], (0, 1)).jumps  # noqa: B018
-            try:
-                traced.run("flight", [-1.0, 0.0], (0, 1))
-            except saltus.RunError:
-                pass
-        for _ in range(count // 50):
-            called.run("m", [1.0, 0.0], (0, 0.6))
-        gc.collect()
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-
-    some(2000)
-    first = some(1000)
-    assert some(20_000) - first < 4_000  # kB
 
 
 def test_a_limit_on_bytes_ends_a_run():

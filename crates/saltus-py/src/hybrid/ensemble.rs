@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use super::model::Vector;
 use super::run::{Course, End, Failure, Options, drive};
 use super::{Hybrid, Model};
+use crate::signal::Signals;
 
 /// What comes of each run, by columns.
 #[derive(Default)]
@@ -74,14 +75,11 @@ pub(super) fn run<'py, S: Vector>(
             error.map(|e| e.to_string()).or(raised.map(|e| e.to_string())).unwrap_or_default()
         })
     };
-    let mut columns = Columns::default();
+    let (mut columns, mut signals) = (Columns::default(), Signals::new());
     let done = py.detach(|| {
         saltus::ensemble(0..count, one, |run, came| {
             columns.push(run, n, came);
-            match Python::attach(|py| py.check_signals()) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(signal) => ControlFlow::Break(signal),
-            }
+            signals.ask()
         })
     });
     if let ControlFlow::Break(signal) = done {

@@ -1,7 +1,6 @@
 //! Runs of a model: recorded, with derivatives, and many at once.
 
 use std::ops::{ControlFlow, Range};
-use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use saltus::step::Either;
@@ -12,9 +11,7 @@ use saltus::{
 
 use super::model::{Model, Vector};
 use super::names::{Edge, Mode};
-
-/// How often Python is asked for a signal, such as Ctrl-C: sooner than one who waits notices.
-pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
+use crate::signal::Signals;
 
 /// How many pieces and jumps pass between looks at the clock.
 const LOOKS: u32 = 32;
@@ -72,7 +69,7 @@ pub(crate) struct Course {
 
 /// Ends a run on a signal, and where its record takes too many bytes.
 struct Watch {
-    until: Instant,
+    signals: Signals,
     looks: u32,
     room: usize,
     signal: Option<PyErr>,
@@ -80,7 +77,7 @@ struct Watch {
 
 impl Watch {
     fn new(room: usize) -> Self {
-        Self { until: Instant::now() + PATIENCE, looks: 0, room, signal: None }
+        Self { signals: Signals::new(), looks: 0, room, signal: None }
     }
 
     #[inline]
@@ -94,17 +91,7 @@ impl Watch {
     }
 
     fn ask(&mut self) -> ControlFlow<()> {
-        if Instant::now() < self.until {
-            return ControlFlow::Continue(());
-        }
-        self.until = Instant::now() + PATIENCE;
-        match Python::attach(|py| py.check_signals()) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(signal) => {
-                self.signal = Some(signal);
-                ControlFlow::Break(())
-            }
-        }
+        self.signals.ask().map_break(|signal| self.signal = Some(signal))
     }
 }
 
