@@ -5,6 +5,7 @@ mod fit;
 mod hybrid;
 mod scene;
 mod signal;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -19,6 +20,8 @@ mod core {
     use super::hybrid::{Hybrid, Run, Tape};
     #[pymodule_export]
     use super::scene::{Motion, explain, simulate, solve};
+    #[pymodule_export]
+    use super::sweep::{sweep_plan, sweep_rows};
 
     use pyo3::prelude::*;
 

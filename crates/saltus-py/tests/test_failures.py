@@ -143,6 +143,7 @@ REPEATED = {
     "scenes that fail": (5_000, lambda: fails(lambda: saltus.simulate(restitution=2.0, ball={}), saltus.SceneError)),
     "fits": (500, lambda: saltus.fit([100, 64, 41, 26], "cm", sigma_height="5 mm").cor),
     "tables that fail": (2_000, lambda: fails(lambda: saltus.fit({"a": ["x"]}), saltus.TableError)),
+    "sweeps": (1_000, lambda: saltus.sweep(DROP, vary={"restitution": [0.5, 0.6]}, most_jumps=2, progress=False, chunk=2)),
 }  # fmt: skip
 
 
@@ -181,6 +182,7 @@ LONG = {
     "a derivative": lambda: swing(True).gradient("swing", [1.0, 0.0], (0, 1e12), by=["x0"], method="dop853"),
     "a scene": lambda: saltus.simulate(DROP | {"restitution": 0.9999999, "drag": {"per_length": 0.1}}, most_jumps=500_000, until=1e9),
     "a fit": lambda: saltus.fit(trials(), bootstrap=1000),
+    "a sweep": lambda: saltus.sweep(DROP, vary={"restitution": "0.1:0.9:10000", "ball.height": "1:9:1000"}, progress=False),
 }  # fmt: skip
 
 

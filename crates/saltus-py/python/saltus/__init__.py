@@ -3,6 +3,7 @@
 - :class:`Hybrid`: flows, guards and resets as plain functions, run at compiled speed
 - :func:`fit`: from a table of bounces to a COR with its uncertainty and a verdict
 - :func:`simulate`, :func:`explain`, :func:`solve`: scenes of bouncing balls
+- :func:`sweep`: a scene many times, here or on many machines
 """
 
 from ._core import RunError, SaltusError, SceneError, TableError, __version__
@@ -10,6 +11,7 @@ from ._fit import Cor, Finding, Fit, fit
 from ._hybrid import Ensemble, Gradient, Hybrid, Run, TracingWarning
 from ._picture import Svg
 from ._scene import Moment, Motion, Scene, Solved, explain, simulate, solve
+from ._sweep import Sweep, sweep
 
 __all__ = [
     "Cor",
@@ -27,6 +29,7 @@ __all__ = [
     "SceneError",
     "Solved",
     "Svg",
+    "Sweep",
     "TableError",
     "TracingWarning",
     "__version__",
@@ -34,4 +37,5 @@ __all__ = [
     "fit",
     "simulate",
     "solve",
+    "sweep",
 ]
