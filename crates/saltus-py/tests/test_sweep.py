@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import csv
+import importlib.util
 import json
 import multiprocessing
 import os
@@ -250,6 +251,13 @@ def test_parts_without_a_plan_are_nobodys(tmp_path):
     (tmp_path / "_sweep.json").unlink()
     with pytest.raises(saltus.SaltusError, match="not known whose"):
         swept(into=tmp_path, chunk=20)
+
+
+def test_without_pyarrow_it_is_said_what_to_install(monkeypatch):
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == "pyarrow" else find(name, *rest))
+    with pytest.raises(ImportError, match="pip install pyarrow"):
+        swept()
 
 
 def test_the_first_of_two_plans_stays(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import json
 import os
 import re
@@ -364,6 +365,8 @@ def sweep(
         if design.ndim != 2 or design.shape[1] != len(names):
             raise ValueError(f"the design has the shape {design.shape}, and there are {len(names)} keys=")
         design = dict(zip(names, design.T))
+    if importlib.util.find_spec("pyarrow") is None:
+        raise ImportError("sweeps are tables of Arrow: pip install pyarrow")
     made = Scene(scene, **given)
     given_values = _columns(design) if vary is None else vary
     kept = {key: _kept(values, key) for key, values in given_values.items()}
