@@ -224,14 +224,17 @@ pub enum FitError {
         /// What the solver said.
         reason: String,
     },
+    /// Who asked for the fit ended it: see [`Fit::run_with`](crate::Fit::run_with).
+    Ended,
 }
 
-/// `kind` (`option`, `solver`) and `message`.
+/// `kind` (`option`, `solver`, `ended`) and `message`.
 impl Serialize for FitError {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let kind = match self {
             Self::Option { .. } => "option",
             Self::Solver { .. } => "solver",
+            Self::Ended => "ended",
         };
         let mut fields = serializer.serialize_struct("FitError", 2)?;
         fields.serialize_field("kind", kind)?;
@@ -247,6 +250,7 @@ impl fmt::Display for FitError {
             Self::Solver { what, reason } => {
                 write!(f, "the fit of {what} failed: {reason}; please report it together with the table")
             }
+            Self::Ended => f.write_str("the fit was ended before it was done"),
         }
     }
 }

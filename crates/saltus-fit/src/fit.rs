@@ -1,5 +1,7 @@
 //! From a table to a report: the stages in order.
 
+use std::ops::ControlFlow;
+
 use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
@@ -8,6 +10,7 @@ use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
 use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
 use crate::read::{Reading, Table};
 use crate::report::{Extras, Group, Report};
+use crate::solve::bootstrap::Progress;
 use crate::solve::fits::{Fits, Known};
 use crate::solve::one::OneKind;
 use crate::solve::series::{self, Series};
@@ -236,16 +239,29 @@ impl Fit {
     /// [`FitError::Option`] for an option that is not positive and finite; [`FitError::Solver`] if
     /// a least-squares solution does not pass its checks.
     pub fn run(&self, table: &Table) -> Result<Report, FitError> {
-        self.run_with(table, &mut |_| {})
+        self.run_with(table, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// The same, telling how many rounds of the bootstrap are done.
+    /// The same, telling how many rounds of the bootstrap are done; `Break` ends the fit between
+    /// two rounds, and between two groups of the table.
     ///
     /// # Errors
-    /// Those of [`Fit::run`].
-    pub fn run_with(&self, table: &Table, progress: &mut dyn FnMut(usize)) -> Result<Report, FitError> {
+    /// Those of [`Fit::run`], and [`FitError::Ended`].
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use saltus_fit::{Fit, FitError, Table};
+    /// let table = Table::from_heights(&[1.0, 0.64, 0.41, 0.26])?;
+    /// let ended = Fit::new().run_with(&table, &mut |_| ControlFlow::Break(()));
+    /// assert_eq!(ended.unwrap_err(), FitError::Ended);
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    pub fn run_with(&self, table: &Table, progress: Progress<'_>) -> Result<Report, FitError> {
         self.check()?;
         let groups = table.groups();
+        if progress(0).is_break() {
+            return Err(FitError::Ended);
+        }
         if groups.len() > 1 {
             let fit = |name: &&str| Ok(Group::new(name, self.run_with(&table.of_group(name), progress)?));
             let groups: Vec<Group> = groups.iter().map(fit).collect::<Result<_, FitError>>()?;
@@ -347,7 +363,7 @@ impl Fit {
 
     /// What is computed where it was asked for: the CORs that tolerances allow, profiles of the
     /// cost, a bootstrap.
-    fn extras(&self, fits: &Fits<'_>, progress: &mut dyn FnMut(usize)) -> Result<Extras, FitError> {
+    fn extras(&self, fits: &Fits<'_>, progress: Progress<'_>) -> Result<Extras, FitError> {
         let mut extras = Extras::default();
         if let Some((kind, within)) = fits.heights.as_ref().zip(self.tolerance_height) {
             extras.allowed.extend(tolerance::allowed(fits.evidence, kind, within)?);

@@ -191,12 +191,14 @@ pub(crate) fn fit(
     paths: Vec<PathBuf>,
 ) -> PyResult<Report> {
     let (read, fit, want) = (options.read()?, options.fit()?, options.want);
-    let report = patiently(py, move || {
+    let report = patiently(py, move |wanted| {
         let table = match bytes {
             Some(bytes) => Table::parse(&name, &bytes, &read),
             None => Table::read_all(&paths, &read),
         };
-        table.map(|table| fit.run(&table).and_then(|report| fit.advised(&table, report, want)))
+        table.map(|table| {
+            fit.run_with(&table, &mut |_| wanted.ask()).and_then(|report| fit.advised(&table, report, want))
+        })
     })?;
     report.map_err(|error| fail::table(py, &error))?.map(Report).map_err(fail::saltus)
 }

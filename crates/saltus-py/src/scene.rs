@@ -10,7 +10,7 @@ use saltus_scene::solve::{Clock, Wish};
 use saltus_scene::{Kind, Sampling, Scene, Staging, Values};
 
 use crate::fail::{self, named};
-use crate::signal::patiently;
+use crate::signal::{Signals, patiently};
 
 /// What a run is asked for beside its scene.
 fn ending(until: Option<f64>, most_jumps: Option<u32>, tolerance: Option<f64>) -> saltus_scene::Run {
@@ -24,17 +24,17 @@ fn ending(until: Option<f64>, most_jumps: Option<u32>, tolerance: Option<f64>) -
 #[pyo3(signature = (name, toml, until=None, most_jumps=None, tolerance=None))]
 pub(crate) fn simulate(
     py: Python<'_>,
-    name: String,
-    toml: Vec<u8>,
+    name: &str,
+    toml: &[u8],
     until: Option<f64>,
     most_jumps: Option<u32>,
     tolerance: Option<f64>,
 ) -> PyResult<Motion> {
-    patiently(py, move || {
-        let scene = Scene::parse_with(&name, &toml, ending(until, most_jumps, tolerance)).map_err(fail::scene)?;
-        let record = scene.plan().map_err(fail::scene)?.run().map_err(fail::run)?;
-        Ok(Motion(record))
-    })?
+    let scene = Scene::parse_with(name, toml, ending(until, most_jumps, tolerance)).map_err(fail::scene)?;
+    let plan = scene.plan().map_err(fail::scene)?;
+    let (mut signals, mut signal) = (Signals::new(), None);
+    let record = py.detach(|| plan.run_while(&mut || signals.look().map_break(|raised| signal = Some(raised))));
+    signal.map_or_else(|| record.map(Motion).map_err(fail::run), Err)
 }
 
 /// How a scene would be run, and why, in words.
@@ -56,7 +56,7 @@ pub(crate) fn solve(
     first_frame: i32,
 ) -> PyResult<(String, bool, Vec<String>)> {
     let clock = Clock { fps, first: first_frame };
-    patiently(py, move || {
+    patiently(py, move |_| {
         let wishes: Result<Vec<_>, _> = wishes.iter().map(|text| Wish::parse(text, clock)).collect();
         let free: Vec<&str> = free.iter().map(String::as_str).collect();
         let begin = begin.as_ref().map(|(name, toml)| (name.as_str(), toml.as_slice()));

@@ -5,6 +5,7 @@ mod each;
 mod values;
 
 use std::io::Read;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Once;
@@ -40,7 +41,10 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     say(quiet, &format!("{}: {}", table.name(), notes.join("; ")));
     // What takes long is a bootstrap.
     let mut progress = Progress::new(args.bootstrap.unwrap_or(0).into(), quiet);
-    let report = fit(args).run_with(&table, &mut |done| progress.reached(done as u64));
+    let report = fit(args).run_with(&table, &mut |done| {
+        progress.reached(done as u64);
+        ControlFlow::Continue(())
+    });
     progress.clear();
     let report = report.and_then(|report| fit(args).advised(&table, report, args.want)).map_err(Error::data)?;
     let text = match args.format {

@@ -1,6 +1,8 @@
 //! The error of the COR by drawing whole trials anew: it needs no assumption on how readings
 //! scatter within a trial.
 
+use std::ops::ControlFlow;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -12,6 +14,9 @@ use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::Heights;
 use crate::statistics::REPLICATED;
+
+/// Is told how many rounds are done, and says whether to go on.
+pub(crate) type Progress<'a> = &'a mut dyn FnMut(usize) -> ControlFlow<()>;
 
 /// What repeated draws of trials give.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,12 +37,12 @@ pub struct Bootstrap {
 /// Draws as many trials as there are, with replacement, fits, and repeats; `None` with fewer than
 /// five trials.
 ///
-/// `progress` is told how many rounds are done. Rounds whose draw determines no COR are drawn
+/// Rounds whose draw determines no COR are drawn
 /// again, up to twice the number wanted.
 pub(crate) fn run(
     fits: &Fits<'_>,
     (rounds, seed): (usize, u64),
-    progress: &mut dyn FnMut(usize),
+    progress: Progress<'_>,
 ) -> Result<Option<Bootstrap>, FitError> {
     let evidence = fits.evidence;
     let count = evidence.trials.len();
@@ -55,7 +60,9 @@ pub(crate) fn run(
         });
         let drawn = Evidence { trials: trials.collect(), ..Evidence::default() };
         found.extend(cor(&drawn, fits)?);
-        progress(found.len());
+        if progress(found.len()).is_break() {
+            return Err(FitError::Ended);
+        }
         if found.len() == rounds {
             break;
         }

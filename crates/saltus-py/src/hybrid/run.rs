@@ -13,9 +13,6 @@ use super::model::{Model, Vector};
 use super::names::{Edge, Mode};
 use crate::signal::Signals;
 
-/// How many pieces and jumps pass between looks at the clock.
-const LOOKS: u32 = 32;
-
 /// How a model is run.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -70,28 +67,22 @@ pub(crate) struct Course {
 /// Ends a run on a signal, and where its record takes too many bytes.
 struct Watch {
     signals: Signals,
-    looks: u32,
     room: usize,
     signal: Option<PyErr>,
 }
 
 impl Watch {
     fn new(room: usize) -> Self {
-        Self { signals: Signals::new(), looks: 0, room, signal: None }
+        Self { signals: Signals::new(), room, signal: None }
     }
 
     #[inline]
     fn look(&mut self, bytes: usize) -> ControlFlow<()> {
-        self.looks += 1;
         self.room = self.room.saturating_sub(bytes);
         if self.room == 0 {
             return ControlFlow::Break(());
         }
-        if self.looks.is_multiple_of(LOOKS) { self.ask() } else { ControlFlow::Continue(()) }
-    }
-
-    fn ask(&mut self) -> ControlFlow<()> {
-        self.signals.ask().map_break(|signal| self.signal = Some(signal))
+        self.signals.look().map_break(|signal| self.signal = Some(signal))
     }
 }
 

@@ -8,6 +8,7 @@ mod cloud;
 mod compliant;
 mod curve;
 mod explain;
+mod failure;
 mod flock;
 mod flyer;
 mod line;
@@ -20,15 +21,16 @@ mod surroundings;
 mod view;
 
 use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use explain::{Advance, Effect, Explanation, ModePlan};
+pub use failure::{PlanError, RunError};
 pub use method::Way;
 pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
-use super::source::Source;
-use super::{Contact, Floor, Law, Motion, Scene, SceneError, Shape, Stepper};
+use super::{Contact, Floor, Law, Motion, Scene, Shape, Stepper};
 use method::Method;
 use runner::{Recording, RunOptions, Runner};
 
@@ -181,7 +183,24 @@ impl Plan {
     /// # Errors
     /// [`RunError`] if the engine fails, or if nothing ends the run.
     pub fn run(&self) -> Result<Record, RunError> {
-        let Recording { run, until, end, rest } = self.runner.run(&self.options)?;
+        self.run_while(&mut || ControlFlow::Continue(()))
+    }
+
+    /// The same; `ask` is called between steps and jumps, and `Break` ends the run.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run), and where `ask` ended it.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use saltus_scene::Scene;
+    /// let scene = Scene::parse("drop.toml", b"restitution = 0.8\nball = { height = '1 m' }\n")?;
+    /// let ended = scene.plan()?.run_while(&mut || ControlFlow::Break(()));
+    /// assert_eq!(ended.unwrap_err().to_string(), "the run was ended before it was done");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn run_while(&self, ask: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Record, RunError> {
+        let Recording { run, until, end, rest } = self.runner.run(&self.options, ask)?;
         Ok(Record { run, scene: Arc::clone(&self.scene), model: self.explanation.model, until, end, rest })
     }
 
@@ -390,100 +409,3 @@ fn label(scene: &Scene, owner: usize) -> String {
 fn failed(error: saltus_bounce::ParameterError) -> PlanError {
     PlanError::new("the scene", &error.to_string())
 }
-
-/// Why a scene cannot be run, where in it that is said, and what to do.
-///
-/// ```
-/// use saltus_scene::Scene;
-/// let toml = b"collisions = { restitution = 0.9 }\ncontact = { law = 'hertz', stiffness = 1e8 }\nrun = { until = 1 }\n\
-///     ball = [{ height = 1, radius = 0.1, mass = 1 }, { height = 2, radius = 0.1, mass = 1 }]\n";
-/// let error = Scene::parse("two.toml", toml)?.plan().unwrap_err();
-/// assert!(error.to_string().starts_with("two.toml:2:1: contact that takes time is simulated for one ball"));
-/// # Ok::<(), saltus_scene::SceneError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PlanError {
-    place: String,
-    number: Option<usize>,
-    says: String,
-    /// The same in the text that the scene was read from.
-    found: Option<Box<SceneError>>,
-}
-
-impl PlanError {
-    fn new(place: &str, says: &str) -> Self {
-        Self { place: place.to_owned(), number: None, says: says.to_owned(), found: None }
-    }
-
-    fn floor(owner: usize, says: &str) -> Self {
-        Self { number: Some(owner), ..Self::new(&format!("[[floor]] number {}", owner + 1), says) }
-    }
-
-    /// The same with its line, where it has one.
-    fn found(mut self, source: &Source) -> Self {
-        let key = self.place.trim_start_matches('[').split(']').next().unwrap_or_default();
-        self.found = source.fault(key, self.number, &self.says).map(Box::new);
-        self
-    }
-
-    /// What is wrong, with line and column, where the scene was read from a text that names the
-    /// place.
-    #[must_use]
-    pub fn in_text(&self) -> Option<&SceneError> {
-        self.found.as_deref()
-    }
-
-    /// The key or table that asks for it.
-    #[must_use]
-    pub fn place(&self) -> &str {
-        &self.place
-    }
-}
-
-impl fmt::Display for PlanError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.found {
-            Some(found) => found.fmt(f),
-            None => write!(f, "{}: {}", self.place, self.says),
-        }
-    }
-}
-
-impl std::error::Error for PlanError {}
-
-/// Why a run failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RunError(String);
-
-impl RunError {
-    pub(super) const fn new(says: String) -> Self {
-        Self(says)
-    }
-}
-
-/// What the engine says to who writes a model, in words for who writes a scene.
-impl From<saltus::Error> for RunError {
-    fn from(error: saltus::Error) -> Self {
-        use saltus::ErrorKind::{Entry, Flow, Guard, InitialState, Promise, Reset, Series, StepSize};
-        let what = match error.kind() {
-            Flow | Guard | InitialState | Promise | Reset | Series => {
-                "a number has grown beyond all that can be computed with"
-            }
-            StepSize => "it changes faster than moments can be told apart",
-            Entry => "a ball is in what it touches, by more than rounding",
-            _ => return Self(error.to_string()),
-        };
-        let (t, mode) = (error.t(), error.mode());
-        Self(super::error::legible(&format!(
-            "the run breaks off at {t} s, in mode {mode}: {what}; numbers of the scene are too far apart: bring masses, sizes, speeds, drags and stiffnesses nearer to each other"
-        )))
-    }
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for RunError {}

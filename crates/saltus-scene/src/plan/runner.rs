@@ -88,9 +88,35 @@ pub(super) struct Recording {
     pub(super) rest: Option<f64>,
 }
 
+/// Is asked now and then, between steps and jumps, whether to go on.
+pub(super) type Ask<'a> = &'a mut dyn FnMut() -> ControlFlow<()>;
+
+/// Ends a run where it is asked to.
+struct Asking<'a> {
+    ask: Ask<'a>,
+    is_over: bool,
+}
+
+impl Asking<'_> {
+    fn look(&mut self) -> ControlFlow<()> {
+        let answer = (self.ask)();
+        self.is_over |= answer.is_break();
+        answer
+    }
+}
+
+impl<A: Automaton> Observer<A> for Asking<'_> {
+    fn piece(&mut self, _: A::Mode, _: &Piece<'_, A::State>) -> ControlFlow<()> {
+        self.look()
+    }
+    fn jump(&mut self, _: &JumpOf<A>) -> ControlFlow<()> {
+        self.look()
+    }
+}
+
 /// A model bound to its start, of whatever kind.
 pub(super) trait Runner: Send + Sync {
-    fn run(&self, options: &RunOptions) -> Result<Recording, RunError>;
+    fn run(&self, options: &RunOptions, ask: Ask<'_>) -> Result<Recording, RunError>;
     fn outcome(&self, options: &RunOptions) -> Result<Outcome, RunError>;
     fn modes(&self, method: Method) -> Vec<ModePlan>;
     fn coordinates(&self) -> usize;
@@ -140,14 +166,19 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
     }
 
     /// Until when to run.
-    fn until(&self, options: &RunOptions, simulation: &Simulation<'_, A, R::Stepper>) -> Result<f64, saltus::Error> {
+    fn until(
+        &self,
+        options: &RunOptions,
+        simulation: &Simulation<'_, A, R::Stepper>,
+        observer: &mut dyn Observer<A>,
+    ) -> Result<f64, saltus::Error> {
         match options.until {
             Some(until) => Ok(until),
             None if options.solved => Ok(f64::INFINITY),
             // Steps would go on for ever: the run is made twice, first to see when it ends.
             None => {
                 let mut resting = Resting { view: &*self.view, still: options.still, last: 0.0 };
-                self.drive(simulation, f64::INFINITY, &mut resting)?;
+                self.drive(simulation, f64::INFINITY, &mut (&mut resting, observer))?;
                 Ok(shown(resting.last))
             }
         }
@@ -155,13 +186,14 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
 }
 
 impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
-    fn run(&self, options: &RunOptions) -> Result<Recording, RunError> {
+    fn run(&self, options: &RunOptions, ask: Ask<'_>) -> Result<Recording, RunError> {
         let simulation = self.simulation(options);
-        let until = self.until(options, &simulation)?;
+        let mut asking = Asking { ask, is_over: false };
+        let until = self.until(options, &simulation, &mut asking)?;
         let run = match options.frames {
             None => {
                 let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
-                let end = self.drive(&simulation, until, &mut trajectory)?;
+                let end = self.drive(&simulation, until, &mut (&mut trajectory, &mut asking))?;
                 trajectory.finish(end.time);
                 Run { trajectory, end }
             }
@@ -169,6 +201,9 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
                 saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, options.most_jumps)?
             }
         };
+        if asking.is_over {
+            return Err(RunError::ended());
+        }
         let end = End::of(&run.end.stop);
         let last = run.trajectory.jumps().last().map_or(0.0, Jump::t);
         let rest = (end == End::Time && self.view.rests(run.end.mode, &run.end.state)).then_some(last);
@@ -179,7 +214,7 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
 
     fn outcome(&self, options: &RunOptions) -> Result<Outcome, RunError> {
         let simulation = self.simulation(options);
-        let until = self.until(options, &simulation)?;
+        let until = self.until(options, &simulation, &mut ())?;
         let mut observer = OutcomeObserver::new(&*self.automaton, &*self.view);
         let ending = self.drive(&simulation, until, &mut observer)?;
         let (end, last) = (End::of(&ending.stop), observer.last_jump());
