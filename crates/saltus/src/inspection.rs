@@ -67,19 +67,22 @@ impl<M: Copy, E: Copy> Inspection<M, E> {
         Self { span, evidence: when(self.evidence).map_or(self.evidence, cut), ..self }
     }
 
-    /// Takes in a later doubt of the same kind that follows without a gap; says whether it did.
-    pub(crate) fn extended_by(&mut self, later: &Self) -> bool {
-        let (Some((from, to)), Some((next, end))) = (when(self.evidence), when(later.evidence)) else {
+    /// Takes in a doubt of the same kind, of this step or a later one, that overlaps this one or
+    /// follows without a gap; says whether it did.
+    pub(crate) fn joined_by(&mut self, other: &Self) -> bool {
+        let (Some((from, to)), Some((next, end))) = (when(self.evidence), when(other.evidence)) else {
             return false;
         };
-        let after = later.start.since(self.start);
-        let same = self.evidence.doubt() == later.evidence.doubt();
-        let follows = same && after + next <= to + 4.0 * f64::EPSILON * to.abs();
-        if follows {
-            self.span = after + later.span;
-            self.evidence = between(self.evidence, from, to.max(after + end));
+        let after = other.start.since(self.start);
+        let (next, end) = (after + next, after + end);
+        let rounding = 4.0 * f64::EPSILON * to.abs();
+        let same = self.evidence.doubt() == other.evidence.doubt();
+        let joins = same && next <= to + rounding && end >= from - rounding;
+        if joins {
+            self.span = self.span.max(after + other.span);
+            self.evidence = between(self.evidence, from.min(next), to.max(end));
         }
-        follows
+        joins
     }
 
     /// The same with time running the other way.
@@ -231,7 +234,7 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Doubts<M, E> {
     fn stands(&mut self, doubt: Inspection<M, E>) -> bool {
         let alike = |last: &&mut Inspection<M, E>| last.edge == doubt.edge && last.mode == doubt.mode;
         let last = self.list.iter_mut().take(self.settled).rev().take(LATELY).find(alike);
-        if last.is_some_and(|last| last.extended_by(&doubt)) {
+        if last.is_some_and(|last| last.joined_by(&doubt)) {
             return false;
         }
         self.list.insert(self.settled, doubt);
@@ -243,5 +246,48 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq> Doubts<M, E> {
 impl<M: fmt::Debug, E: fmt::Debug> fmt::Debug for Doubts<M, E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.list.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The longest that a doubt of these tests lasts, in s.
+    const LONGEST: f64 = 3.0;
+
+    proptest! {
+        /// As an arc ends, a doubt stands up to there if it begins before, or is of the edge that
+        /// was taken and no leap; no other does.
+        #[test]
+        fn an_arc_ends_with_the_doubts_up_to_its_end(
+            raised in prop::collection::vec((0..3_u8, 0.0..10.0_f64, 0.0..LONGEST, any::<bool>()), 0..20),
+            taken in prop::option::of(0..3_u8),
+            end in 0.0..10.0_f64,
+        ) {
+            let why = |leaps| if leaps { Doubt::Discontinuous } else { Doubt::Grazing };
+            let mut doubts = Doubts::new();
+            for &(edge, from, length, leaps) in &raised {
+                let evidence = Evidence::doubtful(why(leaps), from, from + length);
+                doubts.add(&Inspection { mode: (), edge, start: Time::new(0.0), span: 10.0 + LONGEST, evidence });
+            }
+            let mut stood = Vec::new();
+            doubts.end_arc(Time::new(end), taken, |edge, stands| stood.push((edge, stands)));
+
+            let due = |&(edge, from, _, leaps): &(u8, f64, f64, bool)| from < end || taken == Some(edge) && !leaps;
+            prop_assert_eq!(stood, raised.iter().map(|raised| (raised.0, due(raised))).collect::<Vec<_>>());
+            let list: Vec<_> = doubts.list().iter().map(|doubt| (doubt.edge, doubt.doubt().unwrap())).collect();
+            for (edge, when) in &list {
+                prop_assert!(when.end <= end, "{when:?} of {edge} is after {end}");
+                prop_assert!(raised.iter().any(|raised| raised.0 == *edge && due(raised)));
+            }
+            for raised in raised.iter().filter(|raised| due(raised)) {
+                let [from, to] = [raised.1, raised.1 + raised.2].map(|t| t.min(end));
+                let covered = list.iter().any(|(edge, when)| *edge == raised.0 && when.start <= from && to <= when.end);
+                prop_assert!(covered, "{raised:?} is not in {list:?}");
+            }
+        }
     }
 }

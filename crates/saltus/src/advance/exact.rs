@@ -5,7 +5,7 @@ use std::cell::LazyCell;
 use crate::automaton::Automaton;
 use crate::automaton::solution::Polynomial;
 use crate::certainty::SMALL;
-use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, narrowed, settle};
+use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, neighbours, settle};
 use crate::ending::Stop;
 use crate::error::Error;
 use crate::observe::Observer;
@@ -157,7 +157,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> Option<Crossing> {
     let [inside, outside, root] = [crossing.inside, crossing.outside, crossing.root].map(|s| from + s);
     if inside < outside && guard(inside) >= 0.0 && guard(outside) < 0.0 {
-        let (inside, outside) = narrowed(guard, inside, outside);
+        let (inside, outside) = neighbours(guard, inside, outside);
         Some(Crossing { inside, outside, root: root.clamp(inside, outside), rest: 0.0, ..*crossing })
     } else {
         Some(Crossing { leaps: crossing.leaps, ..settle(guard, root)? })

@@ -333,7 +333,7 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
         return f64::INFINITY;
     }
     let [last, before] = [(p, last), (p - 1, before)].map(|(k, sum)| binary_logarithm(sum) * (0.5 * RECIPROCALS[k]));
-    SAFETY * power_of_two(-last.max(before))
+    SAFETY * about_two_to(-last.max(before))
 }
 
 /// log₂ x to within 0.09, read off the number's exponent and mantissa (N. Schraudolph, Neural
@@ -343,7 +343,7 @@ fn binary_logarithm(x: f64) -> f64 {
 }
 
 /// 2ˣ, and up to six parts in a hundred more, likewise.
-fn power_of_two(x: f64) -> f64 {
+fn about_two_to(x: f64) -> f64 {
     if x < EXPONENT { f64::from_bits(((x + EXPONENT) * MANTISSA).max(0.0) as i64 as u64) } else { f64::INFINITY }
 }
 

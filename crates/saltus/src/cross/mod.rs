@@ -14,7 +14,7 @@ use crate::poly::{Bernstein, Shape};
 
 pub use evidence::{Doubt, Evidence};
 pub(crate) use powers::{Fall, FirstFall, Powers};
-pub(crate) use refine::{narrowed, settle};
+pub(crate) use refine::{neighbours, settle};
 pub(crate) use search::AT_START;
 use search::Search;
 

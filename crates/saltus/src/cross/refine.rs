@@ -36,13 +36,13 @@ pub(crate) fn settle(mut guard: impl FnMut(f64) -> f64, near: f64) -> Option<Cro
             step *= 2.0;
         }
     }
-    let (a, b) = narrowed(guard, a, b);
+    let (a, b) = neighbours(guard, a, b);
     Some(Crossing { inside: a, outside: b, root: near, rest: 0.0, leaps: false })
 }
 
 /// Neighbouring numbers within `a..b` between which the guard falls, not negative at `a` and
 /// negative at `b`.
-pub(crate) fn narrowed(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> (f64, f64) {
+pub(crate) fn neighbours(mut guard: impl FnMut(f64) -> f64, mut a: f64, mut b: f64) -> (f64, f64) {
     while a.next_up() < b {
         let middle = 0.5 * (a + b);
         if guard(middle) >= 0.0 { a = middle } else { b = middle }
@@ -222,7 +222,7 @@ mod tests {
         assert!(found.inside.next_up() == found.outside);
         assert!(guard(found.inside) >= 0.0 && guard(found.outside) < 0.0);
         let by_interpolation = count.replace(0);
-        narrowed(&mut counted, 0.0, 1.0);
+        neighbours(&mut counted, 0.0, 1.0);
         (by_interpolation, count.get())
     }
 
