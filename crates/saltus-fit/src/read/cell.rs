@@ -56,6 +56,9 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
             (false, false) => Cell::Wrong(Fault::NotFinite),
         };
     }
+    if let Some(value) = respelt(text).and_then(|spelt| spelt.parse().ok()) {
+        return Cell::Number(Measured { value, unit: None, error: None });
+    }
     let spelt = folded(text);
     // `missed it`, `no reading (too dark)`.
     let told = |word: &&str| spelt.strip_prefix(*word).is_some_and(|rest| rest.starts_with([' ', ',', ':', '(', '!']));
@@ -103,6 +106,23 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
     }
 }
 
+/// A number of which letters stand for the digits that they look like, `1OO.0`, `l2,5`, with the
+/// digits; `None` of anything else.
+pub(super) fn respelt(cell: &str) -> Option<String> {
+    let text = cell.trim();
+    let digit = |c: char| match c {
+        'O' | 'o' => '0',
+        'l' | 'I' => '1',
+        ',' => '.',
+        c => c,
+    };
+    // `O2`, `l1` are names.
+    let number = text.starts_with(|c: char| c.is_ascii_digit()) || text.chars().count() > 2;
+    let mixed = text.contains(['O', 'o', 'l', 'I']) && text.contains(|c: char| c.is_ascii_digit());
+    let spelt: String = if number && mixed { text.chars().map(digit).collect() } else { return None };
+    spelt.parse::<f64>().is_ok_and(f64::is_finite).then_some(spelt)
+}
+
 /// What people write where nothing was read.
 const MISSING: [&str; 26] = [
     "missed",
@@ -134,7 +154,7 @@ const MISSING: [&str; 26] = [
 ];
 
 /// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.
-const RANGE: f64 = 1.5;
+pub(super) const RANGE: f64 = 1.5;
 
 /// The middle of a range, `63-65 cm` or `63 to 65`, and half its width for its error.
 fn range(text: &str, comma: bool) -> Option<Measured> {
@@ -346,12 +366,17 @@ fn thousands(number: &str) -> Option<f64> {
     (mark != point && grouped).then(|| format!("{}.{}", whole.concat(), &number[last + 1..]).parse().ok())?
 }
 
+/// Whether a text is a date, `2024-05-12`, `12.05.24`.
+pub(super) fn date(text: &str) -> bool {
+    let parts = text.split(['-', '.', '/']);
+    let digits = |part: &str| !part.is_empty() && part.len() <= 4 && part.chars().all(|c| c.is_ascii_digit());
+    parts.clone().count() == 3 && parts.clone().all(digits)
+}
+
 /// A date and the time of day behind it, `2024-05-12T10:15:30.120Z`, `12.05.2024 10:15:30`.
 pub(super) fn dated(cell: &str) -> Option<(&str, &str)> {
-    let (date, time) = cell.trim().split_once(['T', ' '])?;
-    let parts = date.split(['-', '.', '/']);
-    let digits = |part: &str| !part.is_empty() && part.len() <= 4 && part.chars().all(|c| c.is_ascii_digit());
-    (parts.clone().count() == 3 && parts.clone().all(digits)).then_some((date, time.trim().trim_end_matches('Z')))
+    let (day, time) = cell.trim().split_once(['T', ' '])?;
+    date(day).then_some((day, time.trim().trim_end_matches('Z')))
 }
 
 /// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does
@@ -417,6 +442,9 @@ mod tests {
             ("40½ in", 1.0287, None, true),
             ("1.5e-1 m", 0.15, None, true),
             ("64 # a remark", 64.0, None, false),
+            ("1OO.0", 100.0, None, false),
+            ("l2,5", 12.5, None, false),
+            ("6O", 60.0, None, false),
         ] {
             let found = number(cell);
             assert!(near(found.0, value) && found.1 == error && found.2 == unit, "{cell}: {found:?}");
@@ -435,6 +463,8 @@ mod tests {
             ("NaN", Cell::Lost),
             ("drop", Cell::Words),
             ("62 wobbles", Cell::Words),
+            ("O2", Cell::Words),
+            ("l1", Cell::Words),
             ("12.3.2026", Cell::Words),
             ("5-11", Cell::Words),
             ("2024/03/12 10:21", Cell::Words),

@@ -4,7 +4,7 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use super::workbook::{Content, Part};
+use super::workbook::{Content, MANY, Part, TABLES};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to
@@ -81,10 +81,6 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
     (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
 }
 
-/// More tables than these are not looked for in a page, nor cells in a row.
-const TABLES: usize = 100;
-const COLUMNS: usize = 1000;
-
 /// The tables of a page of the web, cells separated by tabs; `None` if the text is none.
 pub(super) fn html(text: &str) -> Option<Vec<Part>> {
     let head: String = text.trim_start().chars().take(4000).collect::<String>().to_lowercase();
@@ -121,7 +117,7 @@ fn span(tag: &quick_xml::events::BytesStart<'_>, of: &str) -> usize {
     // In a page of the web a value needs no quotes.
     let value = tag.html_attributes().with_checks(false).flatten().find(|a| a.key.as_ref().eq_ignore_ascii_case(of));
     let number = value.and_then(|attribute| attribute.value.trim().parse::<usize>().ok());
-    number.unwrap_or(1).clamp(1, COLUMNS)
+    number.unwrap_or(1).clamp(1, MANY)
 }
 
 /// The character that a name stands for.
@@ -175,12 +171,14 @@ impl Page {
             "td" | "th" => {
                 self.close_cell();
                 self.skip_taken();
-                if self.row.len() < COLUMNS {
+                if self.row.len() < MANY {
                     self.row.push(String::new());
                     (self.open, self.span) = (true, span);
                 }
             }
             "br" => self.text(" "),
+            "sub" => self.text("_"),
+            "sup" => self.text("^"),
             _ => {}
         }
     }
@@ -209,7 +207,7 @@ impl Page {
     fn close_cell(&mut self) {
         if self.open {
             let (columns, rows) = self.span;
-            let more = columns.min(COLUMNS - self.row.len().min(COLUMNS) + 1) - 1;
+            let more = columns.min(MANY - self.row.len().min(MANY) + 1) - 1;
             let first = self.row.len() - 1;
             self.row.extend(std::iter::repeat_n(String::new(), more));
             let end = self.row.len();

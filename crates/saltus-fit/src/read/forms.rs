@@ -5,10 +5,12 @@
 mod blocks;
 
 use super::cell::{self, Cell};
+use super::columns::LEVEL;
 use super::heading::Heading;
 use super::title;
 use super::units::{Dimension, Unit};
-use super::vocabulary::Atom;
+use super::vocabulary::{Atom, folded};
+use super::words::ordinal;
 
 /// The text with tabs between the cells of such a table; `None` if it holds none.
 pub(super) fn table(text: &str) -> Option<String> {
@@ -16,7 +18,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
-    let forms = [latex, wiki, blocks::table, listed, headed, patterned];
+    let forms = [latex, wiki, blocks::table, blocks::records, listed, headed, patterned];
     forms.iter().find_map(|form| form(text))
 }
 
@@ -29,23 +31,32 @@ fn listed(text: &str) -> Option<String> {
         let mut found = text.lines().filter(|line| title::drop(line).is_some());
         found.next().filter(|_| found.next().is_none()).map(remarked)
     };
-    // Below a line that names bounces numbers by themselves are counted.
-    let mut counted: Option<usize> = None;
+    // Lengths by themselves are of bounces below a line that names these, or below the height of
+    // release where most fall; there they are of trials where they do not.
+    let alone = |line: &str| length(placed(remarked(line).trim()));
+    let lengths: Vec<f64> = text.lines().filter_map(alone).collect();
+    let fall = lengths.windows(2).filter(|pair| falling(pair)).count();
+    let name = if drop().is_some() && 2 * fall < lengths.len() { "trial" } else { "bounce" };
+    let (mut counted, mut number, mut title) = (drop().map(|_| name), 0, None);
+    let lists = text.lines().filter(|line| listed_numbers(line).is_some()).count();
     let line = |line: &str| {
         let line = remarked(line);
-        if let (Some(n), Cell::Number(m)) = (&mut counted, cell::read(line.trim(), false))
-            && m.unit.is_some_and(|unit| unit.dimension == Dimension::Length)
-        {
-            *n += 1;
-            return Some((true, format!("bounce {n}\t{}", line.trim())));
+        if let (Some(name), Some(_)) = (counted, alone(line)) {
+            number += 1;
+            return Some((true, format!("{name} {number}\t{}", placed(line.trim()))));
+        }
+        // Numbers in a line by themselves, below the name of all of them.
+        if let Some(values) = listed_numbers(line).filter(|_| lists == 1) {
+            return Some((true, format!("{}\t{}", title.as_ref()?, values.join("\t"))));
         }
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
+        title = named_list(line).map(str::to_owned).or(title.take());
         // Words by themselves are a title.
         if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|')) {
             let heading = Heading::parse(line.trim_end_matches(':'));
             let names = !line.contains(',') && (heading.has(Atom::Rebound) || heading.has(Atom::Impact));
-            counted = names.then_some(0);
+            counted = if names { Some(name) } else { counted };
             return Some((false, format!("#{line}")));
         }
         // What an arrow leads to was read of what stands before it, unless that is a number too.
@@ -54,17 +65,31 @@ fn listed(text: &str) -> Option<String> {
         };
         let arrow = || ARROWS.iter().find_map(|arrow| line.split_once(arrow)).filter(words);
         let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash).or_else(arrow);
-        let Some((name, values)) = parted.or_else(|| measured(line)) else {
-            let dropped = drop().filter(|of| *of == line).and_then(title::drop);
-            let dropped = dropped.map(|height| (true, format!("drop height\t{height} m")));
-            return dropped.or_else(|| prose(line).then(|| (false, format!("#{line}"))));
+        let dropped = || {
+            let height = drop().filter(|of| *of == line).and_then(title::drop)?;
+            Some((true, format!("drop height\t{height} m")))
         };
-        let number = |value: &&str| matches!(cell::read(value, false), Cell::Number(_));
-        let values: Vec<&str> = values.split(", ").map(str::trim).collect();
+        // A line that tells where the ball was dropped from names no column.
+        let found = parted.or_else(|| measured(line).filter(|_| dropped().is_none()));
+        let Some((name, values)) = found else {
+            return dropped().or_else(|| (prose(line) || of_others(line)).then(|| (false, format!("#{line}"))));
+        };
+        let number = |value: &String| matches!(cell::read(value, false), Cell::Number(_));
+        let values = listed_values(values.trim());
         let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
         // Words are a remark.
         let name = name.trim_end().trim_end_matches(['~', '≈']);
         let read = values.iter().all(number);
+        let of_bounces = || {
+            let heading = Heading::parse(name);
+            heading.unknown.is_empty() && (heading.has(Atom::Rebound) || heading.has(Atom::Impact))
+        };
+        // Several bounces in a line come one after the other where they fall.
+        let lengths: Vec<f64> = values.iter().filter_map(|value| length(value)).collect();
+        if read && lengths.len() == values.len() && lengths.len() > 1 && falling(&lengths) && of_bounces() {
+            let rows = (1..).zip(&values).map(|(n, value)| format!("bounce {n}\t{value}"));
+            return Some((true, rows.collect::<Vec<_>>().join("\r")));
+        }
         // What commas part from the name above a list is its title, `golf ball, heights in cm:`.
         if let Some((title, name)) = name.rsplit_once(',').filter(|_| read && values.len() >= LIST) {
             return Some((true, format!("{title}\r{}\t{}", name.trim(), values.join("\t"))));
@@ -76,7 +101,7 @@ fn listed(text: &str) -> Option<String> {
     let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
     let numbers = found.iter().filter(|(number, _)| *number).count();
     // A line by itself is a list of several.
-    let several = found.iter().any(|(number, line)| *number && line.matches('\t').count() >= LIST);
+    let several = found.iter().any(|(number, line)| *number && line.matches(['\t', '\r']).count() >= LIST);
     let told = lines().filter(|line| prose(line)).count();
     if numbers < 2 && !(numbers == 1 && several) || 2 * numbers < found.len() - told {
         return None;
@@ -85,6 +110,67 @@ fn listed(text: &str) -> Option<String> {
     let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
+}
+
+/// The parts of a list that commas part, or blanks within brackets; a unit behind the last is that
+/// of all, `64, 41, 26 cm`.
+fn listed_values(list: &str) -> Vec<String> {
+    let bare = list.trim_end_matches(';').trim_end();
+    let within = [("c(", ")"), ("(", ")"), ("[", "]"), ("{", "}")];
+    let within = within.iter().find_map(|(open, close)| bare.strip_prefix(open)?.strip_suffix(close));
+    let values: Vec<&str> = match within {
+        Some(inside) => inside.split([',', ' ']).filter(|value| !value.is_empty()).collect(),
+        None => list.split(", ").map(str::trim).collect(),
+    };
+    let plain = |value: &str| value.parse::<f64>().is_ok();
+    let last = values.last().copied().unwrap_or_default();
+    let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | ' '));
+    let shared = values.len() > 1 && Unit::parse(unit).is_some() && values[..values.len() - 1].iter().all(|v| plain(v));
+    values.iter().map(|v| if shared && plain(v) { format!("{v} {unit}") } else { (*v).to_owned() }).collect()
+}
+
+/// The numbers of a line that holds several, which blanks or commas part, and nothing else.
+fn listed_numbers(line: &str) -> Option<Vec<&str>> {
+    let values: Vec<&str> = line.split([',', ' ']).filter(|value| !value.is_empty()).collect();
+    (values.len() >= LIST && values.iter().all(|value| value.parse::<f64>().is_ok())).then_some(values)
+}
+
+/// The only part of a line, between commas, that names a quantity and its unit: `Heights (m), first
+/// the drop`.
+fn named_list(line: &str) -> Option<&str> {
+    let names = |part: &&str| {
+        let heading = Heading::parse(part);
+        heading.unit.is_some() && heading.understood()
+    };
+    let mut found = line.split(", ").map(|part| part.trim().trim_end_matches(':')).filter(names);
+    found.next().filter(|_| found.next().is_none())
+}
+
+/// A line without the place in an order that it begins with: `1st: 64 cm`.
+fn placed(line: &str) -> &str {
+    let place = |(name, _): &(&str, &str)| name.parse::<usize>().is_ok() || ordinal(&folded(name)).is_some();
+    line.split_once(": ").filter(place).map_or(line, |(_, value)| value.trim())
+}
+
+/// Whether all numbers of a line are of something else than lengths and times, and it has some:
+/// `Basketball (0.6 bar)`.
+fn of_others(line: &str) -> bool {
+    let other = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension == Dimension::Other));
+    let (found, _) = parts(line);
+    !found.is_empty() && found.iter().all(other) && !line.contains(['\t', '|', ';', '=', ':'])
+}
+
+/// The length that a text is and nothing else, m.
+fn length(text: &str) -> Option<f64> {
+    match cell::read(text, false) {
+        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
+        _ => None,
+    }
+}
+
+/// Whether heights fall as those of bounces do, one after the other.
+fn falling(heights: &[f64]) -> bool {
+    heights.windows(2).all(|pair| pair[1] < LEVEL * pair[0])
 }
 
 /// A line without the remark in brackets that it ends in: `64 cm (hard to see)`.
@@ -97,11 +183,15 @@ fn remarked(line: &str) -> &str {
 /// A line of so many words or more, of letters, tells something.
 const TOLD: usize = 5;
 
+/// Whether a line tells something.
+pub(super) fn told(line: &str) -> bool {
+    line.split_whitespace().filter(|word| word.contains(char::is_alphabetic)).count() >= TOLD
+}
+
 /// Whether a line tells something, and measures nothing: no number in it has a unit.
 fn prose(line: &str) -> bool {
-    let words = line.split_whitespace().filter(|word| word.contains(char::is_alphabetic)).count();
     let unit = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some());
-    words >= TOLD && !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
+    told(line) && !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
 }
 
 /// Lines of a name and a number, `1st 128`, below one that says of what and in which unit, `Height
@@ -158,14 +248,25 @@ fn latex(text: &str) -> Option<String> {
         return None;
     }
     let plain = |line: &str| match row(line) {
-        Some(cells) => {
-            let spelt = cells.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ");
-            spelt.replace(['$', '{', '}'], "").replace(r"\textbf", "").replace(r"\mathrm", "")
-        }
+        Some(cells) => unmarked(&cells),
         None if line.trim_start().starts_with('\\') => String::new(),
         None => line.to_owned(),
     };
     Some(text.lines().map(plain).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A row of LaTeX without what sets it: `{$h_0$ / \si{\centi\metre}}` is `h_0 / centimetre`. What
+/// brackets follow sets what is in these, other commands are words, parts of units among them.
+fn unmarked(row: &str) -> String {
+    let spelt = row.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ").replace(r"\per", "/");
+    let mut parts = spelt.split('\\');
+    let mut found = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(part.len());
+        let sets = part[end..].starts_with('{') && !matches!(&part[..end], "frac" | "sqrt");
+        found.push_str(&part[if sets { end } else { 0 }..]);
+    }
+    found.replace("}{", " ").replace(['$', '{', '}'], "")
 }
 
 /// A table of `MediaWiki`: rows parted by `|-`, cells behind `!` and `|`; `None` if it is none.

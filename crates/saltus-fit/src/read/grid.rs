@@ -12,7 +12,7 @@ use crate::error::{Place, TableError};
 
 /// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
 /// hundred megabytes.
-const CELLS: usize = 1 << 22;
+pub(super) const CELLS: usize = 1 << 22;
 
 /// A text of cells.
 pub(super) struct Grid<'a> {

@@ -326,7 +326,7 @@ impl Heading {
         let digits = error.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ','))).unwrap_or(error.len());
         let spread: Option<f64> = error[..digits].replace(',', ".").parse().ok();
         let closes = error[digits..].ends_with([')', ']']);
-        let unit = error[digits..].trim_end_matches([')', ']']).trim();
+        let unit = error[digits..].trim_end_matches([')', ']']).trim_start_matches([' ', '/', ',']).trim();
         let Some(spread) = spread.filter(|spread| *spread > 0.0 && (unit.is_empty() || Unit::parse(unit).is_some()))
         else {
             return text.to_owned();
@@ -442,7 +442,8 @@ fn of_units(text: &str) -> bool {
 /// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.
 fn of_a_clock(text: &str) -> bool {
     let part = |part: &str| {
-        matches!(&*folded(part), "h" | "hh" | "m" | "mm" | "min" | "s" | "ss" | "sec" | "ms" | "sss" | "f" | "00")
+        let zeros = !part.is_empty() && part.chars().all(|c| c == '0');
+        zeros || matches!(&*folded(part), "h" | "hh" | "m" | "mm" | "min" | "s" | "ss" | "sec" | "ms" | "sss" | "f")
     };
     text.contains(':') && text.split([':', '.', ',']).all(part)
 }

@@ -7,16 +7,10 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::heading::{Heading, Meaning};
-use super::workbook::{Content, Part};
+use super::workbook::{Content, MANY, Part, TABLES};
 
 /// A longer text is none of records; a value of it takes some ten times its length, bytes.
 const LONGEST: usize = 16 << 20;
-/// A name or a text of more letters is cut short, and lines above a table of more bytes are left
-/// out: neither says what its numbers are.
-const WORDS: usize = 1000;
-/// More tables than these are not looked for, nor more columns in one.
-const TABLES: usize = 100;
-const COLUMNS: usize = 1000;
 
 /// A value, its members in the order in which they stand.
 enum Node {
@@ -91,7 +85,7 @@ struct Reader;
 
 /// What no cell can hold.
 fn plain(text: &str) -> String {
-    text.chars().take(WORDS).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect()
+    text.chars().take(MANY).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect()
 }
 
 impl<'de> Visitor<'de> for Reader {
@@ -183,7 +177,7 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let columns: Vec<(&str, Vec<&str>)> = columns.filter(|(_, cells)| !cells.is_empty()).collect();
     let stated = node.members().iter().filter_map(|(name, node)| Some((name, node.cell()?)));
     let stated: String = stated.map(|(name, cell)| format!("{name}: {cell}\n")).collect();
-    let stated = if above.len() + stated.len() > WORDS { String::new() } else { stated };
+    let stated = if above.len() + stated.len() > MANY { String::new() } else { stated };
     if !columns.is_empty() {
         push(side_by_side(&columns).map(|rows| format!("{stated}{rows}")));
     }
@@ -227,7 +221,7 @@ fn named_rows(node: &Node) -> Option<String> {
         let owned = |row: Vec<&str>| row.into_iter().map(str::to_owned).collect::<Vec<_>>();
         let rows: Vec<Vec<String>> = list.iter().map(|row| row.cells().map(owned)).collect::<Option<_>>()?;
         let width = rows.first()?.len();
-        (rows.len() > 1 && (2..COLUMNS).contains(&width) && rows.iter().all(|row| row.len() == width)).then_some(rows)
+        (rows.len() > 1 && (2..MANY).contains(&width) && rows.iter().all(|row| row.len() == width)).then_some(rows)
     };
     let words = |row: &[String]| row.iter().all(|cell| cell.contains(char::is_alphabetic));
     let owned = |node: &Node| node.cells().map(|row| row.into_iter().map(str::to_owned).collect::<Vec<_>>());
@@ -245,7 +239,7 @@ fn named_rows(node: &Node) -> Option<String> {
 fn rows(records: &[&[(String, Node)]]) -> Option<String> {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in records.iter().flat_map(|record| record.iter()) {
-        if names.len() <= COLUMNS && !names.contains(&name.as_str()) {
+        if names.len() <= MANY && !names.contains(&name.as_str()) {
             names.push(name);
         }
     }
@@ -267,7 +261,7 @@ fn rows(records: &[&[(String, Node)]]) -> Option<String> {
 /// filled.
 fn begun(names: &[&str], rows: usize, filled: usize) -> Option<String> {
     const SPARSE: usize = 20;
-    let fits = names.len() <= COLUMNS && rows.saturating_mul(names.len()) <= filled.saturating_mul(SPARSE);
+    let fits = names.len() <= MANY && rows.saturating_mul(names.len()) <= filled.saturating_mul(SPARSE);
     fits.then(|| names.join("\t") + "\n")
 }
 

@@ -6,8 +6,8 @@ use std::collections::HashSet;
 use super::columns::{Column, Columns, Kind};
 use super::region::Region;
 use super::said::ROWS;
-use super::vocabulary::{Atom, folded};
-use super::words::split;
+use super::vocabulary::{Atom, folded, footnotes, meanings};
+use super::words::{Kind as WordKind, split};
 
 /// What a cell answers.
 #[derive(Clone, Copy, PartialEq)]
@@ -19,31 +19,24 @@ enum Answer {
     Other,
 }
 
-/// Marks that stand for words.
-const MARKS: [(&str, Answer); 10] = [
-    ("✓", Answer::Yes),
-    ("✔", Answer::Yes),
-    ("x", Answer::Yes),
-    ("y", Answer::Yes),
-    ("1", Answer::Yes),
-    ("✗", Answer::No),
-    ("✘", Answer::No),
-    ("n", Answer::No),
-    ("0", Answer::No),
-    ("-", Answer::No),
-];
-
 fn answer(cell: &str) -> Answer {
     let spelt = folded(cell.trim());
     if spelt.is_empty() {
         return Answer::Empty;
     }
-    if let Some((_, answer)) = MARKS.iter().find(|(mark, _)| *mark == spelt) {
-        return *answer;
+    let says = |atoms: &[Atom]| match () {
+        () if atoms.contains(&Atom::Nay) || atoms.contains(&Atom::Void) => Answer::No,
+        () if atoms.contains(&Atom::Yes) || atoms.contains(&Atom::Counts) => Answer::Yes,
+        () => Answer::Other,
+    };
+    // A sign by itself is no word of a heading.
+    if let Some(atoms) = meanings(&spelt) {
+        return says(atoms);
     }
-    match split(cell).first() {
-        Some(word) if word.is(Atom::Nay) || word.is(Atom::Void) => Answer::No,
-        Some(word) if word.is(Atom::Yes) || word.is(Atom::Counts) => Answer::Yes,
+    match split(cell).first().map(|word| &word.kind) {
+        Some(WordKind::Known(atoms)) => says(atoms),
+        Some(WordKind::Number(0)) => Answer::No,
+        Some(WordKind::Number(1)) => Answer::Yes,
         _ => Answer::Other,
     }
 }
@@ -55,9 +48,6 @@ fn voids(cell: &str) -> bool {
     let denied = |n: usize| words[..n].iter().any(|word| not(&word.text.to_lowercase()));
     words.iter().enumerate().any(|(n, word)| word.is(Atom::Void) && !denied(n) || word.is(Atom::Counts) && denied(n))
 }
-
-/// Marks of notes below a table.
-const NOTES: [char; 4] = ['*', '†', '‡', '§'];
 
 /// The marks whose note says that what bears them was not measured, or does not count: `*
 /// calculated`.
@@ -72,7 +62,7 @@ fn notes(region: &Region<'_>) -> Vec<char> {
             words.len() > 1 && turned.iter().any(|atom| words.iter().any(|word| word.is(*atom))) || voids(&note)
         })
     };
-    NOTES.into_iter().filter(|mark| says(*mark)).collect()
+    footnotes().filter(|mark| says(*mark)).collect()
 }
 
 /// The rows that do not count.

@@ -3,10 +3,9 @@
 //!
 //! The container is that of \[MS-CFB\], the records in it are those of \[MS-XLS\].
 
-/// What the cells of all sheets may span.
-const CELLS: u64 = 1 << 22;
-/// Sheets that are looked at.
-const SHEETS: usize = 1000;
+use super::grid::CELLS;
+use super::workbook::MANY;
+
 /// What an old sheet has at most.
 const ROWS: u32 = 1 << 16;
 const COLUMNS: u32 = 1 << 8;
@@ -152,10 +151,10 @@ fn span(stream: &[u8]) -> Result<(), String> {
         .filter(|(kind, _)| *kind == SHEET)
         .filter_map(|(_, content)| Some(long(content, 0)? as usize))
         .collect();
-    if sheets.len() > SHEETS {
-        return Err(format!("it has more than {SHEETS} sheets"));
+    if sheets.len() > MANY {
+        return Err(format!("it has more than {MANY} sheets"));
     }
-    let mut left = CELLS;
+    let mut left = CELLS as u64;
     for at in sheets {
         let (mut depth, mut rows, mut columns) = (0, 0, 0);
         for (kind, content) in records(stream.get(at..).unwrap_or_default()) {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::ReadOptions;
 use super::aside::Why;
 use super::cell::{Cell, clock};
-use super::columns::{Columns, Kind};
+use super::columns::{Columns, Kind, LEVEL};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
@@ -23,7 +23,9 @@ impl Columns {
         let trials = self.values().any(|(_, _, v)| !v.trial.is_empty() || !v.group.is_empty());
         let rows = self.values().any(|(_, c, v)| !v.or_trial && v.at != At::Release && (c.unit.is_some() || !trials));
         for (index, column) in self.columns.iter_mut().enumerate() {
-            if rows && column.unit.is_none() && column.value().is_some_and(|v| v.or_trial) && region.counts(index) {
+            // A letter behind a trial may be short for a number: `pokus č.`.
+            let trial = |v: &Value| v.or_trial || v.what == What::Unsaid && !v.trial.is_empty() && v.at == At::Row;
+            if rows && column.unit.is_none() && column.value().is_some_and(trial) && region.counts(index) {
                 column.kind = Kind::Trial;
             }
         }
@@ -384,9 +386,6 @@ impl Columns {
 /// Whether heights side by side are nearly as high as one another, and well below the release:
 /// repeats, and not bounces.
 fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
-    /// A ball that keeps more of its height than this keeps it at the first bounce too.
-    const LEVEL: f64 = 0.95;
-    const FALLS: f64 = 0.9;
     let number = |row: usize, column: usize| match region.view.read(row, column) {
         Cell::Number(m) => Some(m.value),
         _ => None,
@@ -399,6 +398,6 @@ fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) ->
         median(&mut all.collect::<Vec<f64>>())
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
-    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < FALLS));
+    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
     below && ratios(&later).is_some_and(|later| later > LEVEL)
 }

@@ -277,11 +277,12 @@ fn named(
     Ok(found)
 }
 
+/// Numbers read off a diagram are off by so much at most.
+pub(super) const OFF: f64 = 0.1;
+
 /// The numbers of bounces that were read off a diagram, row by row: near whole numbers, each near
 /// another one. None where a cell holds anything else, or all are whole.
 fn off_a_diagram(region: &Region<'_>, key: usize) -> HashMap<usize, usize> {
-    /// Numbers read off a diagram are off by so much at most.
-    const OFF: f64 = 0.1;
     let near = |row: usize| match region.view.read(row, key) {
         Cell::Number(m) if m.unit.is_none() && (m.value - m.value.round()).abs() <= OFF && m.value > -OFF => {
             // In range and whole: the cast is exact.

@@ -1,10 +1,12 @@
 //! From bytes to text: UTF-8, UTF-16, Latin-1, and every way to end a line.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::cell::{self, Cell};
 use super::forms;
-use super::heading::Heading;
+use super::heading::{Heading, What};
+use super::vocabulary::Atom;
 use crate::error::TableError;
 
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
@@ -12,6 +14,9 @@ pub(super) struct Text<'a> {
     pub(super) text: Cow<'a, str>,
     pub(super) encoding: Option<&'static str>,
 }
+
+/// The halves of a day.
+const HALVES: [&str; 4] = ["am", "pm", "a.m.", "p.m."];
 
 /// Nobody types more than this by hand, bytes: a longer text is of cells side by side.
 const TYPED: usize = 1 << 20;
@@ -38,19 +43,81 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     Ok(Text { text, encoding })
 }
 
-/// A text without the time of day that a monitor writes before each of its lines, `15:21:07.112
-/// ->`; `None` where it writes none.
+/// A text without the time that a monitor, a logger or a chat writes before its lines, and without
+/// who wrote them: `15:21:07.112 -> 64`, `[12.03.24, 14:22] Anna: 64 cm`; of lines that say nothing
+/// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
 fn unstamped(text: &str) -> Option<String> {
-    let bare = |line: &'_ str| -> Option<usize> {
-        let (stamp, _) = line.split_once("->")?;
-        (stamp.matches(':').count() == 2 && cell::clock(stamp.trim()).is_some()).then_some(stamp.len() + 2)
-    };
     let filled = || text.lines().filter(|line| !line.trim().is_empty());
-    if filled().count() < 2 || !filled().all(|line| bare(line).is_some()) {
+    let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
+    // Before the first of them a device may tell what it is.
+    if stamps.len() < 2 || 2 * stamps.len() < filled().count() {
         return None;
     }
-    let lines = text.lines().map(|line| bare(line).map_or(line, |at| line[at..].trim_start()));
-    Some(lines.collect::<Vec<_>>().join("\n") + "\n")
+    let event = counted_out(stamps[0].said);
+    let heading = format!("time of {event}");
+    let exact = |stamp: &Stamped<'_>| stamp.time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+    let alike = |stamp: &Stamped<'_>| exact(stamp) && counted_out(stamp.said) == event;
+    if stamps.len() == filled().count() && stamps.iter().all(alike) && of_contacts(&Heading::parse(&heading)) {
+        let times = text.lines().map(|line| stamped(line).map_or("", |stamp| stamp.time));
+        return Some(format!("{heading}\r{}\n", times.collect::<Vec<_>>().join("\n")));
+    }
+    // A message may go on in the next line; between those of a device a line tells something.
+    let chat = stamps[0].chat;
+    let said = |line: &str| match stamped(line) {
+        Some(stamp) if stamp.chat => spoken(stamp.said).to_owned(),
+        Some(stamp) => stamp.said.to_owned(),
+        None if chat || line.trim().is_empty() => line.to_owned(),
+        None => format!("#{line}"),
+    };
+    Some(text.lines().map(said).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A line with the time before it.
+struct Stamped<'a> {
+    time: &'a str,
+    said: &'a str,
+    /// A message of somebody.
+    chat: bool,
+}
+
+fn stamped(line: &str) -> Option<Stamped<'_>> {
+    let bare = line.trim_start().trim_start_matches('[');
+    let date = bare.find([' ', 'T']).filter(|at| cell::date(bare[..*at].trim_end_matches(',')));
+    let from = date.map_or(0, |at| at + 1);
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, ':' | '.' | ',');
+    let run = bare[from..].find(|c: char| !digits(c)).unwrap_or(bare.len() - from);
+    let end = from + bare[from..from + run].trim_end_matches(['.', ',']).len();
+    cell::clock(&bare[from..end])?;
+    let (time, rest) = bare.split_at(end);
+    let half = rest.trim_start().split([' ', ']']).next().filter(|word| HALVES.contains(&word.to_lowercase().as_str()));
+    let rest = half.map_or(rest, |word| &rest.trim_start()[word.len()..]).trim_start_matches('Z');
+    // What a mark of a table parts from a time is a cell.
+    let tells = |said: &str| said.starts_with(char::is_alphabetic) && !said.contains([',', ';', '\t']);
+    let said = rest.trim_start();
+    let (said, chat) = match said {
+        _ if said.starts_with("->") => (&said[2..], false),
+        _ if said.starts_with([']', '-', '–']) && date.is_some() => (said.trim_start_matches([']', '-', '–']), true),
+        _ if date.is_some() && rest.starts_with(' ') && tells(said) => (said, false),
+        _ => return None,
+    };
+    Some(Stamped { time, said: said.trim(), chat })
+}
+
+/// Whether a heading is of the times of contacts, every word of it being understood.
+fn of_contacts(heading: &Heading) -> bool {
+    heading.understood() && heading.has(Atom::Impact) && heading.value().is_some_and(|value| value.what == What::Time)
+}
+
+/// What a message says, without the name of who wrote it.
+fn spoken(said: &str) -> &str {
+    let name = |who: &str| !who.contains(|c: char| c.is_ascii_digit()) && !who.contains(['(', '=']);
+    said.split_once(": ").filter(|(who, _)| name(who)).map_or(said, |(_, words)| words)
+}
+
+/// A text without its numbers.
+fn counted_out(text: &str) -> String {
+    let words = text.split_whitespace().filter(|word| word.trim_matches(['#', ':', '.']).parse::<f64>().is_err());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// A text whose cells `#`, which name a count, are no comments; `None` where there are none.
@@ -111,56 +178,113 @@ fn names_in_comment(text: &str) -> Option<usize> {
 fn aligned(text: &str) -> Option<String> {
     let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#') && !drawn(line));
     let numbers = |line: &str| line.split_whitespace().all(|cell| cell.parse::<f64>().is_ok());
-    let width = lines().find(|line| numbers(line)).map_or(0, |line| line.split_whitespace().count());
-    let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ");
-    let rows = lines().filter(|line| numbers(line));
+    let rows = || lines().filter(|line| numbers(line));
+    let width = rows().next().map_or(0, |line| line.split_whitespace().count());
+    let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ") || bracketed(line, width).is_some();
     let of_numbers = width > 1
-        && !text.contains(['\t', ';', ','])
-        && rows.clone().all(|line| line.split_whitespace().count() == width)
-        && 2 * rows.count() >= lines().count()
+        && !text.contains(['\t', ';'])
+        && rows().all(|line| line.split_whitespace().count() == width)
+        && 2 * rows().count() >= lines().count()
         && lines().any(spaced);
-    if !of_numbers && !of_cells(text, lines()) {
-        return None;
-    }
-    let width = if of_numbers { width } else { 0 };
-    // Names that begin beyond the first cells of the rows leave the first column without a name.
-    let ends = lines().filter(|line| numbers(line)).map(first_end);
-    let beyond = ends.max().filter(|_| of_numbers).unwrap_or(usize::MAX);
+    let width = if of_numbers { width } else { of_cells(text, lines())? };
+    // A name may hold single spaces, unless there are as many words as columns.
+    let words = |line: &str| of_numbers && line.split_whitespace().count() == width;
+    let cells = |line: &str| cells(line, if words(line) { 1 } else { 2 });
+    let full = |line: &&str| cells(line).len() == width;
+    let columns = columns(lines().filter(full).map(cells));
     let mut found = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
-        if drawn(line) {
-            found.push_str(&line[line.trim_end().len()..]);
-            continue;
-        }
-        // A name may hold single spaces, unless there are as many words as columns.
-        let least = if line.split_whitespace().count() == width { 1 } else { 2 };
-        let indent = line.len() - line.trim_start().len();
-        let unnamed = indent >= beyond && !numbers(line.trim());
-        found.push_str(&line[..indent - usize::from(unnamed)]);
-        found.push_str(if unnamed { "\t" } else { "" });
-        let (inner, end) = line[indent..].split_at(line.trim().len());
-        let mut run = 0;
-        for c in inner.chars() {
-            if c == ' ' {
-                run += 1;
-                continue;
-            }
-            if run > 0 {
-                found.push_str(&" ".repeat(run - 1));
-                found.push(if run >= least { '\t' } else { ' ' });
-            }
-            run = 0;
-            found.push(c);
+        let (inner, end) = line.split_at(line.trim_end().len());
+        if !drawn(line) {
+            let (own, at) = in_columns(inner, cells(inner), &columns, of_numbers);
+            tabbed(&mut found, inner, &own, &at);
         }
         found.push_str(end);
     }
     Some(found)
 }
 
-/// Where the first cell of a line ends, in bytes.
-fn first_end(line: &str) -> usize {
-    let start = line.len() - line.trim_start_matches(' ').len();
-    line[start..].find(' ').map_or(line.len(), |end| start + end)
+/// The cells of a line, and the columns that they stand in: where they are fewer than these, by
+/// their place.
+fn in_columns(
+    line: &str,
+    own: Vec<Range<usize>>,
+    columns: &[Range<usize>],
+    of_numbers: bool,
+) -> (Vec<Range<usize>>, Vec<usize>) {
+    let all = |own: Vec<Range<usize>>, from: usize| (own.clone(), (from..own.len() + from).collect());
+    if own.len() >= columns.len() {
+        return all(own, 0);
+    }
+    if let Some(names) = bracketed(line, columns.len()).filter(|_| of_numbers) {
+        return all(names, 0);
+    }
+    // Names that single blanks part, where each stands above the numbers of its column.
+    let single = || Some(cells(line, 1)).filter(|own| of_numbers && own.len() + 1 == columns.len());
+    let by_place = |own: Vec<Range<usize>>| placed(&own, columns).map(|at| (own, at));
+    // Names that begin beyond the first column leave it without one.
+    let beyond = own.len() + 1 == columns.len() && own.first().is_some_and(|name| name.start >= columns[0].end);
+    let found =
+        Some(own.clone()).filter(|own| own.len() > 1).and_then(by_place).or_else(|| single().and_then(by_place));
+    found.unwrap_or_else(|| all(own, usize::from(beyond)))
+}
+
+/// Writes a line with its cells in their columns: as long as it was, with tabs at the ends of the
+/// blanks before them.
+fn tabbed(found: &mut String, line: &str, cells: &[Range<usize>], columns: &[usize]) {
+    let (mut end, mut column) = (0, 0);
+    for (cell, &at) in cells.iter().zip(columns) {
+        let tabs = at - column;
+        found.push_str(&" ".repeat((cell.start - end).saturating_sub(tabs)));
+        found.push_str(&"\t".repeat(tabs));
+        found.push_str(&line[cell.clone()]);
+        (end, column) = (cell.end, at);
+    }
+}
+
+/// Where the cells of a line stand that so many blanks part, in bytes.
+fn cells(line: &str, blanks: usize) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for (at, c) in line.char_indices().filter(|(_, c)| !c.is_whitespace()) {
+        match found.last_mut().filter(|last| at - last.end < blanks) {
+            Some(last) => last.end = at + c.len_utf8(),
+            None => found.push(at..at + c.len_utf8()),
+        }
+    }
+    found
+}
+
+/// Where the names of a line stand that all end in a unit in brackets, one behind the other, `Drop
+/// (cm) Rebound (cm)`; `None` unless there are so many.
+fn bracketed(line: &str, count: usize) -> Option<Vec<Range<usize>>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for word in cells(line, 1) {
+        match found.last_mut().filter(|last| !line[..last.end].ends_with([')', ']'])) {
+            Some(last) => last.end = word.end,
+            None => found.push(word),
+        }
+    }
+    let closed = found.iter().all(|name| line[name.clone()].ends_with([')', ']']));
+    (closed && found.len() == count && count > 1).then_some(found)
+}
+
+/// Where the columns of rows that have a cell in each of them begin and end.
+fn columns(mut rows: impl Iterator<Item = Vec<Range<usize>>>) -> Vec<Range<usize>> {
+    let first = rows.next().unwrap_or_default();
+    rows.fold(first, |columns, row| {
+        columns.into_iter().zip(row).map(|(a, b)| a.start.min(b.start)..a.end.max(b.end)).collect()
+    })
+}
+
+/// The columns that cells stand in, each above or below one alone; `None` where one does not.
+fn placed(cells: &[Range<usize>], columns: &[Range<usize>]) -> Option<Vec<usize>> {
+    let over = |cell: &Range<usize>| {
+        let mut found = columns.iter().enumerate().filter(|(_, c)| c.start < cell.end && cell.start < c.end);
+        let (at, _) = found.next()?;
+        found.next().is_none().then_some(at)
+    };
+    let found: Vec<usize> = cells.iter().map(over).collect::<Option<_>>()?;
+    found.windows(2).all(|pair| pair[0] < pair[1]).then_some(found)
 }
 
 /// Whether a line is drawn, and holds nothing: `-----  ------`, `=====`.
@@ -174,37 +298,31 @@ fn parted(line: &str) -> impl Iterator<Item = &str> {
     line.trim().split("  ").map(str::trim).filter(|cell| !cell.is_empty())
 }
 
-/// A line of so many words tells something.
-const TOLD: usize = 5;
-
 /// Whether two blanks or more part the cells of lines, some of them words: as many in most lines,
 /// and in two of these a number; a comma is a decimal one.
-fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> bool {
+fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Option<usize> {
     let decimal = |line: &str| {
         let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
         let inside = |(at, _)| digit(line[..at].chars().next_back()) && digit(line[at + 1..].chars().next());
         line.match_indices(',').all(inside)
     };
-    // Lines that tell something may hold any mark.
-    let told = |line: &str| line.split_whitespace().filter(|word| word.contains(char::is_alphabetic)).count() >= TOLD;
-    if text.lines().any(|line| line.contains(['\t', ';', '|', '&']) && (line.contains("  ") || !told(line))) {
-        return false;
+    if text.lines().any(|line| line.contains(['\t', ';', '|', '&']) && (line.contains("  ") || !forms::told(line))) {
+        return None;
     }
     let number = |line: &&str| {
         parted(line).nth(1).is_some() && parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)))
     };
-    let Some(width) = lines.clone().find(number).map(|line| parted(line).count()) else {
-        return false;
-    };
+    let width = parted(lines.clone().find(number)?).count();
     let alike = |line: &&str| parted(line).count() == width;
     let rows = lines.clone().filter(alike).filter(number).count();
     // A title may hold any comma.
     let table = lines.clone().filter(alike).count();
     // Of the lines around it most tell something, or greet.
     let around = lines.clone().filter(|line| !alike(line) && parted(line).nth(1).is_none()).count();
-    rows > 1
+    let found = rows > 1
         && lines.clone().filter(alike).all(decimal)
-        && (3 * table >= 2 * lines.clone().count() || table > rows && rows > 2 && table + around == lines.count())
+        && (3 * table >= 2 * lines.clone().count() || table > rows && rows > 2 && table + around == lines.count());
+    found.then_some(width)
 }
 
 fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {

@@ -6,6 +6,7 @@ use super::grid::shown;
 use super::heading::{At, Heading, Role, rate, released};
 use super::region::Region;
 use super::rows::names_floor;
+use super::said::ROWS;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
@@ -26,9 +27,6 @@ pub(super) struct Stated {
     /// A line that speaks of heights, states a length, and is not used; and its number.
     pub(super) length: Option<(String, u64)>,
 }
-
-/// Remarks below a table are looked for in so many of its last lines.
-const REMARKS: usize = 20;
 
 /// What a rate may be called that is a bare number.
 const RATES: [&str; 11] = [
@@ -57,7 +55,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     // Below a table as well, where a line stands alone.
     let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
-    let below = region.rows.iter().rev().take(REMARKS).copied().filter(alone);
+    let below = region.rows.iter().rev().take(ROWS).copied().filter(alone);
     for row in above.chain(below) {
         let line = region.view.line(row, 0);
         let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
@@ -140,7 +138,9 @@ pub(super) fn drop(text: &str) -> Option<f64> {
             let (before, after) = (split(sign.unwrap_or(named)), split(after));
             let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
             // What is dropped from a height is dropped from it, wherever it falls.
-            let said = before.iter().any(|w| w.is(Atom::Release)) && before.iter().any(of_height);
+            // A ball `from 1 m` was dropped from there.
+            let of_drop = |w: &Word| w.is(Atom::Release) || w.is(Atom::Label) && after.is_empty();
+            let said = before.iter().any(of_drop) && before.iter().any(of_height);
             let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns));
             return fits.then(|| height.metres());

@@ -76,6 +76,8 @@ pub(super) enum Atom {
     Void,
     Yes,
     Nay,
+    /// A sign of a note below the table, behind what the note is of.
+    Footnote,
     /// The word says nothing.
     Filler,
     /// A filler that readings are taken with, or by.
@@ -90,10 +92,22 @@ impl Atom {
     /// Whether it has to do with what is measured: a quantity, an event, a statistic, what turns
     /// the meaning.
     pub(super) fn measures(self) -> bool {
-        use Atom::{Error, Filler, Group, Label, Measure, Motion, Note, Number, Ordinal, Other, Unit, Void};
+        use Atom::{Error, Filler, Footnote, Group, Label, Measure, Motion, Note, Number, Ordinal, Other, Unit, Void};
         !matches!(
             self,
-            Filler | Label | Group | Motion | Other | Note | Number | Ordinal(_) | Unit(_) | Error | Measure | Void
+            Filler
+                | Footnote
+                | Label
+                | Group
+                | Motion
+                | Other
+                | Note
+                | Number
+                | Ordinal(_)
+                | Unit(_)
+                | Error
+                | Measure
+                | Void
         )
     }
 
@@ -148,6 +162,7 @@ impl Atom {
             "void" => Self::Void,
             "yes" => Self::Yes,
             "nay" => Self::Nay,
+            "footnote" => Self::Footnote,
             "filler" => Self::Filler,
             "tool" => Self::Tool,
             _ => match name.split_once(':')? {
@@ -166,6 +181,12 @@ pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
     all.get(word).map(Vec::as_slice)
 }
 
+/// The signs of notes below a table.
+pub(super) fn footnotes() -> impl Iterator<Item = char> {
+    let signs = entries().filter(|(_, names)| names.clone().eq(["footnote"]));
+    signs.filter_map(|(sign, _)| sign.chars().next())
+}
+
 /// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three
 /// letters.
 pub(super) fn nearest(word: &str) -> Option<&'static str> {
@@ -182,6 +203,17 @@ const MISSPELT: usize = 6;
 /// missing, too many, another, or has changed places with its neighbour. `None` where words of
 /// different meanings are as near.
 pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
+    // Digits that stand for the letters they look like: `dr0p`.
+    if word.contains(|c: char| c.is_ascii_digit()) {
+        let letter = |c: char| match c {
+            '0' => 'o',
+            '1' => 'l',
+            c => c,
+        };
+        let spelt: String = word.chars().map(letter).collect();
+        let known = entries().map(|(known, _)| known).find(|known| *known == spelt)?;
+        return Some((known, meanings(known)?));
+    }
     let letters = word.chars().count();
     if letters < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
@@ -201,19 +233,26 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
 /// An abbreviation has so many letters at least.
 const SHORT: usize = 3;
 
-/// The word that a beginning of one is short for, `reb`: of a quantity, an event or a statistic, as
-/// are all words that begin so, and of one meaning. `None` where they differ.
+/// The word that a beginning of one, or its consonants, are short for, `reb`, `drp`: of a quantity,
+/// an event or a statistic, as are all words that may be meant, and of one meaning. `None` where
+/// they differ.
 pub(super) fn short_for(word: &str) -> Option<(&'static str, &'static [Atom])> {
     if word.chars().count() < SHORT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
     let mut found = entries()
         .map(|(known, _)| known)
-        .filter(|known| known.starts_with(word))
+        .filter(|known| known.starts_with(word) || consonants(known).eq(word.chars()))
         .filter_map(|k| Some((k, meanings(k)?)));
     let first = found.next()?;
     let alike = |(_, atoms): (&str, &'static [Atom])| meaning(atoms).eq(meaning(first.1));
     (first.1.iter().all(|atom| atom.measures()) && found.all(alike)).then_some(first)
+}
+
+/// A word without its vowels, but with the first letter.
+fn consonants(word: &str) -> impl Iterator<Item = char> {
+    let vowel = |c: char| matches!(c, 'a' | 'e' | 'i' | 'o' | 'u' | 'y');
+    word.char_indices().filter(move |(at, c)| *at == 0 || !vowel(*c)).map(|(_, c)| c)
 }
 
 /// What a word means, without how loosely it is used.
@@ -371,6 +410,8 @@ mod tests {
             ("weight", None),
             ("wobble", None),
             ("sped", None),
+            ("dr0p", Some("drop")),
+            ("w0bble", None),
         ] {
             assert_eq!(misspelt(word).map(|(known, _)| known), meant, "{word}");
         }
@@ -381,6 +422,7 @@ mod tests {
         let meant = |word: &str| short_for(word).map(|(_, atoms)| atoms.to_vec());
         assert_eq!(meant("veloc"), Some(vec![Atom::Speed]));
         assert_eq!(meant("theor"), Some(vec![Atom::Predicted]));
+        assert_eq!(meant("trl"), Some(vec![Atom::Trial]));
         // Of several meanings, of balls, or too short.
         assert_eq!(["pre", "ten", "re", "wob"].map(meant), [None, None, None, None]);
     }

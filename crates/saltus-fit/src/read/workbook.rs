@@ -18,12 +18,13 @@ use crate::error::TableError;
 const UNPACKED: u64 = 128 << 20;
 /// What the cells of a workbook may hold as text, in bytes.
 const TEXT: usize = 64 << 20;
-/// Entries of an archive that are looked at.
-const ENTRIES: usize = 1000;
+/// Tables of a page of the web, or of a text of JSON, that are read.
+pub(super) const TABLES: usize = 100;
+/// Nobody hands in so many columns, sheets or files of an archive, nor a reading of so many
+/// characters.
+pub(super) const MANY: usize = 1000;
 /// How much of another reader's message is shown, in characters.
 const SHOWN: usize = 200;
-/// A cell longer than this holds no reading.
-const CELL: usize = 1000;
 
 /// One table of a file of several.
 pub(super) struct Part {
@@ -65,7 +66,7 @@ fn broken(name: &str, what: &str, problem: &str) -> TableError {
 
 fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
     let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(name, "archive", &e.to_string()))?;
-    let names: Vec<String> = zip.file_names().take(ENTRIES).filter_map(|n| Some(n.ok()?.into_owned())).collect();
+    let names: Vec<String> = zip.file_names().take(MANY).filter_map(|n| Some(n.ok()?.into_owned())).collect();
     let has = |entry: &str| names.iter().any(|n| n == entry);
     if has("xl/workbook.xml") {
         measure(&mut zip).map_err(|problem| broken(name, "workbook", &problem))?;
@@ -200,7 +201,7 @@ impl Rows {
         let down = (row - self.at.0) as usize;
         let right = if down > 0 { column } else { column - self.at.1 } as usize;
         let value: String =
-            value.chars().take(CELL).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect();
+            value.chars().take(MANY).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect();
         self.left = self
             .left
             .checked_sub(down + right + value.len())

@@ -44,15 +44,19 @@ pub(super) fn cors(region: &Region<'_>, columns: &Columns, rows: &Rows, trials: 
     }
 }
 
-/// Gives each trial what stands in its rows in columns of other quantities, or of names that are
-/// not understood.
+/// Gives each trial what stands in its rows in columns of other quantities, of remarks, or of names
+/// that are not understood.
 pub(super) fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows, table: &mut Table) {
     if region.view.across {
         return;
     }
     let other = |name: &str| {
         let of = |aside: &&LeftAside| aside.what == Part::Column && aside.name == name;
-        table.left_aside.iter().find(of).is_some_and(|aside| matches!(aside.why, Why::Other | Why::NotUnderstood))
+        table
+            .left_aside
+            .iter()
+            .find(of)
+            .is_some_and(|aside| matches!(aside.why, Why::Other | Why::Note | Why::NotUnderstood))
     };
     let left: Vec<(usize, String)> = columns
         .columns

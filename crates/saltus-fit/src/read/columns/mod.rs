@@ -141,6 +141,7 @@ impl Columns {
         fps: Option<f64>,
     ) -> Result<(), TableError> {
         self.wordy(region);
+        self.respelt(region);
         self.infer(region, options)?;
         self.frames(region, fps)?;
         self.clocks(region);
@@ -217,16 +218,6 @@ impl Columns {
     pub(super) fn leave(&mut self, index: usize, why: Why) {
         self.columns[index].kind = Kind::Aside;
         self.aside.push(LeftAside::new(Part::Column, shown(&self.columns[index].heading.text), why));
-    }
-
-    /// Events that are only counted.
-    fn counted(&mut self, region: &Region<'_>) {
-        let Some(event) = self.one(&Kind::Event) else { return };
-        let numbers = || region.rows.iter().filter(|&&row| region.view.is_number(row, event)).count();
-        let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
-        if numbers() > words() {
-            self.columns[event].kind = Kind::Number { sure: true };
-        }
     }
 
     /// What is written in words beside readings is none: the date of a form is a remark, and what a

@@ -1,13 +1,15 @@
 //! Columns that are what they are beside others: drops with their own rebounds, counts of rows,
 //! measured cells under the name of a key.
 
-use super::{Columns, Kind, constant, plain};
+use super::{Column, Columns, Kind, constant, plain};
 use crate::error::TableError;
-use crate::read::cell::Cell;
+use crate::finding::Note;
+use crate::read::aside::Why;
+use crate::read::cell::{Cell, respelt};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
-use crate::read::rows::{between, bounce};
+use crate::read::rows::{OFF, between, bounce};
 use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::Atom;
 
@@ -83,20 +85,19 @@ impl Columns {
     /// `H` beside `h`, a plain `Height` beside rebounds: where the ball was dropped, if it is above
     /// all others of its row.
     pub(super) fn capital(&mut self, region: &Region<'_>) {
-        let letter =
-            |c: &super::Column| c.heading.text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
-        let has = |c: &super::Column, atoms: &[Atom]| atoms.iter().any(|atom| c.heading.has(*atom));
+        let letter = |c: &Column| c.heading.text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
+        let has = |c: &Column, atoms: &[Atom]| atoms.iter().any(|atom| c.heading.has(*atom));
         // Columns that are only counted, `1,2,3`, hold what stands beside them.
         let high = |v: &Value| {
             let height = v.what == What::Height || v.what == What::Unsaid && !v.trial.is_empty();
             height && v.role == Role::Reading
         };
-        let plain = |c: &super::Column, v: &Value| {
+        let plain = |c: &Column, v: &Value| {
             let other = [Atom::Release, Atom::Before, Atom::After, Atom::Top, Atom::Rebound, Atom::Impact];
             let named = c.heading.has(Atom::Height) && c.heading.unknown.is_empty() && !has(c, &other);
             high(v) && v.at == At::Row && v.trial.is_empty() && v.group.is_empty() && (named || letter(c) == "H")
         };
-        let rebound = |c: &super::Column, v: &Value| {
+        let rebound = |c: &Column, v: &Value| {
             let sprung = has(c, &[Atom::Rebound, Atom::Impact, Atom::After]) || !c.heading.has(Atom::Height);
             let of_row = v.at == At::Row && (sprung || !v.trial.is_empty() || !v.group.is_empty());
             high(v) && c.heading.unknown.is_empty() && (of_row || matches!(v.at, At::Nth(n) if n > 0))
@@ -107,8 +108,7 @@ impl Columns {
         };
         let counted = self.number().is_some_and(|(_, sure)| sure);
         let Some(release) = of(Some("H")).or_else(|| of(None).filter(|_| !counted)) else { return };
-        let lower =
-            |(n, c, v): (usize, &super::Column, &Value)| n == release || rebound(c, v) || high(v) && letter(c) == "h";
+        let lower = |(n, c, v): (usize, &Column, &Value)| n == release || rebound(c, v) || high(v) && letter(c) == "h";
         // A mean beside them says nothing more.
         let read = || self.values().filter(|(_, _, v)| v.role == Role::Reading);
         let others: Vec<usize> = read().map(|(n, _, _)| n).filter(|n| *n != release).collect();
@@ -152,7 +152,7 @@ impl Columns {
 
     /// `u` beside `v`, or `v` beside `v'`: the speeds before and after, as schools write them.
     pub(super) fn letters(&mut self) {
-        let speed = |c: &super::Column, name: &str| {
+        let speed = |c: &Column, name: &str| {
             let unit = c.heading.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
             unit && c.heading.text.split([' ', '(', '[', '/']).next() == Some(name) && c.heading.only()
         };
@@ -204,6 +204,40 @@ impl Columns {
                 self.columns[index].heading.unknown.clear();
                 self.columns[index].kind = Kind::Number { sure: true };
             }
+        }
+    }
+
+    /// Events that are only counted; and a letter that may count, `k`, above what counts nothing.
+    pub(super) fn counted(&mut self, region: &Region<'_>) {
+        let parts = |n: usize| {
+            let mut cells = region.rows.iter().map(|&row| region.view.read(row, n));
+            cells.any(
+                |cell| matches!(cell, Cell::Number(m) if m.unit.is_none() && (m.value - m.value.round()).abs() > OFF),
+            )
+        };
+        for index in 0..self.columns.len() {
+            if self.columns[index].kind == (Kind::Number { sure: false }) && parts(index) {
+                self.leave(index, Why::Other);
+            }
+        }
+        let Some(event) = self.one(&Kind::Event) else { return };
+        let numbers = || region.rows.iter().filter(|&&row| region.view.is_number(row, event)).count();
+        let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
+        if numbers() > words() {
+            self.columns[event].kind = Kind::Number { sure: true };
+        }
+    }
+
+    /// What was read for letters in place of digits, the first of each column.
+    pub(super) fn respelt(&mut self, region: &Region<'_>) {
+        let first = |(n, _, _): (usize, &Column, &Value)| {
+            let mut cells = region.rows.iter().map(|&row| region.cell(row, n));
+            cells.find_map(|cell| Some((n, cell.to_owned(), respelt(cell)?)))
+        };
+        let found: Vec<(usize, String, String)> = self.values().filter_map(first).collect();
+        for (n, written, meant) in found {
+            let heading = shown(&self.columns[n].heading.text);
+            self.notes.push(Note::Misspelt { written, heading, meant });
         }
     }
 

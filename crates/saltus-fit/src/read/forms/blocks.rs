@@ -67,9 +67,59 @@ fn parted(text: &str, mark: char) -> Option<(usize, Vec<Block<'_>>)> {
     (blocks.len() > 1 && alike).then(|| (blocks[0].line, blocks))
 }
 
+/// Records one below the other, each of the same names, `drop: 100 cm`, `rebound: 64 cm`, as a
+/// table with a row for each; `None` if there are no two. Lines before the first stay what they
+/// are, and a line stays a line.
+pub(super) fn records(text: &str) -> Option<String> {
+    let pair = |line: &'_ str| -> Option<(String, String)> {
+        let bare = line.trim().trim_start_matches("- ").trim_end_matches(',');
+        let (name, value) = bare.split_once([':', '='])?;
+        let (name, value) = (name.trim(), value.trim());
+        let one = !name.is_empty() && !value.is_empty() && !value.contains([',', ';', '[', '(', '\t']);
+        (one && !name.contains([',', ';', '\t', '|'])).then(|| (name.to_owned(), value.to_owned()))
+    };
+    let lines: Vec<&str> = text.lines().collect();
+    let pairs: Vec<Option<(String, String)>> = lines.iter().map(|line| pair(line)).collect();
+    let named = |n: usize| pairs[n].as_ref().map(|(name, _)| name);
+    // The first name that comes again begins each record.
+    let again = |n: &usize| named(*n).is_some() && (n + 1..lines.len()).any(|m| named(m) == named(*n));
+    let first = (0..lines.len()).find(again)?;
+    let starts: Vec<usize> = (first..lines.len()).filter(|&n| named(n) == named(first)).collect();
+    let cells = |at: usize| -> Option<Vec<&(String, String)>> {
+        let end = starts.get(at + 1).copied().unwrap_or(lines.len());
+        (starts[at]..end).filter(|&n| !lines[n].trim().is_empty()).map(|n| pairs[n].as_ref()).collect()
+    };
+    let all: Vec<Vec<&(String, String)>> = (0..starts.len()).map(cells).collect::<Option<_>>()?;
+    let names = |record: &[&(String, String)]| record.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let read = |(_, value): &&(String, String)| value.starts_with(|c: char| c.is_ascii_digit());
+    let alike = |record: &Vec<&(String, String)>| names(record) == names(&all[0]) && record.iter().any(read);
+    if all[0].len() < 2 || !all.iter().all(alike) {
+        return None;
+    }
+    let spelt = |n: usize| match starts.iter().position(|start| *start == n) {
+        Some(at) => {
+            let row = all[at].iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join("\t");
+            // A lone carriage return ends a row, and no line.
+            if at == 0 { format!("{}\r{row}", names(&all[0]).join("\t")) } else { row }
+        }
+        None if n < first => lines[n].replace('\t', " "),
+        None => String::new(),
+    };
+    Some((0..lines.len()).map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
 #[cfg(test)]
 mod tests {
-    use super::table;
+    use super::{records, table};
+
+    #[test]
+    fn records_of_the_same_names_are_rows() {
+        let text = "unit: cm\n- drop: 60\n  rebound: 37\n- drop: 90\n  rebound: 56\n";
+        assert_eq!(records(text).as_deref(), Some("unit: cm\ndrop\trebound\r60\t37\n\n90\t56\n\n"));
+        for text in ["drop: 60\nrebound: 37\n", "h: 60\nh: 37\n", "drop: 60\nrebound: 37\ndrop: 90\nball: golf\n"] {
+            assert_eq!(records(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn lists_below_titles_are_rows() {

@@ -9,12 +9,6 @@ use super::Grid;
 /// What stands between readings of one cell; blanks last, since units stand behind them.
 const MARKS: [&str; 12] = [";", "/", ", ", ",", " & ", " and ", " und ", " et ", " y ", " e ", "\n", " "];
 
-/// Readings of one event agree to this factor, as those of a range do.
-const ALIKE: f64 = 1.5;
-
-/// A cell holds no more readings: more are a table.
-const MOST: usize = 100;
-
 /// The readings of a cell that is no number itself and whose parts are, alike in size; the unit of
 /// the last is that of all.
 fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
@@ -36,7 +30,7 @@ fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
         let (low, high) = found.iter().fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m.value), h.max(m.value)));
         // Two numbers with a comma between them are one, whose thousands it parts.
         let least = if *mark == "," { 3 } else { 2 };
-        let alike = low > 0.0 && high <= ALIKE * low && (least..=MOST).contains(&found.len());
+        let alike = low > 0.0 && high <= cell::RANGE * low && found.len() >= least;
         let whole = |(part, m): (&&'_ str, &cell::Measured)| match m.unit {
             None if !unit.is_empty() => format!("{part}{unit}"),
             _ => (*part).to_owned(),
