@@ -134,22 +134,24 @@ impl Evidence {
     /// Finds contacts that were missed, heard twice or misread, and releases that stand among
     /// contacts.
     fn mend(&mut self, table: &Table, sigma_time: Option<f64>) {
-        let places: Vec<usize> = (0..self.trials.len()).filter(|&n| self.trials[n].plain()).collect();
+        let heard = |t: &TrialEvidence| !t.moments.is_empty() && t.plain();
+        let places: Vec<usize> = (0..self.trials.len()).filter(|&n| heard(&self.trials[n])).collect();
+        if places.is_empty() {
+            return;
+        }
         let runs: Vec<Run> = places.iter().map(|&n| self.trials[n].run()).collect();
         let times: Vec<f64> = runs.iter().flat_map(|run| run.times.iter().copied()).collect();
         let sigma = (sigma_time.unwrap_or(ASSUMED_TIME), sigma_time.is_some());
         let ways = follow::ways(&runs, sigma, rounding(&times));
         let Some((best, others)) = ways.split_first() else { return };
-        let before = self.trials.clone();
-        let read = |way: &Way| {
-            let mut trials = before.clone();
+        let read = |mut trials: Vec<TrialEvidence>, way: &Way| {
             for (&n, steps) in places.iter().zip(&way.runs) {
                 trials[n].reread(steps, way.released);
             }
             trials
         };
-        self.rivals = others.iter().map(read).collect();
-        self.trials = read(best);
+        self.rivals = others.iter().map(|way| read(self.trials.clone(), way)).collect();
+        self.trials = read(std::mem::take(&mut self.trials), best);
         for ((&n, run), steps) in places.iter().zip(&runs).zip(&best.runs) {
             let place = at(table, self.trials[n].trial);
             if best.released && run.from_rest {

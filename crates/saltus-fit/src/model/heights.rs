@@ -1,6 +1,8 @@
 //! Rebound heights: ln h = a + 2 n L, with an intercept per trial; then h = exp(a + 2 n L) itself,
 //! where errors are additive.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use super::problem::{Bounds, Model};
@@ -14,7 +16,8 @@ use crate::evidence::Height;
 /// additive, are fitted from there.
 #[derive(Clone, Debug)]
 pub(crate) struct Heights {
-    pub(crate) trials: Vec<Vec<Height>>,
+    /// Fits of many drops share them.
+    pub(crate) trials: Arc<Vec<Vec<Height>>>,
     /// The upper bound of L: 0 for a ball that gains no energy.
     pub(crate) high: f64,
     /// Adds an unknown times n²: a COR that changes from bounce to bounce.

@@ -40,7 +40,7 @@ pub(super) struct Rows {
 
 /// Sorts the rows of a table out.
 pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, TableError> {
-    let mut found = Rows::default();
+    let mut found = Rows { rows: Vec::with_capacity(region.rows.len()), ..Rows::default() };
     let used: Vec<usize> = (0..columns.columns.len())
         .filter(|&n| !matches!(columns.columns[n].kind, Kind::Aside | Kind::Setting))
         .collect();

@@ -1,5 +1,7 @@
 //! Models that describe one kind of reading by one COR.
 
+use std::sync::Arc;
+
 use super::least_squares::Failure;
 use super::successive::{Fitted, fit};
 use crate::error::FitError;
@@ -41,7 +43,7 @@ impl OneKind for Heights {
     const ASSUMED: f64 = 0.01;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
-        Self { trials: evidence.heights(sigma), high: 0.0, trend: false, logarithms: false }
+        Self { trials: Arc::new(evidence.heights(sigma)), high: 0.0, trend: false, logarithms: false }
     }
 
     fn read(evidence: &Evidence) -> Vec<f64> {
@@ -57,7 +59,7 @@ impl OneKind for Heights {
     }
 
     fn same_tolerance(mut self, tolerance: f64) -> Self {
-        self.trials.iter_mut().flatten().for_each(|h| h.2 = tolerance);
+        Arc::make_mut(&mut self.trials).iter_mut().flatten().for_each(|h| h.2 = tolerance);
         self
     }
 

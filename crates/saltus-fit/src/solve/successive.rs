@@ -126,7 +126,9 @@ pub(crate) fn fit(model: &impl Model, shared: &[f64], own: Vec<Vec<f64>>) -> Res
     let mut trust: Vec<f64> = ranges.iter().map(|r| r.1).collect();
     let mut shared: Vec<f64> = shared.iter().zip(&ranges).map(|(x, (b, _))| x.clamp(b.low, b.high)).collect();
     let sizes: Vec<usize> = own.iter().map(Vec::len).collect();
-    let mut own = own.concat();
+    let each = own;
+    let mut own = each.concat();
+    drop(each);
     let mut here = linearise(model, &shared, &own, &sizes)?;
     let whole: Vec<Bounds> = ranges.iter().map(|r| r.0).collect();
     for _ in 0..STEPS {

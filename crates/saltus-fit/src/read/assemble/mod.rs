@@ -105,6 +105,9 @@ pub(super) fn table(
     builder.layout = layout(region, builder.columns, &rows, &tracks)?;
     unscaled(region, builder.columns, builder.layout, options, &mut table.metadata)?;
     builder.keyed(&rows, tracks.len());
+    if builder.layout == Layout::Pairs {
+        builder.trials.reserve_exact(rows.rows.len());
+    }
     let flights = builder.descending(&rows, &tracks)?;
     for (n, row) in rows.rows.iter().enumerate() {
         for track in &tracks {
@@ -312,19 +315,26 @@ impl Builder<'_> {
         let column = columns.values().find(|(_, _, v)| v.what == What::Time).map_or(0, |(n, _, _)| n);
         let key = columns.number().map_or(column, |(n, _)| n);
         table.metadata.intervals |= !flights.is_empty();
-        let summed_up = trials.into_iter().enumerate().map(|(n, t)| (flights.contains(&n), t));
-        let (timed, plain): (Vec<_>, Vec<_>) = summed_up.partition(|(flown, _)| *flown);
-        for (_, trial) in timed {
+        let mut place = 0..;
+        let mut flown = |_: &Trial| place.next().is_some_and(|n| flights.contains(&n));
+        let (timed, plain): (Vec<_>, Vec<_>) =
+            if flights.is_empty() { (Vec::new(), trials) } else { trials.into_iter().partition(|t| flown(t)) };
+        for trial in timed {
             let runs = renumbered(region, vec![trial], key, &mut table.repairs)?;
             for run in runs {
                 table.trials.push(summed(region, run)?);
             }
         }
-        let plain: Vec<Trial> = plain.into_iter().map(|(_, trial)| trial).collect();
-        table.trials.extend(match layout {
+        let plain = match layout {
             Layout::Numbered => renumbered(region, plain, key, &mut table.repairs)?,
             _ => plain,
-        });
+        };
+        // Of many drops one list is enough.
+        if table.trials.is_empty() {
+            table.trials = plain;
+        } else {
+            table.trials.extend(plain);
+        }
         if let Layout::Samples { .. } = layout
             && !touches
         {

@@ -44,7 +44,7 @@ fn derivatives_are_those_of_the_residuals() {
         let shared = if trend { vec![-0.2, 0.003] } else { vec![-0.2] };
         for logarithms in [false, true] {
             let trials = vec![vec![(0, 1.0, 0.01), (1, 0.7, 0.02), (3, 0.3, 0.01)]];
-            derivatives_match(&Heights { trials, high: 0.0, trend, logarithms }, &shared, &[0.1]);
+            derivatives_match(&Heights { trials: trials.into(), high: 0.0, trend, logarithms }, &shared, &[0.1]);
         }
         let mut model = Contacts { trend, ..contacts(&[0.1, 0.9, 1.5, 2.0], 0.1) };
         model.trials[0][2].apex = true;
@@ -109,7 +109,7 @@ fn elimination_agrees_with_the_whole_problem() {
         vec![(0, 0.8, 0.01), (1, 0.53, 0.01)],
         vec![(1, 0.66, 0.02), (2, 0.40, 0.01), (4, 0.17, 0.01)],
     ];
-    let model = Heights { trials: trials.clone(), high: 0.0, trend: false, logarithms: true };
+    let model = Heights { trials: trials.clone().into(), high: 0.0, trend: false, logarithms: true };
     let found = fit(&model, &[-0.3], vec![vec![0.0]; 3]).unwrap();
     let (mut normal, mut right) = (DMatrix::<f64>::zeros(4, 4), DVector::<f64>::zeros(4));
     for (j, trial) in trials.iter().enumerate() {
@@ -130,8 +130,8 @@ fn elimination_agrees_with_the_whole_problem() {
     assert_eq!(found.freedom, 4);
     // Leaving out a block, for good.
     for out in 0..3 {
-        let rest = trials.iter().enumerate().filter(|(j, _)| *j != out).map(|(_, t)| t.clone()).collect();
-        let without = fit(&Heights { trials: rest, ..model.clone() }, &[-0.3], vec![vec![0.0]; 2]).unwrap();
+        let rest: Vec<_> = trials.iter().enumerate().filter(|(j, _)| *j != out).map(|(_, t)| t.clone()).collect();
+        let without = fit(&Heights { trials: rest.into(), ..model.clone() }, &[-0.3], vec![vec![0.0]; 2]).unwrap();
         assert!((without.shared[0] - found.shared[0] - found.influence[out]).abs() < 1e-13);
     }
 }
