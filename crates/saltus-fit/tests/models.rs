@@ -235,7 +235,7 @@ fn the_report_can_rest_on_another_model() {
 fn drops_that_differ_are_told_from_readings_that_do_not_fit() {
     // Heights and times of ten drops, each exact in itself to 1 mm and 1 ms; the COR differs by
     // 0.02 from drop to drop.
-    let mut held = 0;
+    let (mut held, mut in_order) = (0, 0);
     for seed in 0..40 {
         let mut noise = Noise(seed);
         let mut text = "trial,event,time_s,height_m\n".to_owned();
@@ -251,8 +251,13 @@ fn drops_that_differ_are_told_from_readings_that_do_not_fit() {
             }
         }
         let report = Fit::new().sigma_height(0.001).sigma_time(0.001).run(&parse(&text)).unwrap();
-        assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
-        assert!(report.reason().contains("drops that differ"), "{report}");
+        // One in a hundred follows the order of the drops by chance.
+        if report.verdict() == Verdict::Doubtful && report.reason().contains("in the order of the table") {
+            in_order += 1;
+        } else {
+            assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
+            assert!(report.reason().contains("drops that differ"), "{report}");
+        }
         let spread: f64 = report
             .warnings()
             .iter()
@@ -263,7 +268,7 @@ fn drops_that_differ_are_told_from_readings_that_do_not_fit() {
         assert!(cor.standard_error.unwrap() > 0.002);
         held += usize::from(cor.low <= 0.8 && 0.8 <= cor.high);
     }
-    assert!(held >= 34, "{held} of 40");
+    assert!(held >= 34 && in_order < 3, "{held} and {in_order} of 40");
 }
 
 #[test]

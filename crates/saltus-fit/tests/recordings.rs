@@ -6,7 +6,7 @@
 mod noise;
 
 use noise::Noise;
-use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{Fit, ReadOptions, Report, Severity, Table, Verdict};
 
 const G: f64 = 9.81;
 
@@ -329,20 +329,29 @@ fn bounces_that_scatter_are_told_from_readings_by_what_is_stated() {
 }
 
 #[test]
-fn a_cor_that_changes_from_drop_to_drop_in_their_order_is_told() {
-    let table = |last: f64| {
+fn drops_that_change_in_their_order_do_not_repeat_each_other() {
+    let table = |last: f64, from: [f64; 2]| {
         let mut noise = Noise(12);
         let mut text = "trial,bounce,height_cm\n".to_owned();
         for trial in 0..12 {
-            let e = 0.75 + (last - 0.75) * f64::from(trial) / 11.0;
+            let part = f64::from(trial) / 11.0;
+            let (e, drop) = (0.75 + (last - 0.75) * part, from[0] + (from[1] - from[0]) * part);
             for bounce in 0..5 {
-                text += &format!("{trial},{bounce},{:.1}\n", 100.0 * e.powi(2 * bounce) + noise.normal(0.3));
+                text += &format!("{trial},{bounce},{:.1}\n", drop * e.powi(2 * bounce) + noise.normal(0.3));
             }
         }
         fit(&text)
     };
-    let told =
-        |report: &Report| report.warnings().iter().any(|line| line.contains("in the order of the table, from 0.75"));
-    let (warming, steady) = (table(0.81), table(0.75));
-    assert!(told(&warming) && !told(&steady), "{warming}{steady}");
+    let told = |report: &Report, severity: Severity| {
+        let words = "in the order of the table, from 0.75";
+        report.findings().iter().any(|f| f.severity == severity && f.to_string().contains(words))
+    };
+    let (warming, steady) = (table(0.81, [100.0, 100.0]), table(0.75, [100.0, 100.0]));
+    assert!(told(&warming, Severity::Doubt) && warming.verdict() == Verdict::Doubtful, "{warming}");
+    let cor = warming.cor().unwrap();
+    assert!(cor.low < 0.755 && cor.high > 0.805, "{warming}");
+    assert!(!told(&steady, Severity::Doubt) && !told(&steady, Severity::Note), "{steady}");
+    // Drops from other heights may have other CORs.
+    let ladder = table(0.81, [100.0, 200.0]);
+    assert!(told(&ladder, Severity::Note) && !told(&ladder, Severity::Doubt), "{ladder}");
 }

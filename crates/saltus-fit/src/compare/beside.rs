@@ -1,13 +1,14 @@
 //! Which other models are fitted beside one COR, and to which of the readings.
 
 use super::rivals::{Compared, Readings, compare};
-use super::settings::differ;
+use super::settings::{SAME_HEIGHT, differ};
 use crate::error::FitError;
 use crate::finding::{Finding, FindingKind, Untried};
-use crate::model::FlightTrial;
+use crate::model::{Contacts, FlightTrial, Heights};
 use crate::quantity::{self, CorModel, Loss, Source};
 use crate::solve::fits::Fits;
-use crate::statistics::REJECT;
+use crate::solve::one::OneKind;
+use crate::statistics::{REJECT, rounding};
 
 /// What the caller wants of the comparison.
 pub(crate) struct Wanted {
@@ -48,26 +49,25 @@ impl Fits<'_> {
     }
 }
 
-/// Release heights that differ by less, as a part of them, are one.
-const SAME_HEIGHT: f64 = 0.05;
-
 /// Fits other models to the readings that one COR was fitted to; `cor` is none where they do not
 /// settle on one.
 pub(crate) fn models(fits: &Fits<'_>, cor: Option<f64>, wanted: &Wanted) -> Result<Compared, FitError> {
     let none = |untried: Untried| Ok(Compared { untried: Some(untried), ..Compared::default() });
     let Some(cor) = cor else { return none(Untried::Unsettled) };
     let scattering = fits.times.as_ref().is_some_and(|k| k.scatter.is_some());
-    let (kind, trials, source) = match (&fits.joint, &fits.heights, &fits.times) {
-        (Some(joint), _, _) => (None, joint.model.trials.clone(), fits.sigma_time.source),
+    let heights = || rounding(&Heights::read(fits.evidence)) / fits.sigma_height.value;
+    let times = || rounding(&Contacts::read(fits.evidence)) / fits.sigma_time.value;
+    let (kind, trials, source, rounded) = match (&fits.joint, &fits.heights, &fits.times) {
+        (Some(joint), _, _) => (None, joint.model.trials.clone(), fits.sigma_time.source, heights().min(times())),
         (None, Some(_), None) => {
             let trials = FlightTrial::of_heights(fits.evidence, fits.sigma_height.value);
-            (Some(quantity::Readings::Heights), trials, fits.sigma_height.source)
+            (Some(quantity::Readings::Heights), trials, fits.sigma_height.source, heights())
         }
         // Where bounces scatter, times have errors that add up: ratios are compared instead.
         (None, None, Some(_)) if !scattering && fits.evidence.added_up() => return none(Untried::AddedUp),
         (None, None, Some(_)) if !scattering => {
             let trials = FlightTrial::of_times(fits.evidence, fits.sigma_time.value);
-            (Some(quantity::Readings::Times), trials, fits.sigma_time.source)
+            (Some(quantity::Readings::Times), trials, fits.sigma_time.source, times())
         }
         (None, None, Some(times)) => {
             if fits.drops_differ(cor) {
@@ -87,6 +87,7 @@ pub(crate) fn models(fits: &Fits<'_>, cor: Option<f64>, wanted: &Wanted) -> Resu
         trials,
         gravity: fits.gravity.value,
         scattered: source == Source::Scatter,
+        least: rounded * rounded,
         ball: wanted.ball,
         joint: fits.joint.is_some(),
         losses: wanted.losses.clone(),

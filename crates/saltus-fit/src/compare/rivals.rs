@@ -43,6 +43,8 @@ pub(crate) struct Readings {
     pub(crate) gravity: f64,
     /// The errors were taken from the scatter: only ratios of sums of squares mean something.
     pub(crate) scattered: bool,
+    /// As [`Misfit::least`].
+    pub(crate) least: f64,
     /// The size of the ball, m, where it is known.
     pub(crate) ball: Option<f64>,
     /// They are heights and times together.
@@ -275,7 +277,8 @@ fn tried(
     let n = used(&model) as f64;
     // The place of a rebound that is missing was looked for too.
     let p = n - fitted.freedom as f64 + if name == CorModel::Missed { 1.0 } else { 0.0 };
-    let misfit = Misfit { chi_square: fitted.chi_square, readings: n, unknowns: p, scattered: readings.scattered };
+    let Readings { scattered, least, .. } = *readings;
+    let misfit = Misfit { chi_square: fitted.chi_square, readings: n, unknowns: p, scattered, least };
     let bic = if readings.scattered { misfit.by_scatter() } else { misfit.by_errors(1.0) };
     let cor = if model.law.of_speed() {
         at(&model, &fitted, (slowest * fastest).sqrt())

@@ -3,8 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::read::Trial;
-use crate::statistics::{Line, SPARE, TREND, chi_square_p, variance_ratio_p};
+use crate::read::{Event, Trial};
+use crate::statistics::{Line, REJECT, SPARE, TREND, chi_square_p, variance_ratio_p};
+
+/// Release heights that differ by less, as a part of them, are one.
+pub(crate) const SAME_HEIGHT: f64 = 0.05;
 
 /// How settings differ: the probability of that by chance, and the settings with the lowest and the
 /// highest COR.
@@ -72,16 +75,40 @@ pub(crate) struct Drift {
     pub(crate) p: f64,
     pub(crate) first: f64,
     pub(crate) last: f64,
+    /// Trials of one setting change: they do not repeat each other.
+    pub(crate) repeats: bool,
 }
 
-/// The straight line through the trials' own CORs, each weighing by its information; arguments as
-/// for [`differ`].
-#[allow(clippy::cast_precision_loss)]
-pub(crate) fn drift(separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
-    let trials = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
-    let count = trials().count();
-    let line = Line::through(trials());
-    let freedom = count.checked_sub(2).filter(|_| count >= TREND)?;
-    let p = variance_ratio_p(line.explained / ((line.all - line.explained).max(1e-300) / freedom as f64), 1, freedom)?;
-    Some(Drift { p, first: cor + line.at(0.0), last: cor + line.at(separate.len() as f64 - 1.0) })
+/// A weight, a place in the list, the COR there less that of all.
+type Point = (f64, f64, f64);
+
+/// The straight line through the trials' own CORs, each weighing by its information, within
+/// settings where trials repeat each other; arguments as for [`differ`].
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // places in a list
+pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
+    let points = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
+    let release = |trial: &Trial| trial.readings.first().filter(|r| r.event == Event::Release).and_then(|r| r.height);
+    // In steps of the releases that count as one.
+    let step = |height: f64| (height.max(f64::MIN_POSITIVE).ln() / SAME_HEIGHT).round() as i64;
+    let mut settings: BTreeMap<(&str, Option<i64>), Vec<Point>> = BTreeMap::new();
+    for (point, trial) in points().filter_map(|point| Some((point, trials.get(point.1 as usize)?))) {
+        settings.entry((&trial.setting, release(trial).map(step))).or_default().push(point);
+    }
+    settings.retain(|_, points| points.len() > 1);
+    // About the middle of their own setting.
+    let about = |points: &Vec<Point>| {
+        let sum = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).sum::<f64>();
+        let (weight, x, y) = (sum(&|p| p.0), sum(&|p| p.0 * p.1), sum(&|p| p.0 * p.2));
+        points.iter().map(|p| (p.0, p.1 - x / weight, p.2 - y / weight)).collect::<Vec<_>>()
+    };
+    let within: Vec<Point> = settings.values().flat_map(about).collect();
+    let chance = |line: &Line, count: usize, groups: usize| {
+        let freedom = count.checked_sub(1 + groups).filter(|freedom| count >= TREND && *freedom > 0)?;
+        variance_ratio_p(line.explained / ((line.all - line.explained).max(1e-300) / freedom as f64), 1, freedom)
+    };
+    let repeats = chance(&Line::through(within.iter().copied()), within.len(), settings.len()).filter(|p| *p < REJECT);
+    let line = Line::through(points());
+    let p = repeats.or_else(|| chance(&line, points().count(), 1))?;
+    let (first, last) = (cor + line.at(0.0), cor + line.at(separate.len() as f64 - 1.0));
+    Some(Drift { p, first, last, repeats: repeats.is_some() })
 }

@@ -1,6 +1,7 @@
 //! What a cell holds: a number, with a unit, an error and a remark if they stand there; nothing; or
 //! words.
 
+use super::phrases::Phrase;
 use super::units::{Scale, Unit};
 use super::vocabulary::{Atom, folded, meanings};
 
@@ -64,7 +65,7 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
     let told = |word: &&str| spelt.strip_prefix(*word).is_some_and(|rest| rest.starts_with([' ', ',', ':', '(', '!']));
     let letters = |word: &&&str| word.len() > 2 && word.chars().all(|c| c.is_alphabetic() || c == ' ');
     let words = !spelt.contains(|c: char| c.is_ascii_digit());
-    if MISSING.contains(&spelt.as_str()) || words && MISSING.iter().filter(letters).any(told) {
+    if Phrase::Missing.is(&spelt) || words && Phrase::Missing.all().iter().filter(letters).any(told) {
         return Cell::Empty;
     }
     if !text.contains(|c: char| c.is_ascii_digit() || FRACTIONS.iter().any(|f| f.0 == c)) {
@@ -123,36 +124,6 @@ pub(super) fn respelt(cell: &str) -> Option<String> {
     spelt.parse::<f64>().is_ok_and(f64::is_finite).then_some(spelt)
 }
 
-/// What people write where nothing was read.
-const MISSING: [&str; 26] = [
-    "missed",
-    "missing",
-    "miss",
-    "lost",
-    "none",
-    "no reading",
-    "not read",
-    "not measured",
-    "not recorded",
-    "no data",
-    "x",
-    "xx",
-    "nil",
-    "null",
-    "void",
-    "fail",
-    "failed",
-    "n.a.",
-    "n.d.",
-    "nd",
-    "k.a.",
-    "n.b.",
-    "/",
-    "…",
-    "...",
-    "#div/0!",
-];
-
 /// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.
 pub(super) const RANGE: f64 = 1.5;
 
@@ -190,7 +161,12 @@ fn without_remark(text: &str) -> (&str, bool) {
     let Some((number, remark)) = text.strip_suffix([')', ']']).and_then(|t| t.split_once(['(', '['])) else {
         return (text, false);
     };
-    if number.trim().is_empty() || number.contains('±') && remark.contains(|c: char| c.is_ascii_digit()) {
+    // How many readings a mean is of, `64 ± 1 (n = 5)`.
+    let count = |(word, number): (&str, &str)| {
+        Phrase::Readings.is(&folded(word.trim())) && number.trim().parse::<usize>().is_ok()
+    };
+    let counts = remark.split_once('=').is_some_and(count);
+    if number.trim().is_empty() || !counts && number.contains('±') && remark.contains(|c: char| c.is_ascii_digit()) {
         return (text, false);
     }
     let turns = |word: &str| {
@@ -203,25 +179,12 @@ fn without_remark(text: &str) -> (&str, bool) {
 
 /// The text without what says that it is not exact: `~62`, `ca. 62`.
 fn without_about(text: &str) -> &str {
-    const WORDS: [&str; 12] = [
-        "approximately",
-        "approx.",
-        "approx",
-        "around",
-        "about",
-        "circa",
-        "ca.",
-        "ca",
-        "etwa",
-        "env.",
-        "environ",
-        "roughly",
-    ];
+    let words = Phrase::About.all();
     let text = text.trim_start_matches(['~', '≈', '∼', '≃', ' ']);
-    let before = WORDS.iter().find_map(|word| text.get(..word.len()).filter(|t| t.eq_ignore_ascii_case(word)));
+    let before = words.iter().find_map(|word| text.get(..word.len()).filter(|t| t.eq_ignore_ascii_case(word)));
     let text = before.map_or(text, |word| text[word.len()..].trim_start());
     let lower = text.to_lowercase();
-    let after = WORDS.iter().find(|word| lower.ends_with(*word)).filter(|_| lower.len() == text.len());
+    let after = words.iter().find(|word| lower.ends_with(*word)).filter(|_| lower.len() == text.len());
     after.map_or(text, |word| text[..text.len() - word.len()].trim_end())
 }
 
@@ -427,6 +390,8 @@ mod tests {
             ("96 ± 1", 96.0, Some(1.0), false),
             ("96 +/- 1 cm", 0.96, Some(1.0), true),
             ("96 cm ± 10 mm", 0.96, Some(1.0), true),
+            ("96 ± 1 (n=5)", 96.0, Some(1.0), false),
+            ("96 ± 1 cm (N = 12)", 0.96, Some(1.0), true),
             ("100 ± 2 %", 100.0, Some(2.0), false),
             ("64 %", 0.64, None, true),
             ("63-65", 64.0, Some(1.0), false),
@@ -470,6 +435,8 @@ mod tests {
             ("2024/03/12 10:21", Cell::Words),
             ("2026-05-03", Cell::Words),
             ("64 (predicted)", Cell::Wrong(Fault::Turned)),
+            ("64 ± 1 (2)", Cell::Words),
+            ("64 ± 1 (k = 2)", Cell::Words),
             ("1.000.5", Cell::Words),
             ("1,000,5", Cell::Wrong(Fault::Thousands)),
             ("1e999", Cell::Wrong(Fault::NotFinite)),

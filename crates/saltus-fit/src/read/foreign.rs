@@ -81,8 +81,22 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
     (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
 }
 
-/// The tables of a page of the web, cells separated by tabs; `None` if the text is none.
+/// A text of a forum, whose tags stand in square brackets, `[tr][td]`, as a page of the web; `None`
+/// if it is none.
+fn forum(text: &str) -> Option<String> {
+    let spelt = text.to_lowercase();
+    let table = ["[table]", "[tr]", "[td]"].iter().all(|tag| spelt.contains(tag));
+    let from = spelt.find("[table]").filter(|_| table && spelt.len() == text.len())?;
+    let plain = text[from..].replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    Some(plain.replace('[', "<").replace(']', ">"))
+}
+
+/// The tables of a page of the web, or of a post in a forum, cells separated by tabs; `None` if the
+/// text is none.
 pub(super) fn html(text: &str) -> Option<Vec<Part>> {
+    if let Some(page) = forum(text) {
+        return html(&page);
+    }
     let head: String = text.trim_start().chars().take(4000).collect::<String>().to_lowercase();
     if !head.starts_with('<') || !(head.contains("<table") || head.contains("<html")) {
         return None;

@@ -7,6 +7,7 @@ mod blocks;
 use super::cell::{self, Cell};
 use super::columns::LEVEL;
 use super::heading::Heading;
+use super::phrases::Phrase;
 use super::title;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
@@ -63,8 +64,9 @@ fn listed(text: &str) -> Option<String> {
         let words = |(name, _): &(&str, &str)| {
             name.contains(char::is_alphabetic) && cell::read(name.trim(), false) == Cell::Words
         };
-        let arrow = || ARROWS.iter().find_map(|arrow| line.split_once(arrow)).filter(words);
-        let parted = line.split_once(": ").or(line.split_once('=')).or_else(dash).or_else(arrow);
+        let arrow = || arrows().find_map(|arrow| line.split_once(arrow)).filter(words);
+        let parted =
+            line.split_once("<-").or(line.split_once(": ")).or(line.split_once('=')).or_else(dash).or_else(arrow);
         let dropped = || {
             let height = drop().filter(|of| *of == line).and_then(title::drop)?;
             Some((true, format!("drop height\t{height} m")))
@@ -230,7 +232,7 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     let name = line.trim_end().strip_suffix(last.number)?;
     let unit = matches!(cell::read(last.number, false), Cell::Number(m) if m.unit.is_some());
     // Blanks beside each other part cells.
-    let chained = ARROWS.iter().any(|arrow| name.contains(arrow)) || found.len() > 1 && name.trim_end().contains("  ");
+    let chained = arrows().any(|arrow| name.contains(arrow)) || found.len() > 1 && name.trim_end().contains("  ");
     let words =
         !chained && found.len() < 3 && name.contains(char::is_alphabetic) && !name.contains([',', ';', '|', '\t']);
     (unit && words).then_some((name, last.number))
@@ -310,7 +312,12 @@ fn contents(cell: &str) -> &str {
 }
 
 /// Marks between one height and the next.
-const ARROWS: [&str; 11] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜", "vs", "vs."];
+const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
+
+/// Those marks, and words that stand for one.
+fn arrows() -> impl Iterator<Item = &'static str> {
+    ARROWS.into_iter().chain(Phrase::Versus.all().iter().copied())
+}
 
 /// A number of a line with its unit, and the words before it.
 struct Part<'a> {
@@ -336,7 +343,7 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
         let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
         // What stands before a sign is a name, `hit 1 t=3885 ms`, and a unit before an arrow.
         let sign = spelt[stop..].trim_start();
-        let name = sign.starts_with(['=', ':']) && !ARROWS.iter().any(|arrow| sign.starts_with(arrow));
+        let name = sign.starts_with(['=', ':']) && !arrows().any(|arrow| sign.starts_with(arrow));
         let unit = (stop > 0 && !name && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
         if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
             continue;
@@ -367,7 +374,10 @@ fn patterned(text: &str) -> Option<String> {
     let commas = |line: &str| line.matches(',').count();
     let named = |n: usize| commas(lines[n]) > 0 && commas(lines[n]) == commas(lines[rows[0]]);
     let titled = (0..rows[0]).any(|n| parts(lines[n]).0.is_empty() && named(n));
-    let alone = parts(lines[rows[0]]).0.iter().any(|part| ARROWS.contains(&part.words) || part.words.ends_with('='));
+    let alone = parts(lines[rows[0]])
+        .0
+        .iter()
+        .any(|part| arrows().any(|arrow| arrow == part.words) || part.words.ends_with('='));
     if rows.len() < 2 && !alone || 2 * rows.len() < filled || titled {
         return None;
     }
@@ -389,7 +399,7 @@ fn patterned(text: &str) -> Option<String> {
 /// none do in cells that commas part.
 fn pattern(line: &str) -> Option<Vec<String>> {
     let (found, rest) = parts(line);
-    let arrow = |part: &Part<'_>| ARROWS.contains(&part.words);
+    let arrow = |part: &Part<'_>| arrows().any(|arrow| arrow == part.words);
     let named = |part: &Part<'_>| part.words.ends_with(['=', ':']) && part.words.contains(char::is_alphabetic);
     let between = |part: &Part<'_>| arrow(part) || named(part) || part.words.ends_with(char::is_alphabetic);
     let fits = found.len() > 1 && found.iter().skip(1).any(between);
@@ -399,7 +409,7 @@ fn pattern(line: &str) -> Option<Vec<String>> {
 
 /// What the numbers of a line are called; `None` where arrows stand between anything but heights.
 fn names(parts: &[Part<'_>]) -> Option<Vec<String>> {
-    let arrow = |n: usize| parts.get(n).is_some_and(|part| ARROWS.contains(&part.words));
+    let arrow = |n: usize| parts.get(n).is_some_and(|part| arrows().any(|arrow| arrow == part.words));
     let mut bounce = 0;
     let name = |(n, part): (usize, &Part<'_>)| {
         if !arrow(n) && !arrow(n + 1) {

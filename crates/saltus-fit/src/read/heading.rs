@@ -5,9 +5,10 @@ mod inside;
 mod meaning;
 
 use super::aside::Why;
+use super::phrases::Phrase;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
-use super::words::{Kind, Word, split};
+use super::words::{Kind, Word, numbers, split};
 pub(super) use inside::{DropHeight, Of, rate, release, released};
 
 /// What the numbers of a column measure.
@@ -284,6 +285,11 @@ impl Heading {
         self.labels.join(" ")
     }
 
+    /// The trial that its words name.
+    pub(super) fn trial(&self) -> String {
+        numbers(&split(&self.text)).trial
+    }
+
     pub(super) fn has(&self, atom: Atom) -> bool {
         self.atoms.contains(&atom)
     }
@@ -432,7 +438,7 @@ impl Heading {
 
 /// Whether a text lists units of one kind, `ft, in`: each cell names its own.
 fn of_units(text: &str) -> bool {
-    let units = text.split([',', '/', '&', ' ']).filter(|word| !matches!(*word, "" | "and"));
+    let units = text.split([',', '/', '&', ' ']).filter(|word| !word.is_empty() && !Phrase::And.is(word));
     let mut found = units.map(|word| Unit::parse(word).map(|unit| unit.dimension));
     let first = found.next().flatten();
     let mut rest = found.peekable();

@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 
 use super::columns::{Column, Columns, Kind};
+use super::phrases::Phrase;
 use super::region::Region;
 use super::said::ROWS;
 use super::vocabulary::{Atom, folded, footnotes, meanings};
@@ -44,8 +45,7 @@ fn answer(cell: &str) -> Answer {
 /// Whether a remark says that its row does not count: `discarded`, `not used`.
 fn voids(cell: &str) -> bool {
     let words = split(cell);
-    let not = |text: &str| matches!(text, "not" | "don't" | "dont" | "nicht" | "pas" | "non" | "no" | "niet");
-    let denied = |n: usize| words[..n].iter().any(|word| not(&word.text.to_lowercase()));
+    let denied = |n: usize| words[..n].iter().any(|word| Phrase::Not.is(&word.text.to_lowercase()));
     words.iter().enumerate().any(|(n, word)| word.is(Atom::Void) && !denied(n) || word.is(Atom::Counts) && denied(n))
 }
 

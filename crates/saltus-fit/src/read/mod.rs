@@ -17,6 +17,7 @@ mod layout;
 mod old_workbook;
 mod options;
 mod order;
+mod phrases;
 mod pool;
 mod programs;
 mod region;
@@ -32,6 +33,7 @@ mod units;
 mod vocabulary;
 mod words;
 mod workbook;
+mod wrapped;
 
 use std::io::Read;
 use std::path::Path;
@@ -85,7 +87,7 @@ impl Reading {
 }
 
 /// One drop: its readings, in the order of the events.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trial {
     pub(crate) label: String,
     /// What was tried, such as `ball golf, h0_cm 80`: trials alike in this repeat each other.
@@ -327,16 +329,7 @@ impl Table {
                     .ok_or_else(|| wrong("is below the floor, or not later than the contact before"))?,
             );
         }
-        let trials = vec![Trial {
-            label: String::new(),
-            setting: String::new(),
-            group: String::new(),
-            ball: None,
-            readings,
-            timed: None,
-            stated: Vec::new(),
-            beside: Vec::new(),
-        }];
+        let trials = vec![Trial { readings, ..Trial::default() }];
         let mut table = Self { name: name.to_owned(), trials, ..Self::default() };
         check::table(&mut table);
         Ok(table)

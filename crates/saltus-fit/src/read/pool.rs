@@ -2,6 +2,7 @@
 
 use super::aside::LeftAside;
 use super::heading::Heading;
+use super::rows::ROUNDED;
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Note, Parts, Remark, Warning};
@@ -32,14 +33,48 @@ pub(super) fn apart(parts: &mut [(String, Table)]) {
     }
 }
 
-/// Takes out tables of ratios beside others: they were worked out from them.
+/// Takes out tables of ratios beside others, and of means of the drops of others: they were worked
+/// out from them.
 pub(super) fn measured<T>(parts: &mut Vec<T>, table: impl Fn(&T) -> &Table) -> Vec<T> {
     if parts.iter().all(|part| table(part).metadata.ratios) {
         return Vec::new();
     }
-    let (ratios, others) = std::mem::take(parts).into_iter().partition(|part| table(part).metadata.ratios);
+    let of_more = |trials: &[Trial]| {
+        let more = parts.iter().map(|part| &table(part).trials).filter(|other| other.len() > trials.len());
+        let mut drops: Vec<(f64, f64)> = more.flatten().filter_map(drop).collect();
+        drops.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        means(trials, &drops)
+    };
+    let worked_out: Vec<bool> =
+        parts.iter().map(&table).map(|table| table.metadata.ratios || of_more(&table.trials)).collect();
+    let mut worked_out = worked_out.into_iter();
+    let (found, others) = std::mem::take(parts).into_iter().partition(|_| worked_out.next() == Some(true));
     *parts = others;
-    ratios
+    found
+}
+
+/// The height of release and that of the rebound, of a trial that holds these alone.
+fn drop(trial: &Trial) -> Option<(f64, f64)> {
+    match trial.readings.as_slice() {
+        [release, apex] if release.event == Event::Release && apex.event == Event::Apex => {
+            release.height.zip(apex.height)
+        }
+        _ => None,
+    }
+}
+
+/// Whether each trial is the mean of the drops, in the order of their heights, that are from where
+/// it is.
+fn means(trials: &[Trial], drops: &[(f64, f64)]) -> bool {
+    let mean = |(height, rebound): (f64, f64)| {
+        let from = drops.partition_point(|drop| drop.0 < height * (1.0 - ROUNDED));
+        let to = drops.partition_point(|drop| drop.0 <= height * (1.0 + ROUNDED));
+        let same = &drops[from..to];
+        #[allow(clippy::cast_precision_loss)] // drops of a workbook
+        let mean = same.iter().map(|drop| drop.1).sum::<f64>() / same.len() as f64;
+        same.len() > 1 && (rebound - mean).abs() <= ROUNDED * mean
+    };
+    trials.len() > 1 && trials.iter().all(|trial| drop(trial).is_some_and(mean))
 }
 
 /// Joins tables, each with what tells it from the others, into one of all their trials.
@@ -114,4 +149,32 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         oriented: a.oriented,
         falls_upwards: a.falls_upwards.or(b.falls_upwards),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read::Reading;
+
+    #[test]
+    fn means_of_the_drops_of_another_sheet_were_worked_out() {
+        let trial = |&(release, rebound): &(f64, f64)| {
+            let reading = |event, height| Reading { height: Some(height), ..Reading::new(event, 0, 1) };
+            let readings = vec![reading(Event::Release, release), reading(Event::Apex, rebound)];
+            Trial { readings, ..Trial::default() }
+        };
+        let sheet = |drops: &[(f64, f64)]| Table { trials: drops.iter().map(trial).collect(), ..Table::default() };
+        let drops = sheet(&[(1.0, 0.6), (1.0, 0.62), (2.0, 1.2), (2.0, 1.26)]);
+        for (other, aside) in [
+            (sheet(&[(1.0, 0.61), (2.0, 1.23)]), 1),
+            // Another ball, one drop, and as many drops.
+            (sheet(&[(1.0, 0.61), (2.0, 1.3)]), 0),
+            (sheet(&[(1.0, 0.61)]), 0),
+            (drops.clone(), 0),
+        ] {
+            let mut parts = vec![drops.clone(), other];
+            assert_eq!(measured(&mut parts, |table| table).len(), aside);
+            assert_eq!(parts.len() + aside, 2);
+        }
+    }
 }

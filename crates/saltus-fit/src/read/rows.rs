@@ -9,10 +9,11 @@ use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning};
 use super::judged;
+use super::phrases::Phrase;
 use super::region::Region;
 use super::units::Unit;
 use super::vocabulary::Atom;
-use super::words::{Kind as WordKind, Word, split};
+use super::words::{Kind as WordKind, Word, joined, split};
 use crate::error::TableError;
 
 /// A row of readings.
@@ -46,6 +47,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         .collect();
     let key = columns.number().map(|(n, _)| n).or(columns.one(&Kind::Label));
     let diagram = columns.number().map_or_else(HashMap::new, |(key, _)| off_a_diagram(region, key));
+    let lettered = columns.number().map_or_else(HashMap::new, |(key, _)| lettered(region, key));
     let void = judged::void(region, columns);
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
@@ -114,7 +116,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Statistic, Part::Row));
             continue;
         }
-        let read = named(region, columns, row, key, &diagram)?;
+        let read = named(region, columns, row, key, [&diagram, &lettered])?;
         found.rounded |= diagram.contains_key(&row);
         found.rows.push(read);
     }
@@ -152,13 +154,10 @@ pub(super) fn names_floor(text: &str) -> bool {
 
 /// The event that a cell names.
 pub(super) fn event(cell: &str) -> Option<Event> {
-    match cell.to_lowercase().as_str() {
-        "release" | "released" | "drop" | "dropped" | "start" | "let go" | "lets go" => return Some(Event::Release),
-        "contact" | "impact" | "bounce" | "floor" | "hit" | "touch" | "touchdown" | "ground" => {
-            return Some(Event::Contact);
-        }
-        "apex" | "peak" | "top" | "rebound" | "max" | "maximum" => return Some(Event::Apex),
-        _ => {}
+    let spelt = cell.to_lowercase();
+    let events = [(Phrase::LetGo, Event::Release), (Phrase::Contact, Event::Contact), (Phrase::Apex, Event::Apex)];
+    if let Some((_, event)) = events.into_iter().find(|(phrase, _)| phrase.is(&spelt)) {
+        return Some(event);
     }
     let heading = Heading::parse(cell);
     let contact = heading.has(Atom::Impact) && !heading.has(Atom::After);
@@ -218,10 +217,11 @@ fn numbered(cell: &str) -> Option<usize> {
     }
 }
 
+/// Means are rounded to three digits or more.
+pub(super) const ROUNDED: f64 = 0.005;
+
 /// A row without a name below rows with one, whose numbers are the means of those above.
 fn sums(region: &Region<'_>, columns: &Columns, row: usize, above: &[Row]) -> bool {
-    /// Means are rounded to three digits or more.
-    const ROUNDED: f64 = 0.005;
     let key = columns.columns.iter().position(|c| matches!(c.kind, Kind::Trial | Kind::Number { .. } | Kind::Label));
     let Some(key) = key.filter(|&key| region.cell(row, key).is_empty()) else { return false };
     if above.len() < 2 || above.iter().any(|r| region.cell(r.at, key).is_empty()) {
@@ -245,13 +245,13 @@ fn named(
     columns: &Columns,
     row: usize,
     key: Option<usize>,
-    diagram: &HashMap<usize, usize>,
+    counted: [&HashMap<usize, usize>; 2],
 ) -> Result<Row, TableError> {
     let mut found = Row { at: row, bounce: None, name: String::new(), group: String::new() };
     let Some(key) = key else { return Ok(found) };
     let cell = region.cell(row, key);
     let number = matches!(columns.columns[key].kind, Kind::Number { .. });
-    found.bounce = bounce(cell).or(diagram.get(&row).copied());
+    found.bounce = bounce(cell).or_else(|| counted.iter().find_map(|numbers| numbers.get(&row).copied()));
     if found.bounce.is_some() {
         return Ok(found);
     }
@@ -275,6 +275,17 @@ fn named(
     found.group = heading.value().map_or(String::new(), |v| v.group.clone());
     cell.clone_into(&mut found.name);
     Ok(found)
+}
+
+/// The numbers of bounces behind letters that are the same in all cells, `M1`, `M2`, row by row,
+/// one after the other.
+fn lettered(region: &Region<'_>, key: usize) -> HashMap<usize, usize> {
+    let parts = |row: usize| joined(region.cell(row, key)).and_then(|(letters, n)| Some((letters, n.parse().ok()?)));
+    let all: Option<Vec<(&str, usize)>> = region.rows.iter().map(|&row| parts(row)).collect();
+    let one =
+        |all: &Vec<(&str, usize)>| all.windows(2).all(|pair| pair[0].0 == pair[1].0 && pair[0].1 + 1 == pair[1].1);
+    let all = all.filter(one).into_iter().flatten();
+    region.rows.iter().copied().zip(all.map(|(_, number)| number)).collect()
 }
 
 /// Numbers read off a diagram are off by so much at most.

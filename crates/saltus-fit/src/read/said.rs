@@ -8,6 +8,7 @@ use super::cell::Cell;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
+use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded, misspelt};
@@ -237,8 +238,7 @@ pub(super) fn averaged(region: &Region<'_>, columns: &Columns) -> Option<f64> {
     let says = |text: &str| split(text).iter().any(|word| word.is(Atom::Mean)) && !other(text);
     let text = above.filter(|text| says(text)).chain(names).next().filter(|_| !stated)?;
     let count = |word: &str| {
-        let spelt = ["two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"];
-        let named = spelt.iter().zip(2u32..).find(|(name, _)| **name == word).map(|(_, n)| f64::from(n));
+        let named = Phrase::Count.all().iter().zip(2u32..).find(|(name, _)| **name == word).map(|(_, n)| f64::from(n));
         named.or(word.parse().ok().filter(|n: &f64| n.fract() == 0.0 && *n >= AVERAGED))
     };
     let lower = folded(text);

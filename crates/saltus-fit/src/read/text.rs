@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::cell::{self, Cell};
 use super::forms;
-use super::heading::{Heading, What};
-use super::vocabulary::Atom;
+use super::heading::Heading;
+use super::wrapped;
 use crate::error::TableError;
 
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
@@ -14,9 +14,6 @@ pub(super) struct Text<'a> {
     pub(super) text: Cow<'a, str>,
     pub(super) encoding: Option<&'static str>,
 }
-
-/// The halves of a day.
-const HALVES: [&str; 4] = ["am", "pm", "a.m.", "p.m."];
 
 /// Nobody types more than this by hand, bytes: a longer text is of cells side by side.
 const TYPED: usize = 1 << 20;
@@ -37,87 +34,14 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
         None => text,
     };
-    let text = if text.len() > TYPED { text } else { unstamped(&text).map_or(text, Cow::Owned) };
-    let text = if text.len() > TYPED { text } else { forms::table(&text).map_or(text, Cow::Owned) };
+    let typed = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| match form(&text).filter(|_| text.len() <= TYPED)
+    {
+        Some(found) => Cow::Owned(found),
+        None => text,
+    };
+    let text = [wrapped::quoted, wrapped::lettered, wrapped::unstamped, forms::table].into_iter().fold(text, typed);
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
-}
-
-/// A text without the time that a monitor, a logger or a chat writes before its lines, and without
-/// who wrote them: `15:21:07.112 -> 64`, `[12.03.24, 14:22] Anna: 64 cm`; of lines that say nothing
-/// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
-fn unstamped(text: &str) -> Option<String> {
-    let filled = || text.lines().filter(|line| !line.trim().is_empty());
-    let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
-    // Before the first of them a device may tell what it is.
-    if stamps.len() < 2 || 2 * stamps.len() < filled().count() {
-        return None;
-    }
-    let event = counted_out(stamps[0].said);
-    let heading = format!("time of {event}");
-    let exact = |stamp: &Stamped<'_>| stamp.time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
-    let alike = |stamp: &Stamped<'_>| exact(stamp) && counted_out(stamp.said) == event;
-    if stamps.len() == filled().count() && stamps.iter().all(alike) && of_contacts(&Heading::parse(&heading)) {
-        let times = text.lines().map(|line| stamped(line).map_or("", |stamp| stamp.time));
-        return Some(format!("{heading}\r{}\n", times.collect::<Vec<_>>().join("\n")));
-    }
-    // A message may go on in the next line; between those of a device a line tells something.
-    let chat = stamps[0].chat;
-    let said = |line: &str| match stamped(line) {
-        Some(stamp) if stamp.chat => spoken(stamp.said).to_owned(),
-        Some(stamp) => stamp.said.to_owned(),
-        None if chat || line.trim().is_empty() => line.to_owned(),
-        None => format!("#{line}"),
-    };
-    Some(text.lines().map(said).collect::<Vec<_>>().join("\n") + "\n")
-}
-
-/// A line with the time before it.
-struct Stamped<'a> {
-    time: &'a str,
-    said: &'a str,
-    /// A message of somebody.
-    chat: bool,
-}
-
-fn stamped(line: &str) -> Option<Stamped<'_>> {
-    let bare = line.trim_start().trim_start_matches('[');
-    let date = bare.find([' ', 'T']).filter(|at| cell::date(bare[..*at].trim_end_matches(',')));
-    let from = date.map_or(0, |at| at + 1);
-    let digits = |c: char| c.is_ascii_digit() || matches!(c, ':' | '.' | ',');
-    let run = bare[from..].find(|c: char| !digits(c)).unwrap_or(bare.len() - from);
-    let end = from + bare[from..from + run].trim_end_matches(['.', ',']).len();
-    cell::clock(&bare[from..end])?;
-    let (time, rest) = bare.split_at(end);
-    let half = rest.trim_start().split([' ', ']']).next().filter(|word| HALVES.contains(&word.to_lowercase().as_str()));
-    let rest = half.map_or(rest, |word| &rest.trim_start()[word.len()..]).trim_start_matches('Z');
-    // What a mark of a table parts from a time is a cell.
-    let tells = |said: &str| said.starts_with(char::is_alphabetic) && !said.contains([',', ';', '\t']);
-    let said = rest.trim_start();
-    let (said, chat) = match said {
-        _ if said.starts_with("->") => (&said[2..], false),
-        _ if said.starts_with([']', '-', '–']) && date.is_some() => (said.trim_start_matches([']', '-', '–']), true),
-        _ if date.is_some() && rest.starts_with(' ') && tells(said) => (said, false),
-        _ => return None,
-    };
-    Some(Stamped { time, said: said.trim(), chat })
-}
-
-/// Whether a heading is of the times of contacts, every word of it being understood.
-fn of_contacts(heading: &Heading) -> bool {
-    heading.understood() && heading.has(Atom::Impact) && heading.value().is_some_and(|value| value.what == What::Time)
-}
-
-/// What a message says, without the name of who wrote it.
-fn spoken(said: &str) -> &str {
-    let name = |who: &str| !who.contains(|c: char| c.is_ascii_digit()) && !who.contains(['(', '=']);
-    said.split_once(": ").filter(|(who, _)| name(who)).map_or(said, |(_, words)| words)
-}
-
-/// A text without its numbers.
-fn counted_out(text: &str) -> String {
-    let words = text.split_whitespace().filter(|word| word.trim_matches(['#', ':', '.']).parse::<f64>().is_err());
-    words.collect::<Vec<_>>().join(" ")
 }
 
 /// A text whose cells `#`, which name a count, are no comments; `None` where there are none.

@@ -4,6 +4,7 @@
 use super::cell::{self, Cell};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, rate, released};
+use super::phrases::Phrase;
 use super::region::Region;
 use super::rows::names_floor;
 use super::said::ROWS;
@@ -28,24 +29,11 @@ pub(super) struct Stated {
     pub(super) length: Option<(String, u64)>,
 }
 
-/// What a rate may be called that is a bare number.
-const RATES: [&str; 11] = [
-    "fps",
-    "frame rate",
-    "framerate",
-    "sample rate",
-    "samplerate",
-    "sampling rate",
-    "sampling frequency",
-    "abtastrate",
-    "bildrate",
-    "frequence d'echantillonnage",
-    "frecuencia de muestreo",
-];
-
 /// Reads the lines above a table.
 pub(super) fn stated(region: &Region<'_>) -> Stated {
     let mut found = Stated::default();
+    let comments = region.view.grid.comments().take(ROWS).flat_map(|(_, text)| clauses(text));
+    comments.filter_map(of_all).for_each(|unit| found.of_all(unit));
     if region.view.across {
         return found;
     }
@@ -72,16 +60,22 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
             found.sigma.0 = found.sigma.0.or(Some(value));
         }
         let of_clauses = || unit(&text).or_else(|| clauses(&text).find_map(of_all)).into_iter().collect();
-        for unit in Unit::listed(&text).unwrap_or_else(of_clauses) {
-            match unit.dimension {
-                Dimension::Time => found.units.0 = found.units.0.or(Some(unit)),
-                Dimension::Length => found.units.1 = found.units.1.or(Some(unit)),
-                _ => {}
-            }
-        }
+        Unit::listed(&text).unwrap_or_else(of_clauses).into_iter().for_each(|unit| found.of_all(unit));
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
     found
+}
+
+impl Stated {
+    /// Takes a unit in that is of all readings of its dimension, unless another one was stated.
+    fn of_all(&mut self, unit: Unit) {
+        let place = match unit.dimension {
+            Dimension::Time => &mut self.units.0,
+            Dimension::Length => &mut self.units.1,
+            _ => return,
+        };
+        *place = place.or(Some(unit));
+    }
 }
 
 /// The number that a text ends in, and the text before it.
@@ -97,7 +91,7 @@ pub(super) fn frame_rate(text: &str) -> Option<f64> {
     let named = || {
         let text = folded(text);
         let (value, before) = last_number(text.trim_end())?;
-        RATES.contains(&before).then_some(value)
+        Phrase::Rate.is(before).then_some(value)
     };
     rate(text).map(|(value, _)| value).or_else(named)
 }
@@ -106,7 +100,7 @@ pub(super) fn frame_rate(text: &str) -> Option<f64> {
 pub(super) fn names_rate(name: &str) -> bool {
     let name = folded(name);
     let bare = name.split(['(', '[', '/']).next().unwrap_or_default().replace('_', " ");
-    RATES.contains(&bare.trim().trim_end_matches(" hz"))
+    Phrase::Rate.is(bare.trim().trim_end_matches(" hz"))
 }
 
 /// The rate that a column of its own states, the same in all of its cells.
@@ -185,19 +179,24 @@ fn unit(text: &str) -> Option<Unit> {
     unit.filter(|_| several && !counted)
 }
 
-/// `all in cm`: the unit that a clause of no other words states.
+/// `all in cm`, `here are the numbers (cm)`: the unit that a clause of no other words states.
 fn of_all(clause: &str) -> Option<Unit> {
-    let bare = clause.trim().trim_matches(['(', ')', '.']);
+    let clause = clause.trim().trim_end_matches([':', '.']);
+    let bare = clause.trim_matches(['(', ')', '.']);
+    let bracketed = clause.ends_with(')') && !clause.starts_with('(');
     let (name, unit) = bare.rsplit_once([' ', '('])?;
     let unit = Unit::parse(unit.trim_matches(['(', ')'])).filter(|unit| !unit.unscaled())?;
     let plain = |word: &Word| match word.kind {
-        Kind::Known(atoms) => {
-            atoms.iter().all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read))
-        }
+        Kind::Known(atoms) => atoms
+            .iter()
+            .all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number)),
         _ => false,
     };
     let words = split(name);
-    let last = words.last().is_some_and(|word| matches!(&*folded(&word.text), "in" | "en" | "i"));
+    if bracketed && words.len() > 1 && words.iter().all(plain) {
+        return Some(unit);
+    }
+    let last = words.last().is_some_and(|word| Phrase::In.is(&folded(&word.text)));
     (last && words.len() > 1 && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
 }
 
@@ -259,6 +258,15 @@ mod tests {
             let found = unit(text).map(|unit| (unit.dimension, unit.si(1.0)));
             let expected = of_time.map(|s| (Dimension::Time, s)).or(metres.map(|m| (Dimension::Length, m)));
             assert_eq!(found, expected, "{text}");
+        }
+        for (text, metres) in [
+            ("all in cm", Some(0.01)),
+            ("here are the numbers (cm):", Some(0.01)),
+            ("ball (cm)", None),
+            ("the wobbles (cm)", None),
+            ("drop (cm)", None),
+        ] {
+            assert_eq!(of_all(text).map(|unit| unit.si(1.0)), metres, "{text}");
         }
         for (text, expected) in [
             ("Uncertainty in heights: ±1 cm", Some((0.01, Dimension::Length))),

@@ -2,6 +2,7 @@
 
 use saltus_bounce::units::Quantity;
 
+use super::phrases::Phrase;
 use super::vocabulary::{Atom, folded, meanings};
 use super::words::{Kind, Word, split};
 
@@ -132,7 +133,7 @@ impl Unit {
     pub(super) fn listed(line: &str) -> Option<Vec<Self>> {
         let (name, units) = line.split_once([':', '=']).filter(|(name, _)| names_unit(name))?;
         let said = |word: &Word| !matches!(word.kind, Kind::Unknown) || names_unit(&word.text);
-        let units = units.split([',', ';', '/', ' ']).filter(|word| !matches!(*word, "" | "and" | "und" | "et" | "y"));
+        let units = units.split([',', ';', '/', ' ']).filter(|word| !word.is_empty() && !Phrase::And.is(word));
         let found: Vec<Self> = units.map(Self::parse).collect::<Option<_>>()?;
         (!found.is_empty() && split(name).iter().all(said)).then_some(found)
     }

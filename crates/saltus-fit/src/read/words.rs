@@ -1,5 +1,6 @@
 //! The words of a heading, its letters and digits apart, and the numbers among them.
 
+use super::phrases::Phrase;
 use super::vocabulary::{Atom, first_word, folded, meanings, unparted};
 
 /// A word of a heading.
@@ -23,15 +24,6 @@ impl Word {
     }
 }
 
-/// What lies between bounces lies between two.
-const TWO: [&str; 9] = ["two", "zwei", "deux", "due", "dois", "twee", "tva", "dwoma", "dvema"];
-
-/// What the highest one of is the top of a flight.
-const POINTS: [&str; 5] = ["point", "punkt", "punto", "ponto", "punt"];
-
-/// What peaks at a contact.
-const SOUND: [&str; 6] = ["sound", "audio", "noise", "volume", "amplitude", "loudness"];
-
 /// Nobody counts further.
 const COUNTED: usize = 1_000_000;
 
@@ -46,11 +38,11 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         } else if piece.to_lowercase() == "před" {
             // Before, in Czech; `pred` is short for predicted.
             Kind::Known(&[Atom::Before])
-        } else if POINTS.contains(&&*folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
+        } else if Phrase::Point.is(&folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
             // `highest point`.
             Kind::Known(&[Atom::Rebound, Atom::Top])
         } else if let Some(sound) = words.last_mut().filter(|w| {
-            meanings(&folded).is_some_and(|a| a.contains(&Atom::Top)) && SOUND.contains(&&*w.text.to_lowercase())
+            meanings(&folded).is_some_and(|a| a.contains(&Atom::Top)) && Phrase::Sound.is(&w.text.to_lowercase())
         }) {
             // A sound peaks when the ball hits the floor.
             sound.kind = Kind::Known(&[Atom::Filler]);
@@ -62,10 +54,10 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             Kind::Known(atoms)
         } else if let Some(n) = ordinal(&folded) {
             Kind::Ordinal(n)
-        } else if TWO.contains(&&*folded) && words.last().is_some_and(|w| w.is(Atom::Between)) {
+        } else if Phrase::Two.is(&folded) && words.last().is_some_and(|w| w.is(Atom::Between)) {
             // `between two bounces`.
             continue;
-        } else if words.last().is_some_and(counts) && folded.len() > 1 && ORDINALS.contains(&&*folded) {
+        } else if words.last().is_some_and(counts) && folded.len() > 1 && Phrase::Ending.is(&folded) {
             // `n-th`, `n-ten`: the end of a letter that counts.
             continue;
         } else if let Ok(n) = folded.parse::<usize>() {
@@ -235,12 +227,6 @@ pub(super) fn joined(word: &str) -> Option<(&str, &str)> {
     (!letters.is_empty() && digits.chars().all(|c| c.is_ascii_digit())).then_some((letters, digits))
 }
 
-/// What numbers end in that put something in a place of an order.
-const ORDINALS: [&str; 20] = [
-    "st", "nd", "rd", "th", "er", "re", "ere", "e", "eme", "ieme", "a", "o", "º", "ª", "°", "ter", "te", "ten", "tes",
-    "esimo",
-];
-
 /// Whether a word is a letter that stands for any number.
 fn counts(word: &Word) -> bool {
     word.is(Atom::Number) && word.text.chars().count() == 1
@@ -250,7 +236,7 @@ fn counts(word: &Word) -> bool {
 pub(super) fn ordinal(word: &str) -> Option<usize> {
     let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
     let (digits, end) = word.split_at(at);
-    ORDINALS.contains(&end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
+    Phrase::Ending.is(end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
 }
 
 /// The numbers and names in a heading, each with what it counts.

@@ -65,12 +65,16 @@ pub(crate) struct Misfit {
     pub(crate) unknowns: f64,
     /// The errors of the readings are those of their scatter.
     pub(crate) scattered: bool,
+    /// The chi-square of a reading that rounding alone leaves: a model that leaves less fits no
+    /// better.
+    pub(crate) least: f64,
 }
 
 impl Misfit {
     /// The BIC where the errors of the readings are taken from their scatter.
     pub(crate) fn by_scatter(self) -> f64 {
-        self.readings * (self.chi_square / self.readings).max(1e-300).ln() + self.unknowns * self.readings.ln()
+        self.readings * (self.chi_square / self.readings).max(self.least).max(1e-300).ln()
+            + self.unknowns * self.readings.ln()
     }
 
     /// The BIC where the errors are so many times those of the fit.
@@ -85,7 +89,7 @@ impl Misfit {
         let free = self.readings - self.unknowns;
         let count = |x: f64| Some(x as usize).filter(|n| *n > 0);
         if self.scattered {
-            variance_ratio_p(gain / more / (self.chi_square / free), count(more)?, count(free)?)
+            variance_ratio_p(gain / more / (self.chi_square / free).max(self.least), count(more)?, count(free)?)
         } else {
             chi_square_p(gain, count(more)?)
         }
@@ -180,5 +184,19 @@ pub(crate) fn of_recording(law: Law, drag: bool) -> CorModel {
         (Law::Constant, true) => CorModel::ConstantDrag,
         (Law::Linear, true) => CorModel::LinearDrag,
         (Law::Each, true) => CorModel::EachDrag,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Misfit;
+
+    #[test]
+    fn below_the_rounding_no_model_fits_better() {
+        let one = Misfit { chi_square: 12.0, readings: 12.0, unknowns: 1.0, scattered: true, least: 1.0 };
+        let more = Misfit { chi_square: 0.1, unknowns: 4.0, ..one };
+        assert!(more.by_scatter() > one.by_scatter() && more.by_chance(one).is_some_and(|p| p > 0.01));
+        let (one, more) = (Misfit { least: 0.0, ..one }, Misfit { least: 0.0, ..more });
+        assert!(more.by_scatter() < one.by_scatter() && more.by_chance(one).is_some_and(|p| p < 1e-6));
     }
 }

@@ -81,7 +81,7 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         estimate = with_spread(estimate, &across);
         replicated = true;
     }
-    let trend = trend(&model, &fitted, sigma);
+    let trend = trend(&model, &fitted, sigma, rounding(&M::read(evidence)) / sigma.value);
     let mut separate = in_cor(&fitted.separate, M::cor(fitted.shared[0]).1);
     if let (Some(pooled), Some(mean)) = (pooled, estimate.value) {
         // Each is counted from the estimate.
@@ -217,8 +217,8 @@ fn jackknife(influence: &[f64], contributing: usize) -> f64 {
 }
 
 /// The probability that chance alone improves the fit as much as a COR that changes from bounce to
-/// bounce does.
-fn trend<M: OneKind>(model: &M, fitted: &Fitted, sigma: Sourced) -> Option<f64> {
+/// bounce does; `rounded` is what rounding alone leaves, in errors of a reading.
+fn trend<M: OneKind>(model: &M, fitted: &Fitted, sigma: Sourced, rounded: f64) -> Option<f64> {
     if fitted.freedom < 2 || fitted.active[0] {
         return None;
     }
@@ -231,6 +231,6 @@ fn trend<M: OneKind>(model: &M, fitted: &Fitted, sigma: Sourced) -> Option<f64> 
         return chi_square_p(gain, 1);
     }
     #[allow(clippy::cast_precision_loss)]
-    let variance = left / (fitted.freedom - 1) as f64;
+    let variance = (left / (fitted.freedom - 1) as f64).max(rounded * rounded);
     variance_ratio_p(gain / variance, 1, fitted.freedom - 1)
 }

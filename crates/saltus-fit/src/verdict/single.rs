@@ -1,6 +1,6 @@
 //! The COR of heights alone or of times alone, with what speaks against it.
 
-use super::judgement::{Cor, Judgement};
+use super::judgement::{Cor, Judgement, SAME};
 use crate::compare::settings::{differ, differ_beside, drift};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{FindingKind, Widening};
@@ -69,8 +69,20 @@ pub(crate) fn single<M: OneKind>(
     if part > LOUD && !differ {
         judgement.doubt(FindingKind::Loud { readings, part });
     }
-    if let Some(drift) = drift(&kind.separate, cor.value).filter(|d| d.p < REJECT && !differ) {
-        judgement.note(FindingKind::OrderDrift { first: drift.first, last: drift.last, p: drift.p });
+    if let Some(drift) = drift(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT && !differ) {
+        let found = FindingKind::OrderDrift { first: drift.first, last: drift.last, p: drift.p };
+        let apart = |end: f64| (end - cor.value).abs() > SAME;
+        if drift.repeats && (apart(drift.first) || apart(drift.last)) {
+            cor = Cor::within(
+                cor.value,
+                cor.low.min(drift.first).min(drift.last),
+                cor.high.max(drift.first).max(drift.last),
+            );
+            judgement.widen(Widening::Settings);
+            judgement.doubt(found);
+        } else {
+            judgement.note(found);
+        }
     }
     if let Some(spread) = kind.spread.filter(|_| alone && !differ) {
         judgement.note(FindingKind::DropsDiffer { spread, drops: kind.estimate.trials });

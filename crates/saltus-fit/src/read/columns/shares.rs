@@ -5,7 +5,7 @@ use super::{Columns, Kind, plain};
 use crate::finding::Note;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Of, Role, What};
+use crate::read::heading::{At, Of, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
@@ -31,7 +31,7 @@ fn of_the_first(numbers: &[f64], whole: f64) -> bool {
 impl Columns {
     /// The one column of ratios of heights of a table that has no other readings is read: as
     /// heights of which the release is the whole, where all are parts of it and bounces are counted
-    /// or listed as they fall; else each row is a drop.
+    /// or listed as they fall; else each row is a drop, and there may be a column for each trial.
     pub(super) fn shares(&mut self, region: &Region<'_>) {
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
@@ -51,29 +51,44 @@ impl Columns {
         }
         let shares = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.share.is_some();
         let found: Vec<usize> = (0..self.columns.len()).filter(shares).collect();
-        let &[index] = found.as_slice() else { return };
-        let percent = self.is_percent(region, index);
-        let whole = if percent { 100.0 } else { 1.0 };
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(measured) => Some(measured.value),
-            _ => None,
-        };
-        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
-        if numbers.is_empty() || !numbers.iter().all(|&value| value > 0.0 && value <= whole) {
+        let trials: Vec<String> = found.iter().map(|&n| self.columns[n].heading.trial()).collect();
+        let apart = |(n, trial): (usize, &String)| !trial.is_empty() && !trials[..n].contains(trial);
+        let Some(&index) = found.first() else { return };
+        if found.len() > 1 && !trials.iter().enumerate().all(apart) {
             return;
         }
-        let alone = self.columns.iter().all(|c| matches!(c.kind, Kind::Aside | Kind::Number { .. }));
-        let listed = alone && numbers.windows(2).all(|pair| pair[1] < LEVEL * pair[0]);
+        let percent = self.is_percent(region, index);
+        let whole = if percent { 100.0 } else { 1.0 };
+        let numbers = |index: usize| -> Vec<f64> {
+            let number = |row: &usize| match region.view.read(*row, index) {
+                Cell::Number(measured) => Some(measured.value),
+                _ => None,
+            };
+            region.rows.iter().filter_map(number).collect()
+        };
         let of = self.columns[index].heading.share;
+        let part = |n: &usize| {
+            let numbers = numbers(*n);
+            let alike = self.columns[*n].heading.share == of && self.is_percent(region, *n) == percent;
+            alike && !numbers.is_empty() && numbers.iter().all(|&value| value > 0.0 && value <= whole)
+        };
+        if !found.iter().all(part) {
+            return;
+        }
+        let first = numbers(index);
+        let alone = self.columns.iter().all(|c| matches!(c.kind, Kind::Aside | Kind::Number { .. }));
+        let listed = alone && first.windows(2).all(|pair| pair[1] < LEVEL * pair[0]);
         let said = self.columns[index].heading.has(Atom::Before);
-        let whole_first = of == Some(Of::Release) || !said && of_the_first(&numbers, whole);
+        let whole_first = of == Some(Of::Release) || !said && of_the_first(&first, whole);
         let series = whole_first && (counted || listed) && !self.columns.iter().any(released);
-        let name = shown(&self.columns[index].heading.text);
-        let column = &mut self.columns[index];
-        column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };
-        column.kind = if series { Kind::Value(plain(What::Height)) } else { Kind::Share };
-        self.aside.retain(|aside| aside.name != name);
-        self.notes.push(Note::Share { column: name, of_release: series });
+        for (index, trial) in found.into_iter().zip(trials) {
+            let name = shown(&self.columns[index].heading.text);
+            let column = &mut self.columns[index];
+            column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };
+            column.kind = if series { Kind::Value(Value { trial, ..plain(What::Height) }) } else { Kind::Share };
+            self.aside.retain(|aside| aside.name != name);
+            self.notes.push(Note::Share { column: name, of_release: series });
+        }
     }
 
     /// Whether heights stand for ratios only.

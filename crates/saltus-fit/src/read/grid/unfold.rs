@@ -2,12 +2,14 @@
 
 use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
+use super::super::phrases::Phrase;
 use super::super::said::ROWS;
 use super::super::units::{Dimension, Unit, names_unit};
 use super::Grid;
 
-/// What stands between readings of one cell; blanks last, since units stand behind them.
-const MARKS: [&str; 12] = [";", "/", ", ", ",", " & ", " and ", " und ", " et ", " y ", " e ", "\n", " "];
+/// What stands between readings of one cell, words beside these; blanks last, since units stand
+/// behind them.
+const MARKS: [&str; 7] = [";", "/", ", ", ",", " & ", "\n", " "];
 
 /// The readings of a cell that is no number itself and whose parts are, alike in size; the unit of
 /// the last is that of all.
@@ -20,8 +22,14 @@ fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
     if !unit.is_empty() && Unit::parse(unit.trim()).is_none() {
         return None;
     }
-    MARKS.iter().find_map(|mark| {
-        let parts: Vec<&str> = numbers.split(mark).map(str::trim).filter(|part| !part.is_empty()).collect();
+    let words = Phrase::And.all().iter().map(|word| format!(" {word} "));
+    let marks = MARKS[..5]
+        .iter()
+        .map(|mark| (*mark).to_owned())
+        .chain(words)
+        .chain(MARKS[5..].iter().map(|mark| (*mark).to_owned()));
+    marks.into_iter().find_map(|mark| {
+        let parts: Vec<&str> = numbers.split(&*mark).map(str::trim).filter(|part| !part.is_empty()).collect();
         let number = |part: &&str| match cell::read(part, false) {
             Cell::Number(measured) => Some(measured),
             _ => None,
@@ -29,7 +37,7 @@ fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
         let found = parts.iter().map(number).collect::<Option<Vec<_>>>()?;
         let (low, high) = found.iter().fold((f64::INFINITY, 0.0f64), |(l, h), m| (l.min(m.value), h.max(m.value)));
         // Two numbers with a comma between them are one, whose thousands it parts.
-        let least = if *mark == "," { 3 } else { 2 };
+        let least = if mark == "," { 3 } else { 2 };
         let alike = low > 0.0 && high <= cell::RANGE * low && found.len() >= least;
         let whole = |(part, m): (&&'_ str, &cell::Measured)| match m.unit {
             None if !unit.is_empty() => format!("{part}{unit}"),
@@ -41,35 +49,37 @@ fn readings(cell: &str, comma: bool) -> Option<Vec<String>> {
 
 impl Grid<'_> {
     /// Moves the units that a column of its own names, `height,unit` above `150,cm` and `36,in`, to
-    /// the numbers before them.
+    /// the numbers before them, or to the names of the quantities that rows hold, `drop,cm,60,80`.
     pub(super) fn united(&mut self) {
         let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
         let bare = |cell: &str| matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_none());
-        let of = |column: usize| -> Option<(usize, usize)> {
+        let of = |column: usize| -> Option<(usize, usize, bool)> {
             let names = (0..self.rows().min(ROWS)).find(|&row| names_unit(self.cell(row, column)))?;
             let rows = || (names + 1..self.rows()).filter(|&row| !self.cell(row, column).is_empty());
             let unit =
                 |row: usize| Unit::parse(self.cell(row, column)).is_some_and(|u| u.dimension != Dimension::Other);
-            let number = (0..column).rev().find(|&n| rows().all(|row| bare(self.cell(row, n))))?;
-            (rows().count() > 1 && rows().all(unit)).then_some((names, number))
+            let words = |row: usize| cell::read(self.cell(row, column - 1), false) == Cell::Words;
+            let number =
+                (0..column).rev().find(|&n| rows().all(|row| bare(self.cell(row, n)))).map(|n| (names, n, false));
+            let name = || rows().all(words).then_some((names, column - 1, true));
+            number.or_else(name).filter(|_| rows().count() > 1 && rows().all(unit))
         };
-        let found: Vec<(usize, usize, usize)> =
-            (1..width).filter_map(|n| of(n).map(|(row, of)| (n, row, of))).collect();
+        let found: Vec<(usize, (usize, usize, bool))> = (1..width).filter_map(|n| Some((n, of(n)?))).collect();
         if found.is_empty() {
             return;
         }
         let (mut cells, mut ends) = (String::new(), Vec::new());
         for row in 0..self.rows() {
             for column in 0..self.width(row) {
-                let below = |(_, names, _): &&(usize, usize, usize)| row > *names;
-                let unit = found.iter().filter(below).find(|(_, _, of)| *of == column).map(|(unit, _, _)| *unit);
-                let moved = found.iter().any(|(unit, names, _)| *unit == column && row >= *names);
+                let unit = found.iter().find(|(_, (names, of, _))| row > *names && *of == column);
+                let moved = found.iter().any(|(unit, (names, ..))| *unit == column && row >= *names);
                 if !moved {
                     cells.push_str(self.cell(row, column));
                 }
-                if let Some(unit) = unit.map(|unit| self.cell(row, unit)).filter(|unit| !unit.is_empty()) {
-                    cells.push(' ');
-                    cells.push_str(unit);
+                match unit.map(|(unit, (_, _, name))| (self.cell(row, *unit), name)) {
+                    None | Some(("", _)) => {}
+                    Some((unit, true)) => cells.push_str(&format!(" ({unit})")),
+                    Some((unit, false)) => cells.push_str(&format!(" {unit}")),
                 }
                 ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
             }
@@ -143,6 +153,8 @@ mod tests {
         let row = |n: usize| (0..4).map(|column| grid.cell(n, column)).collect::<Vec<_>>();
         assert_eq!(row(0), ["bounce", "height", "", "by"]);
         assert_eq!(row(2), ["1", "36 in", "", "Bob"]);
+        let grid = Grid::open("a", None, "quantity,unit,1,2\ndrop,cm,60,80\nfall,s,0.35,0.4\n").unwrap();
+        assert_eq!((grid.cell(1, 0), grid.cell(2, 0), grid.cell(2, 1)), ("drop (cm)", "fall (s)", ""));
         let grid = Grid::open("a", None, "ball,height,unit\na,150,A7\nb,36,A9\n").unwrap();
         assert_eq!(grid.cell(1, 2), "A7");
     }

@@ -1,6 +1,7 @@
 //! What stands within a heading beside its words: a height of release, what hundredths are of, the
 //! place of a reading before or after a bounce.
 
+use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
 use super::super::words::{Kind, Word};
@@ -106,7 +107,7 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
         let word = before.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         let is = |word: &str, atom: Atom| meanings(word).is_some_and(|atoms| atoms.contains(&atom));
         let counted = value.fract() == 0.0 && value <= COUNTED && is(word, Atom::Trial);
-        let from = matches!(word, "from" | "aus" | "depuis" | "desde" | "vanaf" | "h0" | "h_0");
+        let from = Phrase::From.is(word);
         let parts = [&text[..at], &after[end..]];
         let word_of_release =
             |part: &&str| folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release));

@@ -2,6 +2,7 @@
 //! `{"height": {"value": 64, "unit": "cm"}}`.
 
 use super::super::heading::{At, Heading, Meaning};
+use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit, names_unit};
 use super::super::vocabulary::folded;
 use super::Node;
@@ -59,7 +60,7 @@ fn within(node: Node, outer: &[Stated]) -> Node {
 fn inner(name: String, node: Node) -> (String, Node) {
     match node {
         Node::Record(mut members)
-            if members.len() == 1 && VALUES.iter().any(|value| members[0].0.starts_with(value)) =>
+            if members.len() == 1 && Phrase::Value.all().iter().any(|value| members[0].0.starts_with(value)) =>
         {
             let (own, node) = members.remove(0);
             let unit = own.find(" (").map_or("", |at| &own[at..]);
@@ -68,9 +69,6 @@ fn inner(name: String, node: Node) -> (String, Node) {
         node => (name, node),
     }
 }
-
-/// What a record calls its own number, or its numbers.
-const VALUES: [&str; 5] = ["value", "data", "reading", "measurement", "wert"];
 
 /// A number with the unit behind it.
 fn bears(cell: String, unit: &str) -> String {
@@ -107,7 +105,7 @@ fn of<'a>(name: &str, known: &'a [Stated]) -> Option<&'a str> {
         Meaning::Value(value) => value.what.dimension(),
         Meaning::Setting | Meaning::Trial => None,
         Meaning::Empty if !heading.unknown.is_empty() => None,
-        _ if VALUES.iter().any(|value| name.starts_with(value)) => None,
+        _ if Phrase::Value.all().iter().any(|value| name.starts_with(value)) => None,
         _ => return None,
     };
     let fits = |stated: &&Stated| dimension.is_none_or(|dimension| dimension == stated.dimension);

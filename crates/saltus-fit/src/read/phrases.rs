@@ -1,0 +1,111 @@
+//! Words of cells and lines that are no parts of headings: `phrases.tsv`, one a line.
+
+use std::sync::OnceLock;
+
+/// A kind, a tab, a phrase.
+const PHRASES: &str = include_str!("phrases.tsv");
+
+/// What a phrase is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phrase {
+    /// Of a cell of which nothing was read.
+    Missing,
+    /// Beside a number that is not exact.
+    About,
+    /// A half of the day.
+    Half,
+    /// Turns what follows.
+    Not,
+    /// What lies between bounces lies between two.
+    Two,
+    /// The highest one is the top of a flight.
+    Point,
+    /// Its peak is a contact.
+    Sound,
+    /// Of a number that puts something in a place of an order.
+    Ending,
+    /// A rate of frames or samples that is a bare number.
+    Rate,
+    /// Joins readings, or units.
+    And,
+    /// Before a height of release.
+    From,
+    /// Before a unit.
+    In,
+    /// What a record calls its own numbers.
+    Value,
+    /// How many readings a mean is of, from two on.
+    Count,
+    /// Between a height and the next.
+    Versus,
+    /// The ball is let go.
+    LetGo,
+    /// It touches the floor.
+    Contact,
+    /// It is at the top of a flight.
+    Apex,
+    /// Counts the readings that a mean is of.
+    Readings,
+}
+
+impl Phrase {
+    const ALL: [(&'static str, Self); 19] = [
+        ("missing", Self::Missing),
+        ("about", Self::About),
+        ("half", Self::Half),
+        ("not", Self::Not),
+        ("two", Self::Two),
+        ("point", Self::Point),
+        ("sound", Self::Sound),
+        ("ending", Self::Ending),
+        ("rate", Self::Rate),
+        ("and", Self::And),
+        ("from", Self::From),
+        ("in", Self::In),
+        ("value", Self::Value),
+        ("count", Self::Count),
+        ("versus", Self::Versus),
+        ("let go", Self::LetGo),
+        ("contact", Self::Contact),
+        ("apex", Self::Apex),
+        ("readings", Self::Readings),
+    ];
+
+    /// The phrases of this kind, in the order of the file.
+    pub(super) fn all(self) -> &'static [&'static str] {
+        static ALL: OnceLock<Vec<Vec<&'static str>>> = OnceLock::new();
+        let of = |name: &str| entries().filter(|(kind, _)| *kind == name).map(|(_, phrase)| phrase).collect();
+        let all = ALL.get_or_init(|| Self::ALL.iter().map(|(name, _)| of(name)).collect());
+        &all[self as usize]
+    }
+
+    /// Whether a text is one of this kind.
+    pub(super) fn is(self, text: &str) -> bool {
+        self.all().contains(&text)
+    }
+}
+
+fn entries() -> impl Iterator<Item = (&'static str, &'static str)> {
+    PHRASES.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once('\t'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_phrase_has_a_kind_and_none_hides_a_longer_one() {
+        for (n, (name, kind)) in Phrase::ALL.iter().enumerate() {
+            let phrases = kind.all();
+            assert!(*kind as usize == n && !phrases.is_empty(), "{name}");
+            for (at, phrase) in phrases.iter().enumerate() {
+                assert!(!phrases[..at].contains(phrase) && phrase.to_lowercase() == **phrase, "{phrase}");
+                assert!(
+                    *kind != Phrase::About || !phrases[..at].iter().any(|before| phrase.starts_with(before)),
+                    "{phrase}"
+                );
+            }
+        }
+        assert!(entries().all(|(name, _)| Phrase::ALL.iter().any(|(known, _)| *known == name)));
+    }
+}

@@ -1,0 +1,130 @@
+//! What stands around a text of readings and is no part of it: the marks of a mail that is quoted,
+//! the letters and numbers at the edges of a spreadsheet, the times before the lines of a chat.
+
+use super::cell;
+use super::heading::{Heading, What};
+use super::phrases::Phrase;
+use super::vocabulary::Atom;
+
+/// A text without the `>` before the lines that a mail quotes; `None` unless most lines are quoted.
+pub(super) fn quoted(text: &str) -> Option<String> {
+    let filled = text.lines().filter(|line| !line.trim().is_empty()).count();
+    let quotes = text.lines().filter(|line| line.starts_with('>')).count();
+    let bare = |line: &str| match line.strip_prefix('>') {
+        Some(rest) => rest.strip_prefix(' ').unwrap_or(rest).to_owned(),
+        None => line.to_owned(),
+    };
+    (quotes > 1 && 2 * quotes > filled).then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A table without the letters above its columns and the numbers before its rows, as they are
+/// copied with it from a spreadsheet; `None` where there are none.
+pub(super) fn lettered(text: &str) -> Option<String> {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let letters: Vec<&str> = lines.next()?.trim().split('\t').map(str::trim).collect();
+    let in_order = letters.iter().zip('A'..='Z').all(|(letter, c)| letter.chars().eq([c]));
+    let numbered = |(n, line): (usize, &str)| {
+        line.trim_start().split('\t').next().is_some_and(|cell| cell.trim() == n.to_string())
+    };
+    let framed = letters.len() > 1 && in_order && lines.clone().count() > 1 && (1..).zip(lines).all(numbered);
+    let mut first = true;
+    let inner = |line: &str| {
+        if line.trim().is_empty() || std::mem::take(&mut first) {
+            return String::new();
+        }
+        line.trim_start().split_once('\t').map_or("", |(_, cells)| cells).to_owned()
+    };
+    framed.then(|| text.lines().map(inner).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A text without the time that a monitor, a logger or a chat writes before its lines, and without
+/// who wrote them: `15:21:07.112 -> 64`, `[12.03.24, 14:22] Anna: 64 cm`; of lines that say nothing
+/// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
+pub(super) fn unstamped(text: &str) -> Option<String> {
+    let filled = || text.lines().filter(|line| !line.trim().is_empty());
+    let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
+    // Before the first of them a device may tell what it is.
+    if stamps.len() < 2 || 2 * stamps.len() < filled().count() {
+        return None;
+    }
+    let event = counted_out(stamps[0].said);
+    let heading = format!("time of {event}");
+    let exact = |stamp: &Stamped<'_>| stamp.time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+    let alike = |stamp: &Stamped<'_>| exact(stamp) && counted_out(stamp.said) == event;
+    if stamps.len() == filled().count() && stamps.iter().all(alike) && of_contacts(&Heading::parse(&heading)) {
+        let times = text.lines().map(|line| stamped(line).map_or("", |stamp| stamp.time));
+        return Some(format!("{heading}\r{}\n", times.collect::<Vec<_>>().join("\n")));
+    }
+    // A message may go on in the next line; between those of a device a line tells something.
+    let chat = stamps[0].chat;
+    let said = |line: &str| match stamped(line) {
+        Some(stamp) if stamp.chat => spoken(stamp.said).to_owned(),
+        Some(stamp) => stamp.said.to_owned(),
+        None if chat || line.trim().is_empty() => line.to_owned(),
+        None => format!("#{line}"),
+    };
+    Some(text.lines().map(said).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A line with the time before it.
+struct Stamped<'a> {
+    time: &'a str,
+    said: &'a str,
+    /// A message of somebody.
+    chat: bool,
+}
+
+fn stamped(line: &str) -> Option<Stamped<'_>> {
+    let bare = line.trim_start().trim_start_matches('[');
+    let date = bare.find([' ', 'T']).filter(|at| cell::date(bare[..*at].trim_end_matches(',')));
+    let from = date.map_or(0, |at| at + 1);
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, ':' | '.' | ',');
+    let run = bare[from..].find(|c: char| !digits(c)).unwrap_or(bare.len() - from);
+    let end = from + bare[from..from + run].trim_end_matches(['.', ',']).len();
+    cell::clock(&bare[from..end])?;
+    let (time, rest) = bare.split_at(end);
+    let half = rest.trim_start().split([' ', ']']).next().filter(|word| Phrase::Half.is(&word.to_lowercase()));
+    let rest = half.map_or(rest, |word| &rest.trim_start()[word.len()..]).trim_start_matches('Z');
+    // What a mark of a table parts from a time is a cell.
+    let tells = |said: &str| said.starts_with(char::is_alphabetic) && !said.contains([',', ';', '\t']);
+    let said = rest.trim_start();
+    let (said, chat) = match said {
+        _ if said.starts_with("->") => (&said[2..], false),
+        _ if said.starts_with([']', '-', '–']) && date.is_some() => (said.trim_start_matches([']', '-', '–']), true),
+        _ if date.is_some() && rest.starts_with(' ') && tells(said) => (said, false),
+        _ => return None,
+    };
+    Some(Stamped { time, said: said.trim(), chat })
+}
+
+/// Whether a heading is of the times of contacts, every word of it being understood.
+fn of_contacts(heading: &Heading) -> bool {
+    heading.understood() && heading.has(Atom::Impact) && heading.value().is_some_and(|value| value.what == What::Time)
+}
+
+/// What a message says, without the name of who wrote it.
+fn spoken(said: &str) -> &str {
+    let name = |who: &str| !who.contains(|c: char| c.is_ascii_digit()) && !who.contains(['(', '=']);
+    said.split_once(": ").filter(|(who, _)| name(who)).map_or(said, |(_, words)| words)
+}
+
+/// A text without its numbers.
+fn counted_out(text: &str) -> String {
+    let words = text.split_whitespace().filter(|word| word.trim_matches(['#', ':', '.']).parse::<f64>().is_err());
+    words.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_around_a_table_are_taken_off() {
+        assert_eq!(quoted("He wrote:\n> a b\n>  1 2\n>\n").as_deref(), Some("He wrote:\na b\n 1 2\n\n"));
+        assert_eq!(quoted("> 60\na,b\n1,2\n"), None);
+        assert_eq!(lettered("\tA\tB\n1\tdrop\trise\n2\t60\t30\n").as_deref(), Some("\ndrop\trise\n60\t30\n"));
+        for text in ["A\tB\n60\t30\n80\t41\n", "\tA\tC\n1\tx\ty\n2\t60\t30\n", "\tA\tB\n1\tx\ty\n3\t60\t30\n"] {
+            assert_eq!(lettered(text), None, "{text}");
+        }
+    }
+}
