@@ -64,7 +64,7 @@ pub(crate) fn check_folder(path: &Path) -> Result<(), Error> {
 }
 
 /// A new file gets the permissions that any program would give it.
-fn builder<'a>() -> tempfile::Builder<'a, 'static> {
+pub(crate) fn builder<'a>() -> tempfile::Builder<'a, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".saltus-");
     #[cfg(unix)]

@@ -95,6 +95,40 @@ def test_rows_are_the_same_to_the_byte_however_they_are_made(cluster, tmp_path):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "d" / name).read_bytes()
 
 
+RAY = f"""
+import sys, ray, saltus
+ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+saltus.sweep({DROP!r}, vary={GRID!r}, into=sys.argv[1], on="ray", chunk=13, progress=False)
+"""
+
+
+def test_ray_makes_the_same_rows(tmp_path):
+    pytest.importorskip("ray")
+    # In a process of its own, for it stays.
+    done = subprocess.run([sys.executable, "-c", RAY, str(tmp_path)], capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0, done.stderr
+    rows = saltus.Sweep(tmp_path)
+    assert rows.missing == [] and bytes_of(rows) == bytes_of(swept())
+
+
+def test_a_folder_of_the_tool(tool, tmp_path):
+    vary = [part for key, values in GRID.items() for part in ("--vary", f"{key}={values if isinstance(values, str) else ','.join(map(str, values))}")]
+    scene = tmp_path / "drop.toml"
+    scene.write_text("restitution = 0.8\nball = { height = '1 m' }\n")
+    for share in ("2/2", "1/2"):
+        done = subprocess.run([tool, "sweep", scene, *vary, "--into", tmp_path / "rows", "--chunk", "13", "--part", share], capture_output=True, text=True)
+        assert done.returncode == 0 and done.stdout == "", done.stderr
+        rows = saltus.Sweep(tmp_path / "rows")
+        assert bool(rows.missing) == (share == "2/2")
+    ours = swept().table()
+    assert rows.table().replace_schema_metadata().equals(ours.replace_schema_metadata())
+    assert pandas.read_parquet(tmp_path / "rows").equals(swept().to_frame())
+    said = json.loads(pyarrow.parquet.read_metadata(tmp_path / "rows/part-000.parquet").metadata[b"saltus"])
+    assert said["hash"] == rows.plan["hash"] and said["scene"] == scene.read_text()
+    with pytest.raises(saltus.SaltusError, match="holds another sweep"):
+        swept(into=tmp_path / "rows")
+
+
 def test_a_folder_is_read_by_others(tmp_path):
     rows = swept(into=tmp_path, chunk=50)
     assert pandas.read_parquet(tmp_path).equals(rows.to_frame())

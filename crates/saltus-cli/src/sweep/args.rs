@@ -9,6 +9,20 @@ use saltus_scene::sweep::{Column, RowFormat};
 use crate::parse::{JUMPS, number, one_of, positive};
 use crate::varying::{VARIATIONS, Varying};
 
+/// One of several shares of the work.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Share {
+    /// Counted from 1.
+    pub(crate) k: usize,
+    pub(crate) of: usize,
+}
+
+fn share(text: &str) -> Result<Share, String> {
+    let read = text.split_once('/').and_then(|(k, of)| Some(Share { k: k.parse().ok()?, of: of.parse().ok()? }));
+    read.filter(|share| (1..=share.of).contains(&share.k))
+        .ok_or_else(|| format!("'{text}' is no share: write 2/4 for the second of four"))
+}
+
 /// Run a scene many times with other values, and write a table with a row for each run.
 ///
 /// A key is the path of a value in the scene file, as in `ball.height`, whether the file says it or
@@ -30,6 +44,16 @@ pub(crate) struct Sweep {
     /// How to write it; without it, after the extension of the output file, or else as CSV.
     #[arg(long, value_parser = one_of(&RowFormat::ALL, RowFormat::name, RowFormat::about))]
     pub(crate) format: Option<RowFormat>,
+    /// Write parts of Parquet to a folder instead, each whole or absent; several may write to one,
+    /// and the same command goes on with what is there.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["output", "format", "plot", "resume", "force"])]
+    pub(crate) into: Option<PathBuf>,
+    /// Make the K-th of N shares of the parts, for N machines.
+    #[arg(long, value_name = "K/N", requires = "into", value_parser = share)]
+    pub(crate) part: Option<Share>,
+    /// How many rows a part has; as many as one core makes in half a second unless given.
+    #[arg(long, value_name = "COUNT", requires = "into", value_parser = number(1_u64..=u64::MAX))]
+    pub(crate) chunk: Option<u64>,
     /// Draw a result of the runs against the one or two keys that vary, as SVG.
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,

@@ -1,6 +1,8 @@
 //! `saltus sweep`: a scene in, a table of many runs out.
 
 mod args;
+mod parquet;
+mod parts;
 mod table;
 
 use std::ops::ControlFlow;
@@ -8,7 +10,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) use args::Sweep as SweepArgs;
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use saltus_scene::sweep::{RowFormat, Sweep};
 use saltus_scene::vary::Vary;
 use serde_json::{Value as Json, json};
@@ -34,8 +36,12 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         say(quiet, &note);
     }
     let runs = sweep.runs();
+    let (whose, pool) = (whose(args, &toml, &sweep, &vary, format), pool(args)?);
+    if let Some(folder) = &args.into {
+        return pool.install(|| parts::run(args, folder, &sweep, &whose, quiet));
+    }
     check_plot(args, &sweep)?;
-    let (mut table, done) = Table::open(args, &sweep, &whose(args, &toml, &sweep, &vary, format))?;
+    let (mut table, done) = Table::open(args, &sweep, &whose)?;
     if done > 0 {
         say(
             quiet,
@@ -43,11 +49,6 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         );
     }
 
-    let mut pool = ThreadPoolBuilder::new();
-    if let Some(threads) = args.threads {
-        pool = pool.num_threads(threads.into());
-    }
-    let pool = pool.build().map_err(|error| Error::new(format!("cannot start that many threads: {error}")))?;
     let mut rows = if args.plot.is_some() { table.before(&sweep, done)? } else { Vec::new() };
     let mut progress = Progress::new(runs, quiet);
     let mut nothing = (0_u64, None);
@@ -87,6 +88,12 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         output::write(Some(path), svg.as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The threads that runs are made on.
+fn pool(args: &SweepArgs) -> Result<ThreadPool, Error> {
+    let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from));
+    pool.build().map_err(|error| Error::new(format!("cannot start that many threads: {error}")))
 }
 
 /// Refuses a picture that cannot be drawn or written, before any run is made.

@@ -150,6 +150,16 @@ fn lock(file: &File, path: &Path) -> Result<(), Error> {
 const ORDER: [&str; 10] =
     ["saltus", "scene", "vary", "random", "seed", "until_s", "most_jumps", "format", "columns", "runs"];
 
+/// What first tells two sweeps apart.
+pub(super) fn difference(whose: &Value, found: &Value) -> Option<String> {
+    let key = ORDER.into_iter().find(|key| whose.get(key) != found.get(key))?;
+    let [here, there] = [whose, found].map(|sweep| sweep.get(key).unwrap_or(&Value::Null));
+    Some(match key {
+        "scene" => "the scene is not the same".to_owned(),
+        key => format!("its `{key}` is {there}, here it is {here}"),
+    })
+}
+
 /// Refuses a file that another sweep began.
 fn same(path: &Path, beside: &Path, whose: &Value) -> Result<(), Error> {
     let unknown = |says: String| {
@@ -159,12 +169,7 @@ fn same(path: &Path, beside: &Path, whose: &Value) -> Result<(), Error> {
     let text = fs::read(beside).map_err(|error| unknown(format!("cannot read '{}': {error}", beside.display())))?;
     let found: Value = serde_json::from_slice(&text)
         .map_err(|error| unknown(format!("'{}' is not as it was written: {error}", beside.display())))?;
-    let Some(key) = ORDER.into_iter().find(|key| whose.get(key) != found.get(key)) else { return Ok(()) };
-    let [here, there] = [whose, &found].map(|sweep| sweep.get(key).unwrap_or(&Value::Null));
-    let how = match key {
-        "scene" => "the scene is not the same".to_owned(),
-        key => format!("its `{key}` is {there}, here it is {here}"),
-    };
+    let Some(how) = difference(whose, &found) else { return Ok(()) };
     let path = path.display();
     Err(Error::new(format!("'{path}' belongs to another sweep: {how}; name another file, or start anew by --force")))
 }
