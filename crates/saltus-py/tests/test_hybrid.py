@@ -165,6 +165,109 @@ def test_stiff_flows():
         assert run.state[0] == pytest.approx(math.sin(3.0), abs=1e-5) and run.cost["flows"] < 20_000
 
 
+# -- clocks and slides
+
+
+@settings(max_examples=60, deadline=None)
+@given(period=st.floats(0.01, 1), phase=st.one_of(st.none(), st.floats(0, 1)), start=st.floats(-2, 2), first=st.booleans())
+def test_clocks_tick_at_multiples_rounded_once(period, phase, start, first):
+    end = start + 3
+    counter = saltus.Hybrid(1).mode("run", lambda t, x: [0.0])
+    counter.clock("run", "run", lambda t, x: [x[0] + 1], every=period, after=phase, from_start=first)
+    run = counter.run("run", [0.0], (start, end))
+    k = np.arange(0 if phase is not None else np.floor(start / period) - 1, np.ceil(end / period) + 2)
+    ticks = (phase or 0.0) + k * period
+    near = 1e-12 * (1 + np.abs(ticks))  # a tick at the very end, or at the start, is as rounding has it
+    wanted = ticks[(ticks > start + near) & (ticks < end - near)]
+    found = run.jumps["t"]
+    found = found[(found > start + 1e-12 * 4) & (found < end - 1e-12 * 4)]
+    assert found == pytest.approx(wanted, rel=1e-15, abs=1e-15) and run.state[0] == run.count
+
+
+def test_clocks_at_times_of_their_own_in_order():
+    system = saltus.Hybrid(2).mode("day", lambda t, x: [0.0, 0.0]).mode("night", lambda t, x: [0.0, 0.0])
+    system.clock("day", "night", at=[0.75, 1.25], every=2.0)
+    system.clock("night", "day", lambda t, x: [x[0] + 1, t], at=[1.0, 1.25, 2.0])
+    system.clock("night", "night", lambda t, x: [10 * x[0], x[1]], at=[1.25])
+    run = system.run("day", [0.0, 0.0], (0.0, 3.0))
+    assert [(j["t"], j["from"], j["to"]) for j in run.jumps] == [
+        (0.75, "day", "night"), (1.0, "night", "day"), (1.25, "day", "night"), (1.25, "night", "day"), (2.75, "day", "night"),
+    ]  # fmt: skip
+    assert run.state.tolist() == [2.0, 1.25] and run.mode == "night"
+    again = pickle.loads(pickle.dumps(run))
+    assert again.jumps.tobytes() == run.jumps.tobytes()
+
+
+def rubbing(friction, stiffness):
+    block = saltus.Hybrid(["place", "speed"], {"rub": friction, "k": stiffness})
+    block.mode("forth", lambda t, x, p: [x[1], -p.k * x[0] - p.rub]).mode("back", lambda t, x, p: [x[1], -p.k * x[0] + p.rub])
+    return block.slide("sticks", "forth", "back", lambda t, x, p: x[1])
+
+
+@settings(max_examples=80, deadline=None)
+@given(rub=st.floats(0.1, 5), k=st.floats(1, 200), start=st.floats(0.05, 3), method=st.sampled_from(["auto", "series", "dop853"]))
+def test_a_block_that_rubs_sticks_where_the_closed_form_says(rub, k, start, method):
+    held = rub / k  # the spring holds it within this of its rest
+    run = rubbing(rub, k).run("back" if start > held else "sticks", [start, 0.0], (0, 500), method=method)
+    place, swings = start, 0
+    while abs(place) > held:
+        place = -place + math.copysign(2 * held, place)
+        swings += 1
+    if abs(abs(place) - held) < 1e-6 or swings > 40:
+        return  # which swing is the last is a matter of rounding
+    assert run.mode == "sticks" and run.state[0] == pytest.approx(place, abs=1e-6 * start) and abs(run.state[1]) < 1e-12
+    assert run.count == swings
+    turns = math.pi / math.sqrt(k) * np.arange(1, swings + 1)
+    assert run.jumps["t"] == pytest.approx(turns, abs=1e-6)
+
+
+@settings(max_examples=40, deadline=None)
+@given(up=st.floats(-3, -0.06), down=st.floats(0.01, 3), across=st.tuples(st.floats(-2, 2), st.floats(-2, 2)))
+def test_a_slide_is_the_mixture_that_stays_on_a_curved_surface(up, down, across):
+    """On a circle: out of it with speed `up` above, `down` below, and around it with `across`."""
+
+    def flow(out, around):
+        return lambda t, x: [out * x[0] - around * x[1], out * x[1] + around * x[0]]
+
+    system = saltus.Hybrid(2).mode("out", flow(up, across[0])).mode("in", flow(down, across[1]))
+    system.slide("on", "out", "in", lambda t, x: x[0] ** 2 + x[1] ** 2 - 1)
+    run = system.run("out", [1.5, 0.0], (0, 8))
+    met = -math.log(1.5) / up
+    share = down / (down - up)
+    turned = across[0] * met + (share * across[0] + (1 - share) * across[1]) * (8 - met)
+    assert run.mode == "on" and run.jumps["t"] == pytest.approx([met], abs=1e-7)
+    assert run.state == pytest.approx([math.cos(turned), math.sin(turned)], abs=1e-6)
+
+
+def test_a_flow_that_leads_through_crosses():
+    system = saltus.Hybrid(1).mode("above", lambda t, x: [-1.0]).mode("below", lambda t, x: [-2.0])
+    system.slide("on", "above", "below", lambda t, x: x[0])
+    run = system.run("above", [1.0], (0, 2))
+    assert run.jumps["to"].tolist() == ["below"] and run.state[0] == -2.0
+
+
+def test_what_slides_is_pickled_and_made_many_times():
+    system, rub = rubbing(3.0, 100.0), np.linspace(1, 5, 20)
+    many = pickle.loads(pickle.dumps(system)).ensemble("back", [[0.1, 0.0]], (0, 10), {"rub": rub})
+    for n in (0, 7, 19):
+        one = system.run("back", [0.1, 0.0], (0, 10), {"rub": rub[n]})
+        assert many.state[n].tolist() == one.state.tolist() and many.mode[n] == one.mode == "sticks"
+
+
+def test_what_a_called_flow_raises_on_a_surface_is_the_cause():
+    def above(t, x):
+        if x[0] < 1e-9:
+            raise KeyError("the belt is gone")
+        return [-1.0]
+
+    with pytest.warns(saltus.TracingWarning):
+        system = saltus.Hybrid(1).mode("above", above)
+    system.mode("below", lambda t, x: [1.0]).slide("on", "above", "below", lambda t, x: x[0])
+    with pytest.raises(saltus.RunError) as failed:
+        system.run("above", [1.0], (0, 2))
+    assert isinstance(failed.value.__cause__, KeyError)
+
+
 # -- derivatives
 
 
@@ -251,6 +354,13 @@ def test_another_thread_runs_meanwhile():
         (lambda: ball().edge("flight", "gone", lambda t, x, p: x[0]).run("flight", [1, 0], (0, 1)), ValueError, "'gone', which is not declared"),
         (lambda: ball().ensemble("flight", np.ones((3, 2)), (0, 1), {"e": [0.1, 0.2]}), ValueError, "e has 2 rows, and others have 3"),
         (lambda: ball().gradient("flight", [1.0, 0.0], (0, 1), by=["mass"]), ValueError, "'mass'"),
+        (lambda: ball().clock("flight", "flight"), TypeError, "ticks every="),
+        (lambda: ball().clock("flight", "gone", every=1.0).run("flight", [1, 0], (0, 1)), ValueError, "'gone', which is not declared"),
+        (lambda: ball().clock("flight", "flight", every=0.0).run("flight", [1, 0], (0, 1)), saltus.RunError, "has a period of 0 s"),
+        (lambda: rubbing(1.0, 1.0).gradient("back", [1, 0], (0, 1)), ValueError, "may slide"),
+        (lambda: rubbing(1.0, 1.0).run("sticks", [1, 0.5], (0, 1)), saltus.RunError, "is on the surface"),
+        (lambda: saltus.Hybrid(1).slide("on", "a", "b", lambda t, x: math.sin(x[0])), TypeError, "must be a formula"),
+        (lambda: saltus.Hybrid(1).slide("on", "a", "b", lambda t, x: x[0]).run("on", [0], (0, 1)), ValueError, "'a', which is not declared"),
         (lambda: saltus.Hybrid(1, ["k"]).mode("m", lambda t, x, p: [p.k]).run("m", [1], (0, 1)), ValueError, "without a value: k"),
     ],
 )  # fmt: skip

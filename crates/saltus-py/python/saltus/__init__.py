@@ -8,8 +8,9 @@
 
 from ._core import RunError, SaltusError, SceneError, TableError, __version__
 from ._fit import Cor, Finding, Fit, fit
-from ._hybrid import Ensemble, Gradient, Hybrid, Run, TracingWarning
+from ._hybrid import Hybrid, TracingWarning
 from ._picture import Svg
+from ._runs import Ensemble, Gradient, Run
 from ._scene import Moment, Motion, Scene, Solved, explain, simulate, solve
 from ._sweep import Sweep, sweep
 

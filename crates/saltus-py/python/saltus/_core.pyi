@@ -46,7 +46,9 @@ class Run:
     def phase(self, across: int, up: int, names: list[str]) -> str: ...
 
 class Hybrid:
-    def __new__(cls, coordinates: int, parameters: int, modes: list[Any]) -> Hybrid: ...
+    def __new__(
+        cls, coordinates: int, parameters: int, modes: list[Any], slides: list[tuple[list[int], Tape]]
+    ) -> Hybrid: ...
     def run(
         self,
         start: tuple[int, list[float], tuple[float, float]],

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._picture import Svg
+from ._runs import Ensemble, Gradient, Numbers, Run
 from ._trace import Formula, Parameters, Untraceable, trace
 
 Function = Callable[..., Any]
-Numbers = NDArray[np.float64]
 Kept = Union[Formula, Function]
 
 METHODS = ("auto", "series", "steps", "tsit5", "dop853", "rodas5p")
@@ -34,11 +33,23 @@ class _Edge:
     terminal: bool
 
 
+Ticks = tuple[Union[float, None], Union[list[float], None], Union[float, None], bool]
+"""When a clock ticks: its period, its times, its phase, and whether also as a run starts."""
+
+
+@dataclass
+class _Slide:
+    above: str
+    below: str
+    surface: Formula
+
+
 @dataclass
 class _Mode:
-    flow: Kept | None
-    edges: list[_Edge]
-    beyond: tuple[str, Kept | None] | None
+    flow: Kept | _Slide | None = None
+    edges: list[_Edge] = field(default_factory=list)
+    clocks: list[tuple[str, Ticks, Kept | None]] = field(default_factory=list)
+    beyond: tuple[str, Kept | None] | None = None
 
 
 class Hybrid:
@@ -97,7 +108,7 @@ class Hybrid:
 
     def _mode(self, name: str) -> _Mode:
         self._built = None
-        return self._modes.setdefault(name, _Mode(None, [], None))
+        return self._modes.setdefault(name, _Mode())
 
     def mode(self, name: str, flow: Function) -> Hybrid:
         """Declares a mode by its flow, in units of the state per second."""
@@ -126,6 +137,68 @@ class Hybrid:
         self._mode(source).edges.append(edge)
         return self
 
+    def clock(
+        self,
+        source: str,
+        to: str,
+        reset: Function | None = None,
+        *,
+        every: float | None = None,
+        at: Sequence[float] | None = None,
+        after: float | None = None,
+        from_start: bool = False,
+    ) -> Hybrid:
+        """Adds an edge that a clock takes: ``every`` so many seconds, ``at`` given times, or both for
+        times that are repeated.
+
+        Tick k is at k times the period, rounded once, and ``after`` shifts all ticks. A tick at the
+        very start of a run is over, unless it is taken ``from_start``. All that is due at one
+        instant is taken, each once: crossings first, then clocks in the order declared.
+
+        >>> import saltus
+        >>> control = saltus.Hybrid(["level", "inflow"]).mode("run", lambda t, x: [x[1] - x[0], 0.0])
+        >>> control.clock("run", "run", lambda t, x: [x[0], x[1] + 0.5 * (1 - x[0])], every=0.1)
+        <saltus.Hybrid: level, inflow; run>
+        >>> run = control.run("run", [0.0, 0.0], (0.0, 20.0))
+        >>> run.count, run.state.round(3).tolist()
+        (200, [1.0, 1.0])
+        """
+        if every is None and at is None:
+            raise TypeError("a clock ticks every= so many seconds, at= given times, or both")
+        what = f"the reset of the clock {source} -> {to}"
+        kept = None if reset is None else self._kept(reset, False, what)
+        times = None if at is None else [float(time) for time in at]
+        self._mode(source).clocks.append((to, (every, times, after, from_start), kept))
+        return self
+
+    def slide(self, mode: str, above: str, below: str, surface: Function) -> Hybrid:
+        """Declares the mode along a surface between two others, in Filippov's sense.
+
+        ``surface`` is above zero in the mode ``above`` and below zero in ``below``, and needs no
+        edges of yours. Where both flows lead towards it the run goes on in ``mode``, along the one
+        mixture of them that stays on it, until one of them leads away; where both lead to the same
+        side it crosses. Where both lead away, or neither leads anywhere, the future is not unique,
+        and the run ends.
+
+        >>> import saltus
+        >>> block = saltus.Hybrid(["place", "speed"], {"belt": 1.0, "rub": 3.0})
+        >>> block = block.mode("slower", lambda t, x, p: [x[1], -x[0] + p.rub])
+        >>> block = block.mode("faster", lambda t, x, p: [x[1], -x[0] - p.rub])
+        >>> block = block.slide("sticks", "faster", "slower", lambda t, x, p: x[1] - p.belt)
+        >>> run = block.run("slower", [0.0, 0.0], (0.0, 20.0))
+        >>> run.jumps["to"][:2].tolist()  # it is carried along until the spring holds 3 N
+        ['sticks', 'slower']
+        >>> round(float(run.jumps["before"][1, 0]), 12)
+        3.0
+        """
+        try:
+            kept = surface if isinstance(surface, Formula) else trace(surface, len(self.names), self.parameters, True)
+        except Untraceable as why:
+            says = f"the surface of {mode} must be a formula, for a slide needs its slope: {why}"
+            raise TypeError(says) from why
+        self._mode(mode).flow = _Slide(above, below, kept)
+        return self
+
     def beyond(self, source: str, to: str, reset: Function | None = None) -> Hybrid:
         """Says in which mode and state a run goes on where jumps out of ``source`` accumulate."""
         kept = None if reset is None else self._kept(reset, False, f"what lies beyond {source}")
@@ -135,9 +208,13 @@ class Hybrid:
     @property
     def called(self) -> bool:
         """Whether a function is called in Python, for it could not be traced."""
-        kept = [f for m in self._modes.values() for f in [m.flow, *(g for e in m.edges for g in (e.guard, e.reset))]]
-        kept += [mode.beyond[1] for mode in self._modes.values() if mode.beyond]
-        return any(function is not None and not isinstance(function, Formula) for function in kept)
+        modes = self._modes.values()
+        kept = [f for m in modes for f in [m.flow, *(g for e in m.edges for g in (e.guard, e.reset))]]
+        kept += [mode.beyond[1] for mode in modes if mode.beyond] + [c[2] for m in modes for c in m.clocks]
+        return any(function is not None and not isinstance(function, (Formula, _Slide)) for function in kept)
+
+    def __repr__(self) -> str:
+        return f"<saltus.Hybrid: {', '.join(self.names)}; {', '.join(self._modes)}>"
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_built": None}
@@ -148,23 +225,29 @@ class Hybrid:
         places = {name: place for place, name in enumerate(self._modes)}
 
         def place(name: str, says: str) -> int:
-            if self._modes.get(name, _Mode(None, [], None)).flow is None:
+            if self._modes.get(name, _Mode()).flow is None:
                 raise ValueError(f"{says} mode {name!r}, which is not declared: there are {', '.join(places)}")
             return places[name]
 
-        def given(kept: Kept | None) -> Any:
-            return kept.core if isinstance(kept, Formula) else kept
+        def given(kept: Kept | _Slide | None) -> Any:
+            return None if isinstance(kept, _Slide) else kept.core if isinstance(kept, Formula) else kept
 
-        modes = []
+        modes, slides = [], []
         for name, mode in self._modes.items():
             place(name, "an edge leads out of")
             edges = [
                 (place(e.to, "an edge leads to"), given(e.guard), given(e.reset), e.entry, e.terminal)
                 for e in mode.edges
             ]
+            clocks = [(place(to, "a clock leads to"), ticks, given(reset)) for to, ticks, reset in mode.clocks]
             beyond = mode.beyond and (place(mode.beyond[0], "beyond a limit lies"), given(mode.beyond[1]))
-            modes.append((name, given(mode.flow), edges, beyond))
-        self._built = _core.Hybrid(len(self.names), len(self.parameters), modes)
+            modes.append((name, given(mode.flow), edges, clocks, beyond))
+            if isinstance(mode.flow, _Slide):
+                sides = [place(side, "a surface lies beside") for side in (mode.flow.above, mode.flow.below)]
+                if any(isinstance(self._modes[side].flow, _Slide) for side in (mode.flow.above, mode.flow.below)):
+                    raise ValueError(f"{name} lies between modes that slide themselves: there is one surface between two flows")
+                slides.append(([*sides, places[name]], mode.flow.surface.core))
+        self._built = _core.Hybrid(len(self.names), len(self.parameters), modes, slides)
         return self._built
 
     def _place(self, mode: str) -> int:
@@ -250,6 +333,8 @@ class Hybrid:
         """
         if self.called:
             raise ValueError("derivatives need formulas: a function of this system is called in Python")
+        if any(isinstance(mode.flow, _Slide) for mode in self._modes.values()):
+            raise ValueError("derivatives of runs that may slide are not carried: take differences of runs")
         options = _options(method, rtol, atol, longest_step, most_jumps, most_steps, 1 << 62)
         values = self._values(parameters)
         names = list(self.parameters if by is None else by)
@@ -330,108 +415,3 @@ def _options(
         "most_steps": most_steps,
         "most_bytes": most_bytes,
     }
-
-
-@dataclass(frozen=True)
-class Gradient:
-    """Derivatives of a run.
-
-    ``by`` names what they are by; ``end[k]`` is how the state at the end depends on ``by[k]``, at
-    fixed time; ``times[k, n]`` how the time of jump n does.
-    """
-
-    by: list[str]
-    end: Numbers
-    times: Numbers
-
-
-@dataclass(frozen=True)
-class Ensemble:
-    """What came of many runs, a row each: when, where and why each ended.
-
-    ``limit`` is when jumps accumulate, where that ended a run; ``why`` says of runs that failed why.
-    """
-
-    t: Numbers
-    state: Numbers
-    mode: NDArray[np.str_]
-    jumps: NDArray[np.int64]
-    stop: NDArray[np.str_]
-    limit: Numbers
-    why: dict[int, str]
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-
-class Run:
-    """A recorded run of a :class:`Hybrid`.
-
-    ``stop`` says why it ended: ``"time"``, ``"terminal"``, ``"forever"`` (nothing happens any
-    more), ``"zeno"`` (jumps accumulate at ``limit``), ``"resolution"`` (they come closer together
-    than rounding can tell), or the limit that was reached: ``"jumps"``, ``"steps"``, ``"bytes"``,
-    ``"cascade"``.
-    """
-
-    def __init__(self, hybrid: Hybrid, core: _core.Run, start: tuple[Any, ...], options: dict[str, Any]) -> None:
-        self._hybrid, self._core, self._start, self._options = hybrid, core, start, options
-        self._modes = np.array([*hybrid._modes, ""])
-        self.stop, self.limit, self.t, mode, state, self.count = core.end()
-        self.mode = str(self._modes[mode])
-        self.state: Numbers = np.array(state)
-
-    def __reduce__(self) -> Any:
-        # A run is the same to the bit wherever it is made again.
-        return _again, (self._hybrid, self._start, self._options)
-
-    @property
-    def jumps(self) -> NDArray[np.void]:
-        """The jumps: ``t``, ``from``, ``to``, ``edge`` (its place among those out of its mode, -1 at a
-        limit), and the states ``before`` and ``after``."""
-        columns = self._core.jumps()
-        n, names = len(self._hybrid.names), self._modes.dtype
-        kinds = [("t", float), ("from", names), ("to", names), ("edge", int)]
-        table = np.empty(len(columns["t"]), dtype=[*kinds, ("before", float, (n,)), ("after", float, (n,))])
-        for name, values in columns.items():
-            table[name] = self._modes[values] if name in ("from", "to") else values
-        return table
-
-    def at(self, t: ArrayLike, *, before: bool = False) -> Numbers:
-        """The states at the times, after any jumps there, or before them; NaN outside the run."""
-        times = np.asarray(t, dtype=float)
-        states = self._core.at(np.ascontiguousarray(times.ravel()), before)
-        return states.reshape(*times.shape, len(self._hybrid.names))
-
-    def mode_at(self, t: ArrayLike) -> NDArray[np.str_]:
-        """The modes at the times; empty outside the run."""
-        times = np.asarray(t, dtype=float)
-        modes = self._modes[self._core.modes(np.ascontiguousarray(times.ravel()))]
-        return modes.reshape(times.shape)
-
-    @property
-    def cost(self) -> dict[str, int]:
-        """What it cost: jumps, steps accepted and rejected, exact arcs, stiff steps, evaluations."""
-        return self._core.cost()
-
-    @property
-    def doubts(self) -> list[str]:
-        """Where a crossing may have been missed, and what to do; empty where none was."""
-        return self._core.doubts()
-
-    def plot(self, across: str | None = None, up: str | None = None) -> Svg:
-        """A picture: the coordinates against time, or one of them against another."""
-        names = self._hybrid.names
-        if across is None or up is None:
-            return Svg(self._core.picture(names))
-        return Svg(self._core.phase(names.index(across), names.index(up), names))
-
-    def _repr_svg_(self) -> str:
-        return self.plot()
-
-    def __repr__(self) -> str:
-        limit = "" if self.limit is None else f" at {self.limit:.6g} s"
-        return f"<saltus.Run: {self.count} jumps, {self.stop}{limit}, in {self.mode!r} at t = {self.t:.6g} s>"
-
-
-def _again(hybrid: Hybrid, start: tuple[Any, ...], options: dict[str, Any]) -> Run:
-    return hybrid.run(*start, **options)

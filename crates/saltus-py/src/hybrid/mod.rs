@@ -5,6 +5,7 @@ mod ensemble;
 mod model;
 mod names;
 mod run;
+mod slide;
 mod tape;
 
 use std::sync::Arc;
@@ -12,13 +13,14 @@ use std::sync::Arc;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use saltus::{Coords, Entry, Wrt};
+use saltus::{Clock, Coords, Entry, Wrt};
 
 use crate::fail;
 use called::Called;
-use model::{EdgeOf, Function, MOST_PARAMETERS, ModeOf, Model, Vector};
+use model::{ClockOf, EdgeOf, Function, MOST_PARAMETERS, ModeOf, Model, Vector};
 use names::{Mode, Name};
 use run::{Course, End, Failure, Options, Recorded};
+use slide::SlideOf;
 
 /// How many coordinates a state may have.
 const MOST_COORDINATES: usize = 64;
@@ -95,13 +97,30 @@ type Start = (usize, Vec<f64>, (f64, f64));
 /// How the end and the times of the jumps depend on one number.
 type Row = (Vec<f64>, Vec<f64>);
 type GivenEdge<'py> = (usize, Given<'py>, Option<Given<'py>>, String, bool);
-type GivenMode<'py> = (String, Given<'py>, Vec<GivenEdge<'py>>, Option<(usize, Option<Given<'py>>)>);
+/// When a clock ticks: its period, its times, its phase, and whether also as a run starts.
+type Ticks = (Option<f64>, Option<Vec<f64>>, Option<f64>, bool);
+type GivenClock<'py> = (usize, Ticks, Option<Given<'py>>);
+type Beyond<'py> = Option<(usize, Option<Given<'py>>)>;
+type GivenMode<'py> = (String, Option<Given<'py>>, Vec<GivenEdge<'py>>, Vec<GivenClock<'py>>, Beyond<'py>);
+/// The modes above, below and along a surface.
+type GivenSlide<'py> = ([usize; 3], PyRef<'py, Tape>);
 
 /// A hybrid automaton: its functions, without numbers for their parameters.
 #[pyclass(frozen, module = "saltus._core")]
 pub(crate) struct Hybrid {
     coordinates: usize,
     modes: Vec<ModeOf>,
+    slides: Vec<([Mode; 3], Arc<tape::Tape>)>,
+}
+
+fn clock((period, times, phase, from_start): Ticks) -> Clock {
+    let clock = match (period, times) {
+        (Some(period), Some(times)) => Clock::at(times).repeated(period),
+        (None, times) => Clock::at(times.unwrap_or_default()),
+        (Some(period), None) => Clock::every(period),
+    };
+    let clock = if let Some(phase) = phase { clock.after(phase) } else { clock };
+    if from_start { clock.from_start() } else { clock }
 }
 
 /// Does the same for the kind of states that has room for so many coordinates.
@@ -131,7 +150,12 @@ macro_rules! for_size {
 #[pymethods]
 impl Hybrid {
     #[new]
-    fn new(coordinates: usize, parameters: usize, modes: Vec<GivenMode<'_>>) -> PyResult<Self> {
+    fn new(
+        coordinates: usize,
+        parameters: usize,
+        modes: Vec<GivenMode<'_>>,
+        slides: Vec<GivenSlide<'_>>,
+    ) -> PyResult<Self> {
         if coordinates == 0 || coordinates > MOST_COORDINATES {
             return Err(fail::value(format!("a state has 1 to {MOST_COORDINATES} coordinates, and not {coordinates}")));
         }
@@ -142,7 +166,7 @@ impl Hybrid {
         }
         let names: Vec<Mode> = (0..).zip(&modes).map(|(place, of)| Mode { place, name: Name::new(&of.0) }).collect();
         let known = |place: usize| names.get(place).copied().ok_or_else(|| fail::value("an edge leads to no mode"));
-        let mode = |(mode, (name, flow, edges, beyond)): (Mode, GivenMode<'_>)| {
+        let mode = |(mode, (name, flow, edges, clocks, beyond)): (Mode, GivenMode<'_>)| {
             let edge = |(to, guard, reset, entry, terminal): GivenEdge<'_>| {
                 let to = known(to)?;
                 let what = format!("the edge {name} -> {}", to.name.text());
@@ -160,15 +184,26 @@ impl Hybrid {
                 Ok(EdgeOf { to, guard, reset: reset.transpose()?, entry, terminal })
             };
             let edges = edges.into_iter().map(edge).collect::<PyResult<Vec<_>>>()?;
-            let flow = flow.function(format!("the flow of {name}"), coordinates)?;
+            let ticking = |(to, ticks, reset): GivenClock<'_>| {
+                let to = known(to)?;
+                let what = format!("the reset of the clock {name} -> {}", to.name.text());
+                let reset = reset.map(|reset| reset.function(what, coordinates)).transpose()?;
+                PyResult::Ok(ClockOf { to, clock: clock(ticks), reset })
+            };
+            let clocks = clocks.into_iter().map(ticking).collect::<PyResult<Vec<_>>>()?;
+            let flow = flow.map(|flow| flow.function(format!("the flow of {name}"), coordinates)).transpose()?;
             let beyond = beyond.map(|(to, reset)| {
                 let reset = reset.map(|reset| reset.function(format!("what lies beyond {name}"), coordinates));
                 PyResult::Ok((known(to)?, reset.transpose()?))
             });
-            PyResult::Ok(ModeOf { mode, flow, edges, beyond: beyond.transpose()? })
+            PyResult::Ok(ModeOf { mode, flow, edges, clocks, beyond: beyond.transpose()? })
         };
         let modes = names.iter().copied().zip(modes).map(mode).collect::<PyResult<Vec<_>>>()?;
-        Ok(Self { coordinates, modes })
+        let slide = |(sides, surface): GivenSlide<'_>| {
+            let [above, below, sliding] = sides.map(known);
+            PyResult::Ok(([above?, below?, sliding?], Arc::clone(&surface.0)))
+        };
+        Ok(Self { coordinates, modes, slides: slides.into_iter().map(slide).collect::<PyResult<_>>()? })
     }
 
     /// Runs from a state in a mode, and records.
@@ -250,15 +285,26 @@ impl Hybrid {
         let again = |function: &Function| function.clone_ref(py);
         let modes = self.modes.iter().map(|of| ModeOf {
             mode: of.mode,
-            flow: again(&of.flow),
+            flow: of.flow.as_ref().map(again),
             edges: of
                 .edges
                 .iter()
                 .map(|edge| EdgeOf { guard: again(&edge.guard), reset: edge.reset.as_ref().map(again), ..*edge })
                 .collect(),
+            clocks: of
+                .clocks
+                .iter()
+                .map(|of| ClockOf { to: of.to, clock: of.clock.clone(), reset: of.reset.as_ref().map(again) })
+                .collect(),
             beyond: of.beyond.as_ref().map(|(to, reset)| (*to, reset.as_ref().map(again))),
         });
-        Ok(Model::new(modes.collect(), like, p, named, options.is_stepped()))
+        let slide = |([above, below, sliding], surface): &([Mode; 3], Arc<tape::Tape>)| {
+            let surface = surface.bound(&p);
+            let affine = surface.affine(self.coordinates).and_then(|mut rows| rows.pop());
+            SlideOf { above: *above, below: *below, sliding: *sliding, surface, affine }
+        };
+        let slides = self.slides.iter().map(slide).collect();
+        Ok(Model::new((modes.collect(), slides), like, p, named, options.is_stepped()))
     }
 }
 

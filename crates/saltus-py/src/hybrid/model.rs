@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use saltus::{
-    About, Automaton, Coords, Edges, Entry, Fall, Formula, Lift, Limit, Linearize, Number, Over, Polynomial, Refusal,
-    Series, Solution,
+    About, Automaton, Clock, Clocks, Coords, Edges, Entry, Fall, Filippov, Formula, Lift, Limit, Linearize, Number,
+    Over, Passage, Polynomial, Refusal, Series, Side, Solution,
 };
 
 use super::called::{Called, Raised};
 use super::names::{Edge, Mode};
+use super::slide::{Pair, SlideOf};
 use super::tape::Tape;
 
 /// How many parameters a model may have.
@@ -88,17 +89,35 @@ pub(crate) struct EdgeOf {
     pub(crate) terminal: bool,
 }
 
+/// An edge that a clock takes, as it is given.
+pub(crate) struct ClockOf {
+    pub(crate) to: Mode,
+    pub(crate) clock: Clock,
+    pub(crate) reset: Option<Function>,
+}
+
 /// A mode as it is given.
 pub(crate) struct ModeOf {
     pub(crate) mode: Mode,
-    pub(crate) flow: Function,
+    /// None of one that slides.
+    pub(crate) flow: Option<Function>,
     pub(crate) edges: Vec<EdgeOf>,
+    pub(crate) clocks: Vec<ClockOf>,
     pub(crate) beyond: Option<(Mode, Option<Function>)>,
+}
+
+/// What takes an edge.
+enum Taken {
+    By(Ready),
+    /// A passage of a surface, by its place.
+    Passage(usize, Passage),
+    /// A clock.
+    Ticking,
 }
 
 struct ReadyEdge {
     id: Edge,
-    guard: Ready,
+    taken: Taken,
     reset: Option<Ready>,
     about: About,
     /// The row a and the constant b of an affine guard a·x + b.
@@ -106,8 +125,11 @@ struct ReadyEdge {
 }
 
 struct ReadyMode {
-    flow: Ready,
+    /// None of one that slides, along the surface at a place.
+    flow: Result<Ready, usize>,
+    /// Those with guards, then those that clocks take.
     edges: Vec<ReadyEdge>,
+    clocks: Vec<(Clock, Edge)>,
     beyond: Option<(Mode, Option<Ready>)>,
     /// The rows of A, where x' = A x + b with A³ = 0.
     nilpotent: Option<Vec<Vec<f64>>>,
@@ -117,6 +139,7 @@ struct ReadyMode {
 /// A model with its parameters, for states of one kind.
 pub(crate) struct Model<S> {
     modes: Vec<ReadyMode>,
+    slides: Vec<SlideOf>,
     p: Vec<f64>,
     /// The same for functions that are called.
     named: Option<Py<PyAny>>,
@@ -136,30 +159,59 @@ fn is_nilpotent(a: &[Vec<f64>]) -> bool {
 
 impl<S: Vector> Model<S> {
     /// A model whose states are like this one; `stepped`: neither solved nor expanded in series.
-    pub(crate) fn new(modes: Vec<ModeOf>, like: S, p: Vec<f64>, named: Option<Py<PyAny>>, stepped: bool) -> Self {
+    pub(crate) fn new(
+        (modes, slides): (Vec<ModeOf>, Vec<SlideOf>),
+        like: S,
+        p: Vec<f64>,
+        named: Option<Py<PyAny>>,
+        stepped: bool,
+    ) -> Self {
         let n = like.len();
         let ready = |function: Function| Ready::new(function, &p);
-        let made = modes.into_iter().map(|ModeOf { mode, flow, edges, beyond }| {
-            let flow = ready(flow);
-            let edges = edges.into_iter().zip(0..).map(|(edge, place)| {
+        let made = modes.into_iter().map(|ModeOf { mode, flow, edges, clocks, beyond }| {
+            let along = slides.iter().position(|slide| slide.sliding == mode);
+            let flow = flow.map(ready).ok_or(along.unwrap_or_default());
+            let mut all = Vec::new();
+            let place = |all: &Vec<ReadyEdge>, to: Mode| Edge { from: mode, to, place: all.len() as u32 };
+            for edge in edges {
                 let guard = ready(edge.guard);
                 let affine = guard.bound.as_ref().and_then(|tape| tape.affine(n)?.pop());
                 let about = About::new().entry(edge.entry).terminal_if(edge.terminal);
                 let about = about.affine_if(affine.is_some());
-                let id = Edge { from: mode, to: edge.to, place };
-                ReadyEdge { id, guard, reset: edge.reset.map(ready), about, affine }
-            });
-            let edges = edges.collect();
-            let linear = flow.bound.as_ref().filter(|_| !stepped).and_then(|tape| tape.affine(n));
+                let (id, reset) = (place(&all, edge.to), edge.reset.map(ready));
+                all.push(ReadyEdge { id, taken: Taken::By(guard), reset, about, affine });
+            }
+            for (at, slide) in slides.iter().enumerate() {
+                for (passage, to) in slide.side(mode).map(|side| slide.passages(side)).unwrap_or_default() {
+                    let (id, affine, about) = (place(&all, to), slide.guard(passage), About::new());
+                    all.push(ReadyEdge { id, taken: Taken::Passage(at, passage), reset: None, about, affine });
+                }
+            }
+            let mut ticking = Vec::new();
+            for clock in clocks {
+                let (id, reset) = (place(&all, clock.to), clock.reset.map(ready));
+                ticking.push((clock.clock, id));
+                all.push(ReadyEdge { id, taken: Taken::Ticking, reset, about: About::new(), affine: None });
+            }
+            let bound = flow.as_ref().ok().and_then(|flow| flow.bound.as_ref()).filter(|_| !stepped);
+            let linear = bound.and_then(|tape| tape.affine(n));
             let rows = linear.map(|rows| rows.into_iter().map(|(row, _)| row).collect::<Vec<_>>());
             let nilpotent = rows.filter(|rows| is_nilpotent(rows));
-            let series = flow.bound.as_ref().filter(|_| !stepped && nilpotent.is_none());
-            let series = series.and_then(|tape| tape.formula(n));
+            let series = bound.filter(|_| nilpotent.is_none()).and_then(|tape| tape.formula(n));
             let beyond = beyond.map(|(to, reset)| (to, reset.map(ready)));
-            ReadyMode { flow, edges, beyond, nilpotent, series }
+            ReadyMode { flow, edges: all, clocks: ticking, beyond, nilpotent, series }
         });
         let modes = made.collect();
-        Self { modes, p, named, raised: Raised::default(), like }
+        Self { modes, slides, p, named, raised: Raised::default(), like }
+    }
+
+    fn sides<'a>(&'a self, slide: &'a SlideOf) -> Filippov<Pair<'a, S, impl Fn(Mode, f64, &S) -> S>> {
+        Pair::of(slide, |mode, t, x| self.flow_of(mode, t, x))
+    }
+
+    /// The flow of a mode, which does not slide.
+    fn flow_of(&self, mode: Mode, t: f64, x: &S) -> S {
+        self.mode(mode).flow.as_ref().map_or_else(|_| x.with(|_| f64::NAN), |flow| self.vector(flow, t, x))
     }
 
     fn mode(&self, mode: Mode) -> &ReadyMode {
@@ -212,7 +264,7 @@ impl<S: Vector> Model<S> {
         let of = self.mode(mode);
         let rows = of.nilpotent.as_ref()?;
         let times = |x: &S, by: f64| x.with(|i| by * rows[i].iter().zip(0..).map(|(a, j)| a * x.get(j)).sum::<f64>());
-        let first = self.vector(&of.flow, t, x);
+        let first = self.flow_of(mode, t, x);
         let second = times(&first, 0.5);
         Some([*x, first, second, times(&second, 1.0 / 3.0)])
     }
@@ -234,27 +286,56 @@ impl<S: Vector> Automaton for Model<S> {
     type Edge = Edge;
 
     fn flow(&self, mode: Mode, t: f64, x: &S) -> S {
-        self.vector(&self.mode(mode).flow, t, x)
+        match &self.mode(mode).flow {
+            Ok(flow) => self.vector(flow, t, x),
+            Err(slide) => self.sides(&self.slides[*slide]).flow(Side::Sliding, t, x),
+        }
     }
 
     fn edges(&self, mode: Mode) -> Edges<'_, Edge> {
-        self.mode(mode).edges.iter().map(|edge| edge.id).collect()
+        let of = self.mode(mode);
+        of.edges[..of.edges.len() - of.clocks.len()].iter().map(|edge| edge.id).collect()
+    }
+
+    fn clocks(&self, mode: Mode) -> Clocks<'_, Edge> {
+        Clocks::kept(&self.mode(mode).clocks)
+    }
+
+    fn validate(&self, mode: Mode, t: f64, x: &S) -> Result<(), String> {
+        let mut sides = self.slides.iter().filter_map(|slide| Some((slide, slide.side(mode)?)));
+        sides.try_for_each(|(slide, side)| self.sides(slide).validate(side, t, x))
     }
 
     fn guard(&self, edge: Edge, t: f64, x: &S) -> f64 {
-        let mut value = f64::NAN;
-        self.run(&self.edge(edge).guard, t, x, |_, guard| value = guard);
-        value
+        match &self.edge(edge).taken {
+            Taken::By(guard) => {
+                let mut value = f64::NAN;
+                self.run(guard, t, x, |_, guard| value = guard);
+                value
+            }
+            Taken::Passage(slide, passage) => self.sides(&self.slides[*slide]).guard(*passage, t, x),
+            Taken::Ticking => f64::NAN,
+        }
     }
 
     fn reset(&self, _: Mode, edge: Edge, t: f64, x: &S) -> Result<(Mode, S), Refusal> {
+        if let Taken::Passage(slide, passage) = self.edge(edge).taken {
+            let slide = &self.slides[slide];
+            let from = slide.side(edge.from).unwrap_or(Side::Sliding);
+            let (side, after) = self.sides(slide).reset(from, passage, t, x)?;
+            self.refused()?;
+            return Ok((slide.mode(side), after));
+        }
         let after = self.edge(edge).reset.as_ref().map_or(*x, |reset| self.vector(reset, t, x));
         self.refused()?;
         Ok((edge.to, after))
     }
 
     fn about(&self, edge: Edge) -> About {
-        self.edge(edge).about
+        match self.edge(edge).taken {
+            Taken::Passage(slide, passage) => self.sides(&self.slides[slide]).about(passage),
+            _ => self.edge(edge).about,
+        }
     }
 
     fn solution(&self, mode: Mode, t: f64, x: &S) -> Solution<Self> {
@@ -304,12 +385,17 @@ impl<S: Vector> Linearize for Model<S> {
     }
 
     fn flow_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Over<S, D> {
-        self.vector_over(&self.mode(mode).flow, t, &x, &p)
+        match &self.mode(mode).flow {
+            Ok(flow) => self.vector_over(flow, t, &x, &p),
+            Err(_) => self.like.lift(|_| D::from(f64::NAN)),
+        }
     }
 
     fn guard_over<D: Number>(&self, edge: Edge, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> D {
         let (mut value, like) = (D::from(f64::NAN), &self.like);
-        self.edge(edge).guard.over(t, |i| like.pick(&x, i), |i| p[i], |_, guard| value = guard);
+        if let Taken::By(guard) = &self.edge(edge).taken {
+            guard.over(t, |i| like.pick(&x, i), |i| p[i], |_, guard| value = guard);
+        }
         value
     }
 
@@ -334,7 +420,8 @@ impl<S: Vector> Linearize for Model<S> {
     ) -> Option<Polynomial<Over<S, D>>> {
         let (of, like) = (self.mode(mode), &self.like);
         of.nilpotent.as_ref()?;
-        let flow = |x: &Over<S, D>| self.vector_over(&of.flow, t, x, &p);
+        let given = of.flow.as_ref().ok()?;
+        let flow = |x: &Over<S, D>| self.vector_over(given, t, x, &p);
         let rest = flow(&like.lift(|_| D::zero()));
         // A v is the flow at v, less that at zero.
         let times = |v: &Over<S, D>, by: f64| {
