@@ -126,6 +126,12 @@ def test_a_ball_comes_to_its_limit_and_goes_on_beyond():
     assert np.all(run.at(np.linspace(0, 6, 1000))[:, 0] >= 0)
 
 
+def test_a_state_by_name():
+    by_name = ball().run("flight", {"velocity": 0.5, "height": 1.0}, (0, 3))
+    assert by_name.jumps.tobytes() == ball().run("flight", [1.0, 0.5], (0, 3)).jumps.tobytes()
+    assert pickle.loads(pickle.dumps(by_name)).state.tolist() == by_name.state.tolist()
+
+
 def test_both_limits_at_a_jump():
     run = ball().run("flight", [1.0, 0.0], (0, 1))
     jump = run.jumps[0]
@@ -361,6 +367,17 @@ def test_another_thread_runs_meanwhile():
         (lambda: rubbing(1.0, 1.0).run("sticks", [1, 0.5], (0, 1)), saltus.RunError, "is on the surface"),
         (lambda: saltus.Hybrid(1).slide("on", "a", "b", lambda t, x: math.sin(x[0])), TypeError, "must be a formula"),
         (lambda: saltus.Hybrid(1).slide("on", "a", "b", lambda t, x: x[0]).run("on", [0], (0, 1)), ValueError, "'a', which is not declared"),
+        (lambda: saltus.Hybrid(["a", "b", "a"]), ValueError, "named 'a'"),
+        (lambda: saltus.Hybrid(["k"], {"k": 1.0}), ValueError, "named 'k'"),
+        (lambda: ball().mode("flight", lambda t, x: x), TypeError, r"the flow of flight takes \(t, x\), and is called with \(t, x, p\)"),
+        (lambda: saltus.Hybrid(1).edge("m", "m", lambda x: x[0]), TypeError, r"takes \(x\), and is called with \(t, x\)"),
+        (lambda: ball().run("flight", [1.0, 0.0], 6.0), TypeError, r"the span 6.0 is no \(start, end\)"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), rtol="1e-9"), TypeError, "rtol is a str and no number"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), most_jumps=2.5), TypeError, "most_jumps is a float and no whole number"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1), most_jumps=-1), ValueError, "most_jumps is -1"),
+        (lambda: ball().run("flight", {"height": 1.0}, (0, 1)), ValueError, "'velocity' is missing from the state"),
+        (lambda: ball().run("flight", {"height": 1.0, "speed": 0.0, "velocity": 0.0}, (0, 1)), ValueError, "'speed' is no coordinate"),
+        (lambda: ball().run("flight", [1.0, 0.0], (0, 1)).plot("height", "speed"), ValueError, "no coordinate 'speed'"),
         (lambda: saltus.Hybrid(1, ["k"]).mode("m", lambda t, x, p: [p.k]).run("m", [1], (0, 1)), ValueError, "without a value: k"),
     ],
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -88,6 +89,10 @@ class Hybrid:
         self.names = [f"x{i}" for i in range(coordinates)] if counted else list(coordinates)  # type: ignore[arg-type]
         self.parameters = list(parameters)
         self.values = {k: float(v) for k, v in parameters.items()} if isinstance(parameters, Mapping) else {}
+        all = [*self.names, *self.parameters]
+        twice = [name for place, name in enumerate(all) if name in all[:place]]
+        if twice:
+            raise ValueError(f"two coordinates or parameters are named {twice[0]!r}: give each a name of its own")
         self._modes: dict[str, _Mode] = {}
         self._said: set[str] = set()
         self._built: _core.Hybrid | None = None
@@ -97,6 +102,7 @@ class Hybrid:
             return function
         if not callable(function):
             raise TypeError(f"{what} is a {type(function).__name__} and no function of (t, x)")
+        _takes(function, "(t, x, p), for there are parameters" if self.parameters else "(t, x)", what)
         try:
             return trace(function, len(self.names), self.parameters, scalar)
         except Untraceable as why:
@@ -256,6 +262,16 @@ class Hybrid:
             raise ValueError(f"there is no mode {mode!r}: there are {', '.join(names) or 'none'}")
         return names.index(mode)
 
+    def _state(self, state: ArrayLike | Mapping[str, float]) -> list[float]:
+        """The coordinates in order."""
+        if isinstance(state, Mapping):
+            wrong = [name for name in [*state, *self.names] if (name in state) != (name in self.names)]
+            if wrong:
+                says = "is no coordinate" if wrong[0] in state else "is missing from the state"
+                raise ValueError(f"{wrong[0]!r} {says}: there are {', '.join(self.names)}")
+            state = [state[name] for name in self.names]
+        return [float(value) for value in np.asarray(state, dtype=float).ravel()]
+
     def _values(self, parameters: Mapping[str, Any] | None) -> dict[str, Any]:
         values: dict[str, Any] = {**self.values, **(parameters or {})}
         for name in values:
@@ -269,7 +285,7 @@ class Hybrid:
     def run(
         self,
         mode: str,
-        state: ArrayLike,
+        state: ArrayLike | Mapping[str, float],
         span: tuple[float, float],
         parameters: Mapping[str, float] | None = None,
         *,
@@ -281,7 +297,9 @@ class Hybrid:
         most_steps: int = 100_000_000,
         most_bytes: int = 1 << 30,
     ) -> Run:
-        """Runs from a state in a mode, over a span of time in seconds, and records.
+        """Runs from a state in a mode, over a span of time (start, end) in seconds, and records.
+
+        The state is a list of its coordinates, or has them by name.
 
         ``method`` is ``"auto"``: a polynomial where the flow has one, else its Taylor series;
         ``"steps"``: a method by tolerance, and one for stiff flows where a flow is stiff;
@@ -295,15 +313,15 @@ class Hybrid:
         values = self._values(parameters)
         numbers = [float(value) for value in values.values()]
         named = Parameters(values) if values else None
-        start = np.asarray(state, dtype=float).ravel().tolist()
-        begin = self._place(mode), start, (float(span[0]), float(span[1]))
+        start = self._state(state)
+        begin = self._place(mode), start, _span(span)
         core = self._core().run(begin, numbers, named, options)
         return Run(self, core, (mode, start, span, parameters), options)
 
     def gradient(
         self,
         mode: str,
-        state: ArrayLike,
+        state: ArrayLike | Mapping[str, float],
         span: tuple[float, float],
         parameters: Mapping[str, float] | None = None,
         *,
@@ -386,13 +404,33 @@ class Hybrid:
         flat = np.ascontiguousarray(np.broadcast_to(rows, (count, rows.shape[1]))).ravel()
         columns = [np.broadcast_to(value, count) for value in values.values()]
         table = np.ascontiguousarray(np.column_stack(columns)).ravel() if columns else np.empty(0)
-        begin = self._place(mode), (float(span[0]), float(span[1]))
+        begin = self._place(mode), _span(span)
         came = self._core().ensemble(begin, flat, table, count, options)
         names = np.array([*self._modes, ""])
         stops = np.array(came["stop"])
         return Ensemble(
             came["t"], came["state"], names[came["mode"]], came["jumps"], stops, came["limit"], dict(came["why"])
         )
+
+
+def _takes(function: Function, given: str, what: str) -> None:
+    """Refuses a function that cannot be called with what it is given."""
+    try:
+        signature = inspect.signature(function)
+    except ValueError:  # some that are compiled have none
+        return
+    try:
+        signature.bind(*range(given.split(")")[0].count(",") + 1))
+    except TypeError as error:
+        raise TypeError(f"{what} takes {signature}, and is called with {given}") from error
+
+
+def _span(span: tuple[float, float]) -> tuple[float, float]:
+    try:
+        start, end = span
+        return float(start), float(end)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"the span {span!r} is no (start, end) in seconds") from error
 
 
 def _options(
@@ -406,6 +444,14 @@ def _options(
 ) -> dict[str, Any]:
     if method not in METHODS:
         raise ValueError(f"{method!r} is no method: use one of {', '.join(METHODS)}")
+    for name, value in (("rtol", rtol), ("atol", atol), ("longest_step", longest_step)):
+        if not isinstance(value, (float, int, np.number, type(None))) or (value is None and name == "rtol"):
+            raise TypeError(f"{name} is a {type(value).__name__} and no number")
+    for name, count in (("most_jumps", most_jumps), ("most_steps", most_steps), ("most_bytes", most_bytes)):
+        if not isinstance(count, (int, np.integer)):
+            raise TypeError(f"{name} is a {type(count).__name__} and no whole number")
+        if count < 0:
+            raise ValueError(f"{name} is {count}: it is zero or more")
     return {
         "method": method,
         "rtol": rtol,

@@ -108,6 +108,9 @@ class Run:
         names = self._hybrid.names
         if across is None or up is None:
             return Svg(self._core.picture(names))
+        for name in (across, up):
+            if name not in names:
+                raise ValueError(f"there is no coordinate {name!r}: there are {', '.join(names)}")
         return Svg(self._core.phase(names.index(across), names.index(up), names))
 
     def _repr_svg_(self) -> str:
