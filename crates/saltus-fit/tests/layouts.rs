@@ -100,6 +100,26 @@ fn shuffle<T>(rows: &mut [T], seed: u64) {
     }
 }
 
+/// Words of titles: of them many are names of columns elsewhere.
+const TITLE: [&str; 16] = [
+    "Hi",
+    "heights",
+    "rebound",
+    "the times",
+    "my golf ball",
+    "bounce",
+    "on tile",
+    "dropped",
+    "trial",
+    "measured",
+    "from",
+    "here are",
+    "values",
+    "and",
+    "results",
+    "first drop",
+];
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -156,6 +176,28 @@ proptest! {
         rows.insert(0, header);
         let found = read(&hand.write(&rows), &ReadOptions::default());
         prop_assert!(same(&found, &expected), "{rows:?}\n{found:?}\n{expected:?}");
+    }
+
+    /// A line of words above the names of the columns is a title, however many of its words are
+    /// names of columns, and wherever its commas stand.
+    #[test]
+    fn titles_name_no_columns(
+        said in proptest::collection::vec(0..TITLE.len(), 1..9), commas in any::<u16>(), blank in any::<bool>(), notes in any::<bool>(),
+    ) {
+        let title = said.iter().enumerate().fold(String::new(), |title, (n, &word)| {
+            let mark = match n {
+                0 => "",
+                _ if commas >> n & 1 == 1 => ", ",
+                _ => " ",
+            };
+            title + mark + TITLE[word]
+        });
+        let gap = if blank { "\n" } else { "" };
+        let (name, cells) = if notes { (",notes", ",\n") } else { ("", "\n") };
+        let table = format!("bounce,height (cm){name}\n0,100{cells}1,64{cells}2,41{cells}3,26{cells}");
+        let titled = read(format!("{title}\n{gap}{table}").as_bytes(), &ReadOptions::default());
+        let plain = read(table.as_bytes(), &ReadOptions::default());
+        prop_assert!(same(&titled, &plain), "{title}: {titled:?}");
     }
 
     #[test]

@@ -163,17 +163,24 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
     // A name by itself names no rows of several cells.
     let filled = |row: usize| view.cells(row).filter(|cell| !cell.is_empty()).count();
     let wide = |row: usize| (row + 1..end).find(|&n| !names_only(view, n)).is_some_and(|n| filled(n) > 1);
+    // Names stand next to their numbers, but for remarks: what stands above a line that names each
+    // of its numbers is a title, whatever it says.
+    let numbers = |row: usize| row < end && (0..view.width(row)).any(|c| view.is_number(row, c));
+    let rank = |header: &Header| {
+        let row = header.below + (header.below..end).take_while(|&row| remark(view, row, &header.names)).count();
+        let near = header.score >= VALUE && numbers(row);
+        (near, near && header.is_line() && header.names_all(view, row), header.score)
+    };
     for row in from..last {
         if before.is_some_and(|b| remark(view, row, &b.header) && wide(row)) {
             continue;
         }
         for header in headers(view, row, end) {
             // Below a table a single word, or names without rows, are no header.
-            let next = before.is_none()
-                || header.below < end && (0..view.width(header.below)).any(|c| view.is_number(header.below, c));
+            let next = before.is_none() || numbers(header.below);
             let least = if before.is_some() { VALUE } else { SHARE };
             let values = header.score >= least && next;
-            if values && best.as_ref().is_none_or(|b| header.score > b.score) {
+            if values && best.as_ref().is_none_or(|b| rank(&header) > rank(b)) {
                 best = Some(header);
             }
         }
@@ -210,6 +217,8 @@ mod tests {
             ("bounce,height\n,cm\n0,100", "bounce|height (cm)", (0, 2)),
             ("time,height\n(s),[cm]\n0,100", "time (s)|height (cm)", (0, 2)),
             ("Mass (g),58\nbounce,height_cm\n0,100", "bounce|height_cm", (1, 2)),
+            ("Heights, cm\nbounce,height_cm\n0,100", "bounce|height_cm", (1, 2)),
+            ("Hi, the rebound heights in cm, the times in s\nbounce,height\n0,100", "bounce|height", (1, 2)),
             (
                 "Drop (in),Rebound (in),\n,Trial 1,Trial 2\n72,40,41",
                 "Drop (in)|Trial 1, Rebound (in)|Trial 2, Rebound (in)",

@@ -17,6 +17,24 @@ pub(super) struct Header {
     pub(super) score: usize,
 }
 
+impl Header {
+    /// Whether it is one line.
+    pub(super) const fn is_line(&self) -> bool {
+        self.at + 1 == self.below
+    }
+
+    /// Whether each number of a row has a name of its own that is understood, and that says what
+    /// the number is.
+    pub(super) fn names_all(&self, view: View<'_>, row: usize) -> bool {
+        let says = |name: &String| {
+            let heading = Heading::parse(name);
+            heading.understood() && heading.value().is_none_or(|value| value.what != What::Unsaid)
+        };
+        let own = |n: usize| self.names.get(n).filter(|name| !self.names[..n].contains(name));
+        (0..view.width(row)).filter(|&n| view.is_number(row, n)).all(|n| own(n).is_some_and(says))
+    }
+}
+
 /// What a column of numbers adds to the score of a header; a column of names adds one.
 pub(super) const VALUE: usize = 100;
 /// What a column of ratios of heights, or of energies, adds, which are read where nothing else is.
