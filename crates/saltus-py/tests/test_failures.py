@@ -207,6 +207,8 @@ def pressed_after(begun):
             pressed.append(time.process_time())
             os.kill(os.getpid(), signal.SIGINT)
 
+    # Programs that a shell starts in the background ignore it.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     thread = threading.Thread(target=press)
     thread.start()
     sys.setprofile(calls)
@@ -217,6 +219,7 @@ def pressed_after(begun):
         over.set()
         inside.set()
         thread.join()
+        signal.signal(signal.SIGINT, handler)
 
 
 @pytest.mark.parametrize("name", LONG)
