@@ -85,8 +85,6 @@ pub(crate) struct Memory<E, S> {
     /// Whether a guard has been farther from zero, on a step with a crossing, than the error of the
     /// step.
     pub(super) resolved: bool,
-    /// x' where a real step has ended near a crossing.
-    pub(super) arrived: Option<S>,
     /// x⁻ of the last crossing on a step, and x' there.
     pub(super) before: Option<(S, S)>,
     /// What the last jump has left as it was, if anything.
@@ -131,7 +129,6 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             arcs: 0,
             steps_before: 0,
             resolved: false,
-            arrived: None,
             before: None,
             kept: None,
             switched: Switched::none(),

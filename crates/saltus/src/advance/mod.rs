@@ -232,11 +232,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<ArcEnd<A>, Error> {
         let &Span { now, .. } = clock;
         self.memory.steps_before = self.memory.stats.steps;
+        self.memory.kept = None;
         let stepped = self.options.stepped;
         let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
         let end = match solution {
-            Solution::Polynomial(polynomial) if exact => self.exact(mode, &polynomial, clock, observer),
-            Solution::Formula(formula) if exact => self.closed(mode, x, formula, clock, observer),
+            Solution::Polynomial(polynomial) if exact => {
+                self.memory.before = None;
+                self.exact(mode, &polynomial, clock, observer)
+            }
+            Solution::Formula(formula) if exact => {
+                self.memory.before = None;
+                self.closed(mode, x, formula, clock, observer)
+            }
             Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
             // Nor is an exact solution cut in stops.
             _ => self.stepped(mode, *x, *clock, true, observer),

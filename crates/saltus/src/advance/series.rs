@@ -92,7 +92,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.held.0.iter().for_each(|inspection| observer.inspection(inspection));
             self.memory.stats.steps += 1;
             if let Some(found) = found {
-                return Ok(self.crossed(mode, &found, Step { now: clock.now, c, scale: unit }, remaining, observer));
+                return Ok(self.crossed(
+                    mode,
+                    &found,
+                    (Step { now: clock.now, c, scale: unit }, None),
+                    remaining,
+                    observer,
+                ));
             }
             let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
             let Arrival { time, at_stop } = self.arrival(&clock, h, remaining);

@@ -165,15 +165,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
         let settled = Range { roughly: false, ..range };
-        if let Some(Closer { dense, h, ahead }) = self.closer(mode, x, slope, step, rough, range.limit) {
+        if let Some(Closer { dense, h, ahead, slope: arrived }) = self.closer(mode, x, slope, step, rough, range.limit)
+        {
             let closer = Step { now: step.now, c: dense.as_ref(), scale: h };
             let range = Range { limit: ahead, ..settled };
             if let Some(again) = self.first_crossing(mode, closer, range, None::<&mut O>)? {
-                return Ok(self.crossed(mode, &again, closer, remaining, observer));
+                return Ok(self.crossed(mode, &again, (closer, Some(arrived)), remaining, observer));
             }
         }
         let found = self.first_crossing(mode, step, settled, None::<&mut O>)?;
-        Ok(self.crossed(mode, found.as_ref().unwrap_or(rough), step, remaining, observer))
+        let found = found.as_ref().unwrap_or(rough);
+        let slope = slope_of(step.c, step.scale, found.crossing.root);
+        Ok(self.crossed(mode, found, (step, Some(slope)), remaining, observer))
     }
 
     /// Why no further step is taken with so much of the span `remaining`, if none is.
@@ -182,20 +185,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if remaining <= 0.0 { Some(Stop::Time) } else { self.options.exceeded(&self.memory.stats) }
     }
 
-    /// The end of the arc at a crossing `found` on its last piece, of which the observer is told.
+    /// The end of the arc at a crossing `found` on its last piece, with x' there if that is a step.
     #[inline]
     pub(super) fn crossed(
         &mut self,
         mode: A::Mode,
         found: &OnStep<A>,
-        Step { now, c, scale }: Step<'_, A::State>,
+        (Step { now, c, scale }, slope): (Step<'_, A::State>, Option<A::State>),
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
         self.memory.slope = c.get(1).map(|c| c.with(|i| c.get(i) / scale));
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
-        let slope = self.memory.arrived.take();
-        self.memory.before = Some((close.state, slope.unwrap_or_else(|| slope_of(c, scale, found.crossing.root))));
+        self.memory.before = slope.map(|slope| (close.state, slope));
         let told = if close.span > 0.0 {
             observer.piece(mode, &Piece::new(now, close.span, scale, c))
         } else {
@@ -413,7 +415,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         step: Step<'_, A::State>,
         &OnStep { edge, crossing, slope: dg_dt, .. }: &OnStep<A>,
         limit: f64,
-    ) -> Option<Closer<M::Dense<A::State>>> {
+    ) -> Option<CloserOf<A, M>> {
         let Step { now, scale, .. } = step;
         let mut h = crossing.outside;
         // So close to the start the dense output is exact.
@@ -435,8 +437,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             // A correction this small leaves its square of what the dense output errs by within.
             if shift.abs() <= SMALL * h {
                 let ahead = (h + 2.0 * shift.abs() + ROUNDINGS * f64::EPSILON * h).min(limit);
-                self.memory.arrived = Some(trial.slope);
-                return Some(Closer { dense, h, ahead });
+                return Some(Closer { dense, h, ahead, slope: trial.slope });
             }
             h = (h + shift).min(limit);
         }
@@ -452,11 +453,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
-/// A step `h` that ends closer to a crossing, and how far `ahead` that may be.
-struct Closer<D> {
+type CloserOf<A, M> = Closer<<A as Automaton>::State, <M as Stepper>::Dense<<A as Automaton>::State>>;
+
+/// A step `h` that ends closer to a crossing, with x' there, and how far `ahead` that may be.
+struct Closer<S, D> {
     dense: D,
     h: f64,
     ahead: f64,
+    slope: S,
 }
 
 /// x' a time `s` after the start of a dense output.
