@@ -283,6 +283,8 @@ def test_derivatives_are_those_of_neighbouring_runs(make):
     state, span = [1.0, 0.5], (0.0, 1.7)
     by = [*system.parameters, *system.names]
     gradient = system.gradient("flight", state, span, by=by, rtol=1e-11)
+    named = system.gradient("flight", dict(zip(reversed(system.names), reversed(state))), span, by=by, rtol=1e-11)
+    assert np.array_equal(named.end, gradient.end) and np.array_equal(named.times, gradient.times)
     for k, name in enumerate(by):
         ends = []
         for sign in (1, -1):
@@ -376,6 +378,8 @@ def test_another_thread_runs_meanwhile():
         (lambda: ball().run("flight", [1.0, 0.0], (0, 1), most_jumps=2.5), TypeError, "most_jumps is a float and no whole number"),
         (lambda: ball().run("flight", [1.0, 0.0], (0, 1), most_jumps=-1), ValueError, "most_jumps is -1"),
         (lambda: ball().run("flight", {"height": 1.0}, (0, 1)), ValueError, "'velocity' is missing from the state"),
+        (lambda: ball().gradient("flight", {"height": 1.0}, (0, 1)), ValueError, "'velocity' is missing from the state"),
+        (lambda: ball().gradient("flight", [1.0, 0.0], 6.0), TypeError, r"the span 6.0 is no \(start, end\)"),
         (lambda: ball().run("flight", {"height": 1.0, "speed": 0.0, "velocity": 0.0}, (0, 1)), ValueError, "'speed' is no coordinate"),
         (lambda: ball().run("flight", [1.0, 0.0], (0, 1)).plot("height", "speed"), ValueError, "no coordinate 'speed'"),
         (lambda: saltus.Hybrid(1, ["k"]).mode("m", lambda t, x, p: [p.k]).run("m", [1], (0, 1)), ValueError, "without a value: k"),

@@ -363,9 +363,8 @@ class Hybrid:
                 raise ValueError(f"there is neither a parameter nor a coordinate {name!r}: there are {known}")
             initial = name not in self.parameters
             places.append((initial, (self.names if initial else self.parameters).index(name)))
-        start = np.asarray(state, dtype=float).ravel().tolist()
         numbers = [float(value) for value in values.values()]
-        begin = self._place(mode), start, (float(span[0]), float(span[1]))
+        begin = self._place(mode), self._state(state), _span(span)
         rows = self._core().gradient(begin, numbers, places, options)
         end = np.array([row[0] for row in rows]).reshape(len(names), len(self.names))
         return Gradient(names, end, np.array([row[1] for row in rows], dtype=float).reshape(len(names), -1))
