@@ -6,34 +6,18 @@ mod tool;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
-use tempfile::TempDir;
+use tool::place::{DRAG, DROP, Place};
 
-const DROP: &str = "restitution = 0.5\n[ball]\nheight = \"1 m\"\n";
-const DRAG: &str =
-    "restitution = 0.8\nball = { height = \"1 m\" }\ndrag = { per_length = 0.05 }\nrun = { until = \"10 s\" }\n";
 const GRID: [&str; 4] = ["--vary", "restitution=0.5:0.9:12", "--vary", "ball.height=1m:9m:10"];
 
-struct Place(TempDir);
-
 impl Place {
-    fn of(scene: &str) -> Self {
-        let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("scene.toml"), scene).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
     fn command(&self, folder: &str, more: &[&str]) -> Command {
-        let mut command = tool::saltus();
-        command.args(["sweep", "scene.toml", "--into", folder]).args(GRID).args(more).current_dir(self.0.path());
+        let mut command = self.sweep();
+        command.args(["--into", folder]).args(GRID).args(more);
         command
     }
 

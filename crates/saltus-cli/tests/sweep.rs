@@ -5,38 +5,21 @@
 mod tool;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use tempfile::TempDir;
-
-const DROP: &str = "restitution = 0.5\n[ball]\nheight = \"1 m\"\n";
-const DRAG: &str =
-    "restitution = 0.8\nball = { height = \"1 m\" }\ndrag = { per_length = 0.05 }\nrun = { until = \"10 s\" }\n";
-
-/// A scene in a folder of its own.
-struct Place(TempDir);
+use tool::place::{DRAG, DROP, Place};
 
 impl Place {
-    fn of(scene: &str) -> Self {
-        let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("scene.toml"), scene).unwrap();
-        Self(folder)
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
     fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = tool::saltus();
-        command.args(["sweep", "scene.toml"]).args(arguments).current_dir(self.0.path());
+        let mut command = self.sweep();
+        command.args(arguments);
         command
     }
 

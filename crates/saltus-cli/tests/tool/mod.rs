@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // each test file has a use for some of it
 
+pub(crate) mod place;
+
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
