@@ -51,9 +51,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
-        self.dips(edge, (step, range), root, derivatives)
-            .or_else(|| self.unresolved(edge, step, root))
-            .or_else(|| self.hovers(edge, (step, range), root))
+        // Before a fall at the start of the step nothing shows how the guard came there.
+        if root >= SMALL * step.scale
+            && let Some(evidence) =
+                self.dips(edge, (step, range), root, derivatives).or_else(|| self.unresolved(edge, step, root))
+        {
+            return Some(evidence);
+        }
+        self.hovers(edge, (step, range), root)
     }
 
     /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
@@ -66,22 +71,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
-        let [slope, bend] = derivatives.or_else(|| self.derivatives(edge, step, root))?;
+        let [slope, bend] = derivatives.unwrap_or_else(|| self.derivatives(edge, step, root));
         let soon = bend > 0.0 && -slope < bend * (ROUGHLY * step.scale);
         soon.then(|| self.shallow(edge, (step, range), root, (-slope / bend, bend)))?
     }
 
-    /// The first two derivatives of a guard at its `root`, by differences, unless that is at the
-    /// start of the step.
+    /// The first two derivatives of a guard at its `root`, by differences.
     #[inline(never)]
-    fn derivatives(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<[f64; 2]> {
+    fn derivatives(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> [f64; 2] {
         let by = SMALL * step.scale;
-        if root < by {
-            return None;
-        }
         // Zero between them.
         let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
-        Some([(after - before) / (2.0 * by), (before + after) / (by * by)])
+        [(after - before) / (2.0 * by), (before + after) / (by * by)]
     }
 
     #[cold]
@@ -93,9 +94,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         (turn, bend): (f64, f64),
     ) -> Option<Evidence> {
-        if root < SMALL * step.scale {
-            return None;
-        }
         let depth = 0.5 * bend * turn * turn;
         let close = depth <= self.error_of(edge, (step, range), root, 0.0);
         close.then(|| Evidence::doubtful(Doubt::Grazing, (root - turn.abs()).max(0.0), root + 2.0 * turn.abs()))
@@ -106,8 +104,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// is of a size that this tolerance does not resolve.
     #[inline]
     fn unresolved(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
-        let at_start = root < SMALL * step.scale; // no way to be far from zero
-        if self.memory.resolved || at_start { None } else { self.resolve(edge, step, root) }
+        if self.memory.resolved { None } else { self.resolve(edge, step, root) }
     }
 
     #[cold]
