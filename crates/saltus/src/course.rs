@@ -51,6 +51,8 @@ struct Stand<M, S> {
     mode: M,
     state: S,
     now: Time,
+    /// The time since the run began.
+    elapsed: f64,
 }
 
 type StandOf<A> = Stand<<A as Automaton>::Mode, <A as Automaton>::State>;
@@ -138,7 +140,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// where it was.
     #[inline]
     pub fn finish(&mut self, observer: &mut impl Observer<A>) -> Result<EndingOf<A>, Error> {
-        let Stand { mode, state, now } = self.stand();
+        let Stand { mode, state, now, .. } = self.stand();
         self.finish_from(mode, &state, now, observer)
     }
 
@@ -155,7 +157,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let stop = match self.stopped() {
             Some(stop) => stop,
             None => {
-                let mut stand = Stand { mode, state: *state, now };
+                let mut stand = Stand { mode, state: *state, now, elapsed: now.since(self.at.span.start) };
                 loop {
                     if let Some(stop) = self.step(&mut stand, observer)? {
                         break stop;
@@ -189,8 +191,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     #[inline]
     fn stand(&self) -> StandOf<A> {
-        let Stage { mode, state, span: Span { now, .. }, .. } = self.at;
-        Stand { mode, state, now }
+        let Stage { mode, state, span: Span { start, now, .. }, .. } = self.at;
+        Stand { mode, state, now, elapsed: now.since(start) }
     }
 
     #[inline]
@@ -221,25 +223,25 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     fn arc_and_jump(&mut self, stand: &mut StandOf<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
         let automaton = self.arc.automaton;
         // x is x⁺ of the last jump, or the initial state.
-        let Stand { mode, state: x, now, .. } = *stand;
+        let Stand { mode, state: x, now, elapsed } = *stand;
         let Span { start, end, .. } = self.at.span;
         let due = self.at.ticks.next(automaton, mode, &x, &Span { start, now, end })?;
         let end = due.as_ref().map_or(end, |due| later_stop(&automaton.stops(mode), due.time));
         let span = Span { start, now, end };
         let only = automaton.edges(mode).only();
-        let begun = self.arc.begin((mode, only), &x, now, (span.remaining(), now.since(start)))?;
+        let begun = self.arc.begin((mode, only), &x, now, (span.remaining(), elapsed))?;
         if let Begun::Open { exact: true } = begun
             && !observer.wants_pieces()
             && let Some(edge) = only
             && let Fall::In(s, before) = automaton.falls(mode, edge, now.seconds(), &x)
-            && self.arc.falls(mode, edge, (s, &before), &span, observer)
+            && self.arc.falls(mode, edge, (s, &before), span, observer)
         {
             return self.jump(stand, Crossed { edge, time: now.after(s), before, ticked: false }, observer);
         }
         if let Some(edge) = only {
             self.arc.wall_near(edge, &x, now);
         }
-        let next = self.go_and_jump(&span, due.as_ref(), begun, observer)?;
+        let next = self.go_and_jump(&{ span }, due.as_ref(), begun, observer)?;
         *stand = self.stand();
         Ok(next)
     }
@@ -290,7 +292,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         crossed: Crossed<A>,
         observer: &mut impl Observer<A>,
     ) -> Result<Next<A>, Error> {
-        let Stand { mode, state: x, now: began } = *stand;
+        let Stand { mode, state: x, now: began, .. } = *stand;
         let Crossed { edge, time, before, ticked } = crossed;
         let Self { arc, at } = self;
         let automaton = arc.automaton;
@@ -300,23 +302,24 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let duration = time.since(began);
         let since = time.since(at.instant);
         let at_once = arc.memory.at_once(since);
-        let instant = if at_once { at.instant } else { time };
         // The same edge taken again at once changes nothing: the limit is here.
         let stands = duration == 0.0 && !ticked && to == mode && arc.memory.just_took(edge) && same(&{ x }, &{ after });
         if !stands {
             if at_once {
                 at.cascade = at.cascade.and(x, after);
-            } else if at.cascade.jumps() > 0 {
-                at.cascade = Cascade::NONE;
+            } else {
+                at.instant = time;
+                if at.cascade.jumps() > 0 {
+                    at.cascade = Cascade::NONE;
+                }
             }
-            at.instant = instant;
             if !after.is_finite() || to != mode && automaton.validate(to, now, &{ after }).is_err() {
                 let (kind, note) = wrong(automaton, to, now, after);
                 return Err(Error::new(kind, Place::new(now, mode, Some(edge), &{ before })).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory.
             (at.span.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
-            let jump = Jump { time: instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
+            let jump = Jump { time: at.instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
             if observer.jump(&jump).is_break() {
                 return Ok(Next::Stop(Stop::Observer));
             }
@@ -341,7 +344,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         let next = self.after_jump(edge, now, at_once);
         if matches!(next, Next::Arc) {
-            *stand = Stand { mode: to, state: after, now: time };
+            *stand = Stand { mode: to, state: after, now: time, elapsed };
         }
         Ok(next)
     }
@@ -350,18 +353,34 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// time contract or a limit of the run is reached.
     #[inline]
     fn after_jump(&self, edge: A::Edge, t: f64, at_once: bool) -> Next<A> {
-        let Self { arc, at } = self;
-        let options = &arc.options;
-        if at.jumps >= options.most_jumps {
-            return Next::Stop(Stop::Jumps { most: options.most_jumps });
+        if at_once || self.over().is_some() { self.after_last_jump(edge, t, at_once) } else { Next::Arc }
+    }
+
+    /// Which limit of the run is reached.
+    #[inline]
+    fn over(&self) -> Option<Stop<A::Edge>> {
+        let options = &self.arc.options;
+        if self.at.jumps >= options.most_jumps {
+            Some(Stop::Jumps { most: options.most_jumps })
+        } else if self.arc.memory.stats.evaluations() >= options.most_evaluations {
+            Some(Stop::Evaluations { most: options.most_evaluations })
+        } else {
+            options.overdue()
         }
-        if at_once && let Some(next) = self.after_cascade(edge, t) {
+    }
+
+    /// The same where jumps come at one time, or this may be the last one.
+    #[cold]
+    #[inline(never)]
+    fn after_last_jump(&self, edge: A::Edge, t: f64, at_once: bool) -> Next<A> {
+        let over = self.over();
+        if at_once
+            && !matches!(over, Some(Stop::Jumps { .. }))
+            && let Some(next) = self.after_cascade(edge, t)
+        {
             return next;
         }
-        if arc.memory.stats.evaluations() >= options.most_evaluations {
-            return Next::Stop(Stop::Evaluations { most: options.most_evaluations });
-        }
-        options.overdue().map_or(Next::Arc, Next::Stop)
+        over.map_or(Next::Arc, Next::Stop)
     }
 
     /// What follows jumps that go on at one time, where they contract, which is the model's to say,

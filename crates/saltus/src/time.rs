@@ -70,7 +70,7 @@ impl Time {
     #[must_use]
     pub fn after(self, s: f64) -> Self {
         let sum = self.hi + s;
-        if !sum.is_finite() {
+        if sum.is_infinite() {
             return Self { hi: sum, lo: 0.0 };
         }
         let back = sum - self.hi;

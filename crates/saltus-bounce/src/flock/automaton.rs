@@ -1,12 +1,12 @@
 //! The flock as a hybrid automaton: what each ball would do alone, and the meetings of two.
 
 use nalgebra::Vector3;
-use saltus::{About, Automaton, Clocks, Edges, Entry, Fall, Limit, Refusal, Solution, State, Ticking};
+use saltus::{About, Automaton, Clocks, Edges, Fall, Limit, Refusal, Solution, State, Ticking};
 
 use super::{CHANGE, Flock, Flying, Happens, Meeting, Stances};
 use crate::cloud::meeting_of_balls;
 use crate::effects::Effect;
-use crate::flyer::{Event, Grip, Stance};
+use crate::flyer::{Event, Grip, OF_CONTACT, Stance};
 use crate::restitution::Restitution;
 use crate::walls::Walls;
 
@@ -68,9 +68,8 @@ where
             }
             _ => false,
         };
-        // A contact may be over where it begins, as of a ball alone.
         let about = About::new().affine_if(affine);
-        if self.is_meeting(meeting) { about } else { about.entry(Entry::Fire) }
+        if self.is_meeting(meeting) { about } else { about.entry(OF_CONTACT) }
     }
 
     fn reset(

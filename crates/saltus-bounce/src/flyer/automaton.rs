@@ -9,6 +9,9 @@ use crate::effects::{Effect, JetMotion, JetSum};
 use crate::restitution::Restitution;
 use crate::walls::{Face, Walls};
 
+/// How what ends or changes a contact is entered: a contact may be over where it begins.
+pub(crate) const OF_CONTACT: Entry = Entry::Fire;
+
 impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
     /// x' in `stance`.
     #[inline]
@@ -210,7 +213,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         match event {
             Event::Meet(_) => about,
             Event::Leave(_) | Event::Slip(_) | Event::Stop { .. } | Event::Veer { .. } | Event::Change => {
-                about.entry(Entry::Fire)
+                about.entry(OF_CONTACT)
             }
             Event::Turn => about.entry(Entry::Wait),
         }

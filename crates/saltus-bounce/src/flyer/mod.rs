@@ -16,6 +16,7 @@ use crate::parameter::ParameterError;
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, MOST_FACES, Walls};
 
+pub(crate) use automaton::OF_CONTACT;
 pub use grip::{Block, Grip, Keeps, Rolls};
 pub use moving::{Moving, Turning};
 pub use stance::{Event, Stance};

@@ -174,7 +174,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             let here = x.get(i).abs();
             let before = largest.map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
             let way = slope.map_or(0.0, |slope| (slope.get(i) * duration).abs());
-            here.max(before).max(way)
+            larger(larger(here, before), way)
         }));
     }
 
@@ -205,4 +205,10 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     pub(crate) fn beyond(&mut self) {
         (self.spent, self.last) = (None, None);
     }
+}
+
+/// The larger of two numbers, the first where the second is none.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }

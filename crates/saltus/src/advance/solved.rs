@@ -100,7 +100,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mode: A::Mode,
         edge: A::Edge,
         (s, state): (f64, &A::State),
-        clock: &Span,
+        clock: Span,
         observer: &mut impl Observer<A>,
     ) -> bool {
         let (now, remaining) = (clock.now, clock.remaining());
@@ -109,7 +109,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         self.memory.stats.exact += 1;
         self.arrived();
-        let span = past(clock);
+        let span = past(&clock);
         observer.inspection(&Inspection { mode, edge, start: now, span, evidence: Evidence::Isolated });
         true
     }
