@@ -234,9 +234,8 @@ impl Accuracy {
         let base = planned.run()?;
         let until = base.until();
         let by = |way: Way| -> Result<Record, RunError> {
-            let plan = scene.plan().map_err(|error| RunError::new(error.to_string()))?;
             // The reference may take its time.
-            plan.by(way).until(until).run()
+            planned.clone().by(way).until(until).run()
         };
         let stepper = planned.stepper().exact();
         let tight = |tolerance: f64| Way::Steps { stepper, tolerance };
@@ -254,24 +253,24 @@ impl Accuracy {
             return Err(RunError::new(format!("the reference breaks off: {}", reference.end())).into());
         }
         let mut accuracy = Self { reference, by: way, doubt, trials: Vec::new() };
-        let mut attempt = |plan: Plan, way: Way| {
-            let plan = limited(plan.by(way).until(until));
+        let mut attempt = |plan: &Plan, way: Way| {
+            let plan = limited(plan.clone().by(way).until(until));
             let outcome = accuracy.outcome(scene, &plan, timed);
             accuracy.trials.push(Trial { way, outcome });
         };
         if solved {
-            attempt(planned, Way::Formulas);
+            attempt(&planned, Way::Formulas);
         }
+        let (stepped, expanded) = (scene.steppable(), scene.expandable());
         for stepper in [Stepper::Tsit5, Stepper::Dop853, Stepper::Rodas5p, Stepper::Series] {
-            for tolerance in TOLERANCES {
-                let plan = if stepper == Stepper::Series { scene.expandable() } else { scene.steppable() };
-                if let Some(plan) = plan {
+            if let Some(plan) = if stepper == Stepper::Series { &expanded } else { &stepped } {
+                for tolerance in TOLERANCES {
                     attempt(plan, Way::Steps { stepper, tolerance });
                 }
             }
         }
         for rate in RATES {
-            attempt(scene.plan()?, Way::Frames { rate });
+            attempt(&planned, Way::Frames { rate });
         }
         Ok(accuracy)
     }

@@ -109,8 +109,9 @@ impl fmt::Display for Model {
 /// assert_eq!((record.impacts().len(), record.cost().steps), (1, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[derive(Clone)]
 pub struct Plan {
-    runner: Box<dyn Runner>,
+    runner: Arc<dyn Runner>,
     scene: Arc<Scene>,
     options: RunOptions,
     explanation: Explanation,
@@ -269,7 +270,7 @@ impl Scene {
             absolute,
             still: motions.filter_map(Motion::ends).fold(0.0, f64::max),
         };
-        Plan { runner, scene: Arc::new(self.clone()), options, explanation }
+        Plan { runner: Arc::from(runner), scene: Arc::new(self.clone()), options, explanation }
     }
 }
 
