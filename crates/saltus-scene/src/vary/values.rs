@@ -247,7 +247,7 @@ impl Variation {
                 let value = match (n, *logarithmic) {
                     (0, _) => *from,
                     _ if n >= last => *to,
-                    (_, false) => (from * (last - n) as f64 + to * n as f64) / last as f64,
+                    (_, false) => even(*from, *to, n as f64 / last as f64),
                     (_, true) => between(*from, *to, n as f64 / last as f64),
                 };
                 Value::number(value, unit.as_deref())
@@ -281,8 +281,52 @@ impl Draws {
     }
 }
 
+/// By equal steps, to the fifteen digits that the greater end keeps: `0.31`, and not
+/// `0.30999999999999994`.
+fn even(from: f64, to: f64, share: f64) -> f64 {
+    /// Fifteen digits of the smallest double need so many decimals.
+    const MOST: f64 = 338.0;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
+    let decimals = (14.0 - from.abs().max(to.abs()).log10().floor()).clamp(0.0, MOST) as usize;
+    let value = from * (1.0 - share) + to * share;
+    let rounded: f64 = format!("{value:.decimals$}").parse().unwrap_or(value);
+    rounded.clamp(from.min(to), from.max(to))
+}
+
 /// By equal factors, to the fifteen digits that a logarithm keeps.
 fn between(from: f64, to: f64, share: f64) -> f64 {
     let value = from * (to / from).powf(share);
     format!("{value:.14e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::Variation;
+
+    #[test]
+    fn ranges_as_wide_and_as_narrow_as_can_be_have_their_values() {
+        for range in ["0:0", "5e-324:5e-324", "-5e-324:5e-324", "-1e-300:0", "0:1e308", "-8e307:8e307", "1e22:3e22"] {
+            let vary: Variation = format!("key={range}:7").parse().unwrap();
+            let values: Vec<f64> = (0..7).map(|n| vary.value(n).cell.parse().unwrap()).collect();
+            assert!(values.is_sorted() && values.iter().all(|value| value.is_finite()), "{range}: {values:?}");
+        }
+    }
+
+    proptest! {
+        /// Steps of whole tenths, hundredths, ... are the decimals that are written so.
+        #[test]
+        fn even_steps_are_the_decimals_they_look_like(
+            places in 0..9_u32, from in -99_999..99_999_i64, step in -999..999_i64, count in 2..200_u64,
+        ) {
+            let decimal = |n: i64| format!("{n}e-{places}");
+            let to = from + step * (count as i64 - 1);
+            let vary: Variation = format!("key={}:{}:{count}", decimal(from), decimal(to)).parse().unwrap();
+            for n in 0..count {
+                let expected: f64 = decimal(from + step * n as i64).parse().unwrap();
+                prop_assert_eq!(vary.value(n).cell.parse::<f64>(), Ok(expected), "{} of {}", n, vary.text);
+            }
+        }
+    }
 }
