@@ -50,8 +50,8 @@ impl SceneError {
             column: 1 + count(&source[first..start]),
             width: count(&source[start..end]).max(1),
             text: String::from_utf8_lossy(&source[first..last]).into_owned(),
-            message: legible(&fault.message),
-            help: fault.help.as_deref().map(legible),
+            message: shortened(legible(&fault.message)),
+            help: fault.help.as_deref().map(|help| shortened(legible(help))),
         }
     }
 
@@ -161,6 +161,18 @@ impl Fault {
         };
         Self { span, message, help }
     }
+}
+
+/// What quotes a file of long words: its beginning and its end.
+fn shortened(says: String) -> String {
+    /// The longest sentence that is shown whole, in characters: of ours none is half as long.
+    const MOST: usize = 800;
+    let count = says.chars().count();
+    if count <= MOST {
+        return says;
+    }
+    let part = |from: usize| says.chars().skip(from).take(MOST / 2).collect::<String>();
+    format!("{} … {}", part(0), part(count - MOST / 2))
 }
 
 /// The text with numbers of more digits than anybody counts by powers of ten.

@@ -1,5 +1,6 @@
 //! How a level floor moves.
 
+use saltus_bounce::units::Quantity;
 #[cfg(test)]
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -31,6 +32,17 @@ impl Motion {
         match self {
             Self::Sine { .. } => None,
             Self::Schedule(points) => Some(points.last().map_or(0.0, |last| last[0])),
+        }
+    }
+
+    /// How fast the floor is at most, in m/s.
+    fn fastest(&self) -> f64 {
+        match self {
+            Self::Sine { amplitude, frequency, .. } => std::f64::consts::TAU * frequency * amplitude,
+            Self::Schedule(points) => {
+                let speed = |pair: &[[f64; 2]]| ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).abs();
+                points.windows(2).map(speed).fold(0.0, f64::max)
+            }
         }
     }
 
@@ -72,6 +84,17 @@ pub(super) struct MotionTable {
 
 impl MotionTable {
     pub(super) fn read(&self, whole: &At<Self>) -> Result<Motion, Fault> {
+        let (motion, largest) = (self.motion(whole)?, Quantity::Speed.largest());
+        if motion.fastest() <= largest {
+            return Ok(motion);
+        }
+        let fastest = motion.fastest();
+        Err(whole.fault(format!(
+            "the floor moves at {fastest:.1e} m/s, beyond the speeds that can be right: give a motion of {largest} m/s at most"
+        )))
+    }
+
+    fn motion(&self, whole: &At<Self>) -> Result<Motion, Fault> {
         match (&self.amplitude, &self.frequency, &self.schedule) {
             (Some(amplitude), Some(frequency), None) => Ok(Motion::Sine {
                 amplitude: amplitude.not_negative("an amplitude in m")?,

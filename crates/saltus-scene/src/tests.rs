@@ -352,12 +352,33 @@ fn balls_above_each_other_fall_in_air() {
         assert_eq!((a.position.x, a.position.y), (0.0, 0.0));
     }
     assert!(both.impacts().len() > 5);
+    // Each has a drag of its own: 3/8 × density × coefficient/(radius × density of the ball).
+    let says = both.scene().plan().unwrap().explain().to_string();
+    assert!(says.contains("a = -(0.0162789, 0.120585) /m × |v| v"), "{says}");
     assert!(matches!(both.end(), plan::End::Zeno { .. }), "{:?}", both.end());
     for k in 0..=200 {
         let t = both.until() * (f64::from(k) / 200.0); // the last one is the end itself
         let [low, high] = [0, 1].map(|ball| both.at(ball, t).unwrap().height());
         assert!(high - low > 0.06 - 1e-8, "{low} {high} at {t}");
     }
+}
+
+/// However long the words of a file, a sentence about them is short, and has what is wrong.
+#[test]
+fn long_words_are_quoted_in_part() {
+    let long = "ü".repeat(100_000);
+    for toml in [
+        format!("{long} = 1\n"),
+        format!("\"{long}\" = 1\n"),
+        format!("restitution = \"{long}\"\n"),
+        format!("ball = {{ height = \"{long}\" }}\n"),
+        format!("ball = {{ material = \"{long}\", height = 1 }}\n"),
+        format!("floor = {{ kind = \"{long}\" }}\nball = {{ height = 1 }}\n"),
+    ] {
+        let says = message(&toml);
+        assert!(says.len() < 4_000 && !says.starts_with("accepted"), "{} bytes: {says:.300}", says.len());
+    }
+    assert!(message(&format!("\"{long}\" = 1\n")).contains("is no key here"));
 }
 
 /// Numbers with which nothing can be right are refused where they stand, with the range.
@@ -371,6 +392,16 @@ fn quantities_have_ranges() {
         ("restitution = 0.5\nball = { height = 1, velocity = -1e160 }\n", "a speed is at most 299792458 m/s"),
         ("restitution = 1\nball = { height = 1 }\nrun = { until = '1e300 s' }\n", "a time is at most 1e12 s"),
         ("restitution = 0.5\nball = { height = '1e200 km' }\n", "a length is at most 1e12 m"),
+        (
+            "restitution = 0.5\nball = { height = 1 }\nrun = { until = 1 }
+            floor = { motion = { amplitude = '1 mm', frequency = '1e12 Hz' } }\n",
+            "the floor moves at 6.3e9 m/s",
+        ),
+        (
+            "restitution = 0.5\nball = { height = 1 }\nrun = { until = 1 }
+            floor = { motion = { schedule = [[0, 0], ['1 us', '-1 km']] } }\n",
+            "a motion of 299792458 m/s at most",
+        ),
         ("gravity = 1e31\nrestitution = 0.5\nball = { height = 1 }\n", "an acceleration is at most"),
         ("gravity = '1e31 m/s^2'\nrestitution = 0.5\nball = { height = 1 }\n", "an acceleration is at most"),
         ("restitution = 0.5\nball = { height = 1, radius = 1e-200 }\n", "1e-200 is too small for a radius in m"),

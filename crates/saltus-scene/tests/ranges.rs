@@ -32,7 +32,8 @@ const VALUES: [&str; 17] = [
 ];
 
 /// Scenes that have every number of the schema between them.
-const SCENES: [&str; 21] = [
+const SCENES: [&str; 22] = [
+    "gravity = 9.8\nrestitution = 0.7\nball = { height = 1, velocity = 0.5 }",
     "gravity = 9.8\nrestitution = 0.7\nfriction = 0.3\nball = { height = 1, radius = 0.03, mass = 0.06, velocity = 0.5 }
     run = { until = 2, most_jumps = 50, tolerance = 1e-8 }",
     "restitution = 0.7\nball = { height = 1 }\ndrag = { rate = 0.1, per_length = 0.1 }",
@@ -86,6 +87,9 @@ const JARGON: [&str; 10] = [
     "0000000000000000000000000000000",
 ];
 
+/// The latest time that can be right, in s.
+const LATEST: f64 = 1e12;
+
 /// How long a run may take here, limited as it is.
 const PATIENCE: Duration = Duration::from_secs(10);
 const EVALUATIONS: u64 = 20_000;
@@ -128,7 +132,7 @@ fn every_number_is_run_or_its_range_is_said() {
                         Err(error) => Some(error.to_string()),
                         Ok(Err(error)) => Some(error.to_string()),
                         Ok(Ok(outcome)) => {
-                            assert!(outcome.until.is_finite(), "{here}");
+                            assert!(outcome.until <= LATEST, "{here}");
                             let finite = |moment: &saltus_scene::plan::Moment| {
                                 moment.position.iter().chain(&moment.velocity).all(|x| x.is_finite())
                             };

@@ -6,7 +6,7 @@ use std::fmt;
 use super::Model;
 use crate::error::short;
 use crate::{Ball, Contact, Decay, Linear, Quadratic, Scene};
-use saltus_bounce::effects::{Effect as _, LinearDrag, Motion, QuadraticDrag};
+use saltus_bounce::effects::{Buoyancy, Effect as _, LinearDrag, Motion, QuadraticDrag};
 use saltus_bounce::friction::Friction;
 
 /// Something that acts on a ball, or on how it bounces, and that a scene may name.
@@ -155,16 +155,16 @@ impl Scene {
 
     /// An effect of the scene with its numbers.
     fn with_numbers(&self, effect: Effect) -> String {
-        let (effects, ball) = (&self.effects, &self.balls[0]);
+        let effects = &self.effects;
         match effect {
             Effect::Gravity => format!("gravity, {} m/s² downwards", self.gravity.value()),
             Effect::LinearDrag => {
-                let rate = effects.linear_drag(ball).map_or(0.0, LinearDrag::rate);
-                format!("linear drag, a = -{} /s × v", short(rate))
+                let rate = self.in_turn(|ball| effects.linear_drag(ball).map_or(0.0, LinearDrag::rate));
+                format!("linear drag, a = -{rate} /s × v")
             }
             Effect::QuadraticDrag => {
-                let k = effects.quadratic_drag(ball).map_or(0.0, QuadraticDrag::per_length);
-                format!("quadratic drag, a = -{} /m × |v| v", short(k))
+                let k = self.in_turn(|ball| effects.quadratic_drag(ball).map_or(0.0, QuadraticDrag::per_length));
+                format!("quadratic drag, a = -{k} /m × |v| v")
             }
             Effect::Wind => {
                 let wind = effects.wind.unwrap_or_default();
@@ -172,9 +172,8 @@ impl Scene {
                 format!("wind, ({}) m/s", numbers.join(", "))
             }
             Effect::Buoyancy => {
-                let net =
-                    effects.buoyancy(ball, self.gravity).map_or(0.0, saltus_bounce::effects::Buoyancy::net_gravity);
-                format!("buoyancy, which leaves {} m/s² of gravity", short(net))
+                let net = |ball: &Ball| effects.buoyancy(ball, self.gravity).map_or(0.0, Buoyancy::net_gravity);
+                format!("buoyancy, which leaves {} m/s² of gravity", self.in_turn(net))
             }
             Effect::Friction => {
                 let mut numbers: Vec<f64> = self.floors.iter().map(|floor| floor.friction.coefficient()).collect();
@@ -183,39 +182,53 @@ impl Scene {
                 format!("friction, coefficient {}", numbers.join(", "))
             }
             Effect::AddedMass => {
-                format!("added mass, which leaves {} of every acceleration", short(super::net(self).1))
+                let share = self.in_turn(|ball| super::net(self, ball).1);
+                format!("added mass, which leaves {share} of every acceleration")
             }
-            Effect::Lift => self.lift(ball),
-            Effect::SpinDecay => match (effects.spin_decay, ball.radius) {
-                (Some(Decay::Within(time)), _) => format!("spin decay, ω' = -ω/({} s)", short(time)),
-                (Some(Decay::InFlight(c)), Some(radius)) => {
-                    format!("spin decay, ω' = -{} /m × |v| ω", short(c / radius))
+            Effect::Lift => self.lift(),
+            Effect::SpinDecay => match effects.spin_decay {
+                Some(Decay::Within(time)) => format!("spin decay, ω' = -ω/({} s)", short(time)),
+                Some(Decay::InFlight(c)) => {
+                    let rate = self.in_turn(|ball| ball.radius.map_or(0.0, |radius| c / radius));
+                    format!("spin decay, ω' = -{rate} /m × |v| ω")
                 }
-                _ => effect.name().to_owned(),
+                None => effect.name().to_owned(),
             },
             Effect::Deformation => effect.name().to_owned(),
         }
     }
 
-    /// The lift of `ball` by its spin, with how much that is as it starts.
-    fn lift(&self, ball: &Ball) -> String {
-        let (Some(lift), Some([_, saturation]), Some(radius)) =
-            (self.effects.magnus(ball), self.effects.lift, ball.radius)
-        else {
-            return Effect::Lift.name().to_owned();
-        };
+    /// A number of the balls; where they differ, of each in turn.
+    fn in_turn(&self, number: impl Fn(&Ball) -> f64) -> String {
+        let numbers: Vec<String> = self.balls.iter().map(|ball| short(number(ball))).collect();
+        if numbers.windows(2).all(|pair| pair[0] == pair[1]) {
+            numbers.into_iter().next().unwrap_or_default()
+        } else {
+            format!("({})", numbers.join(", "))
+        }
+    }
+
+    /// The lift by spin, with how much that is at the start.
+    fn lift(&self) -> String {
+        let Some([_, saturation]) = self.effects.lift else { return Effect::Lift.name().to_owned() };
         let law = match saturation {
             0.0 => String::new(),
-            saturation => format!(" / (1 + {} m × |ω × v|/v²)", short(saturation * radius)),
+            saturation => {
+                let length = self.in_turn(|ball| saturation * ball.radius.unwrap_or(0.0));
+                format!(" / (1 + {length} m × |ω × v|/v²)")
+            }
         };
-        let start = Motion {
-            t: 0.0,
-            position: ball.lowest(),
-            velocity: ball.velocity - self.effects.wind.unwrap_or_default(),
-            spin: ball.spin.unwrap_or_default(),
+        let size = |ball: &Ball| {
+            let start = Motion {
+                t: 0.0,
+                position: ball.lowest(),
+                velocity: ball.velocity - self.effects.wind.unwrap_or_default(),
+                spin: ball.spin.unwrap_or_default(),
+            };
+            self.effects.magnus(ball).map_or(0.0, |lift| lift.acceleration(&start).norm())
         };
-        let size = short(lift.acceleration(&start).norm());
-        format!("lift by spin, a = {} × ω × v{law}, {size} m/s² at the start", short(lift.slope()))
+        let slope = self.in_turn(|ball| self.effects.magnus(ball).map_or(0.0, |lift| lift.slope()));
+        format!("lift by spin, a = {slope} × ω × v{law}, {} m/s² at the start", self.in_turn(size))
     }
 }
 

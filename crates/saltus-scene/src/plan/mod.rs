@@ -30,7 +30,7 @@ pub use method::Way;
 pub use outcome::Outcome;
 pub use record::{Apex, Cost, End, Event, Impact, Moment, Press, Record, Segment, Sides, With};
 
-use super::{Contact, Floor, Law, Motion, Scene, Shape, Stepper};
+use super::{Ball, Contact, Floor, Law, Motion, Scene, Shape, Stepper};
 use method::Method;
 use runner::{Recording, RunOptions, Runner};
 
@@ -302,8 +302,8 @@ fn ground(scene: &Scene) -> Option<(usize, f64)> {
 }
 
 /// Gravity less buoyancy, and the share of all forces that added mass leaves.
-fn net(scene: &Scene) -> (f64, f64) {
-    let (ball, effects) = (&scene.balls[0], &scene.effects);
+fn net(scene: &Scene, ball: &Ball) -> (f64, f64) {
+    let effects = &scene.effects;
     let gravity = effects.buoyancy(ball, scene.gravity).map_or(scene.gravity.value(), |lift| lift.net_gravity());
     let share = match ball.sphere() {
         Some(sphere) if effects.added_mass => 1.0 / (1.0 + 0.5 * effects.density / sphere.density()),
@@ -314,7 +314,7 @@ fn net(scene: &Scene) -> (f64, f64) {
 
 /// The scene as that of a vertical ball, if a formula solves it.
 fn vertical(scene: &Scene) -> Option<(ball::Vertical, &Law)> {
-    let (gravity, share) = net(scene);
+    let (gravity, share) = net(scene, &scene.balls[0]);
     if scene.dimensions > 1 || gravity < 0.0 {
         return None;
     }
@@ -343,7 +343,7 @@ fn pressed(scene: &Scene) -> Result<compliant::Pressed, PlanError> {
             "contact that takes time is simulated without drag: leave [drag] out, or give a restitution",
         ));
     }
-    let (gravity, share) = net(scene);
+    let (gravity, share) = net(scene, &scene.balls[0]);
     if gravity < 0.0 {
         return Err(PlanError::new("buoyancy", "the ball is lighter than the air and never comes down: leave it out"));
     }

@@ -8,6 +8,7 @@ use saltus::{
     Automaton, EndingOf, InspectionOf, Jump, JumpOf, Observer, Piece, Run, RunOf, Simulation, Solution, Time,
     Trajectory,
 };
+use saltus_bounce::units::Quantity;
 
 use super::RunError;
 use super::explain::{Advance, ModePlan};
@@ -54,17 +55,22 @@ impl RunOptions {
     /// Until when a run that reached `until` is shown: what lies still or rolls on beyond the
     /// `last` jump needs no end, and a little of it is shown.
     fn shown(&self, end: End, until: f64, last: f64, rest: Option<f64>) -> Result<f64, RunError> {
-        if self.until.is_some() {
-            Ok(until)
-        } else if end == End::Time && until > last && (last > 0.0 || rest.is_some()) {
-            Ok(shown(last))
-        } else if until.is_finite() {
-            Ok(until)
+        const STOP: &str = "say when to stop, by --until or by `until` under [run]";
+        let until = if self.until.is_none() && end == End::Time && until > last && (last > 0.0 || rest.is_some()) {
+            shown(last)
         } else {
-            let says =
-                "without gravity the ball may never land: say when to stop, by --until or by `until` under [run]";
-            Err(RunError::new(says.to_owned()))
+            until
+        };
+        if until.is_infinite() {
+            return Err(RunError::new(format!("without gravity the ball may never land: {STOP}")));
         }
+        let largest = Quantity::Time.largest();
+        if until > largest {
+            let says =
+                format!("the run ends at {until:.1e} s, beyond the times that can be right, {largest:e} s: {STOP}");
+            return Err(RunError::new(says));
+        }
+        Ok(until)
     }
 }
 
