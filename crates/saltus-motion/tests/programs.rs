@@ -318,6 +318,31 @@ fn a_tick_at_every_contact() {
     }
 }
 
+/// What has no form of the ball is said to have neither keys of its turning nor a squash.
+#[test]
+fn ticks_do_not_turn() {
+    let motion = drop(1.0, 0.7, 3, 0.8, [0.0, 40.0, 0.0], 0.05).held(SQUASHED.hold).unwrap();
+    for format in Format::ALL {
+        let formless = matches!(format, Format::Chart | Format::Contacts | Format::Wav);
+        assert_eq!(written(&motion, format, SQUASHED).shown.is_none(), formless, "{format:?}");
+    }
+}
+
+/// A spreadsheet takes a cell that begins so for a formula.
+#[test]
+fn names_are_no_formulas() {
+    for name in ["=1+1", "@SUM(1)", "+1", "-1", "\t=1", "=a,\"b\"\n=c"] {
+        let mut motion = drop(1.0, 0.7, 2, 0.0, [0.0; 3], 0.05);
+        motion.tracks[0].name = name.into();
+        for format in [Format::Csv, Format::CsvFrames, Format::Contacts] {
+            let csv = text(written(&motion, format, Shape::default()));
+            let cell = format!("'{}", name.replace('"', "\"\""));
+            let cell = if name.contains(',') { format!("\"{cell}\"") } else { cell };
+            assert!(csv.split_once('\n').unwrap().1.starts_with(&format!("{cell},")), "{csv}");
+        }
+    }
+}
+
 #[test]
 fn contacts_are_a_table() {
     let motion = drop(1.0, 0.7, 2, 0.8, [0.0; 3], 0.05);

@@ -174,6 +174,11 @@ impl Format {
         matches!(self, Self::Svg | Self::Lottie | Self::DotLottie | Self::Html)
     }
 
+    /// Whether it has the form of balls: how they turn, and are squashed and stretched.
+    const fn has_form(self) -> bool {
+        !matches!(self, Self::Chart | Self::Contacts | Self::Wav)
+    }
+
     /// Whether its first animation is made of frames, not of exact keys.
     #[must_use]
     pub const fn sampled(self) -> bool {
@@ -191,7 +196,7 @@ pub struct File {
     /// How far it is from the motion: from frame to frame too.
     pub miss: Miss,
     /// How the ball's form departs from a round one, and how many keys its turning needs; `None`
-    /// for a round ball that does not turn.
+    /// for a round ball that does not turn, and where the file does not have its form.
     pub shown: Option<Shown>,
 }
 
@@ -389,7 +394,7 @@ impl<'a> Export<'a> {
         };
         let both = || balls.iter().chain(&second);
         let miss = both().map(|ball| ball.path.error(ball.track)).fold(Miss::default(), Miss::or);
-        let shown = both().filter_map(Ball::shown);
+        let shown = both().filter(|_| format.has_form()).filter_map(Ball::shown);
         let keys = balls.iter().map(|ball| ball.path.keys.len()).sum();
         Ok(File { bytes, keys, miss, shown: shown.reduce(Shown::or) })
     }

@@ -12,9 +12,11 @@ use crate::turn::{STRAIGHT, Turn, axis, product, turned};
 /// The number of the JSON contract.
 const SCHEMA: u32 = 1;
 
-/// A name as a cell: in quotes where it has to be.
+/// A name as a cell: in quotes where it has to be, and behind an apostrophe where a spreadsheet
+/// would take it for a formula.
 pub(super) fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+    let name = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{name}") } else { name.to_owned() };
+    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
 }
 
 /// One row for each key. Where the form or the orientation has keys between those of the path, the
