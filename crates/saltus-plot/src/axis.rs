@@ -188,9 +188,13 @@ pub(crate) fn nice(least: f64) -> f64 {
     times * power
 }
 
-/// A reach that has a width.
+/// Values that differ by no more than this part of the greatest are one: steps of the usual
+/// tolerance leave as much between what is the same.
+const SAME: f64 = 1e-9;
+
+/// The reach of values, opened to both sides where they are all the same.
 pub(crate) fn opened((low, high): (f64, f64)) -> (f64, f64) {
-    let least = 1e-9 * low.abs().max(high.abs());
+    let least = SAME * low.abs().max(high.abs());
     if high - low > least {
         (low, high)
     } else if high == 0.0 {

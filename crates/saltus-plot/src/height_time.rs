@@ -228,7 +228,7 @@ impl HeightTime {
         }
         finite(time.high - time.low, || "the length of the time axis".to_owned())?;
         finite(height.high - height.low, || "the length of the height axis".to_owned())?;
-        let time = time.opened();
+        let time = time.of_time();
         let height = match height {
             _ if height.largest() < NEAREST => Reach { low: 0.0, high: 1.0 },
             Reach { low, high } if !self.is_flat() => {
@@ -320,6 +320,13 @@ pub(crate) struct Bounds {
 /// Lengths below this are as good as zero: dividing by them would overflow.
 const NEAREST: f64 = 1e-280;
 
+/// A clock that starts at no more than this part of its end is shown from zero.
+const SINCE_ZERO: f64 = 0.3;
+
+/// The shortest time axis, as a part of the latest time: 2 ms of a clock that counts from 1970. Its
+/// ticks still differ; values that differ by so little are one (`axis::opened`).
+const SHORTEST: f64 = 1e-12;
+
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     low: f64,
@@ -342,16 +349,16 @@ impl Reach {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Reaches back to zero when that is near, and is never too narrow to have ticks.
-    fn opened(self) -> Self {
+    /// That of a clock: back to zero where that is near, and never too narrow to have ticks.
+    fn of_time(self) -> Self {
         let Self { mut low, mut high } = self;
         if self.largest() < NEAREST {
             return Self { low: 0.0, high: 1.0 };
         }
-        if low > 0.0 && low <= 0.3 * high {
+        if low > 0.0 && low <= SINCE_ZERO * high {
             low = 0.0;
         }
-        let least = 1e-12 * low.abs().max(high.abs());
+        let least = SHORTEST * self.largest();
         if high - low < least {
             if low > 0.0 && self.low == self.high {
                 return Self { low: 0.0, high: 1.25 * high };
