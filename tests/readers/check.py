@@ -51,7 +51,7 @@ CASES = [
     ("slow-contact", ["--squash", "law", "--stretch", "0.2"], []),
     ("slow-contact", ["--squash", "law", "--stretch", "0.2"], ["--units", "mm", "--up", "z"]),
 ]
-RATES = ["24", "29.97", "60"]
+RATES = ["24", "29.97", "30", "60"]
 SHAPED = ["--squash", "0.3", "--stretch", "0.1"]
 MATRIX = [(name, ["--fps", rate, *shape], []) for name in SCENES for rate in RATES for shape in ([], SHAPED)]
 # What can be in another unit, with z upwards.
