@@ -6,7 +6,14 @@
 //! gives it to editors.
 //!
 //! A scene is planned, and run: a [`Record`] is all that happened. From there a few lines lead to a
-//! table, to JSON, to a file for animators, and to a picture.
+//! table, to JSON, to a file for animators, and to a picture; [`Plan::explain`], written with `{}`,
+//! says what acts and how it is advanced. In `Cargo.toml`:
+//!
+//! ```toml
+//! saltus-scene = { path = "…/crates/saltus-scene" }
+//! saltus-motion = { path = "…/crates/saltus-motion" } # files for animators
+//! saltus-plot = { path = "…/crates/saltus-plot", features = ["scene"] } # pictures
+//! ```
 //!
 //! ```
 //! use saltus_motion::{Format, Frames};
