@@ -177,6 +177,8 @@ fn every_remark_comes_back() {
         Note::Encoded { encoding: "UTF-16LE".to_owned() },
         Note::Rate { rate: 240.0, line: 3 },
         Note::Still { tracks: columns() },
+        Note::Heard { sounds: 48, contacts: 10, from: 0.0, to: 6.46 },
+        Note::Overdriven { part: 0.02 },
         Note::Sheets { sheets: columns(), drops: true },
         Note::SheetsAside { sheets: columns() },
         Note::Filtered { kept: 5, left_out: 2 },
@@ -230,5 +232,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (35, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (37, 6, 7));
 }

@@ -12,7 +12,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use saltus_fit::{Measure, Method, Motion, Report, Verdict};
+use saltus_fit::{Measure, Method, Motion, Report, Sound, Verdict, Wave};
 
 use crate::{
     Arc, Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke,
@@ -27,6 +27,24 @@ pub fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     if !report.groups().is_empty() {
         return compared(report);
     }
+    Some(heights(report)?.svg())
+}
+
+/// The same below the sound that the times were read off.
+///
+/// # Errors
+/// [`PlotError`] where the picture cannot be drawn.
+#[must_use]
+pub fn heard(report: &Report, sound: &Sound) -> Option<Result<String, PlotError>> {
+    if !report.groups().is_empty() {
+        return compared(report);
+    }
+    let Wave { start, step, stretches, .. } = sound.wave();
+    Some(heights(report)?.wave(*start, *step, stretches.iter().copied()).svg())
+}
+
+/// The measured points, the fitted motion and the residuals.
+fn heights(report: &Report) -> Option<HeightTime> {
     let motion = report.motion()?;
     let points = report.points().iter().map(|point| {
         let mut measured = Measured::new(point.time, point.height).mark(mark(point.mark));
@@ -60,7 +78,7 @@ pub fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     if let Some(agreement) = disagreement(report) {
         picture = picture.caption(&agreement);
     }
-    Some(picture.svg())
+    Some(picture)
 }
 
 /// The COR against the speed of impact: that of each bounce, one COR, and the best law of speed

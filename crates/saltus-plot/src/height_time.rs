@@ -6,6 +6,7 @@ use crate::error::{PlotError, finite};
 use crate::residuals;
 use crate::theme::{Background, LARGEST, SMALLEST};
 use crate::unit::{HeightUnit, Unit};
+use crate::wave::Wave;
 
 /// One curve and what it is called.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +59,7 @@ pub struct HeightTime {
     pub(crate) contacts: Vec<f64>,
     pub(crate) grounds: Vec<Vec<Arc>>,
     floorless: bool,
+    pub(crate) wave: Option<Wave>,
     pub(crate) residuals: Vec<Residual>,
     unit: Option<HeightUnit>,
     size: Option<(f64, f64)>,
@@ -77,6 +79,7 @@ impl HeightTime {
             contacts: Vec::new(),
             grounds: Vec::new(),
             floorless: false,
+            wave: None,
             residuals: Vec::new(),
             unit: None,
             size: None,
@@ -118,6 +121,14 @@ impl HeightTime {
     #[must_use]
     pub fn ground(mut self, arcs: impl IntoIterator<Item = Arc>) -> Self {
         self.grounds.push(arcs.into_iter().collect());
+        self
+    }
+
+    /// The sound that the times were read off, above the heights: the lowest and the highest sample
+    /// of stretches of `step` s, from a time on; its contacts are upright lines.
+    #[must_use]
+    pub fn wave(mut self, start: f64, step: f64, stretches: impl IntoIterator<Item = [f32; 2]>) -> Self {
+        self.wave = Some(Wave { start, step, stretches: stretches.into_iter().collect() });
         self
     }
 

@@ -82,6 +82,7 @@ pub mod sweep;
 mod theme;
 mod traced;
 mod unit;
+mod wave;
 
 pub use chart::{Chart, Disc};
 pub use coordinate::Coordinate;

@@ -25,6 +25,8 @@ use crate::theme::{Background, CAPITAL, Dash, Ink, Type, room, width, words};
 #[derive(Debug, Clone, Copy)]
 struct Parts {
     heading: f64,
+    /// Label and panel of the sound, if any.
+    wave: Option<(f64, f64)>,
     label: f64,
     main: f64,
     /// Gap, label and panel of the residuals, if any.
@@ -40,10 +42,11 @@ impl Parts {
         let foot = (0.55 + CAPITAL + 0.75 + CAPITAL) * b;
         let margin = 0.8 * ty.margin();
         let rows = if residual_row_is_double(picture, ty, page.0) { 2.0 } else { 1.0 };
-        let fixed = heading.height() + label + foot + margin;
+        let wave = picture.wave.as_ref().map(|_| (label, WAVE * b));
+        let fixed = heading.height() + wave.map_or(0.0, |(label, panel)| label + panel) + label + foot + margin;
         if picture.residuals.is_empty() {
             let main = page.1 - fixed;
-            let parts = Self { heading: heading.height(), label, main, residuals: None, foot };
+            let parts = Self { heading: heading.height(), wave, label, main, residuals: None, foot };
             (main >= least).then_some(parts)
         } else {
             let (gap, row) = (0.5 * b, (0.7 + 1.35 * rows) * b);
@@ -51,11 +54,13 @@ impl Parts {
             let below = (0.3 * free).max(5.0 * b);
             let main = free - below;
             let residuals = Some((gap, row, below));
-            (main >= least).then_some(Self { heading: heading.height(), label, main, residuals, foot })
+            (main >= least).then_some(Self { heading: heading.height(), wave, label, main, residuals, foot })
         }
     }
 }
 
+/// The height of the panel of a sound, in sizes of the type.
+const WAVE: f64 = 5.0;
 const RESIDUAL_LABEL: &str = "Residual (σ)";
 
 /// Whether the residuals' summary must stand below their label instead of beside it.
@@ -185,6 +190,11 @@ fn panels(
         root.draw_text(text, &style, (grains(x), grains(baseline))).map_err(failed)
     };
     let mut y = parts.heading + parts.label;
+    if let (Some((row, panel)), Some(wave)) = (parts.wave, &picture.wave) {
+        label("Sound", Ink::Muted, HPos::Left, ty.margin(), y - 0.55 * b)?;
+        wave.draw(&picture.measured, &band(root, y, panel, w), &frame)?;
+        y += panel + row;
+    }
     label(&format!("Height ({})", bounds.height_unit.label), Ink::Muted, HPos::Left, ty.margin(), y - 0.55 * b)?;
     let foot = if parts.residuals.is_some() { 0.0 } else { parts.foot };
     let area = band(root, y, parts.main + foot, w);

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use saltus_bounce::units::Quantity;
-use saltus_fit::{Ball, CorModel, Fit, Loss, ReadOptions, Table};
+use saltus_fit::{Ball, CorModel, Fit, Loss, ReadOptions, Sound, Table};
 use saltus_plot::fit as pictures;
 
 use crate::fail::{self, named};
@@ -42,6 +43,8 @@ pub(crate) struct Options {
     header: Option<Vec<String>>,
     #[pyo3(default)]
     fps: Option<f64>,
+    #[pyo3(default)]
+    listen: Option<(f64, f64)>,
     #[pyo3(default)]
     scale: Option<Amount>,
     #[pyo3(default)]
@@ -113,6 +116,14 @@ impl Options {
         if let Some(header) = &self.header {
             options = options.header(&header.iter().map(String::as_str).collect::<Vec<_>>());
         }
+        if let Some((from, to)) = self.listen {
+            if !(from >= 0.0 && from < to) {
+                return Err(fail::value(format!(
+                    "no part of a sound lasts from {from} s to {to} s: give listen=(0.5, 4)"
+                )));
+            }
+            options = options.listen(from..to);
+        }
         if let Some(fps) = self.fps {
             options = options.fps(fps);
         }
@@ -180,27 +191,33 @@ impl Options {
     }
 }
 
-/// Fits the tables at `paths`, or the one whose text is `bytes`.
+/// Fits the tables at `paths`, the one whose text is `bytes`, or the sound of so many samples a
+/// second.
 #[pyfunction]
-#[pyo3(signature = (options, *, name="table".to_owned(), bytes=None, paths=Vec::new()))]
+#[pyo3(signature = (options, *, name="table".to_owned(), bytes=None, paths=Vec::new(), sound=None))]
 pub(crate) fn fit(
     py: Python<'_>,
     options: Options,
     name: String,
     bytes: Option<Vec<u8>>,
     paths: Vec<PathBuf>,
+    sound: Option<(u32, PyReadonlyArray1<'_, f32>)>,
 ) -> PyResult<Report> {
     let (read, fit, want) = (options.read()?, options.fit()?, options.want);
+    let sound = sound.map(|(rate, samples)| (rate, samples.as_array().to_vec()));
     let report = patiently(py, move |wanted| {
-        let table = match bytes {
-            Some(bytes) => Table::parse(&name, &bytes, &read),
-            None => Table::read_all(&paths, &read),
+        let table = match (bytes, sound) {
+            (Some(bytes), _) => Table::parse(&name, &bytes, &read),
+            (None, Some((rate, samples))) => Sound::of(&name, rate, &samples).map(Table::from_sound),
+            (None, None) => Table::read_all(&paths, &read),
         };
         table.map(|table| {
-            fit.run_with(&table, &mut |_| wanted.ask()).and_then(|report| fit.advised(&table, report, want))
+            let report = fit.run_with(&table, &mut |_| wanted.ask());
+            let report = report.and_then(|report| fit.advised(&table, report, want));
+            report.map(|report| Report { report, sounds: table.sounds().to_vec() })
         })
     })?;
-    report.map_err(|error| fail::table(py, &error))?.map(Report).map_err(fail::saltus)
+    report.map_err(|error| fail::table(py, &error))?.map_err(fail::saltus)
 }
 
 /// What a unit is of: "length", "time"; `None` for any other.
@@ -212,23 +229,34 @@ pub(crate) fn quantity(unit: &str) -> Option<&'static str> {
 
 /// What a fit found.
 #[pyclass(frozen, module = "saltus._core")]
-pub(crate) struct Report(saltus_fit::Report);
+pub(crate) struct Report {
+    report: saltus_fit::Report,
+    /// What its times were read off; not in its JSON.
+    sounds: Vec<Sound>,
+}
+
+impl From<saltus_fit::Report> for Report {
+    fn from(report: saltus_fit::Report) -> Self {
+        Self { report, sounds: Vec::new() }
+    }
+}
 
 #[pymethods]
 impl Report {
     /// Read back from JSON.
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
-        serde_json::from_str(text).map(Self).map_err(|error| fail::value(format!("this is no report: {error}")))
+        let report: Result<saltus_fit::Report, _> = serde_json::from_str(text);
+        report.map(Self::from).map_err(|error| fail::value(format!("this is no report: {error}")))
     }
 
     fn json(&self) -> PyResult<String> {
-        serde_json::to_string_pretty(&self.0).map_err(fail::value)
+        serde_json::to_string_pretty(&self.report).map_err(fail::value)
     }
 
     /// For people.
     fn text(&self) -> String {
-        self.0.to_string()
+        self.report.to_string()
     }
 
     /// One of the pictures, as SVG; none where the report has nothing to draw.
@@ -241,16 +269,20 @@ impl Report {
             ("profile", pictures::profile),
         ];
         let (_, draw) = named(kind, "picture of a fit", &pictures, |(name, _)| name)?;
-        draw(&self.0).transpose().map_err(fail::saltus)
+        let picture = match &self.sounds[..] {
+            [sound] if kind == "motion" => pictures::heard(&self.report, sound),
+            _ => draw(&self.report),
+        };
+        picture.transpose().map_err(fail::saltus)
     }
 
     /// The fitted motion as a scene.
     fn scene(&self) -> Option<String> {
-        self.0.scene()
+        self.report.scene()
     }
 
     /// The groups of the table by name, each with its own report.
     fn groups(&self) -> Vec<(String, Self)> {
-        self.0.groups().iter().map(|group| (group.name.clone(), Self(group.report.clone()))).collect()
+        self.report.groups().iter().map(|group| (group.name.clone(), group.report.clone().into())).collect()
     }
 }

@@ -3,6 +3,7 @@
 import json
 import pickle
 import subprocess
+import wave
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +115,44 @@ def test_any_table_gives_a_report_or_says_why(columns):
         saltus.fit(columns)
     except (saltus.SaltusError, ValueError) as error:
         assert str(error)
+
+
+def clicks(rate=44_100, cor=0.8):
+    """Seven clicks of 2 ms, each interval ``cor`` of the one before."""
+    samples, time, flight = np.zeros(3 * rate), 0.2, 0.4
+    for _ in range(7):
+        at = int(rate * time)
+        samples[at : at + 88] = 0.5 * np.sign(np.sin(np.arange(88)))
+        time, flight = time + flight, cor * flight
+    return samples
+
+
+def test_samples_of_a_sound():
+    fit = saltus.fit(clicks(), rate=44_100)
+    assert abs(fit.cor.value - 0.8) < 0.001
+    assert ">Sound<" in fit.plot()
+    stereo = saltus.fit(np.stack([clicks(), 0 * clicks()], axis=1), rate=44_100)
+    assert abs(stereo.cor.value - fit.cor.value) < 1e-6
+    with pytest.raises(saltus.TableError, match="no ball is heard"):
+        saltus.fit(np.zeros(44_100), rate=44_100)
+    with pytest.raises(ValueError, match="rate"):
+        saltus.fit(clicks(), rate=-1)
+    with pytest.raises(ValueError, match="part of the samples"):
+        saltus.fit(clicks(), rate=44_100, listen=(0, 1))
+    with pytest.raises(TypeError, match="shape"):
+        saltus.fit(np.zeros((2, 2, 2)), rate=44_100)
+
+
+def test_a_recording_in_a_file(tmp_path):
+    path = tmp_path / "clicks.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(44_100)
+        file.writeframes((32_767 * clicks()).astype("<i2").tobytes())
+    whole = saltus.fit(path)
+    assert abs(whole.cor.value - 0.8) < 0.001
+    later = saltus.fit(path, listen=(0.5, 3))
+    assert abs(later.cor.value - 0.8) < 0.002
+    with pytest.raises(ValueError, match="part of a sound"):
+        saltus.fit(path, listen=(2, 1))

@@ -1,12 +1,13 @@
 //! What can be asked of a fit.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
 use saltus_fit::{CorModel, Loss};
 
-use crate::parse::{RATES, ReportFormat, number, positive};
+use crate::parse::{RATES, ReportFormat, number, positive, quantity};
 
 /// Headers of tables that are understood.
 const LAYOUTS: &str = "Layouts of tables, for example:
@@ -16,17 +17,17 @@ const LAYOUTS: &str = "Layouts of tables, for example:
   trial,bounce,time_ms       several trials
   time_s,height_m            a series from a film or a motion sensor
 
-Read as they are: what Tracker, ImageJ, Vernier's and phyphox' programs write, workbooks (.xlsx, .xls), zipped CSV, and tracks of bare pixels with --fps. \
+Read as they are: what Tracker, ImageJ, Vernier's and phyphox' programs write, workbooks (.xlsx, .xls), zipped CSV, tracks of bare pixels with --fps, and sounds (.wav). \
 The report says what was recognised.
 
 Reading errors come from --sigma-height and --sigma-time, from lines such as '# frame rate: 30' in the table, from the scatter, or are assumed (1 cm, \
 10 ms); the report says which.";
 
-/// Estimate the coefficient of restitution (COR) from a table of bounces.
+/// Estimate the coefficient of restitution (COR) from a table or a sound of bounces.
 ///
 /// A table holds rebound heights, contact times, both, or a series of heights in time: as CSV with
 /// a header, a workbook, or what a tracking program or a telephone writes. Units stand in the
-/// header.
+/// header. Of a sound (.wav) the contacts are read off.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = LAYOUTS)]
 pub(crate) struct Fit {
@@ -124,6 +125,9 @@ pub(crate) struct Fit {
     /// a column aside.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) header: Option<Vec<String>>,
+    /// The part of a sound to listen to, such as `0.5s..4s`, `2s..` or `..4s`.
+    #[arg(long, value_name = "TIME..TIME", value_parser = stretch)]
+    pub(crate) listen: Option<Range<f64>>,
     /// How many frames were filmed in a second, where the table counts frames.
     #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
     pub(crate) fps: Option<f64>,
@@ -305,5 +309,21 @@ fn filter(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((column, value)) if !column.trim().is_empty() => Ok((column.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("'{text}' is not of the form column=value")),
+    }
+}
+
+/// A stretch of time, either end of which may be left out.
+fn stretch(text: &str) -> Result<Range<f64>, String> {
+    let (from, to) =
+        text.split_once("..").ok_or_else(|| format!("'{text}' is no stretch of time, such as 0.5s..4s"))?;
+    let end =
+        |text: &str, open: f64| if text.trim().is_empty() { Ok(open) } else { quantity(Quantity::Time)(text.trim()) };
+    let (from, to) = (end(from, 0.0)?, end(to, f64::INFINITY)?);
+    if from >= 0.0 && from < to {
+        Ok(from..to)
+    } else {
+        Err(format!(
+            "'{text}' is no stretch of a recording: its end must come after its start, and that no sooner than 0 s"
+        ))
     }
 }

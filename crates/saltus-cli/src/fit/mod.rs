@@ -21,7 +21,7 @@ use crate::progress::Progress;
 pub(crate) use args::Fit as FitArgs;
 
 /// A picture of a report, where it has one.
-type Draw = fn(&Report) -> Option<Result<String, PlotError>>;
+type Draw<'a> = &'a dyn Fn(&Report) -> Option<Result<String, PlotError>>;
 
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     for picture in [&args.plot, &args.plot_cor, &args.plot_ladder, &args.plot_profile] {
@@ -51,15 +51,19 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
     };
-    let pictures: [(_, Draw, _); 4] = [
-        (&args.plot, pictures::motion, "no picture: the table has no motion to draw"),
+    let motion = |report: &Report| match table.sounds() {
+        [sound] => pictures::heard(report, sound),
+        _ => pictures::motion(report),
+    };
+    let pictures: [(_, Draw<'_>, _); 4] = [
+        (&args.plot, &motion, "no picture: the table has no motion to draw"),
         (
             &args.plot_cor,
-            pictures::cor,
+            &pictures::cor,
             "no picture of the COR: the table does not give it at several speeds, which takes two bounces; --plot draws one",
         ),
-        (&args.plot_ladder, pictures::ladder, "no ladder: the table gives no two heights of apexes"),
-        (&args.plot_profile, pictures::profile, "no profile: no COR was fitted to heights or times of bounces"),
+        (&args.plot_ladder, &pictures::ladder, "no ladder: the table gives no two heights of apexes"),
+        (&args.plot_profile, &pictures::profile, "no profile: no COR was fitted to heights or times of bounces"),
     ];
     for (path, draw, none) in pictures {
         let Some(path) = path else { continue };
@@ -165,6 +169,9 @@ fn options(args: &args::Fit) -> ReadOptions {
     }
     if let Some(header) = &args.header {
         options = options.header(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    if let Some(part) = &args.listen {
+        options = options.listen(part.clone());
     }
     if let Some(fps) = args.fps {
         options = options.fps(fps);

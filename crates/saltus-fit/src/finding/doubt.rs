@@ -73,6 +73,13 @@ pub enum Doubt {
         /// The trial.
         trial: String,
     },
+    /// Sounds were taken for contacts of a ball, and chance may have made them come as those do.
+    Chance {
+        /// How many there are.
+        contacts: usize,
+        /// Chance makes such a sound once in so many recordings like this.
+        once_in: u64,
+    },
     /// The COR follows from the time until the ball rests, and the last contacts are not those of a
     /// ball in flight.
     UntilRest,

@@ -196,6 +196,22 @@ pub enum Note {
         /// The line.
         line: u64,
     },
+    /// A sound was listened to.
+    Heard {
+        /// How many sounds stand out of the noise.
+        sounds: usize,
+        /// How many of them are contacts that count.
+        contacts: usize,
+        /// The part that was listened to, s.
+        from: f64,
+        /// Its end, s.
+        to: f64,
+    },
+    /// A sound was recorded too loud.
+    Overdriven {
+        /// The part of its samples that are as large as can be.
+        part: f64,
+    },
     /// Tracks that hardly move were left aside.
     Still {
         /// Their names.

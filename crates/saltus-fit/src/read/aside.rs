@@ -36,6 +36,8 @@ pub enum Part {
     Sheet,
     /// A track of a film.
     Track,
+    /// Sounds, by their times.
+    Sound,
 }
 
 /// Why a part was not used.
@@ -79,6 +81,12 @@ pub enum Why {
     Unresolved,
     /// The event was not heard: the time is zero.
     NotHeard,
+    /// They follow a contact as its echo or its ringing.
+    Echo,
+    /// They are contacts whose times no longer tell their flights.
+    Close,
+    /// They come when no contact is due.
+    NoBounce,
 }
 
 impl LeftAside {

@@ -8,6 +8,7 @@ use super::columns::Columns;
 use super::foreign;
 use super::grid::{Grid, View};
 use super::heading::{Heading, What};
+use super::heard;
 use super::json;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
@@ -26,6 +27,14 @@ const MOVES: f64 = 0.5;
 
 /// Reads `bytes` into a table that is not yet checked.
 pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
+    if let Some(heard) = heard::of_bytes(name, bytes, options) {
+        return heard;
+    }
+    if options.listen.is_some() {
+        return Err(
+            TableError::new(name, "this file is no sound: there is nothing to listen to").help("leave out --listen")
+        );
+    }
     if let Some(parts) = json::parts(bytes) {
         return sheets(name, parts, options).map(|table| Table { name: name.to_owned(), ..table });
     }

@@ -28,9 +28,9 @@ const KINDS: [(&[&str], &str, &str); 13] = [
         "track the ball, in Tracker or ImageJ for instance, and give the table of its places",
     ),
     (
-        &["wav", "mp3", "m4a", "ogg", "flac", "aup3"],
-        "a sound",
-        "mark the contacts, in Audacity for instance, and export the labels as text",
+        &["wav", "mp3", "m4a", "aac", "ogg", "opus", "flac", "wma", "aiff", "aif", "caf", "amr", "3gp", "aup3"],
+        "a sound that is not WAV",
+        "save it as WAV, in Audacity for instance (File, Export), or by ffmpeg -i drop.m4a drop.wav; give that file",
     ),
     (&["pdf"], "a PDF", "copy the table into a spreadsheet and save it as CSV"),
     (&["docx", "odt", "doc", "rtf"], "a text document", "copy the table into a spreadsheet and save it as CSV"),
@@ -69,7 +69,14 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
         Some(kind) => kind,
         None if begins(b"RIFF") && bytes.get(8..12) == Some(b"AVI ") => "avi",
         None if begins(b"RIFF") => "wav",
-        None if bytes.get(4..8) == Some(b"ftyp") => "mp4",
+        None if bytes.get(4..11) == Some(b"ftypM4A") => "m4a",
+        None if bytes.get(4..8) == Some(b"ftyp") => {
+            if ending == "m4a" {
+                "m4a"
+            } else {
+                "mp4"
+            }
+        }
         None if text.contains("org.opensourcephysics") => "trk",
         None if text.trim_start().starts_with(['{', '[']) && text.contains('"') && text.contains(':') => "json",
         None if text.contains("<MBL>") || text.contains("LoggerPro") => "cmbl",

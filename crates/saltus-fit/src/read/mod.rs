@@ -11,6 +11,7 @@ mod foreign;
 mod forms;
 mod grid;
 mod heading;
+mod heard;
 mod json;
 mod judged;
 mod layout;
@@ -44,6 +45,7 @@ pub use options::ReadOptions;
 use crate::error::TableError;
 use crate::finding::{Doubt, Note, Remark, Repair, Warning};
 use crate::quantity::Ball;
+use crate::sound::Sound;
 
 /// What a reading was taken of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -166,6 +168,8 @@ pub struct Table {
     pub(crate) rows: usize,
     /// The names of the files, where there are several.
     pub(crate) files: Vec<String>,
+    /// The sounds that were listened to.
+    pub(crate) sounds: Vec<Sound>,
 }
 
 /// A file larger than this holds no table of bounces, bytes.
@@ -223,6 +227,10 @@ impl Table {
         for path in paths.iter().map(AsRef::as_ref) {
             let shown = path.display().to_string();
             let name = path.file_name().map_or_else(|| shown.clone(), |n| n.to_string_lossy().into_owned());
+            if let Some(heard) = heard::of_file(path, &shown, options) {
+                parts.push((name.clone(), Self { name, ..heard? }));
+                continue;
+            }
             let bytes = bytes(path, &shown)?;
             if let Some((_, before)) = given.iter().find(|(known, _)| *known == bytes) {
                 repairs.push(Repair::SameFile { file: name, as_file: before.clone() }.into());
@@ -249,7 +257,8 @@ impl Table {
     ///
     /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's
     /// and phyphox' programs export; bare numbers, if the options say what they are), workbooks
-    /// (`.xlsx`, `.xls`) and zip archives of CSV. `docs/fitting.md` shows every layout.
+    /// (`.xlsx`, `.xls`), zip archives of CSV, and sounds (`.wav`, see [`Sound`]).
+    /// `docs/fitting.md` shows every layout.
     ///
     /// The reader of workbooks may panic over a damaged one. That becomes an error like any other,
     /// but the program's panic hook hears of it first and, as it is by default, prints a line to

@@ -1,5 +1,7 @@
 //! What a reader is told beside the file.
 
+use std::ops::Range;
+
 /// How to read a table where the table itself does not say.
 ///
 /// ```
@@ -24,6 +26,7 @@ pub struct ReadOptions {
     pub(crate) zero: Option<f64>,
     pub(crate) drop: Option<f64>,
     pub(crate) down: Option<bool>,
+    pub(crate) listen: Option<Range<f64>>,
 }
 
 impl ReadOptions {
@@ -136,6 +139,18 @@ impl ReadOptions {
     pub fn zero(mut self, reading: f64) -> Self {
         self.zero = Some(reading);
         self
+    }
+
+    /// The part of a sound to listen to, s.
+    #[must_use]
+    pub fn listen(mut self, part: Range<f64>) -> Self {
+        self.listen = Some(part);
+        self
+    }
+
+    /// The part to listen to: all, if none was named.
+    pub(crate) fn listened(&self) -> Range<f64> {
+        self.listen.clone().unwrap_or(0.0..f64::INFINITY)
     }
 
     /// Whether the height scale counts downwards, as pictures do. Without it a series of heights

@@ -103,6 +103,7 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
         pooled.rows += part.rows;
         pooled.zero_rebounds += part.zero_rebounds;
         pooled.doubts.extend(part.doubts);
+        pooled.sounds.extend(part.sounds);
         pooled.left_aside.extend(part.left_aside.into_iter().map(|aside| LeftAside {
             within: Some(aside.within.map_or(label.clone(), |inner| format!("{label}, {inner}"))),
             ..aside

@@ -213,6 +213,20 @@ def _numbers(values: Any, unit: str) -> bytes:
     return _csv({f"{kind}_{unit}": list(numbers)})
 
 
+def _samples(table: Any, rate: float, listen: tuple[float, float] | None) -> tuple[int, Any]:
+    """The rate and the samples of a sound."""
+    if listen is not None:
+        raise ValueError("listen is for files: give the part of the samples itself")
+    samples = np.asarray(table, dtype=np.float32)
+    if samples.ndim == 2:  # a column for each channel
+        samples = samples.mean(axis=1, dtype=np.float32)
+    if samples.ndim != 1:
+        raise TypeError(f"samples of a sound are one list, or a column for each channel: not of the shape {samples.shape}")
+    if int(rate) != rate or rate <= 0:
+        raise ValueError(f"rate={rate} is no number of samples a second, such as 44100")
+    return int(rate), samples
+
+
 def fit(
     table: Any,
     unit: str | None = None,
@@ -234,6 +248,8 @@ def fit(
     header: Iterable[str] | None = None,
     filter: Mapping[str, Any] | None = None,
     fps: float | None = None,
+    rate: int | None = None,
+    listen: tuple[float, float] | None = None,
     scale: Amount | None = None,
     drop: Amount | None = None,
     zero: float | None = None,
@@ -252,7 +268,9 @@ def fit(
     ``table`` is a path or a list of paths (CSV, workbook, zip, what tracking programs write, a
     recording in WAV), a pandas or polars frame, a dict of columns, a NumPy array with names, or a
     list of values with their ``unit``. Columns are understood by their names, units among them:
-    ``bounce``, ``height_cm``, ``time_s``. Missing cells are ``None`` or NaN.
+    ``bounce``, ``height_cm``, ``time_s``. Missing cells are ``None`` or NaN. With ``rate`` it is the
+    samples of a sound, from -1 to 1, so many a second; ``listen`` is the part of a recording to
+    listen to, in s.
 
     Amounts are numbers in SI units or text with a unit: ``sigma_height=0.005`` is
     ``sigma_height="5 mm"``. Each option is that of ``saltus fit``, by the same name; see
@@ -276,7 +294,7 @@ def fit(
         "group": [group] if isinstance(group, str) else group and list(group),
         "header": header and list(header),
         "filter": filter and [(key, _cell(value)) for key, value in filter.items()],
-        "fps": fps, "scale": scale, "drop": drop, "zero": zero, "y_down": y_down,
+        "fps": fps, "listen": listen, "scale": scale, "drop": drop, "zero": zero, "y_down": y_down,
         "losses": losses and list(losses), "repair": repair, "profiles": profiles,
         "tolerance_height": tolerance_height, "tolerance_time": tolerance_time,
         "bootstrap": bootstrap, "seed": seed,
@@ -284,6 +302,8 @@ def fit(
     options = {key: value for key, value in options.items() if value is not None}
     options["want"] = want
     listed = isinstance(table, (list, tuple))
+    if rate is not None:
+        return Fit(_core.fit(options, name=name, sound=_samples(table, rate, listen)))
     if unit is not None:
         return Fit(_core.fit(options, name=name, bytes=_numbers(table, unit)))
     if isinstance(table, (str, os.PathLike)):

@@ -26,6 +26,9 @@ impl fmt::Display for Why {
             Self::Void => "marked as one that does not count",
             Self::Unresolved => "at the time of the event before it, as is what follows",
             Self::NotHeard => "a time of 0 is one that was not heard",
+            Self::Echo => "an echo of a contact, or its ringing",
+            Self::Close => "contacts too close together for their times to tell the COR",
+            Self::NoBounce => "not when a contact of the ball is due",
         })
     }
 }
@@ -39,6 +42,7 @@ impl fmt::Display for LeftAside {
             Part::Text => "text",
             Part::Sheet => "sheet",
             Part::Track => "track",
+            Part::Sound => "sound",
         };
         if let Some(within) = &self.within {
             write!(f, "{within}: ")?;

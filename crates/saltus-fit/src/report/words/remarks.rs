@@ -30,6 +30,13 @@ impl Display for Note {
             Self::Recognised { program } => write!(f, "recognised as {}", described(*program)),
             Self::Encoded { encoding } => write!(f, "the text is encoded as {encoding}"),
             Self::Rate { rate, line } => write!(f, "{rate} frames, or samples, a second, as line {line} states"),
+            Self::Heard { sounds, contacts, from, to } => {
+                let sounds = plural(*sounds, "sound");
+                write!(f, "{sounds} in {:.2} s (from {from:.2} s), {contacts} of them contacts", to - from)
+            }
+            Self::Overdriven { part } => {
+                write!(f, "{:.1} % of the samples are as large as can be: record less loud", 100.0 * part)
+            }
             Self::Still { tracks } => {
                 write!(f, "left aside, as it hardly moves: {} (choose with --column)", tracks.join(", "))
             }

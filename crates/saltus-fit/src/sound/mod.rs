@@ -1,0 +1,247 @@
+//! A sound of a bouncing ball: the contacts in it, each with its uncertainty, and what else is
+//! heard.
+
+mod chain;
+mod onset;
+mod wav;
+mod wave;
+
+use std::io::{Read, Seek};
+use std::ops::Range;
+
+use crate::error::TableError;
+pub(crate) use chain::SURE;
+use chain::{Chain, LIKELY, chains};
+use onset::{Ear, Onset};
+use wav::Spec;
+pub(crate) use wav::is_wav;
+use wave::Drawn;
+pub use wave::Wave;
+
+/// What comes so soon after a contact, s, and is fainter, is its echo or its ringing.
+const ECHO: f64 = 0.15;
+
+/// A recorded sound, and the contacts of a ball in it.
+///
+/// ```
+/// use saltus_fit::{Fit, Sound, Table};
+///
+/// // Six clicks of 2 ms at 44100 samples a second, each interval 0.8 of the one before.
+/// let mut samples = vec![0.0; 88_200];
+/// let (mut time, mut flight) = (0.2, 0.4);
+/// for _ in 0..6 {
+///     let at = (44_100.0 * time) as usize;
+///     (0..88).for_each(|k| samples[at + k] = if k % 8 < 4 { 0.5 } else { -0.5 });
+///     (time, flight) = (time + flight, 0.8 * flight);
+/// }
+/// let sound = Sound::of("clicks", 44_100, &samples)?;
+/// assert_eq!(sound.drops()[0].len(), 6);
+/// let report = Fit::new().run(&Table::from_sound(sound))?;
+/// assert!(report.cor().is_some_and(|cor| (cor.value - 0.8).abs() < 0.001));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Limits
+/// Contacts closer than 8 ms are one sound. A ball is heard whose rebounds are 4 mm and more at
+/// first, and which keeps 0.15 to 0.998 of its speed; at most one contact in a row may be missed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sound {
+    name: String,
+    part: Range<f64>,
+    drops: Vec<Vec<Contact>>,
+    pub(crate) chance: Vec<f64>,
+    pub(crate) unused: Vec<(f64, Unused)>,
+    clipped: f64,
+    wave: Wave,
+}
+
+/// A contact heard in a sound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Contact {
+    /// Which one, from 1: one may not be heard.
+    pub number: usize,
+    /// When, in s from the start of the recording.
+    pub time: f64,
+    /// The standard error of the time, in s.
+    pub sigma: f64,
+}
+
+/// Why a sound is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unused {
+    /// It follows a contact as its echo or its ringing.
+    Echo,
+    /// It is a contact whose time no longer tells its flight.
+    Close,
+    /// It comes when no contact is due.
+    Stray,
+}
+
+impl Sound {
+    /// Listens to a `part` in s of a WAV file of 8 to 32 bits, integers or floats, of any rate from
+    /// 4000 samples a second on and of any number of channels.
+    ///
+    /// # Errors
+    /// [`TableError`] for a file that is no such sound, a part beyond its end, and where no ball is
+    /// heard bouncing.
+    pub fn read(name: &str, mut file: impl Read + Seek, part: Range<f64>) -> Result<Self, TableError> {
+        let start = part.start.max(0.0);
+        let begin = |spec| Ear::new(spec, start);
+        let ear = wav::frames(name, &mut file, &(start..part.end), begin, |ear, frame| ear.push(frame))?;
+        let mut sound = Self::heard(name, start, ear)?;
+        file.rewind().map_err(|error| wav::unread(name, &error))?;
+        let around = sound.around();
+        let begin = |spec: Spec| (Drawn::new(), spec.rate);
+        let (drawn, rate) = wav::frames(name, file, &around, begin, |(drawn, _), frame| drawn.frame(frame))?;
+        sound.wave = drawn.wave(around.start, rate.into());
+        Ok(sound)
+    }
+
+    /// Listens to samples from -1 to 1 of one channel, `rate` a second.
+    ///
+    /// # Errors
+    /// [`TableError`] for a rate below 4000 a second, and where no ball is heard bouncing.
+    pub fn of(name: &str, rate: u32, samples: &[f32]) -> Result<Self, TableError> {
+        if !wav::RATES.contains(&rate) {
+            let says = format!("a sound of {rate} samples a second is not read");
+            return Err(TableError::new(name, says).help("record at 44100 samples a second"));
+        }
+        let mut ear = Ear::new(Spec { rate, channels: 1, step: f32::EPSILON }, 0.0);
+        samples.iter().for_each(|&x| ear.push(&[if x.is_finite() { x } else { 0.0 }]));
+        let mut sound = Self::heard(name, 0.0, ear)?;
+        let around = sound.around();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at the ends of its range it stays there
+        let [from, to] = [around.start, around.end].map(|t| ((t * f64::from(rate)).ceil() as usize).min(samples.len()));
+        let mut drawn = Drawn::new();
+        samples[from..to].iter().for_each(|&x| drawn.frame(&[x]));
+        sound.wave = drawn.wave(around.start, rate.into());
+        Ok(sound)
+    }
+
+    /// From a little before the first contact to a little after the last.
+    fn around(&self) -> Range<f64> {
+        /// The part of the time between them.
+        const LITTLE: f64 = 0.05;
+        let times = || self.drops.iter().flatten().map(|contact| contact.time);
+        let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+        let little = LITTLE * (last - first);
+        (first - little).max(0.0)..last + little
+    }
+
+    fn heard(name: &str, start: f64, mut ear: Ear) -> Result<Self, TableError> {
+        ear.end();
+        let onsets = std::mem::take(&mut ear.onsets);
+        let mut chains = chains(&onsets);
+        chains.retain(|chain| chain.counts >= 3 && is_believed(&onsets, chain));
+        let part = start..start + ear.seconds();
+        if chains.is_empty() {
+            return Err(nothing(name, &onsets, &part));
+        }
+        let contact = |(&n, number): (&usize, &usize)| {
+            let Onset { time, sigma, .. } = onsets[n];
+            Contact { number: number + 1, time, sigma }
+        };
+        let of = |chain: &Chain| chain.at.iter().zip(&chain.numbers).take(chain.counts).map(contact).collect();
+        let used = |n: &usize| chains.iter().any(|chain| chain.at[..chain.counts].contains(n));
+        let why = |n: usize| {
+            let of_ball = |m: &&usize| **m != n;
+            let contacts = || chains.iter().flat_map(|chain| &chain.at).filter(of_ball).map(|&m| &onsets[m]);
+            let follows = |contact: &Onset| (0.0..ECHO).contains(&(onsets[n].time - contact.time));
+            if chains.iter().any(|chain| chain.at.contains(&n)) {
+                Unused::Close
+            } else if contacts().any(|contact| follows(contact) && onsets[n].power < contact.power) {
+                Unused::Echo
+            } else {
+                Unused::Stray
+            }
+        };
+        let unused = (0..onsets.len()).filter(|n| !used(n)).map(|n| (onsets[n].time, why(n))).collect();
+        #[allow(clippy::cast_precision_loss)] // far below 2^52 frames
+        let clipped = ear.clipped as f64 / ear.frames.max(1) as f64;
+        Ok(Self {
+            name: name.to_owned(),
+            part,
+            drops: chains.iter().map(of).collect(),
+            chance: chains.iter().map(|chain| (-chain.evidence).exp()).collect(),
+            unused,
+            clipped,
+            wave: Drawn::new().wave(start, 1.0),
+        })
+    }
+
+    /// The name of the file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The part of the recording that was listened to, in s.
+    #[must_use]
+    pub fn part(&self) -> Range<f64> {
+        self.part.clone()
+    }
+
+    /// The contacts of each drop, in the order of time; at least three in each.
+    #[must_use]
+    pub fn drops(&self) -> &[Vec<Contact>] {
+        &self.drops
+    }
+
+    /// The part of all samples that are as large as can be.
+    #[must_use]
+    pub fn clipped(&self) -> f64 {
+        self.clipped
+    }
+
+    /// The sound from a little before the first contact to a little after the last, as it is drawn.
+    #[must_use]
+    pub fn wave(&self) -> &Wave {
+        &self.wave
+    }
+}
+
+/// Whether the contacts of a chain may be those of a ball: for sure; if it is likely, where most
+/// sounds as loud between them are contacts; else if chance would not make more than one such
+/// chain, where most of all sounds are.
+fn is_believed(onsets: &[Onset], chain: &Chain) -> bool {
+    let contacts = || chain.at.iter().map(|&n| &onsets[n]);
+    let least = contacts().map(|contact| contact.power).fold(f32::INFINITY, f32::min);
+    let echoes = |onset: &Onset| {
+        contacts().any(|contact| (0.0..ECHO).contains(&(onset.time - contact.time)) && onset.power <= contact.power)
+    };
+    let most = |onsets: &[Onset]| {
+        onsets.iter().filter(|onset| onset.power >= least && !echoes(onset)).count() < chain.at.len()
+    };
+    let between = &onsets[chain.at[0]..chain.at[chain.at.len() - 1]];
+    match chain.evidence {
+        SURE.. => true,
+        LIKELY.. => most(between),
+        0.0.. => most(onsets),
+        _ => false,
+    }
+}
+
+/// What is heard where no ball bounces.
+fn nothing(name: &str, onsets: &[Onset], part: &Range<f64>) -> TableError {
+    /// So many sounds are named.
+    const NAMED: usize = 5;
+    let mut loudest: Vec<&Onset> = onsets.iter().collect();
+    loudest.sort_by(|a, b| b.power.total_cmp(&a.power));
+    loudest.truncate(NAMED);
+    loudest.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let times: Vec<String> = loudest.iter().map(|onset| format!("{:.2} s", onset.time)).collect();
+    let heard = match (onsets.len(), times.join(", ")) {
+        (0, _) => "nothing stands out from the noise".to_owned(),
+        (1, times) => format!("one sound stands out from the noise, at {times}"),
+        (count, times) if count <= NAMED => format!("{count} sounds stand out from the noise, at {times}"),
+        (count, times) => format!("{count} sounds stand out from the noise, the loudest at {times}"),
+    };
+    let long = part.end - part.start;
+    let says = format!(
+        "no ball is heard bouncing in {long:.2} s of sound: {heard}, and no three or more come ever sooner, as a ball does"
+    );
+    TableError::new(name, says)
+        .help("choose the part with the bounces, such as --listen 0.5s..4s; or record again, in silence, near where the ball falls")
+        .nothing()
+}
