@@ -19,8 +19,16 @@ fn files() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         ["statistics.rs", "model/physics.rs", "model/altered.rs", "solve/outliers.rs", "solve/choice.rs"]
             .into_iter()
-            .chain(["read/said.rs", "read/forms.rs", "read/order.rs", "read/vocabulary.rs"])
-            .chain(["sound/onset.rs", "sound/chain.rs"])
+            .chain([
+                "read/said.rs",
+                "read/forms.rs",
+                "read/forms/values.rs",
+                "read/order.rs",
+                "read/vocabulary.rs",
+                "read/programs.rs",
+                "sound/onset.rs",
+                "sound/chain.rs",
+            ])
             .map(|file| root().join(file))
             .collect();
     for folder in ["evidence", "compare", "verdict"] {

@@ -7,7 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
-use saltus_fit::{Verdict, Why};
+use saltus_fit::{ReadOptions, Table, Verdict, Why};
 use typed::{fit, trusted};
 
 /// Heights of a drop and its bounces, cm.
@@ -103,6 +103,59 @@ proptest! {
             format!("{title}\n{}\n", values.collect::<String>())
         };
         let report = fit(&format!("{}{}", list("Zorb A", e), list("Zorb B", e + 0.1)));
+        let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        prop_assert!(matches!(found.as_slice(), [a, b] if near(*a, e) && near(*b, e + 0.1)), "{}", report);
+    }
+
+    /// Columns that a letter tells apart are trials where they are level, else balls.
+    #[test]
+    fn letters_tell_columns_apart(e in 0.5f64..0.8) {
+        let text = |other: f64| {
+            let row = |(h, by): (f64, f64)| format!("{h},{:.2},{:.2}\n", h * e * e + by, h * other * other - by);
+            let rows = [(150.0, 0.1), (120.0, -0.2), (100.0, 0.2), (80.0, -0.1)].map(row).concat();
+            format!("Drop height (cm),Bounce height A (cm),Bounce height B (cm)\n{rows}")
+        };
+        prop_assert!(near(trusted(&text(e)), e));
+        let two = fit(&text(e + 0.1));
+        let found: Vec<(&str, f64)> = two.groups().iter().map(|g| (g.name.as_str(), g.report.cor().unwrap().value)).collect();
+        prop_assert!(matches!(found.as_slice(), [("A", a), ("B", b)] if near(*a, e) && near(*b, e + 0.1)), "{}", two);
+        prop_assert_eq!(two.verdict(), Verdict::Trusted);
+    }
+
+    /// The unit of a height of release above a table is that of heights that bear none and are no
+    /// higher, and of no others.
+    #[test]
+    fn a_unit_of_the_release_is_that_of_the_rebounds(e in 0.6f64..0.85) {
+        let rows = |times: f64| -> String { (1..5).map(|n| format!("{n},{:.2}\n", times * e.powi(2 * n))).collect() };
+        let found = trusted(&format!("Drop height: 150 cm\nbounce,height\n{}", rows(150.0)));
+        prop_assert!(near(found, e));
+        let other = format!("Drop height: 1.5 m\nbounce,height\n{}", rows(150.0));
+        let asked = Table::parse("t.csv", other.as_bytes(), &ReadOptions::default()).unwrap_err();
+        prop_assert!(asked.is_question() && asked.to_string().contains("--height-unit"), "{}", asked);
+    }
+
+    /// Numbers in the brackets of a program, and behind dashes, are a list of bounces where they
+    /// fall.
+    #[test]
+    fn lists_of_programs_are_bounces(e in 0.5f64..0.85, form in 0usize..3) {
+        let values: Vec<String> = heights(e, 5).iter().skip(1).map(|h| format!("{h:.2}")).collect();
+        let list = match form {
+            0 => format!("height_cm = 150\nrebounds_cm = [{}]\n", values.join(", ")),
+            1 => format!("% a ball on tiles\nrelease_cm = 150;\nrebounds_cm = np.array([{}]);\n", values.join(" ")),
+            _ => format!("unit: cm\nrelease: 150\nbounces:\n{}", values.iter().map(|h| format!("  - {h}\n")).collect::<String>()),
+        };
+        prop_assert!(near(trusted(&list), e), "{}", list);
+    }
+
+    /// A letter below `Sample` names what was dropped.
+    #[test]
+    fn a_letter_in_a_sample_names_a_ball(e in 0.5f64..0.8) {
+        let row = |(n, h): (usize, f64)| {
+            let (name, own) = if n % 2 == 0 { ("A", e) } else { ("B", e + 0.1) };
+            format!("{name},{h},{:.2}\n", h * own * own)
+        };
+        let rows: String = [150.0, 150.0, 120.0, 120.0, 80.0, 80.0].into_iter().enumerate().map(row).collect();
+        let report = fit(&format!("Sample,Drop (cm),Rebound (cm)\n{rows}"));
         let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
         prop_assert!(matches!(found.as_slice(), [a, b] if near(*a, e) && near(*b, e + 0.1)), "{}", report);
     }

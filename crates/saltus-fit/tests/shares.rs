@@ -74,6 +74,15 @@ proptest! {
         prop_assert!(read(&text.replace('h', "x").replace('H', "h").replace('x', "H")).is_err());
     }
 
+    /// Hundredths may be written in the cells.
+    #[test]
+    fn hundredths_in_cells(e in 0.5..0.9_f64, drops in any::<bool>()) {
+        let row = |h: f64| if drops { format!("{h},{:.2}%\n", 100.0 * e * e) } else { format!("{:.2}%\n", 100.0 * e * e) };
+        let rows = [150.0, 120.0, 100.0].map(row).concat();
+        let text = if drops { format!("Drop height (cm),Rebound\n{rows}") } else { format!("Rebound height\n{rows}") };
+        prop_assert!((cor(&text) - e).abs() < 4e-3, "{}", text);
+    }
+
     /// Of bounces that nothing counts, as they fall.
     #[test]
     fn ratios_that_are_listed(e in 0.5..0.9_f64, first in 0..2_i32) {

@@ -339,6 +339,12 @@ pub(super) fn date(text: &str) -> bool {
 /// A date and the time of day behind it, `2024-05-12T10:15:30.120Z`, `12.05.2024 10:15:30`.
 pub(super) fn dated(cell: &str) -> Option<(&str, &str)> {
     let (day, time) = cell.trim().split_once(['T', ' '])?;
+    // Behind it the half of the day and the zone.
+    let time = time
+        .trim()
+        .split_once(' ')
+        .filter(|(_, zone)| zone.starts_with(char::is_alphabetic))
+        .map_or(time, |(time, _)| time);
     date(day).then_some((day, time.trim().trim_end_matches('Z')))
 }
 

@@ -109,12 +109,13 @@ fn joined_up<'a>(
     for (n, region) in regions.iter_mut().enumerate() {
         let title = &titles[n];
         let own = Metadata {
-            drop: metadata.drop.or(title.drop.map(|(drop, _)| drop)),
+            drop: metadata.drop.or(title.drop.as_ref().map(|(drop, _)| drop.metres())),
             sigma_height: metadata.sigma_height.or(title.sigma.0),
             sigma_time: metadata.sigma_time.or(title.sigma.1),
             ..metadata
         };
         region.units = (region.units.0.or(title.units.0), region.units.1.or(title.units.1));
+        region.drop = title.drop.as_ref().map(|(drop, _)| drop.clone());
         match one(region, options, own) {
             Ok(mut table) => {
                 titled(region, &mut table);
@@ -139,6 +140,9 @@ fn joined_up<'a>(
     }
     named(&regions, &titles, &mut parts);
     let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
+    if tracks && at_once(&parts) {
+        told_apart(&mut parts);
+    }
     let mut table = pool::join(grid.name, parts)?;
     table.left_aside.extend(aside);
     table.notes.extend(stated);
@@ -246,7 +250,7 @@ fn titled(region: &Region<'_>, table: &mut Table) {
     // something by name (`frame rate: 30`) is of that alone.
     let whole = |text: &str| {
         let said = text.split_once(':').map_or(text, |(_, said)| said);
-        Heading::parse(said).unknown.is_empty() && turned(said)
+        said.split([',', ';', '(', '.']).any(|clause| Heading::parse(clause).unknown.is_empty() && turned(clause))
     };
     let comment = || region.view.grid.comments().take(said::ROWS).find(|(_, text)| whole(text));
     let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
@@ -261,6 +265,17 @@ fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result
         return joined_up(grid, vec![region], false, options, metadata);
     }
     Err(region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"))
+}
+
+/// Whether some tracks were followed at the same time: they are of several bodies.
+fn at_once(parts: &[(String, Table)]) -> bool {
+    let span = |(_, table): &(String, Table)| {
+        let times = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.time);
+        (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max))
+    };
+    let mut spans: Vec<(f64, f64)> = parts.iter().map(span).collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spans.windows(2).any(|pair| pair[1].0 < pair[0].1)
 }
 
 /// Takes out the tracks of things that stand still while the ball moves.

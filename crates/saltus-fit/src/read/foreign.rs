@@ -9,7 +9,7 @@ use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to
 /// make there.
-const KINDS: [(&[&str], &str, &str); 13] = [
+const KINDS: [(&[&str], &str, &str); 14] = [
     (
         &["trk", "trz"],
         "a project of Tracker",
@@ -45,6 +45,7 @@ const KINDS: [(&[&str], &str, &str); 13] = [
         "JSON without records of numbers, or longer than 16 MB",
         "write its numbers as a table, a name above each column, and save it as CSV",
     ),
+    (&["sql"], "SQL", "export the rows as CSV, such as by SELECT into a file; give that file"),
     (&["xml"], "XML", "export the table as CSV; give that file"),
     (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];

@@ -3,6 +3,10 @@
 //! and a line stays a line.
 
 mod blocks;
+mod values;
+
+pub(super) use blocks::bulleted;
+use values::{LIST, listed_numbers, listed_values, named_list};
 
 use super::cell::{self, Cell};
 use super::columns::LEVEL;
@@ -28,17 +32,15 @@ pub(super) fn table(text: &str) -> Option<String> {
 /// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     // The only line that tells where the ball was dropped from.
-    let drop = || {
-        let mut found = text.lines().filter(|line| title::drop(line).is_some());
-        found.next().filter(|_| found.next().is_none()).map(remarked)
-    };
+    let mut drops = text.lines().filter(|line| title::drop(line).is_some());
+    let drop = drops.next().filter(|_| drops.next().is_none()).map(remarked);
     // Lengths by themselves are of bounces below a line that names these, or below the height of
     // release where most fall; there they are of trials where they do not.
     let alone = |line: &str| length(placed(remarked(line).trim()));
     let lengths: Vec<f64> = text.lines().filter_map(alone).collect();
     let fall = lengths.windows(2).filter(|pair| falling(pair)).count();
-    let name = if drop().is_some() && 2 * fall < lengths.len() { "trial" } else { "bounce" };
-    let (mut counted, mut number, mut title) = (drop().map(|_| name), 0, None);
+    let name = if drop.is_some() && 2 * fall < lengths.len() { "trial" } else { "bounce" };
+    let (mut counted, mut number, mut title) = (drop.map(|_| name), 0, None);
     let lists = text.lines().filter(|line| listed_numbers(line).is_some()).count();
     let line = |line: &str| {
         let line = remarked(line);
@@ -53,8 +55,8 @@ fn listed(text: &str) -> Option<String> {
         let named = |(name, _): &(&str, &str)| name.trim_start().starts_with(char::is_alphabetic);
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         title = named_list(line).map(str::to_owned).or(title.take());
-        // Words by themselves are a title.
-        if !line.contains(|c: char| c.is_ascii_digit() || matches!(c, ';' | '\t' | '|')) {
+        // Words by themselves are a title, and so is a name with a digit in it, `class 8b`.
+        if parts(line).0.is_empty() && !line.contains([';', '\t', '|', '=']) && !line.contains("<-") {
             let heading = Heading::parse(line.trim_end_matches(':'));
             let names = !line.contains(',') && (heading.has(Atom::Rebound) || heading.has(Atom::Impact));
             counted = if names { Some(name) } else { counted };
@@ -68,13 +70,14 @@ fn listed(text: &str) -> Option<String> {
         let parted =
             line.split_once("<-").or(line.split_once(": ")).or(line.split_once('=')).or_else(dash).or_else(arrow);
         let dropped = || {
-            let height = drop().filter(|of| *of == line).and_then(title::drop)?;
+            let height = drop.filter(|of| *of == line).and_then(title::drop)?.metres();
             Some((true, format!("drop height\t{height} m")))
         };
         // A line that tells where the ball was dropped from names no column.
         let found = parted.or_else(|| measured(line).filter(|_| dropped().is_none()));
         let Some((name, values)) = found else {
-            return dropped().or_else(|| (prose(line) || of_others(line)).then(|| (false, format!("#{line}"))));
+            let other = || prose(line) || of_others(line) || title::frame_rate(line).is_some();
+            return dropped().or_else(|| other().then(|| (false, format!("#{line}"))));
         };
         let number = |value: &String| matches!(cell::read(value, false), Cell::Number(_));
         let values = listed_values(values.trim());
@@ -84,12 +87,16 @@ fn listed(text: &str) -> Option<String> {
         let read = values.iter().all(number);
         let of_bounces = || {
             let heading = Heading::parse(name);
-            heading.unknown.is_empty() && (heading.has(Atom::Rebound) || heading.has(Atom::Impact))
+            let timed = [Atom::Time, Atom::Interval, Atom::Air, Atom::Speed].iter().any(|atom| heading.has(*atom));
+            heading.unknown.is_empty() && !timed && (heading.has(Atom::Rebound) || heading.has(Atom::Impact))
         };
         // Several bounces in a line come one after the other where they fall.
-        let lengths: Vec<f64> = values.iter().filter_map(|value| length(value)).collect();
+        let unit = Heading::parse(name).unit.filter(|unit| unit.dimension == Dimension::Length);
+        let bare = |value: &String| value.parse().ok();
+        let lengths: Vec<f64> = values.iter().filter_map(|value| length(value).or_else(|| bare(value))).collect();
         if read && lengths.len() == values.len() && lengths.len() > 1 && falling(&lengths) && of_bounces() {
-            let rows = (1..).zip(&values).map(|(n, value)| format!("bounce {n}\t{value}"));
+            let unit = unit.and(name.rfind(['(', '[', '_'])).map_or("", |at| &name[at..]);
+            let rows = (1..).zip(&values).map(|(n, value)| format!("bounce {n}{unit}\t{value}"));
             return Some((true, rows.collect::<Vec<_>>().join("\r")));
         }
         // What commas part from the name above a list is its title, `golf ball, heights in cm:`.
@@ -100,11 +107,17 @@ fn listed(text: &str) -> Option<String> {
         (plain || !read && prose(line)).then_some((read, spelt))
     };
     let lines = || text.lines().filter(|line| !line.trim().is_empty());
-    let found: Vec<(bool, String)> = lines().map(line).collect::<Option<_>>()?;
+    let mut found: Vec<(bool, String)> = lines().map_while(line).collect();
+    // Who wrote it stands below the last number, `Léa (class 4)`.
+    let signed = |line: &str| silent(line) && line.contains(char::is_alphabetic) && !cells_of_commas(line);
+    if !lines().skip(found.len()).all(signed) {
+        return None;
+    }
+    found.extend(lines().skip(found.len()).map(|line| (false, format!("#{line}"))));
     let numbers = found.iter().filter(|(number, _)| *number).count();
     // A line by itself is a list of several.
     let several = found.iter().any(|(number, line)| *number && line.matches(['\t', '\r']).count() >= LIST);
-    let told = lines().filter(|line| prose(line)).count();
+    let told = lines().filter(|line| prose(line) || parts(line).0.is_empty()).count();
     if numbers < 2 && !(numbers == 1 && several) || 2 * numbers < found.len() - told {
         return None;
     }
@@ -112,40 +125,6 @@ fn listed(text: &str) -> Option<String> {
     let mut found = found.into_iter().map(|(_, line)| line);
     let spelt = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { found.next() });
     Some(spelt.collect::<Option<Vec<String>>>()?.join("\n") + "\n")
-}
-
-/// The parts of a list that commas part, or blanks within brackets; a unit behind the last is that
-/// of all, `64, 41, 26 cm`.
-fn listed_values(list: &str) -> Vec<String> {
-    let bare = list.trim_end_matches(';').trim_end();
-    let within = [("c(", ")"), ("(", ")"), ("[", "]"), ("{", "}")];
-    let within = within.iter().find_map(|(open, close)| bare.strip_prefix(open)?.strip_suffix(close));
-    let values: Vec<&str> = match within {
-        Some(inside) => inside.split([',', ' ']).filter(|value| !value.is_empty()).collect(),
-        None => list.split(", ").map(str::trim).collect(),
-    };
-    let plain = |value: &str| value.parse::<f64>().is_ok();
-    let last = values.last().copied().unwrap_or_default();
-    let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | ' '));
-    let shared = values.len() > 1 && Unit::parse(unit).is_some() && values[..values.len() - 1].iter().all(|v| plain(v));
-    values.iter().map(|v| if shared && plain(v) { format!("{v} {unit}") } else { (*v).to_owned() }).collect()
-}
-
-/// The numbers of a line that holds several, which blanks or commas part, and nothing else.
-fn listed_numbers(line: &str) -> Option<Vec<&str>> {
-    let values: Vec<&str> = line.split([',', ' ']).filter(|value| !value.is_empty()).collect();
-    (values.len() >= LIST && values.iter().all(|value| value.parse::<f64>().is_ok())).then_some(values)
-}
-
-/// The only part of a line, between commas, that names a quantity and its unit: `Heights (m), first
-/// the drop`.
-fn named_list(line: &str) -> Option<&str> {
-    let names = |part: &&str| {
-        let heading = Heading::parse(part);
-        heading.unit.is_some() && heading.understood()
-    };
-    let mut found = line.split(", ").map(|part| part.trim().trim_end_matches(':')).filter(names);
-    found.next().filter(|_| found.next().is_none())
 }
 
 /// A line without the place in an order that it begins with: `1st: 64 cm`.
@@ -192,8 +171,18 @@ pub(super) fn told(line: &str) -> bool {
 
 /// Whether a line tells something, and measures nothing: no number in it has a unit.
 fn prose(line: &str) -> bool {
+    told(line) && silent(line)
+}
+
+/// Whether a line measures nothing: no number in it has a unit.
+fn silent(line: &str) -> bool {
     let unit = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some());
-    told(line) && !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
+    !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
+}
+
+/// Whether a comma parts a number from what stands before it.
+fn cells_of_commas(line: &str) -> bool {
+    line.split(',').skip(1).any(|cell| cell.trim_start().starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// Lines of a name and a number, `1st 128`, below one that says of what and in which unit, `Height
@@ -220,9 +209,6 @@ fn headed(text: &str) -> Option<String> {
     let lines = text.lines().map(|line| if line.trim().is_empty() { Some(String::new()) } else { spelt.next() });
     Some(lines.collect::<Option<Vec<_>>>()?.join("\n") + "\n")
 }
-
-/// A name in a line by itself stands before at least so many numbers.
-const LIST: usize = 3;
 
 /// A line of words and, at its end, a number with its unit, `2nd bounce 1.15 m`, parted before the
 /// number.
@@ -360,8 +346,12 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
 /// height and the next, `100 cm -> 64 cm -> 41 cm`. `None` if most lines are something else.
 fn patterned(text: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().collect();
-    // A semicolon parts `h1 = 64 cm; h2 = 41 cm`, and cells without such names.
-    let cells = |line: &str| line.contains(['\t', '|']) || line.contains(';') && !line.contains('=');
+    // A semicolon, or blanks, part `h1 = 64 cm; h2 = 41 cm`, and cells without such names.
+    let blanks = |line: &str| line.trim().contains("  ") && !line.contains(['=', ':']);
+    let chained = |line: &str| arrows().any(|arrow| line.contains(arrow));
+    let cells = |line: &str| {
+        line.contains(['\t', '|']) || line.contains(';') && !line.contains('=') || blanks(line) && !chained(line)
+    };
     if lines.iter().any(|line| cells(line)) {
         return None;
     }
@@ -369,7 +359,7 @@ fn patterned(text: &str) -> Option<String> {
     let first = patterns.iter().flatten().next()?;
     let alike = |n: usize| patterns[n].as_ref() == Some(first);
     let rows: Vec<usize> = (0..lines.len()).filter(|&n| alike(n)).collect();
-    let filled = lines.iter().filter(|line| !line.trim().is_empty()).count();
+    let filled = lines.iter().filter(|line| !parts(line).0.is_empty()).count();
     // Names in a line of their own, as many as there are cells, make a table of it.
     let commas = |line: &str| line.matches(',').count();
     let named = |n: usize| commas(lines[n]) > 0 && commas(lines[n]) == commas(lines[rows[0]]);
@@ -413,7 +403,10 @@ fn names(parts: &[Part<'_>]) -> Option<Vec<String>> {
     let mut bounce = 0;
     let name = |(n, part): (usize, &Part<'_>)| {
         if !arrow(n) && !arrow(n + 1) {
-            return Some(part.words.trim_matches(|c: char| !c.is_alphanumeric()).to_owned());
+            // Before it a sentence may end.
+            let said =
+                [". ", "! ", "? "].iter().fold(part.words, |words, end| words.rsplit(*end).next().unwrap_or(words));
+            return Some(said.trim_matches(|c: char| !c.is_alphanumeric()).to_owned());
         }
         bounce = if arrow(n) { bounce + 1 } else { 0 };
         let height = match cell::read(part.number, false) {
@@ -438,6 +431,7 @@ mod tests {
                 "height before\theight 1\theight 2\r100 cm\t64 cm\t41 cm\n80 cm\t51 cm\n",
             ),
             ("in cm\n100→64\n80→51\n", "in cm\nheight before\theight 1\r100\t64\n80\t51\n"),
+            ("Filmed it. h0=1m, h1=64cm, h2=41cm.\n", "h0\th1\th2\r1m\t64cm\t41cm\n"),
             (
                 "Dropped from 1.0 m, came back to 64 cm.\nDropped from 2.0 m, came back to 1.3 m.\n",
                 "Dropped from\tcame back to\r1.0 m\t64 cm\n2.0 m\t1.3 m\n",
@@ -449,6 +443,7 @@ mod tests {
             "Trial,Ball,Drop,Rebound\n1,golf,100,70\n2,golf,80,56\n",
             "bounce,height_cm\n0,100\n1,64\n",
             "0.45 s -> 1.17 s\n0.44 s -> 1.16 s\n",
+            "  ball  drop_m  rebound_m\n1 golf     1.0       0.74\n2 golf     1.5       1.11\n",
             "100\n64\n41\n",
             "Drop 1 m\n1st bounce 64 cm\n2nd bounce 41 cm\n",
             "The 2 balls are 5 cm wide.\nWe had 3 m of tape.\n100,64\n80,51\n60,38\n40,26\n",
@@ -463,6 +458,13 @@ mod tests {
             ("Drop 1 m\n1st bounce 64 cm\n\nbounce 2 41 cm\n", "Drop\t1 m\n1st bounce\t64 cm\n\nbounce 2\t41 cm\n"),
             ("Golf ball\nDrop 1 m\nrebound 64 cm\n", "#Golf ball\nDrop\t1 m\nrebound\t64 cm\n"),
             ("Bounce times (s): 0.5, 1.2, 1.8\n", "Bounce times (s)\t0.5\t1.2\t1.8\n"),
+            ("drop_cm = 100\nrebounds_cm = [64, 41]\n", "drop_cm\t100\nbounce 1_cm\t64\rbounce 2_cm\t41\n"),
+            ("dt = diff(t);\nt = np.array([0.5, 1.2, 1.8])\n", "#dt = diff(t);\nt\t0.5\t1.2\t1.8\n"),
+            (
+                "Hi Ana,\nDrop 1 m\n1st bounce 64 cm\nTom (class 4)\n",
+                "#Hi Ana,\nDrop\t1 m\n1st bounce\t64 cm\n#Tom (class 4)\n",
+            ),
+            ("Film, 240 fps\nImpact frames: 9, 60, 95\n", "#Film, 240 fps\nImpact frames\t9\t60\t95\n"),
         ] {
             assert_eq!(listed(text).as_deref(), Some(expected), "{text}");
         }

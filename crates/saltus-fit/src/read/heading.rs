@@ -254,13 +254,34 @@ impl Heading {
             let name = text[..end].trim_end();
             let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
             let stem = name.strip_suffix(letter)?;
-            let apart = stem.ends_with(['_', ' ', '.', '-']) && stem.contains(char::is_alphabetic);
+            // What a colon ends is the name of the run.
+            let apart = stem.ends_with(['_', ' ', '.', '-'])
+                && !stem.trim_end().ends_with(':')
+                && stem.contains(char::is_alphabetic);
             apart.then(|| (stem.to_owned(), letter, format!("{letter} {}", &text[end..])))
         };
         let (stem, letter, plain) = parted(text)?;
         let other =
             |name: &String| parted(name).is_some_and(|(of, l, _)| of == stem && !l.eq_ignore_ascii_case(&letter));
         header.iter().any(other).then(|| Self::parse(&plain).called(text))
+    }
+
+    /// `h_i` beside `h_f`: before and after, where `h_i` by itself is counted.
+    pub(super) fn initial(text: &str, header: &[String]) -> Option<Self> {
+        let parted = |text: &str| {
+            let (sign, rest) = text.split_once('_')?;
+            let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
+            let signs = sign.chars().count() == 1 && matches!(&rest[..end], "i" | "f");
+            signs.then(|| (sign.to_owned(), rest[..end].to_owned()))
+        };
+        let (sign, event) = parted(text)?;
+        let other = |name: &String| parted(name).is_some_and(|(of, at)| of == sign && at != event);
+        header.iter().any(other).then(|| Self::parse(&text.replacen('_', "", 1)).called(text))
+    }
+
+    /// The heading of a column whose cells are written as hundredths.
+    pub(super) fn hundredths(self) -> Self {
+        Self::parse(&format!("{} (%)", self.text)).called(&self.text)
     }
 
     fn called(self, text: &str) -> Self {

@@ -145,12 +145,21 @@ pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
         return None;
     }
     let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
-    let mut values: Vec<Node> = values.collect::<Result<_, _>>().ok()?;
+    let values: Result<Vec<Node>, _> = values.collect();
+    let mut values = values.ok().or_else(|| printed(text))?;
     let whole = numbered("", if values.len() == 1 { values.pop()? } else { Node::List(values) });
     let whole = united::united(whole);
     let mut found = Vec::new();
     tables("", &whole, "", &mut found);
     (!found.is_empty()).then_some(found)
+}
+
+/// Values as Python prints them, in single quotes.
+fn printed(text: &str) -> Option<Vec<Node>> {
+    let words = [("'", "\""), (": None", ": null"), (": True", ": true"), (": False", ": false")];
+    let spelt = words.iter().fold(text.to_owned(), |spelt, (word, plain)| spelt.replace(word, plain));
+    let values = serde_json::Deserializer::from_str(&spelt).into_iter::<Node>();
+    values.collect::<Result<_, _>>().ok().filter(|_| !text.contains('"'))
 }
 
 /// Gathers the tables in a value called `name`; `above` are lines that what encloses it states.

@@ -7,9 +7,10 @@ use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::grid::{Grid, View};
-use super::heading::{At, Heading, What};
+use super::heading::{At, Heading, Meaning, What};
 use super::region::{self, Region};
 use super::units::{Dimension, Unit};
+use super::vocabulary::Atom;
 use crate::error::TableError;
 use crate::finding::Program;
 
@@ -73,7 +74,8 @@ pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
     // A name says what it is of: numbered rows alone are no names.
     let says = |name: &String| {
         let heading = Heading::parse(name);
-        heading.energy.is_some() || heading.value().is_some_and(|value| value.what != What::Unsaid)
+        let frames = heading.meaning == Meaning::Frame && heading.has(Atom::Impact);
+        frames || heading.energy.is_some() || heading.value().is_some_and(|value| value.what != What::Unsaid)
     };
     // Or a number that bears a unit does.
     let measured = |region: &Region<'_>| {

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::grid::{View, shown};
-use super::heading::Heading;
+use super::heading::{DropHeight, Heading};
 use super::units::{Dimension, Unit};
 use crate::error::TableError;
 pub(super) use header::repeated;
@@ -27,6 +27,8 @@ pub(super) struct Region<'a> {
     pub(super) rows: Vec<usize>,
     /// The units of times and lengths, where neither header nor options name one.
     pub(super) units: (Option<Unit>, Option<Unit>),
+    /// The height of release that stands above.
+    pub(super) drop: Option<DropHeight>,
     /// Rows are frames, and no column counts them.
     pub(super) frames: bool,
     /// How long a frame lasts, s.
@@ -49,6 +51,7 @@ impl<'a> Region<'a> {
             header_row,
             rows,
             units,
+            drop: None,
             frames: false,
             frame: None,
             chosen: false,

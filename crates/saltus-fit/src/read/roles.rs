@@ -385,7 +385,7 @@ impl Columns {
 
 /// Whether heights side by side are nearly as high as one another, and well below the release:
 /// repeats, and not bounces.
-fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
+pub(super) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
     let number = |row: usize, column: usize| match region.view.read(row, column) {
         Cell::Number(m) => Some(m.value),
         _ => None,

@@ -181,10 +181,11 @@ impl Columns {
         })
     }
 
-    /// The unit of the height of release in the heading, if the numbers below it are no higher in
-    /// it.
+    /// The unit of the height of release in the heading, or above the table, if the numbers below
+    /// are no higher in it.
     fn of_the_drop(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
-        let drop = self.columns[index].value()?.drop.as_ref().filter(|drop| drop.unit.dimension == dimension)?;
+        let drop = self.columns[index].value()?.drop.as_ref().or(region.drop.as_ref());
+        let drop = drop.filter(|drop| drop.unit.dimension == dimension)?;
         let number = |row: &usize| match region.view.read(*row, index) {
             Cell::Number(m) => Some(m.value),
             _ => None,

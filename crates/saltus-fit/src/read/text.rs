@@ -34,12 +34,13 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
         None => text,
     };
-    let typed = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| match form(&text).filter(|_| text.len() <= TYPED)
-    {
-        Some(found) => Cow::Owned(found),
-        None => text,
+    let typed = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| {
+        let found = if text.len() <= TYPED { form(&text) } else { None };
+        found.map_or(text, Cow::Owned)
     };
-    let text = [wrapped::quoted, wrapped::lettered, wrapped::unstamped, forms::table].into_iter().fold(text, typed);
+    let forms =
+        [wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped, forms::bulleted, forms::table];
+    let text = forms.into_iter().fold(text, typed);
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }
@@ -70,7 +71,7 @@ fn numeros(text: &str) -> Vec<usize> {
 }
 
 /// Where the `#` stands of a comment that names the columns of the numbers below it, `# t (s)  y
-/// (m)`: as many names as they have, each of them understood.
+/// (m)`: as many names as they have, and understood.
 fn names_in_comment(text: &str) -> Option<usize> {
     let (mut at, mut comment) = (0, None);
     let first = text.split_inclusive('\n').find(|line| {
@@ -91,7 +92,9 @@ fn names_in_comment(text: &str) -> Option<usize> {
     let (mark, count) = [",", ";", "\t", "  ", " "].iter().find_map(|mark| Some((*mark, numbers(mark)?)))?;
     let names = |mark: &str| {
         let names = cells(comment, mark);
-        names.len() == count && names.iter().all(|name| Heading::parse(name).understood())
+        // Of names that more than a blank parts two may be all that are understood.
+        let known = names.iter().filter(|name| Heading::parse(name).understood()).count();
+        names.len() == count && (known == count || mark != " " && known > 1)
     };
     // Names that blanks part may hold one.
     (names(mark) || mark == " " && names("  ")).then_some(at)
@@ -144,13 +147,22 @@ fn in_columns(
         return all(names, 0);
     }
     // Names that single blanks part, where each stands above the numbers of its column.
-    let single = || Some(cells(line, 1)).filter(|own| of_numbers && own.len() + 1 == columns.len());
+    let single = || Some(cells(line, 1)).filter(|own| columns.len() - own.len().min(columns.len()) < 2);
     let by_place = |own: Vec<Range<usize>>| placed(&own, columns).map(|at| (own, at));
     // Names that begin beyond the first column leave it without one.
-    let beyond = own.len() + 1 == columns.len() && own.first().is_some_and(|name| name.start >= columns[0].end);
+    let beyond = |names: &[Range<usize>]| {
+        names.len() + 1 == columns.len() && names.first().is_some_and(|name| name.start >= columns[0].end)
+    };
     let found =
         Some(own.clone()).filter(|own| own.len() > 1).and_then(by_place).or_else(|| single().and_then(by_place));
-    found.unwrap_or_else(|| all(own, usize::from(beyond)))
+    found.unwrap_or_else(|| {
+        // Behind the number of each row, which bears no name, stand so many words as names.
+        let words = Some(cells(line, 1)).filter(|words| own.len() == 1 && beyond(words));
+        match words {
+            Some(words) => all(words, 1),
+            None => all(own.clone(), usize::from(beyond(&own))),
+        }
+    })
 }
 
 /// Writes a line with its cells in their columns: as long as it was, with tabs at the ends of the

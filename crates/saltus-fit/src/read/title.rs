@@ -3,7 +3,7 @@
 
 use super::cell::{self, Cell};
 use super::grid::shown;
-use super::heading::{At, Heading, Role, rate, released};
+use super::heading::{At, DropHeight, Heading, Role, rate, released};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::rows::names_floor;
@@ -11,6 +11,7 @@ use super::said::ROWS;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
+use crate::quantity::Ball;
 
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,8 +20,8 @@ pub(super) struct Stated {
     pub(super) name: String,
     /// Frames a second, and the line.
     pub(super) fps: Option<(f64, u64)>,
-    /// The height of release, m, and the line.
-    pub(super) drop: Option<(f64, u64)>,
+    /// The height of release, and the line.
+    pub(super) drop: Option<(DropHeight, u64)>,
     /// The units of all times and of all heights.
     pub(super) units: (Option<Unit>, Option<Unit>),
     /// The standard errors of heights, m, and of times, s.
@@ -33,7 +34,8 @@ pub(super) struct Stated {
 pub(super) fn stated(region: &Region<'_>) -> Stated {
     let mut found = Stated::default();
     let comments = region.view.grid.comments().take(ROWS).flat_map(|(_, text)| clauses(text));
-    comments.filter_map(of_all).for_each(|unit| found.of_all(unit));
+    let units = comments.flat_map(|text| Unit::listed(text).unwrap_or_else(|| of_all(text).into_iter().collect()));
+    units.for_each(|unit| found.of_all(unit));
     if region.view.across {
         return found;
     }
@@ -120,8 +122,10 @@ fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
 
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
-pub(super) fn drop(text: &str) -> Option<f64> {
-    clauses(text).find_map(|clause| {
+pub(super) fn drop(text: &str) -> Option<DropHeight> {
+    // What stands in brackets is a clause of its own, `our ball (dropped from 1 m)`.
+    let inside = text.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside);
+    clauses(text).chain(inside).find_map(|clause| {
         let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
         let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
@@ -136,13 +140,27 @@ pub(super) fn drop(text: &str) -> Option<f64> {
             let of_drop = |w: &Word| w.is(Atom::Release) || w.is(Atom::Label) && after.is_empty();
             let said = before.iter().any(of_drop) && before.iter().any(of_height);
             let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
-            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns));
-            return fits.then(|| height.metres());
+            // Whoever dropped it, and whatever for: `we let the ball fall from 1 m`.
+            let from = before.iter().rposition(|w| w.is(Atom::Release)).map(|at| &before[at..]);
+            // No ball is so large: `una pallina da 1 metro` was dropped from there.
+            let beyond = Ball::ALL.iter().all(|ball| ball.diameter() < height.metres());
+            let told = whole
+                && from.is_some_and(|words| words.len() > 1 && words.iter().all(plain))
+                && before.last().is_some_and(|w| {
+                    Phrase::From.is(&folded(&w.text)) || w.is(Atom::Filler) && beyond && after.is_empty()
+                })
+                && !before.iter().any(turns);
+            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told;
+            return fits.then_some(height);
         }
         let (value, before) = last_number(clause.trim_end())?;
         let heading = Heading::parse(before);
         let unit = heading.unit.filter(|unit| unit.dimension == Dimension::Length && !unit.unscaled())?;
-        (heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.turns()).then(|| unit.si(value))
+        (heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.turns()).then(|| DropHeight {
+            text: clause.trim().to_owned(),
+            value,
+            unit,
+        })
     })
 }
 
@@ -237,8 +255,14 @@ mod tests {
             ("Test of batch 3, drop height 305 mm onto a steel block", None, Some(0.305)),
             ("By group 4 on 3 May, dropped from 1.20 m onto the gym floor", None, Some(1.2)),
             ("Predicted for a ball dropped from 1.20 m", None, None),
+            ("Bonjour, voici la balle (lâchée de 1,20 m)", None, Some(1.2)),
+            ("abbiamo lasciato cadere la pallina da 1 metro.", None, Some(1.0)),
+            ("Zorb and I dropped the ball from 1.5 m", None, Some(1.5)),
+            ("Zorb dropped the ball beside a 2 m rule", None, None),
+            ("Zorb dropped a ball of 5 cm", None, None),
+            ("Zorb dropped the wobble from 2 m", None, None),
         ] {
-            assert_eq!((frame_rate(text), drop(text)), (fps, height), "{text}");
+            assert_eq!((frame_rate(text), drop(text).map(|drop| drop.metres())), (fps, height), "{text}");
         }
     }
 

@@ -75,7 +75,7 @@ pub(super) fn split(text: &str) -> Vec<Word> {
                 }
                 _ => Kind::Unknown,
             }
-        } else if let Some(parts) = compound(&folded) {
+        } else if let Some(parts) = symbol(&folded).or_else(|| compound(&folded)) {
             words.extend(parts.map(|(text, atoms)| Word { text: text.to_owned(), kind: Kind::Known(atoms) }));
             continue;
         } else {
@@ -84,6 +84,7 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         let text = if matches!(kind, Kind::Known(_)) && folded == "in" { folded } else { piece };
         words.push(Word { text, kind });
     }
+    fallen(&mut words);
     lettered(&mut words);
     // A number before a word is its place in an order, if none follows: '1. Rebound'.
     for n in 1..words.len() {
@@ -97,6 +98,15 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         }
     }
     words
+}
+
+/// A sign of a quantity and the event that it was read at, `hdrop`, `vout`.
+fn symbol(word: &str) -> Option<[(&str, &'static [Atom]); 2]> {
+    let (sign, event) = word.split_at_checked(1).filter(|(sign, _)| matches!(*sign, "h" | "v" | "t"))?;
+    let atoms = meanings(event)?;
+    let of_event = [Atom::Release, Atom::Rebound, Atom::Impact, Atom::Before, Atom::After];
+    let named = event.len() > 2 && atoms.iter().any(|atom| of_event.contains(atom));
+    Some([(sign, meanings(sign)?), (event, atoms)]).filter(|_| named)
 }
 
 /// A part of a compound has so many letters at least: shorter words are the ends of others.
@@ -118,6 +128,17 @@ fn compound(word: &str) -> Option<[(&str, &'static [Atom]); 2]> {
     found.next()
 }
 
+/// What falls in height, or in speed, is not dropped but lost: `drop in height`.
+fn fallen(words: &mut [Word]) {
+    let of = |w: &Word| w.is(Atom::Height) || w.is(Atom::Speed) || w.is(Atom::Energy);
+    for n in 2..words.len() {
+        let falls = words[n - 2].is(Atom::Release) && Phrase::In.is(&words[n - 1].text) && of(&words[n]);
+        if falls {
+            words[n - 2].kind = Kind::Known(&[Atom::Lost]);
+        }
+    }
+}
+
 /// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`;
 /// another one is not understood.
 pub(super) fn lettered(words: &mut [Word]) {
@@ -135,6 +156,11 @@ pub(super) fn lettered(words: &mut [Word]) {
         && matches!(second.kind, Kind::Number(_))
     {
         first.kind = Kind::Known(&[Atom::Rebound]);
+    }
+    // An article stands before a word: at the end the letter is a name.
+    let rebounds = words.iter().any(measured);
+    if let Some(last) = words.last_mut().filter(|last| last.text == "A" && rebounds) {
+        last.kind = Kind::Letter;
     }
     for n in 0..words.len() {
         let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
@@ -194,13 +220,22 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     // Whose it is: "the ball's height".
     let spelt = spelt.replace("'s ", " ").replace("’s ", " ");
     // A date is none.
-    let parts = spelt.split('/').filter(|part| part.contains(char::is_alphabetic)).count();
+    let parts: Vec<&str> = spelt.split('/').filter(|part| part.contains(char::is_alphabetic)).collect();
+    // Names, `Anna / Tom`, are no ratio.
+    let known = |word: Option<&str>| {
+        let word = folded(word.unwrap_or_default());
+        word.chars().count() < 3 || word.contains(|c: char| c.is_ascii_digit()) || meanings(&word).is_some()
+    };
+    let end = |c: char| !c.is_alphanumeric();
+    let ratio = |pair: &[&str]| {
+        known(pair[0].split(end).rfind(|w| !w.is_empty())) || known(pair[1].split(end).find(|w| !w.is_empty()))
+    };
     let mut found: Vec<String> = spelt
         .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
         .filter(|piece| !piece.is_empty())
         .flat_map(parted)
         .collect();
-    if parts > 1 {
+    if parts.windows(2).any(ratio) {
         found.push("ratio".to_owned());
     }
     found
@@ -310,9 +345,24 @@ mod tests {
         for (one, two) in [("hoogteverlies", "hoogte verlies"), ("Aufprallszeit", "Aufprall Zeit")] {
             assert!(atoms(one).is_some() && atoms(one) == atoms(two), "{one}");
         }
+        for (one, two) in [("hdrop", "h drop"), ("vimpact", "v impact"), ("hreb", "h rebound")] {
+            assert!(atoms(one).is_some() && atoms(one) == atoms(two), "{one}");
+        }
+        for word in ["tape", "vball", "hand"] {
+            assert!(symbol(word).is_none(), "{word}");
+        }
         for word in ["hoogteboom", "timeball", "heightxyz", "weight", "verlies"] {
             assert!(compound(word).is_none(), "{word}");
         }
+    }
+
+    /// What drops in height is lost, and a slash between names is of no ratio.
+    #[test]
+    fn words_beside_others_turn_their_meaning() {
+        let lost = |text: &str| split(text).iter().any(|word| word.is(Atom::Lost));
+        assert!(lost("Drop in height (cm)") && lost("fall in speed") && !lost("drop in cm") && !lost("drop height"));
+        let ratio = |text: &str| split(text).iter().any(|word| word.is(Atom::Ratio));
+        assert!(ratio("h1/h0") && ratio("rebound / drop") && !ratio("Names: Anna / Tom") && !ratio("Wobble/Zorb"));
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::heading::{Heading, What};
 use super::phrases::Phrase;
 use super::vocabulary::Atom;
 
-/// A text without the `>` before the lines that a mail quotes; `None` unless most lines are quoted.
+/// A text without the `>` before the lines that a mail quotes, where most are; of a few such lines
+/// each is what somebody typed at a console, and no reading. `None` if there is none.
 pub(super) fn quoted(text: &str) -> Option<String> {
     let filled = text.lines().filter(|line| !line.trim().is_empty()).count();
     let quotes = text.lines().filter(|line| line.starts_with('>')).count();
@@ -14,7 +15,30 @@ pub(super) fn quoted(text: &str) -> Option<String> {
         Some(rest) => rest.strip_prefix(' ').unwrap_or(rest).to_owned(),
         None => line.to_owned(),
     };
-    (quotes > 1 && 2 * quotes > filled).then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
+    if quotes > 1 && 2 * quotes > filled {
+        return Some(text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n");
+    }
+    let typed = |line: &str| {
+        let said = line.trim_start_matches('>').trim_start();
+        line.starts_with('>') && !said.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '=' | '.' | ','))
+    };
+    let silent = |line: &str| if typed(line) { format!("#{line}") } else { line.to_owned() };
+    text.lines().any(typed).then(|| text.lines().map(silent).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A text whose remarks, as programs mark them, `% times`, `// times`, `-- times`, are those of
+/// tables; `None` if there are none.
+pub(super) fn commented(text: &str) -> Option<String> {
+    let cells = |line: &str| line.contains([',', ';', '\t', '|']) || line.trim().contains("  ");
+    // `% of drop height` is a name.
+    let name = |line: &str| {
+        let heading = Heading::parse(line);
+        line.starts_with('%') && heading.unknown.is_empty() && !heading.has(Atom::Time)
+    };
+    let marked = |line: &str| ["% ", "// ", "-- "].iter().any(|mark| line.starts_with(mark));
+    let remark = |line: &str| marked(line) && !cells(line) && !name(line);
+    let spelt = |line: &str| if remark(line) { format!("#{line}") } else { line.to_owned() };
+    text.lines().any(remark).then(|| text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
 /// A table without the letters above its columns and the numbers before its rows, as they are
@@ -122,6 +146,11 @@ mod tests {
     fn marks_around_a_table_are_taken_off() {
         assert_eq!(quoted("He wrote:\n> a b\n>  1 2\n>\n").as_deref(), Some("He wrote:\na b\n 1 2\n\n"));
         assert_eq!(quoted("> 60\na,b\n1,2\n"), None);
+        assert_eq!(quoted("> df\n  a  b\n1  2\n>\n").as_deref(), Some("#> df\n  a  b\n1  2\n#>\n"));
+        assert_eq!(commented("% times\n// by ear\nt = [1 2]\n").as_deref(), Some("#% times\n#// by ear\nt = [1 2]\n"));
+        for text in ["% of drop,ball\n64,golf\n", "% of previous height\n64\n64\n", "% of drop height\n64\n"] {
+            assert_eq!(commented(text), None, "{text}");
+        }
         assert_eq!(lettered("\tA\tB\n1\tdrop\trise\n2\t60\t30\n").as_deref(), Some("\ndrop\trise\n60\t30\n"));
         for text in ["A\tB\n60\t30\n80\t41\n", "\tA\tC\n1\tx\ty\n2\t60\t30\n", "\tA\tB\n1\tx\ty\n3\t60\t30\n"] {
             assert_eq!(lettered(text), None, "{text}");

@@ -11,6 +11,7 @@ use crate::read::cell::{Cell, read};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Heading, Meaning, Role, Value, What};
 use crate::read::region::Region;
+use crate::read::roles::level;
 use crate::read::rows::event;
 use crate::read::units::Dimension;
 use crate::read::vocabulary::{Atom, folded, nearest};
@@ -115,11 +116,22 @@ impl Columns {
             if words.iter().enumerate().any(|(n, word)| words[..n].contains(word)) {
                 return;
             }
+            // A letter names a trial or a ball, and turns no meaning: trials where they are level.
+            let several = found.len() > 1;
+            let letters = words.iter().all(|word| word.chars().count() == 1 && (several || word == "A"));
+            let drop =
+                self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading).map(|(n, _, _)| n);
+            let turned: Vec<usize> = found.iter().rev().copied().collect();
+            let trials = several && letters && [&found, &turned].iter().all(|nth| level(region, drop, nth, false));
             for (&index, word) in found.iter().zip(words) {
                 let column = &mut self.columns[index];
                 column.heading.unknown.clear();
-                if let (Kind::Value(value), true) = (&mut column.kind, found.len() > 1) {
-                    value.group = [value.group.as_str(), &word].join(" ").trim().to_owned();
+                if let (Kind::Value(value), true) = (&mut column.kind, several) {
+                    let name = if trials { &mut value.trial } else { &mut value.group };
+                    *name = [name.as_str(), &word].join(" ").trim().to_owned();
+                }
+                if letters {
+                    continue;
                 }
                 self.doubts.push(Doubt::Word { column: shown(&column.heading.text), word: shown(&word) });
             }

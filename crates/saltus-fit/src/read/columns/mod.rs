@@ -8,6 +8,7 @@ mod shares;
 
 pub(super) use energies::of_samples;
 pub(super) use shares::LEVEL;
+use shares::of_hundredths;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
@@ -101,9 +102,16 @@ impl Columns {
             doubts: Vec::new(),
             unscaled: false,
         };
-        for text in &region.header {
-            found.push(Heading::coordinate(text, &region.header).unwrap_or_else(|| Heading::parse(text)));
+        for (index, text) in region.header.iter().enumerate() {
+            let told = Heading::coordinate(text, &region.header).or_else(|| Heading::initial(text, &region.header));
+            let heading = told.unwrap_or_else(|| Heading::parse(text));
+            found.push(if heading.unit.is_none() && of_hundredths(region, index) {
+                heading.hundredths()
+            } else {
+                heading
+            });
         }
+        found.specimens(region);
         found.enumerated();
         found.spans(region);
         found.counted(region);

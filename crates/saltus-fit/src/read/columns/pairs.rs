@@ -14,6 +14,19 @@ use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::Atom;
 
 impl Columns {
+    /// `Sample` above `A` and `B` names what was dropped; above numbers it counts.
+    pub(super) fn specimens(&mut self, region: &Region<'_>) {
+        for index in 0..self.columns.len() {
+            let column = &self.columns[index];
+            let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
+            let words = |cell: &str| !cell.contains(|c: char| c.is_ascii_digit());
+            let named = cells.clone().next().is_some() && cells.all(words);
+            if column.kind == Kind::Trial && column.heading.has(Atom::Sample) && named {
+                self.columns[index].kind = Kind::Setting;
+            }
+        }
+    }
+
     /// The coarser of two columns that say the same in every row to their last digits, as in
     /// centimetres and in inches.
     pub(super) fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {

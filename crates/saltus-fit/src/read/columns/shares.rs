@@ -28,6 +28,16 @@ fn of_the_first(numbers: &[f64], whole: f64) -> bool {
     numbers.len() > 1 && numbers.windows(2).all(falls)
 }
 
+/// Whether each number of a column is written with the sign of hundredths.
+pub(super) fn of_hundredths(region: &Region<'_>, column: usize) -> bool {
+    let unit = |row: &usize| match region.view.read(*row, column) {
+        Cell::Number(m) => Some(m.unit.is_some_and(|unit| unit.scale == Scale::Percent)),
+        _ => None,
+    };
+    let mut units = region.rows.iter().filter_map(unit).peekable();
+    units.peek().is_some() && units.all(|percent| percent)
+}
+
 impl Columns {
     /// The one column of ratios of heights of a table that has no other readings is read: as
     /// heights of which the release is the whole, where all are parts of it and bounces are counted

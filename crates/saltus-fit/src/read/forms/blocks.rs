@@ -1,6 +1,7 @@
 //! Lists below titles, one for each ball or trial: `Ball A`, `Drop height,100 cm`, `Bounce 1,64
 //! cm`, and the same again for `Ball B`.
 
+use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
 
 /// A title and the names and values below it.
@@ -67,6 +68,26 @@ fn parted(text: &str, mark: char) -> Option<(usize, Vec<Block<'_>>)> {
     (blocks.len() > 1 && alike).then(|| (blocks[0].line, blocks))
 }
 
+/// Numbers behind dashes below a name, `bounces:`, `- 64`, `- 41`, as a list behind it; `None` if
+/// there are none. A line stays a line.
+pub(in crate::read) fn bulleted(text: &str) -> Option<String> {
+    let item = |line: &str| {
+        let value = line.trim().strip_prefix("- ")?.trim().to_owned();
+        matches!(cell::read(&value, false), Cell::Number(_)).then_some(value)
+    };
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let mut found = false;
+    for n in 0..lines.len() {
+        let items: Vec<String> = lines[n + 1..].iter().map_while(|line| item(line)).collect();
+        if items.len() > 1 && lines[n].trim_end().ends_with(':') && item(&lines[n]).is_none() {
+            found = true;
+            lines[n] = format!("{} {}", lines[n].trim_end(), items.join(", "));
+            lines[n + 1..=n + items.len()].iter_mut().for_each(String::clear);
+        }
+    }
+    found.then(|| lines.join("\n") + "\n")
+}
+
 /// Records one below the other, each of the same names, `drop: 100 cm`, `rebound: 64 cm`, as a
 /// table with a row for each; `None` if there are no two. Lines before the first stay what they
 /// are, and a line stays a line.
@@ -110,7 +131,16 @@ pub(super) fn records(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{records, table};
+    use super::{bulleted, records, table};
+
+    #[test]
+    fn numbers_behind_dashes_are_a_list() {
+        let text = "release: 100\nbounces:\n  - 64\n  - 41 cm\n";
+        assert_eq!(bulleted(text).as_deref(), Some("release: 100\nbounces: 64, 41 cm\n\n\n"));
+        for text in ["bounces:\n- 64\n", "- 64\n- 41\n", "bounces\n- 64\n- 41\n", "balls:\n- golf\n- tennis\n"] {
+            assert_eq!(bulleted(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn records_of_the_same_names_are_rows() {

@@ -4,7 +4,7 @@
 use super::super::aside::Why;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded};
-use super::super::words::{Numbers, Word, numbers};
+use super::super::words::{Numbers, Word, numbers, split};
 use super::{At, Heading, Meaning, Role, Value, What};
 
 impl Heading {
@@ -159,7 +159,13 @@ impl Heading {
             (None, What::Speed) if has(Before) || has(Impact) => At::Before,
             _ => At::Row,
         };
-        let mut label = if run.is_empty() { numbers.trial } else { run.to_owned() };
+        // A body that was followed is of a kind of its own: `mass A: y`.
+        let body = split(run).iter().any(|w| w.is(Atom::Label) || folded(&w.text).starts_with("mass"));
+        let (mut label, group) = match run {
+            "" => (numbers.trial, numbers.group),
+            run if body => (String::new(), run.to_owned()),
+            run => (run.to_owned(), numbers.group),
+        };
         if let Some(drop) = from {
             let apart = if label.is_empty() { "" } else { ", " };
             label = format!("{label}{apart}from {}", drop.text);
@@ -169,7 +175,7 @@ impl Heading {
             at,
             role,
             trial: label,
-            group: numbers.group,
+            group,
             position: (has(Position) || has(Distance)) && !has(Height) && !has(Rebound) && !has(Release),
             or_trial: has(Release) && has(Trial) && !has(Height) && at == At::Release,
             drop: self.drop.clone(),

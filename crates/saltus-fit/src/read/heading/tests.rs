@@ -45,6 +45,25 @@ fn heights_and_times_and_at_which_event() {
     }
 }
 
+/// Up to twenty drops are counted, and no height.
+#[test]
+fn few_drops_are_counted() {
+    assert!(["drop 2 cm", "drop 15 cm"].iter().all(|text| release(text).is_none()));
+    assert!(["drop 50 cm", "drop 150 cm", "dropped from 15 cm"].iter().all(|text| release(text).is_some()));
+}
+
+/// Of a pair `h_i`, `h_f` one is before and one after; by themselves both are something else.
+#[test]
+fn what_is_initial_stands_beside_what_is_final() {
+    for (initial, last) in [("h_i (m)", "h_f (m)"), ("v_i (m/s)", "v_f (m/s)"), ("u_i (m/s)", "u_f (m/s)")] {
+        let header = [initial.to_owned(), last.to_owned()];
+        let at = |text: &str| Heading::initial(text, &header).and_then(|h| h.value().map(|v| v.at));
+        assert!(matches!(at(initial), Some(At::Release | At::Before)), "{initial}");
+        assert!(matches!(at(last), Some(At::Row | At::After)), "{last}");
+        assert!(Heading::initial(last, &header[1..]).is_none());
+    }
+}
+
 #[test]
 fn words_that_turn_the_meaning() {
     for (text, why) in [

@@ -7,6 +7,7 @@ use super::super::columns::{LEVEL, of_samples};
 use super::super::grid::View;
 use super::super::heading::{Heading, Meaning, What};
 use super::super::units::{Dimension, Unit};
+use super::super::vocabulary::meanings;
 
 /// A header: its names, the first of its lines, the first row below, and how much of it is
 /// understood.
@@ -323,9 +324,12 @@ const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"
 /// Whether a line holds units and nothing else.
 pub(super) fn of_units(line: &[String]) -> bool {
     let unit = |cell: &str| Unit::parse(cell.trim_matches(['(', ')', '[', ']'])).is_some();
-    let line = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
+    let cells = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
     // In brackets there may be others that are not known.
     let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
-    let known = line().any(|cell| unit(cell));
-    known && line().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
+    // A letter by itself is a sign of what stands below: `t`, `h`.
+    let sign =
+        |cell: &str| line.len() == 1 && meanings(cell).is_some_and(|atoms| atoms.iter().any(|atom| atom.measures()));
+    let known = cells().any(|cell| unit(cell) && !sign(cell));
+    known && cells().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
 }

@@ -1,0 +1,48 @@
+//! Values in a line, parted by commas or blanks, or in the brackets of a program.
+
+use super::super::heading::Heading;
+use super::super::units::Unit;
+
+/// A name in a line by itself stands before at least so many numbers.
+pub(super) const LIST: usize = 3;
+
+/// The parts of a list that commas part, or blanks within brackets; a unit behind the last is that
+/// of all, `64, 41, 26 cm`.
+pub(super) fn listed_values(list: &str) -> Vec<String> {
+    let bare = list.trim_end_matches(';').trim_end();
+    // What a program calls on brackets: `c(64, 41)`, `np.array([64, 41])`.
+    let called = |name: &str| name.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_'));
+    let inside = |text: &str, open: char, close: char| {
+        let (name, inside) = text.strip_suffix(close)?.split_once(open)?;
+        called(name).then(|| inside.to_owned())
+    };
+    let bracketed = |text: &str| [('(', ')'), ('[', ']'), ('{', '}')].iter().find_map(|(o, c)| inside(text, *o, *c));
+    let outer = bracketed(bare);
+    let within = outer.as_deref().and_then(bracketed).or(outer);
+    let values: Vec<&str> = match &within {
+        Some(inside) => inside.split([',', ' ']).filter(|value| !value.is_empty()).collect(),
+        None => list.split(", ").map(str::trim).collect(),
+    };
+    let plain = |value: &str| value.parse::<f64>().is_ok();
+    let last = values.last().copied().unwrap_or_default();
+    let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | ' '));
+    let shared = values.len() > 1 && Unit::parse(unit).is_some() && values[..values.len() - 1].iter().all(|v| plain(v));
+    values.iter().map(|v| if shared && plain(v) { format!("{v} {unit}") } else { (*v).to_owned() }).collect()
+}
+
+/// The numbers of a line that holds several, which blanks or commas part, and nothing else.
+pub(super) fn listed_numbers(line: &str) -> Option<Vec<&str>> {
+    let values: Vec<&str> = line.split([',', ' ']).filter(|value| !value.is_empty()).collect();
+    (values.len() >= LIST && values.iter().all(|value| value.parse::<f64>().is_ok())).then_some(values)
+}
+
+/// The only part of a line, between commas, that names a quantity and its unit: `Heights (m), first
+/// the drop`.
+pub(super) fn named_list(line: &str) -> Option<&str> {
+    let names = |part: &&str| {
+        let heading = Heading::parse(part);
+        heading.unit.is_some() && heading.understood()
+    };
+    let mut found = line.split(", ").map(|part| part.trim().trim_end_matches(':')).filter(names);
+    found.next().filter(|_| found.next().is_none())
+}
