@@ -8,6 +8,8 @@ use crate::statistics::{Line, REJECT, SPARE, TREND, chi_square_p, variance_ratio
 
 /// Release heights that differ by less, as a part of them, are one.
 pub(crate) const SAME_HEIGHT: f64 = 0.05;
+/// CORs that differ by less differ by the rounding of their sums.
+const ROUNDED: f64 = 1e-12;
 
 /// How settings differ: the probability of that by chance, and the settings with the lowest and the
 /// highest COR.
@@ -66,7 +68,8 @@ fn differ_by<'a>(
     let spare = below;
     let own = || settings.iter().map(|(name, s)| ((*name).to_owned(), cor + s.1 / s.0));
     let by_cor = |a: &(String, f64), b: &(String, f64)| a.1.total_cmp(&b.1);
-    Some(Differ { p, spare, low: own().min_by(by_cor)?, high: own().max_by(by_cor)? })
+    let (low, high) = (own().min_by(by_cor)?, own().max_by(by_cor)?);
+    (high.1 - low.1 > ROUNDED).then_some(Differ { p, spare, low, high })
 }
 
 /// A COR that changes from trial to trial in their order: the probability of that by chance, and
@@ -110,5 +113,5 @@ pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opti
     let line = Line::through(points());
     let p = repeats.or_else(|| chance(&line, points().count(), 1))?;
     let (first, last) = (cor + line.at(0.0), cor + line.at(separate.len() as f64 - 1.0));
-    Some(Drift { p, first, last, repeats: repeats.is_some() })
+    ((last - first).abs() > ROUNDED).then_some(Drift { p, first, last, repeats: repeats.is_some() })
 }
