@@ -24,7 +24,8 @@ const LARGER: i64 = 511;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within a range of a dense output; an observer is told how guards were
-    /// searched. A guard that is no number beyond it does not matter.
+    /// searched. A guard that is no number beyond it does not matter. Long, since what one edge
+    /// shows bounds what is looked for of the next.
     pub(super) fn first_crossing(
         &mut self,
         mode: A::Mode,

@@ -42,7 +42,8 @@ const MOST_HALVINGS: usize = 4;
 const LONGEST: f64 = 16.0;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// By series as long as there are any, and from there on by steps.
+    /// By series as long as there are any, and from there on by steps. A long loop: each of its
+    /// parts decides what goes on to the next step.
     pub(super) fn by_series(
         &mut self,
         mode: A::Mode,

@@ -41,6 +41,7 @@ const MOST_PROBED: usize = 8;
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x`, where the arc begins or (not `first`) has come to by other means.
+    /// A long loop: each of its parts decides what goes on to the next step.
     pub(super) fn stepped<O: Observer<A>>(
         &mut self,
         mode: A::Mode,

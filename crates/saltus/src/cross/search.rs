@@ -316,7 +316,8 @@ impl<'a> Search<'a> {
         if side == Side::Inside && samples.stay_above() { Seen::Above } else { Seen::As(samples.proxy()) }
     }
 
-    /// What the shape of the polynomial says of the guard, which is within `margin` of it.
+    /// What the shape of the polynomial says of the guard, which is within `margin` of it. Long,
+    /// for each case is an arm.
     fn by_shape(&mut self, stretch: &Stretch, proxy: &Proxy, side: Side, margin: f64) -> Result<Next, Undefined> {
         let &Stretch { a, b, margin: whole, ref known, .. } = stretch;
         let &Proxy { ref p, margin: sampled, start, end, least, .. } = proxy;
