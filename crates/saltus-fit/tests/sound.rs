@@ -92,8 +92,8 @@ fn a_ball_with_echoes_that_others_recorded() {
     assert!(text.contains("falls with speed"), "the first ratio is the lowest: {text}");
 }
 
-/// Of each kind so many, by default a few: `SOUNDS=1000 cargo test --release -p saltus-fit --test
-/// sound` makes the table of docs/sound.md.
+/// Of each kind so many, by default a few: `SOUNDS=200 SALTUS_BLESS=1 cargo test -p saltus-fit
+/// --test sound made_sounds` writes the table of docs/sound.md.
 #[test]
 fn made_sounds_are_heard_or_refused() {
     let count: u64 = std::env::var("SOUNDS").ok().map_or(25, |count| count.parse().unwrap());
@@ -146,17 +146,17 @@ fn made_sounds_are_heard_or_refused() {
             part(0.95)
         );
         assert!(wrong * 100 <= count as usize, "{kind:?}: {wrong} of {count} trusted and wrong");
-        let [least, most, part] = kind.expected().map(|share| share * count as f64);
-        assert!(f64::from(sure) >= least - 1.0, "{kind:?}: {sure} heard");
-        assert!(
-            if kind.has_ball() {
-                f64::from(refused) <= most + 1.0
-            } else {
-                sure == 0 && f64::from(refused) >= most - 1.0
-            },
-            "{kind:?}: {refused} refused"
-        );
-        assert!(found as f64 * count as f64 >= 0.98 * part * all as f64, "{kind:?}: {found} of {all} found");
+        // As far as chance takes it among other sounds of the kind.
+        let [least, most, part] = kind.expected();
+        let [heard, none] = [f64::from(sure), f64::from(refused)].map(|of| of / count as f64);
+        let room = |share: f64| (1.0 + 3.0 * (count as f64 * share * (1.0 - share)).sqrt()) / count as f64;
+        assert!(heard >= least - room(least), "{kind:?}: {sure} heard");
+        if kind.has_ball() {
+            assert!(none <= most + room(most), "{kind:?}: {refused} refused");
+        } else {
+            assert!(sure == 0 && none >= most - room(most), "{kind:?}: {sure} heard, {refused} refused");
+        }
+        assert!(found as f64 >= 0.95 * part * all as f64, "{kind:?}: {found} of {all} found");
         assert!(false_ones * 50 <= found.max(100), "{kind:?}: {false_ones} false");
     }
     eprintln!("{table}");
