@@ -36,6 +36,7 @@ mod words;
 mod workbook;
 mod wrapped;
 
+use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
@@ -221,10 +222,7 @@ impl Table {
     /// Those of [`Table::read`], for the first file that has one; when the files state different
     /// gravity; and for no file at all.
     pub fn read_all(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, TableError> {
-        let mut parts = Vec::with_capacity(paths.len());
-        let mut given: Vec<(Vec<u8>, String)> = Vec::new();
-        let mut repairs: Vec<Remark<Repair>> = Vec::new();
-        for path in paths.iter().map(AsRef::as_ref) {
+        let read = |path: &Path| {
             let shown = path.display().to_string();
             let name = path.file_name().map_or_else(|| shown.clone(), |n| n.to_string_lossy().into_owned());
             if let Some(heard) = heard::of_file(path, &shown, options) {
@@ -232,6 +230,39 @@ impl Table {
                 continue;
             }
             let bytes = bytes(path, &shown)?;
+            Ok((shown, name, Cow::Owned(bytes)))
+        };
+        Self::joined(paths.iter().map(|path| read(path.as_ref())), options)
+    }
+
+    /// Reads several files that are in memory, by name, into one table: every file adds its trials.
+    ///
+    /// ```
+    /// use saltus_fit::{ReadOptions, Table};
+    ///
+    /// let files: [(&str, &[u8]); 2] = [("a.csv", b"height_cm\n100\n64\n"), ("b.csv", b"height_cm\n100\n65\n")];
+    /// assert_eq!(Table::parse_all(&files, &ReadOptions::default())?.trials().len(), 2);
+    /// # Ok::<(), saltus_fit::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Table::read_all`], but for files that cannot be opened.
+    pub fn parse_all(files: &[(&str, &[u8])], options: &ReadOptions) -> Result<Self, TableError> {
+        let files = files.iter().copied();
+        let named = files.map(|(name, bytes)| Ok((name.to_owned(), name.to_owned(), Cow::Borrowed(bytes))));
+        Self::joined(named, options)
+    }
+
+    /// One table of files: of each the path for messages, the name and the bytes.
+    fn joined<'a>(
+        files: impl Iterator<Item = Result<(String, String, Cow<'a, [u8]>), TableError>>,
+        options: &ReadOptions,
+    ) -> Result<Self, TableError> {
+        let mut parts = Vec::new();
+        let mut given: Vec<(Cow<'_, [u8]>, String)> = Vec::new();
+        let mut repairs: Vec<Remark<Repair>> = Vec::new();
+        for file in files {
+            let (shown, name, bytes) = file?;
             if let Some((_, before)) = given.iter().find(|(known, _)| *known == bytes) {
                 repairs.push(Repair::SameFile { file: name, as_file: before.clone() }.into());
                 continue;

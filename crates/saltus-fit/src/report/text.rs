@@ -86,6 +86,22 @@ fn write(report: &Report, f: &mut Formatter<'_>) -> fmt::Result {
     footer(report, f)
 }
 
+impl Report {
+    /// The COR as the report for people states it, with its interval, in a line; `None` where there
+    /// is none.
+    ///
+    /// ```
+    /// let table = saltus_fit::Table::from_heights(&[1.0, 0.64, 0.41])?;
+    /// let report = saltus_fit::Fit::new().run(&table)?;
+    /// assert!(report.headline().is_some_and(|line| line.contains("95 % interval")));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn headline(&self) -> Option<String> {
+        self.cor.as_ref().map(|cor| headline(self, cor))
+    }
+}
+
 fn headline(report: &Report, cor: &Cor) -> String {
     match cor.standard_error {
         Some(_) if report.agreement.as_ref().is_some_and(Agreement::rejected) => {
