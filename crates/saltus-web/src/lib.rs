@@ -1,0 +1,51 @@
+//! What the page `saltus.html` computes: one question, one answer, over bytes.
+//!
+//! A message is the length of its JSON (four bytes, the lowest first), the JSON, and bytes that the
+//! JSON tells the lengths of. The page asks for [`room`], writes its question there, calls
+//! [`answer`] for the length of the answer, and reads that at [`place`]. `docs/page.md` lists the
+//! questions.
+//!
+//! Three functions need no generated bindings, and so neither a tool to make them nor the script
+//! that comes with them. Nothing is read or written through a pointer on this side.
+
+mod answer;
+mod ask;
+mod fit;
+mod knob;
+mod scene;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+pub use ask::answered;
+
+/// The question, and then its answer.
+static MESSAGE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+fn message() -> MutexGuard<'static, Vec<u8>> {
+    MESSAGE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes room for a question of `length` bytes and says where.
+#[allow(unsafe_code)] // an exported name: no other function has it
+#[unsafe(no_mangle)]
+pub extern "C" fn room(length: usize) -> *mut u8 {
+    let mut message = message();
+    *message = vec![0; length];
+    message.as_mut_ptr()
+}
+
+/// Answers the question and says how long the answer is.
+#[allow(unsafe_code)] // as above
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() -> usize {
+    let mut message = message();
+    *message = answered(&message);
+    message.len()
+}
+
+/// Where the answer is.
+#[allow(unsafe_code)] // as above
+#[unsafe(no_mangle)]
+pub extern "C" fn place() -> *const u8 {
+    message().as_ptr()
+}

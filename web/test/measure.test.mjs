@@ -1,0 +1,208 @@
+// Measure: what the page fits is what the tool fits; nothing in a file is more than text.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { after, before, test } from "node:test";
+import { alike, fitted, give, html, on, root, saved, start, stop, told } from "./browser.mjs";
+import { DECIDED, NEAR } from "./rounded.mjs";
+
+before(start);
+after(stop);
+
+const tables = (folder) => readdirSync(join(root, folder)).map((name) => join(root, folder, name));
+const file = (path) => ({ name: basename(path), bytes: readFileSync(path) });
+/// A share of the many files that people handed in; all of them with SHARE=1.
+const share = Number(process.env.SHARE ?? 12);
+const handed = tables("crates/saltus-fit/tests/handed").filter((_, n) => n % share === 0);
+const known = [...tables("examples/data"), ...tables("crates/saltus-fit/tests/tables"), ...handed].filter((path) => statSync(path).isFile());
+
+test("it opens with a fit, is small, and asks nobody", () =>
+  on(async (page) => {
+    const size = statSync(html).size;
+    const ready = await page.evaluate(() => document.documentElement.dataset.ready);
+    console.log(`saltus.html: ${(size / 1e6).toFixed(2)} MB; first fit ${ready} ms after opening`);
+    assert.ok(size <= 3e6);
+    assert.equal(await page.textContent("#verdict"), "Doubtful");
+    assert.match(await page.textContent("#headline"), /between 0\.41 and 0\.75/);
+  }));
+
+test("it opens from a server", async () => {
+  const server = createServer((_, answer) => answer.setHeader("content-type", "text/html").end(readFileSync(html)));
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  const url = `http://127.0.0.1:${server.address().port}/`;
+  await on(async (page) => assert.equal(await page.textContent("#verdict"), "Doubtful"), { url, offline: false });
+  server.close();
+});
+
+const decided = Object.values(DECIDED).flat();
+
+test(`${known.length} files are fitted as by the tool`, () =>
+  on(async (page) => {
+    const different = {};
+    let read = 0;
+    for (const path of known) {
+      const wanted = fitted([path]);
+      await give(page, [file(path)]);
+      try {
+        if (wanted.error) {
+          const says = await page.textContent("#problem");
+          assert.ok(says.includes(wanted.error.message), says);
+        } else {
+          assert.equal(await page.isVisible("#save-json"), true, await page.textContent("#problem"));
+          const got = JSON.parse((await saved(page, "#save-json")).bytes);
+          assert.equal(got.verdict, wanted.verdict);
+          read += 1;
+          if (decided.includes(basename(path))) continue;
+          assert.equal((await page.textContent("#text")).trim(), told(path));
+          if (!NEAR.includes(basename(path))) alike(got, wanted);
+        }
+      } catch (error) {
+        different[basename(path)] = error.message.slice(0, 200);
+      }
+    }
+    console.log(`${read} reports, ${known.length - read} refusals`);
+    assert.deepEqual(different, {});
+    assert.ok(read > known.length / 3);
+  }));
+
+test("several files are one table", () =>
+  on(async (page) => {
+    const paths = ["intervals.csv", "stopwatch.csv"].map((name) => join(root, "crates/saltus-fit/tests/tables", name));
+    await give(page, paths.map(file));
+    alike(JSON.parse((await saved(page, "#save-json")).bytes), fitted(paths));
+  }));
+
+test("what the table does not say can be stated", () =>
+  on(async (page) => {
+    await page.click("#options summary");
+    const state = async (options) => {
+      for (const [name, value] of Object.entries(options)) await page.fill(`#option-${name}`, value);
+    };
+    const squash = join(root, "examples/data/squash-on-cement.csv");
+    await state({ sigma_height: "5 mm", sigma_time: "3 ms", sigma_zero: "0", gravity: "9.81 m/s^2", ball: "squash" });
+    await give(page, [file(squash)]);
+    const flags = ["--sigma-height", "5mm", "--sigma-time", "3ms", "--sigma-zero", "0", "--gravity", "9.81m/s^2", "--ball", "squash"];
+    alike(JSON.parse((await saved(page, "#save-json")).bytes), fitted([squash], ...flags));
+    await state({ sigma_height: "5" });
+    await page.press("#option-sigma_height", "Tab");
+    await page.waitForFunction(() => document.getElementById("problem").textContent.includes("has no unit"));
+
+    await state({ sigma_height: "", sigma_time: "", sigma_zero: "", gravity: "", ball: "4 cm", drag: "0.02" });
+    const bare = join(mkdtempSync(join(tmpdir(), "saltus-")), "bare.txt");
+    writeFileSync(bare, "64\n41\n26.2\n16.8\n");
+    await state({ header: "height", height_unit: "cm", drop: "1 m", zero: "0", direction: "up" });
+    await give(page, [file(bare)]);
+    const wanted = fitted([bare], "--header", "height", "--height-unit", "cm", "--drop", "1m", "--zero", "0", "--y-up", "--ball", "4cm", "--drag", "0.02");
+    assert.equal(wanted.error, undefined);
+    alike(JSON.parse((await saved(page, "#save-json")).bytes), wanted);
+  }));
+
+test("a cell that is edited changes the fit and nothing else in the file", () =>
+  on(async (page) => {
+    const text = "# mine\r\nbounce;height_cm\r\n0;100\r\n1;64,0\r\n2;41\r\n3;26,2\r\n";
+    await give(page, [{ name: "mine.csv", bytes: text }]);
+    const first = await page.textContent("#headline");
+    await page.focus('[data-place="3:1"]');
+    await page.keyboard.press("ArrowDown");
+    await page.keyboard.type("40,5");
+    await page.waitForFunction((before) => document.getElementById("headline").textContent !== before, first);
+    assert.equal(String((await saved(page, "#save-csv")).bytes), text.replace("41", "40,5"));
+    await page.fill('[data-place="3:1"]', "thirty");
+    await page.waitForSelector('[data-place="3:1"][aria-invalid]');
+    assert.match(await page.textContent("#problem"), /mine\.csv:4:3: 'thirty' is not a number/);
+  }));
+
+test("a table is typed by keyboard alone, or pasted", () =>
+  on(async (page) => {
+    await page.focus("#blank");
+    await page.keyboard.press("Enter");
+    await page.focus('[data-place="1:1"]');
+    for (const height of ["100", "64", "41", "26.2"]) {
+      await page.keyboard.type(height);
+      await page.keyboard.press("Enter");
+    }
+    await page.waitForFunction(() => /0\.8/.test(document.getElementById("headline").textContent));
+    await page.evaluate(() => {
+      const data = new DataTransfer();
+      data.setData("text/plain", "bounce\theight (cm)\n0\t100\n1\t49\n2\t24\n3\t11.8\n");
+      document.body.dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
+    });
+    await page.waitForFunction(() => /0\.7/.test(document.getElementById("headline").textContent));
+  }));
+
+test("names and cells are only text", () =>
+  on(async (page) => {
+    const evil = '<img src=x onerror="document.title=1">';
+    const text = `${evil},height_cm,"${evil.replaceAll('"', '""')}"\n0,100,a\n1,64,${evil}\n2,41,<script>document.title=1</script>\n`;
+    const title = await page.title();
+    for (const name of [`${evil}.csv`, "'\"><svg onload=document.title=1>.csv"]) {
+      await give(page, [{ name, bytes: text }]);
+      await give(page, [{ name, bytes: `${evil}` }, { name: `b${name}`, bytes: text }]);
+    }
+    await page.waitForTimeout(100);
+    assert.equal(await page.title(), title);
+    assert.equal(await page.locator("img:not([src^='blob:'])").count(), 0);
+    assert.equal(await page.locator("main script, main svg").count(), 0);
+  }));
+
+test("a file of 100 MB is refused, and the page stays awake", () =>
+  on(async (page) => {
+    await page.evaluate(() => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(100e6)], "large.csv"));
+      dispatchEvent(new DragEvent("drop", { dataTransfer: data }));
+    });
+    await page.waitForFunction(() => document.getElementById("problem").textContent.includes("100 MB"));
+    await page.click("#example");
+    await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
+  }));
+
+test("a Worker that breaks down or does not end is ended, and another goes on", () =>
+  on(async (page, { faults }) => {
+    await page.workers()[0].evaluate(() => { WebAssembly.Memory.prototype.toString(); setTimeout(() => { onmessage = () => { throw new Error("trap"); }; }); });
+    await page.click("#example");
+    await page.waitForFunction(() => document.getElementById("problem").textContent.includes("started anew"));
+    faults.length = 0;
+    await page.click("#example");
+    await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
+    page.workers().at(-1).evaluate(() => { for (;;); }).catch(() => {});
+    await page.click("#example");
+    await page.click("#stop");
+    await page.waitForFunction(() => document.getElementById("problem").textContent === "Stopped.");
+    await page.click("#example");
+    await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
+  }));
+
+/// Numbers from 0 to 1, the same on every run.
+function random(seed) {
+  let state = seed;
+  return () => {
+    state = (state * 1664525 + 1013904223) >>> 0;
+    return state / 2 ** 32;
+  };
+}
+
+test("files at random do no harm", () =>
+  on(async (page) => {
+    const count = Number(process.env.RANDOM_FILES ?? 200);
+    const next = random(35);
+    const whole = (most) => Math.floor(next() * most);
+    const seeds = known.map(file).filter(({ bytes }) => bytes.length < 100_000);
+    const verdicts = {};
+    for (let n = 0; n < count; n += 1) {
+      const seed = seeds[whole(seeds.length)];
+      const bytes = Buffer.from(seed.bytes);
+      // Noise, workbooks of noise, tables that end too early, and tables with a slip or two.
+      if (n % 8 < 2) for (let k = 0; k < bytes.length; k += 1) bytes[k] = whole(256);
+      if (n % 8 === 1) bytes.set([0xd0, 0xcf, 0x11, 0xe0, 0xa1, 0xb1, 0x1a, 0xe1].slice(0, bytes.length));
+      for (let k = whole(4); k > 0; k -= 1) bytes[whole(bytes.length)] = n % 8 < 5 ? 48 + whole(10) : whole(256);
+      const end = n % 8 === 2 ? 1 + whole(bytes.length) : bytes.length;
+      await give(page, [{ name: seed.name, bytes: bytes.subarray(0, end) }]);
+      const ended = (await page.textContent("#problem")).includes("started anew");
+      const verdict = ended ? "ended" : await page.textContent("#verdict");
+      verdicts[verdict] = (verdicts[verdict] ?? 0) + 1;
+    }
+    console.log(`${count} files at random:`, verdicts);
+  }));
