@@ -13,13 +13,13 @@ use crate::signal::patiently;
 
 /// A number in SI units, or text with a unit.
 #[derive(FromPyObject)]
-enum Amount {
+pub(crate) enum Amount {
     Number(f64),
     Text(String),
 }
 
 impl Amount {
-    fn of(&self, quantity: Quantity) -> PyResult<f64> {
+    pub(crate) fn of(&self, quantity: Quantity) -> PyResult<f64> {
         match self {
             Self::Number(value) => Ok(*value),
             Self::Text(text) => quantity.parse(text).map_err(fail::value),

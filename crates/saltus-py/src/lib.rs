@@ -19,7 +19,7 @@ mod core {
     #[pymodule_export]
     use super::hybrid::{Hybrid, Run, Tape};
     #[pymodule_export]
-    use super::scene::{Motion, explain, simulate, solve};
+    use super::scene::{Motion, accuracy, explain, simulate, solve};
     #[pymodule_export]
     use super::sweep::{sweep_plan, sweep_rows};
 

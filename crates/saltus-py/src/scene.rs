@@ -3,13 +3,16 @@
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use saltus_bounce::units::Quantity;
 use saltus_motion::{Format, Frames};
 use saltus_plot::record as pictures;
+use saltus_scene::accuracy::{Accuracy, Target};
 use saltus_scene::plan::{End, Moment, Record, With};
 use saltus_scene::solve::{Clock, Wish};
 use saltus_scene::{Kind, Sampling, Scene, Staging, Values};
 
 use crate::fail::{self, named};
+use crate::fit::Amount;
 use crate::signal::{Signals, patiently};
 
 /// What a run is asked for beside its scene.
@@ -42,6 +45,32 @@ pub(crate) fn simulate(
 pub(crate) fn explain(name: &str, toml: &[u8]) -> PyResult<String> {
     let scene = Scene::parse(name, toml).map_err(fail::scene)?;
     Ok(scene.plan().map_err(fail::scene)?.explain().to_string())
+}
+
+/// What accuracy costs in a scene, as JSON, up to `until` in s, with the setting to take for places
+/// within a `length` and impacts within a `time`.
+#[pyfunction]
+#[pyo3(signature = (name, toml, length=None, time=None, until=None))]
+pub(crate) fn accuracy(
+    py: Python<'_>,
+    name: &str,
+    toml: &[u8],
+    length: Option<Amount>,
+    time: Option<Amount>,
+    until: Option<f64>,
+) -> PyResult<String> {
+    let scene = Scene::parse_with(name, toml, ending(until, None, None)).map_err(fail::scene)?;
+    let within = |amount: Option<Amount>, quantity: Quantity| {
+        let value = amount.map(|amount| amount.of(quantity)).transpose()?;
+        match value {
+            Some(value) if !(value > 0.0) => Err(fail::value(format!("an accuracy of {value} is not above zero"))),
+            value => Ok(value),
+        }
+    };
+    let target = Target { length: within(length, Quantity::Length)?, time: within(time, Quantity::Time)? };
+    let measured = py.detach(move || Accuracy::timed(&scene).map(|accuracy| (accuracy.toggled(&scene), accuracy)));
+    let (toggles, accuracy) = measured.map_err(|error| fail::value(error.to_string()))?;
+    accuracy.json(&toggles, target).map_err(fail::scene)
 }
 
 /// The scene, in TOML, in which wishes come true; whether they do; and what is said of each.

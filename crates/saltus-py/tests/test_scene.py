@@ -127,3 +127,27 @@ def test_the_report_of_a_scene_is_json():
     assert json.loads(motion.to_json())["schema"] == 1
     assert motion.table()["mode"][0] == "flight" and motion.balls == 1 and motion.doubts == []
     assert np.isnan(motion.height(1e6)) and np.isnan(motion.at(0.1, ball=3).position).all()
+
+
+def test_accuracy_says_what_the_tool_says(tool):
+    scene = ROOT / "examples/scenes/topspin.toml"
+    costs = saltus.accuracy(scene, length="1 um", time=None)
+    said = subprocess.run(
+        [tool, "-q", "accuracy", scene, "--target", "1um", "--format", "json"], capture_output=True, text=True
+    )
+    tools = json.loads(said.stdout)
+    # Times differ from run to run.
+    alike = [{key: row[key] for key in row if not key.startswith("seconds")} for row in costs.trials]
+    assert alike == [{key: row[key] for key in row if not key.startswith("seconds")} for row in tools["trials"]]
+    assert costs.reference == tools["reference"] and costs.recommended["run"]
+    assert len(costs.effects) == len(tools["effects"])
+    assert costs.recommended["run"] in repr(costs)
+    assert json.loads(costs.json())["target"] == {"length_m": 1e-6}
+
+
+def test_an_accuracy_that_makes_no_sense():
+    with pytest.raises(ValueError, match="not above zero"):
+        saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length=0.0)
+    with pytest.raises(ValueError, match="unit"):
+        saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length="1 s")
+    assert saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length=1e-300).recommended is None

@@ -210,6 +210,12 @@ pub struct Toggle {
     pub outcome: Result<Outcome, String>,
 }
 
+impl fmt::Display for Toggle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", if self.without { "without" } else { "with" }, self.effect)
+    }
+}
+
 impl Accuracy {
     /// Runs the scene in every way, and times each.
     ///

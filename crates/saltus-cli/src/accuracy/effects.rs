@@ -16,7 +16,7 @@ pub(super) fn text(toggles: &[Toggle], accuracy: &Accuracy, target: Target) -> S
     let mut refusals: Vec<(String, Vec<String>)> = Vec::new();
     let mut runs = String::new();
     for toggle in toggles {
-        let name = toggled(toggle);
+        let name = toggle.to_string();
         let outcome = match &toggle.outcome {
             Ok(outcome) => outcome,
             Err(refused) => {
@@ -53,9 +53,4 @@ pub(super) fn text(toggles: &[Toggle], accuracy: &Accuracy, target: Target) -> S
         let _ = writeln!(text, "not run: {}: {reason}", names.join(", "));
     }
     text
-}
-
-/// The run in words.
-pub(super) fn toggled(toggle: &Toggle) -> String {
-    format!("{} {}", if toggle.without { "without" } else { "with" }, toggle.effect)
 }

@@ -1,7 +1,6 @@
 //! `saltus accuracy`: what accuracy costs in a scene.
 
 mod advice;
-mod document;
 mod effects;
 mod picture;
 mod table;
@@ -71,7 +70,7 @@ pub(crate) fn run(args: &Accuracy, quiet: bool) -> Result<ExitCode, Error> {
             effects::text(&toggles, &accuracy, target),
         ]
         .concat(),
-        ReportFormat::Json => document::json(&accuracy, &toggles, target)?,
+        ReportFormat::Json => accuracy.json(&toggles, target).map_err(Error::new)?,
     };
     write(None, text.as_bytes())?;
     Ok(ExitCode::SUCCESS)

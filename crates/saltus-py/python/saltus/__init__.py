@@ -2,7 +2,7 @@
 
 - :class:`Hybrid`: flows, guards and resets as plain functions, run at compiled speed
 - :func:`fit`: from a table of bounces to a COR with its uncertainty and a verdict
-- :func:`simulate`, :func:`explain`, :func:`solve`: scenes of bouncing balls
+- :func:`simulate`, :func:`explain`, :func:`accuracy`, :func:`solve`: scenes of bouncing balls
 - :func:`sweep`: a scene many times, here or on many machines
 """
 
@@ -11,7 +11,7 @@ from ._fit import Cor, Finding, Fit, fit
 from ._hybrid import Hybrid, TracingWarning
 from ._picture import Svg
 from ._runs import Ensemble, Gradient, Run
-from ._scene import Moment, Motion, Scene, Solved, explain, simulate, solve
+from ._scene import Accuracy, Moment, Motion, Scene, Solved, accuracy, explain, simulate, solve
 from ._sweep import Sweep, sweep
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "TableError",
     "TracingWarning",
     "__version__",
+    "accuracy",
     "explain",
     "fit",
     "simulate",

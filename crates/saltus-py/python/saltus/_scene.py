@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._fit import Amount
 from ._picture import Svg
 
 Numbers = NDArray[np.float64]
@@ -250,6 +251,86 @@ def explain(scene: Source = None, /, **keys: Any) -> str:
     """How a scene would be run, and why: what acts, and how each mode is advanced."""
     made = Scene(scene, **keys)
     return _core.explain(made.name, made.toml.encode())
+
+
+class Accuracy:
+    """What accuracy costs in a scene: :func:`accuracy` measures it.
+
+    ``recommended`` is the cheapest setting that meets the target, ``None`` if none does;
+    ``reference`` what every run is compared with, and ``reference_error`` how far that may be off.
+    ``trials`` has a dict for each setting tried, ``effects`` one for each effect left out or put
+    in: ``run``, ``error`` (``impacts_s``, ``apexes_m``, ``places_m``, ``energy_share``), ``steps``,
+    ``flows``, ``guards``, ``seconds``, or ``refused``. docs/accuracy.md describes them.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._json = text
+        self._data: dict[str, Any] = json.loads(text)
+
+    @property
+    def recommended(self) -> dict[str, Any] | None:
+        """The cheapest setting that meets the target: ``run``, ``stepper``, ``tolerance``."""
+        found: dict[str, Any] | None = self._data["recommended"]
+        return found
+
+    @property
+    def reference(self) -> str:
+        """What every run is compared with."""
+        found: str = self._data["reference"]
+        return found
+
+    @property
+    def reference_error(self) -> dict[str, Any]:
+        """How far the reference itself may be off."""
+        found: dict[str, Any] = self._data["reference_error"]
+        return found
+
+    @property
+    def trials(self) -> list[dict[str, Any]]:
+        """The settings tried."""
+        found: list[dict[str, Any]] = self._data["trials"]
+        return found
+
+    @property
+    def effects(self) -> list[dict[str, Any]]:
+        """The effects left out or put in."""
+        found: list[dict[str, Any]] = self._data["effects"]
+        return found
+
+    def json(self) -> str:
+        """All of it, as ``saltus accuracy --format json`` writes it."""
+        return self._json
+
+    def __repr__(self) -> str:
+        best = "no setting meets the target" if self.recommended is None else self.recommended["run"]
+        return f"<saltus.Accuracy: {best}>"
+
+
+def accuracy(
+    scene: Source = None,
+    /,
+    *,
+    length: Amount | None = "1 mm",
+    time: Amount | None = "1 ms",
+    until: float | None = None,
+    **keys: Any,
+) -> Accuracy:
+    """What accuracy costs in a scene, and which setting to take for places within a ``length`` and
+    impacts within a ``time``; ``None`` for either that does not matter. ``until`` is when to stop,
+    in s.
+
+    The scene is run by each stepper to ten tolerances, and frame by frame, and every run is
+    compared with a reference: by formulas where they solve the scene.
+
+    >>> import saltus
+    >>> saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}})
+    <saltus.Accuracy: formulas>
+
+    Raises :class:`saltus.SceneError` for a scene that cannot be run, :class:`ValueError` for a
+    length or a time that makes no sense.
+    """
+    made = Scene(scene, **keys)
+    return Accuracy(_core.accuracy(made.name, made.toml.encode(), length, time, until))
 
 
 class Solved(NamedTuple):

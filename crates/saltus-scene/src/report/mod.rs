@@ -1,5 +1,6 @@
-//! A recorded run for others: as text, as a table and as JSON.
+//! A recorded run for others: as text, as a table and as JSON; and what accuracy costs, as JSON.
 
+mod accuracy;
 mod document;
 mod table;
 mod text;
