@@ -63,8 +63,9 @@ pub(crate) fn accuracy(
     let within = |amount: Option<Amount>, quantity: Quantity| {
         let value = amount.map(|amount| amount.of(quantity)).transpose()?;
         match value {
-            Some(value) if !(value > 0.0) => Err(fail::value(format!("an accuracy of {value} is not above zero"))),
-            value => Ok(value),
+            Some(value) if value > 0.0 => Ok(Some(value)),
+            Some(value) => Err(fail::value(format!("an accuracy of {value} is not above zero"))),
+            None => Ok(None),
         }
     };
     let target = Target { length: within(length, Quantity::Length)?, time: within(time, Quantity::Time)? };

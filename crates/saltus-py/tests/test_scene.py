@@ -147,7 +147,7 @@ def test_accuracy_says_what_the_tool_says(tool):
 
 def test_an_accuracy_that_makes_no_sense():
     with pytest.raises(ValueError, match="not above zero"):
-        saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length=0.0)
+        saltus.accuracy(restitution=0.8, ball={"height": "1 m"}, length=0.0)
     with pytest.raises(ValueError, match="unit"):
-        saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length="1 s")
-    assert saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}}, length=1e-300).recommended is None
+        saltus.accuracy(restitution=0.8, ball={"height": "1 m"}, length="1 s")
+    assert saltus.accuracy(restitution=0.8, ball={"height": "1 m"}, length=1e-300).recommended is None

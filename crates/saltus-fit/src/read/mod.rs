@@ -225,12 +225,11 @@ impl Table {
         let read = |path: &Path| {
             let shown = path.display().to_string();
             let name = path.file_name().map_or_else(|| shown.clone(), |n| n.to_string_lossy().into_owned());
-            if let Some(heard) = heard::of_file(path, &shown, options) {
-                parts.push((name.clone(), Self { name, ..heard? }));
-                continue;
-            }
-            let bytes = bytes(path, &shown)?;
-            Ok((shown, name, Cow::Owned(bytes)))
+            let held = match heard::of_file(path, &shown, options) {
+                Some(table) => Held::Sound(Box::new(table?)),
+                None => Held::Bytes(Cow::Owned(bytes(path, &shown)?)),
+            };
+            Ok((shown, name, held))
         };
         Self::joined(paths.iter().map(|path| read(path.as_ref())), options)
     }
@@ -249,27 +248,34 @@ impl Table {
     /// Those of [`Table::read_all`], but for files that cannot be opened.
     pub fn parse_all(files: &[(&str, &[u8])], options: &ReadOptions) -> Result<Self, TableError> {
         let files = files.iter().copied();
-        let named = files.map(|(name, bytes)| Ok((name.to_owned(), name.to_owned(), Cow::Borrowed(bytes))));
+        let named =
+            files.map(|(name, bytes)| Ok((name.to_owned(), name.to_owned(), Held::Bytes(Cow::Borrowed(bytes)))));
         Self::joined(named, options)
     }
 
-    /// One table of files: of each the path for messages, the name and the bytes.
+    /// One table of files: of each the path for messages, the name and what it holds.
     fn joined<'a>(
-        files: impl Iterator<Item = Result<(String, String, Cow<'a, [u8]>), TableError>>,
+        files: impl Iterator<Item = Result<(String, String, Held<'a>), TableError>>,
         options: &ReadOptions,
     ) -> Result<Self, TableError> {
         let mut parts = Vec::new();
         let mut given: Vec<(Cow<'_, [u8]>, String)> = Vec::new();
         let mut repairs: Vec<Remark<Repair>> = Vec::new();
         for file in files {
-            let (shown, name, bytes) = file?;
-            if let Some((_, before)) = given.iter().find(|(known, _)| *known == bytes) {
-                repairs.push(Repair::SameFile { file: name, as_file: before.clone() }.into());
-                continue;
-            }
-            let table = file::table(&shown, &bytes, options)?;
-            parts.push((name.clone(), Self { name: name.clone(), ..table }));
-            given.push((bytes, name));
+            let (shown, name, held) = file?;
+            let table = match held {
+                Held::Sound(table) => *table,
+                Held::Bytes(bytes) => {
+                    if let Some((_, before)) = given.iter().find(|(known, _)| *known == bytes) {
+                        repairs.push(Repair::SameFile { file: name, as_file: before.clone() }.into());
+                        continue;
+                    }
+                    let table = file::table(&shown, &bytes, options)?;
+                    given.push((bytes, name.clone()));
+                    table
+                }
+            };
+            parts.push((name.clone(), Self { name, ..table }));
         }
         if parts.is_empty() {
             return Err(TableError::new("no file", "there is nothing to read").help("name a file"));
@@ -410,6 +416,12 @@ impl Table {
     pub fn gravity(&self) -> Option<f64> {
         self.metadata.gravity
     }
+}
+
+/// What a file holds: a sound is listened to where it is, for it may be long.
+enum Held<'a> {
+    Bytes(Cow<'a, [u8]>),
+    Sound(Box<Table>),
 }
 
 fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, TableError> {

@@ -323,7 +323,7 @@ def accuracy(
     compared with a reference: by formulas where they solve the scene.
 
     >>> import saltus
-    >>> saltus.accuracy({"ball": {"height": "1 m", "cor": 0.8}})
+    >>> saltus.accuracy(restitution=0.8, ball={"height": "1 m"})
     <saltus.Accuracy: formulas>
 
     Raises :class:`saltus.SceneError` for a scene that cannot be run, :class:`ValueError` for a

@@ -117,7 +117,7 @@ impl Accuracy {
     /// use saltus_scene::Scene;
     /// use saltus_scene::accuracy::{Accuracy, Target};
     ///
-    /// let scene = Scene::parse("drop.toml", b"[ball]\nheight = \"1 m\"\ncor = 0.8\n")?;
+    /// let scene = Scene::parse("drop.toml", b"restitution = 0.8\n[ball]\nheight = \"1 m\"\n")?;
     /// let accuracy = Accuracy::counted(&scene)?;
     /// let json = accuracy.json(&accuracy.toggled(&scene), Target::DEFAULT)?;
     /// let json: serde_json::Value = serde_json::from_str(&json)?;
