@@ -89,11 +89,14 @@ const policy = [
   "form-action 'none'",
 ].join("; ");
 const filled = { POLICY: policy, STYLE: style, SCRIPT: script, WASM: packed(readFileSync(wasm)) };
+/// A word of the interface, which every language has to have.
+function word(key) {
+  if (!(key in words)) throw new Error(`words/${language}.json has no "${key}"`);
+  return words[key];
+}
+for (const key of Object.keys(JSON.parse(read("words/en.json")))) word(key);
 const html = read("page.html")
-  .replace(/\{\{([\w.]+)\}\}/g, (whole, key) => {
-    if (!(key in words)) throw new Error(`words/${language}.json has no ${whole}`);
-    return escaped(words[key]);
-  })
+  .replace(/\{\{([\w.]+)\}\}/g, (_, key) => escaped(word(key)))
   .replace(/@(POLICY|STYLE|SCRIPT|WASM)@/g, (_, key) => filled[key]);
 // The mark at the start says UTF-8 whatever a server says.
 writeFileSync(page, `\ufeff${html}`);

@@ -40,7 +40,8 @@ export function textOf(bytes) {
   }
 }
 
-/// Shows `text` in `element`; `changed` is called with the new text.
+/// Shows `text` in `element`; `changed` is called with the new text, and with whether its cells are
+/// others than those that are shown.
 export function grid(element, text, changed) {
   const ending = text.includes("\r\n") ? "\r\n" : "\n";
   const lines = text.split(/\r?\n/);
@@ -49,7 +50,8 @@ export function grid(element, text, changed) {
   const width = Math.max(1, ...lines.slice(0, SHOWN).map((line) => cells(line, mark).length));
   const whole = () => lines.join(ending) + ending;
 
-  function edit(row, column, value) {
+  function put(row, column, value) {
+    while (lines.length <= row) lines.push("");
     const spans = cells(lines[row], mark);
     if (column < spans.length) {
       const [start, end] = spans[column];
@@ -58,7 +60,19 @@ export function grid(element, text, changed) {
     } else if (value !== "") {
       lines[row] += mark.repeat(column - spans.length + 1) + quoted(value, mark);
     }
-    changed(whole());
+  }
+  function edit(row, column, value) {
+    put(row, column, value);
+    changed(whole(), false);
+  }
+  /// Rows of a spreadsheet go into the cells from this one on.
+  function paste(event, row, column) {
+    const block = event.clipboardData.getData("text/plain").replace(/\r?\n$/, "");
+    if (!/[\t\n]/.test(block)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    block.split(/\r?\n/).forEach((line, down) => line.split("\t").forEach((value, across) => put(row + down, column + across, value)));
+    changed(whole(), true);
   }
 
   const input = (row, column) => {
@@ -68,6 +82,7 @@ export function grid(element, text, changed) {
     cell.setAttribute("aria-label", say("table.cell", { row: row + 1, column: column + 1 }));
     cell.dataset.place = `${row}:${column}`;
     cell.addEventListener("input", () => edit(row, column, cell.value));
+    cell.addEventListener("paste", (event) => paste(event, row, column));
     return made("td", {}, cell);
   };
   const body = made("tbody");

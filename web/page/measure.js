@@ -13,7 +13,7 @@ const OPTIONS = [
   "height_unit", "time_unit", "drop", "sigma_height", "sigma_time", "sigma_zero", "gravity", "ball", "drag",
   "column", "sheet", "header", "group", "filter", "fps", "scale", "zero", "direction",
 ];
-const EMPTY = "bounce,height_cm\n0,\n1,\n2,\n3,\n";
+const EMPTY = "bounce\theight_cm\n0\t\n1\t\n2\t\n3\t\n";
 
 /// The last fit: `{ report, points, scene, … }`; what `fitted` is called with.
 let last;
@@ -99,8 +99,9 @@ function table() {
     at("grid").replaceChildren(...names.map(part));
     return;
   }
-  shown = grid(at("grid"), text, (changed) => {
+  shown = grid(at("grid"), text, (changed, others) => {
     file.bytes = new TextEncoder().encode(changed);
+    if (others) table();
     clearTimeout(timer);
     timer = setTimeout(fit, REST);
   });
@@ -141,7 +142,7 @@ export function measure(play, compare) {
   const on = (id, act) => at(id).addEventListener("click", act);
   at("files").addEventListener("change", (event) => take([...event.target.files]).then(() => { event.target.value = ""; }));
   on("example", () => of("squash-on-cement.csv", EXAMPLE));
-  on("blank", () => of("table.csv", EMPTY));
+  on("blank", () => of("table.tsv", EMPTY));
   on("add-row", () => shown?.add());
   on("save-json", () => save(`${stem()}.json`, last.json, "application/json"));
   on("save-csv", () => save(`${stem()}.csv`, csv(), "text/csv"));

@@ -124,12 +124,20 @@ test("a table is typed by keyboard alone, or pasted", () =>
       await page.keyboard.press("Enter");
     }
     await page.waitForFunction(() => /0\.8/.test(document.getElementById("headline").textContent));
-    await page.evaluate(() => {
+    const paste = (where, text) => page.evaluate(([selector, pasted]) => {
       const data = new DataTransfer();
-      data.setData("text/plain", "bounce\theight (cm)\n0\t100\n1\t49\n2\t24\n3\t11.8\n");
-      document.body.dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
-    });
+      data.setData("text/plain", pasted);
+      document.querySelector(selector).dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true }));
+    }, [where, text]);
+    await paste("body", "bounce\theight (cm)\n0\t100\n1\t49\n2\t24\n3\t11.8\n");
     await page.waitForFunction(() => /0\.7/.test(document.getElementById("headline").textContent));
+    // Into a cell: from there on, with decimal commas, and with more rows than there are.
+    await page.click("#blank");
+    await page.waitForSelector('[data-place="4:1"]');
+    const heights = Array.from({ length: 8 }, (_, n) => (100 * 0.36 ** n).toFixed(3).replace(".", ","));
+    await paste('[data-place="1:0"]', heights.map((height, n) => `${n}\t${height}`).join("\r\n"));
+    await page.waitForFunction(() => /0\.60/.test(document.getElementById("headline").textContent));
+    assert.equal(String((await saved(page, "#save-csv")).bytes), `bounce\theight_cm\n${heights.map((height, n) => `${n}\t${height}\n`).join("")}`);
   }));
 
 test("names and cells are only text", () =>
