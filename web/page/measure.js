@@ -117,7 +117,14 @@ export async function take(list) {
     return;
   }
   const read = async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
-  files = await Promise.all(list.map(read));
+  try {
+    files = await Promise.all(list.map(read));
+  } catch {
+    // What is dropped may be a folder, or be gone.
+    asked += 1;
+    fail({ message: say("failed.unread", { name: list.map(({ name }) => name).join(", ") }) });
+    return;
+  }
   table();
   await fit();
 }

@@ -167,11 +167,30 @@ test("a file of 100 MB is refused, and the page stays awake", () =>
     await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
   }));
 
+test("what cannot be read is said", () =>
+  on(async (page) => {
+    await page.evaluate(() => {
+      const [data, event] = [new File([], "a folder"), new Event("drop", { cancelable: true })];
+      data.arrayBuffer = () => Promise.reject(new DOMException("gone", "NotFoundError"));
+      event.dataTransfer = { files: [data] };
+      dispatchEvent(event);
+    });
+    await page.waitForFunction(() => document.getElementById("problem").textContent.startsWith("a folder cannot be read"));
+  }));
+
 test("a Worker that breaks down or does not end is ended, and another goes on", () =>
   on(async (page, { faults }) => {
-    await page.workers()[0].evaluate(() => { WebAssembly.Memory.prototype.toString(); setTimeout(() => { onmessage = () => { throw new Error("trap"); }; }); });
-    await page.click("#example");
-    await page.waitForFunction(() => document.getElementById("problem").textContent.includes("started anew"));
+    const ended = async (how) => {
+      await page.workers().at(-1).evaluate(how);
+      await page.click("#example");
+      await page.waitForFunction(() => document.getElementById("problem").textContent.includes("started anew"));
+      await page.click("#example");
+      await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
+    };
+    const trap = () => { ready = Promise.resolve({ room() { throw new WebAssembly.RuntimeError("unreachable"); } }); };
+    await ended(trap);
+    assert.deepEqual(faults, []);
+    await ended(() => { onmessage = () => { throw new Error("a fault of the Worker"); }; });
     faults.length = 0;
     await page.click("#example");
     await page.waitForFunction(() => document.getElementById("verdict").textContent === "Doubtful");
