@@ -42,7 +42,7 @@ function paint(context, { width, height: tall, ink, line }, t) {
   const come = points.filter(({ time }) => time <= now);
   come.forEach((point, n) => {
     const last = n === come.length - 1;
-    context.globalAlpha = last ? 1 : 0.35;
+    context.globalAlpha = last ? 1 : 0.6;
     disc(right, point.height, COLOURS[1], last ? 9 : 6);
     // Its error, where the height was read, and where the fitted ball was then.
     const error = point.sigma_height;
