@@ -246,11 +246,14 @@ fn titled(region: &Region<'_>, table: &mut Table) {
     }
     let title = region.aside.iter().find(|aside| turned(&aside.name));
     let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
-    // Comments speak of much else: of one every word is understood, and what it states of
-    // something by name (`frame rate: 30`) is of that alone.
+    // Comments speak of much else: of one every word is understood, or of a clause of it, which
+    // states no number, for then it speaks of that; and what it states of something by name
+    // (`frame rate: 30`) is of that alone.
+    let speaks = |text: &str| Heading::parse(text).unknown.is_empty() && turned(text);
     let whole = |text: &str| {
         let said = text.split_once(':').map_or(text, |(_, said)| said);
-        said.split([',', ';', '(', '.']).any(|clause| Heading::parse(clause).unknown.is_empty() && turned(clause))
+        let clauses = said.split([',', ';', '(']).flat_map(|part| part.split(". "));
+        speaks(said) || clauses.filter(|clause| !clause.contains(|c: char| c.is_ascii_digit())).any(speaks)
     };
     let comment = || region.view.grid.comments().take(said::ROWS).find(|(_, text)| whole(text));
     let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
