@@ -4,6 +4,7 @@ import { EXAMPLE } from "./parts.js";
 import { ask } from "./engine.js";
 import { at, draw, made, problem, save, say, tell } from "./elements.js";
 import { grid, textOf } from "./grid.js";
+import { heard } from "./sound.js";
 
 /// The largest files that are taken, together, in MB: more takes longer than anyone waits.
 const MOST = 64;
@@ -11,7 +12,7 @@ const MOST = 64;
 const REST = 150;
 const OPTIONS = [
   "height_unit", "time_unit", "drop", "sigma_height", "sigma_time", "sigma_zero", "gravity", "ball", "drag",
-  "column", "sheet", "header", "group", "filter", "fps", "scale", "zero", "direction",
+  "column", "sheet", "header", "group", "filter", "fps", "scale", "zero", "direction", "listen",
 ];
 const EMPTY = "bounce\theight_cm\n0\t\n1\t\n2\t\n3\t\n";
 
@@ -116,7 +117,7 @@ export async function take(list) {
     fail({ message: say("failed.large", { size: Math.ceil(megabytes), most: MOST }) });
     return;
   }
-  const read = async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+  const read = async (file) => heard({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
   try {
     files = await Promise.all(list.map(read));
   } catch {

@@ -30,14 +30,14 @@ pub(crate) struct Options {
     scale: String,
     zero: String,
     direction: String,
+    listen: String,
 }
 
 /// A picture of a report, where it has one.
 type Draw = fn(&Report) -> Option<Result<String, PlotError>>;
 
-/// Those that there are.
-const PICTURES: [(&str, Draw); 3] =
-    [("motion", pictures::motion), ("cor", pictures::cor), ("ladder", pictures::ladder)];
+/// Those beside that of the motion.
+const PICTURES: [(&str, Draw); 2] = [("cor", pictures::cor), ("ladder", pictures::ladder)];
 
 /// The report as JSON, as text, in pictures, and as a scene.
 pub(crate) fn answer(files: &[(&str, &[u8])], options: &Options) -> Answer {
@@ -49,9 +49,13 @@ pub(crate) fn answer(files: &[(&str, &[u8])], options: &Options) -> Answer {
     })?;
     let report = fit.run(&table).map_err(|error| failed("fit", error))?;
     let report = fit.advised(&table, report, None).map_err(|error| failed("fit", error))?;
+    let motion = match table.sounds() {
+        [sound] => pictures::heard(&report, sound),
+        _ => pictures::motion(&report),
+    };
     let mut drawn = Vec::new();
-    for (name, draw) in PICTURES {
-        if let Some(picture) = draw(&report).transpose().map_err(|error| failed("picture", error))? {
+    for (name, picture) in [("motion", motion)].into_iter().chain(PICTURES.map(|(name, draw)| (name, draw(&report)))) {
+        if let Some(picture) = picture.transpose().map_err(|error| failed("picture", error))? {
             drawn.push((name, picture));
         }
     }
@@ -151,6 +155,18 @@ impl Options {
             Some("up") => options = options.y_down(false),
             Some("down") => options = options.y_down(true),
             Some(other) => return Err(wrong("direction", format!("'{other}' is neither up nor down"))),
+        }
+        if let Some(text) = given(&self.listen) {
+            let time = |text: &str, none: f64| match given(text) {
+                None => Ok(none),
+                Some(text) => Quantity::Time.parse(text).map_err(|error| wrong("listen", error)),
+            };
+            let (from, to) = text.split_once("..").unwrap_or((text, text));
+            let part = time(from, 0.0)?..time(to, f64::INFINITY)?;
+            if part.start < 0.0 || part.is_empty() {
+                return Err(wrong("listen", format!("'{text}' is no part of a sound, such as 0.5s..4s")));
+            }
+            options = options.listen(part);
         }
         if let Some(drop) = amount("drop", &self.drop, Quantity::Length)? {
             options = options.drop_height(drop);

@@ -47,6 +47,10 @@ fn a_fit_is_that_of_the_library() {
 
     let (answer, _) = ask(&json!({ "ask": "fit", "files": [["a.csv", 9]], "options": { "gravity": "9" } }), table);
     assert_eq!((&answer["error"]["kind"], &answer["error"]["option"]), (&json!("option"), &json!("gravity")));
+    for part in ["4s", "4s..1s", "-1s..", "x.."] {
+        let (answer, _) = ask(&json!({ "ask": "fit", "files": [["a.csv", 9]], "options": { "listen": part } }), table);
+        assert_eq!(answer["error"]["option"], "listen", "{part}");
+    }
     let (answer, _) = ask(&json!({ "ask": "fit", "files": [["a.csv", 999]], "options": {} }), table);
     assert_eq!(answer["error"]["kind"], "question");
     let cell = b"bounce,height_cm\n0,100\n1,thirty\n";
