@@ -49,7 +49,7 @@ struct Args {
 #[derive(Debug, Subcommand)]
 #[command(defer = true)]
 enum Command {
-    /// Estimate the coefficient of restitution (COR) from a table of bounces.
+    /// Estimate the coefficient of restitution (COR) from a table or a sound of bounces.
     Fit(Box<fit::FitArgs>),
     /// Simulate a scene, or a ball that bounces on a level floor.
     Simulate(simulate::Simulate),
