@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use saltus::Timing;
 use saltus_scene::Scene;
+use saltus_scene::accuracy::Seconds;
 use saltus_scene::plan::Effect;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::row::{Came, Row, Seconds, plainly};
+use crate::row::{Came, Row, plainly};
 
 /// How many impacts and apexes are compared.
 const FIRST: usize = 5;
@@ -80,7 +81,8 @@ pub(crate) fn table(rows: &[Row<Measured>]) -> String {
                 continue;
             }
         };
-        let times = came.seconds.all().map(|s| format!("{:.1}", 1e6 * s));
+        let Seconds { seconds, seconds_low, seconds_high, .. } = came.seconds;
+        let times = [seconds, seconds_low, seconds_high].map(|s| format!("{:.1}", 1e6 * s));
         let [median, low, high] = times;
         let took = format!("{median} µs ({low} to {high})");
         let _ = write!(text, "\n{:<32} {took:<36} {} flows, {} guards", row.run, came.flows, came.guards);

@@ -1,6 +1,5 @@
 //! A run in a report for programs: what was measured, or why there is nothing.
 
-use saltus::Timing;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -20,27 +19,6 @@ pub(crate) enum Came<T> {
     Refused {
         refused: String,
     },
-}
-
-/// Wall-clock times of a run in s: the median, the least and the greatest.
-#[derive(Clone, Copy, Serialize)]
-pub(crate) struct Seconds {
-    seconds: f64,
-    seconds_low: f64,
-    seconds_high: f64,
-}
-
-impl From<Timing> for Seconds {
-    fn from(Timing { median, least, greatest, .. }: Timing) -> Self {
-        Self { seconds: median, seconds_low: least, seconds_high: greatest }
-    }
-}
-
-impl Seconds {
-    /// The median, the least and the greatest.
-    pub(crate) const fn all(self) -> [f64; 3] {
-        [self.seconds, self.seconds_low, self.seconds_high]
-    }
 }
 
 /// A refusal in one line: what is wrong and what to do, without the place in a scene that nobody

@@ -24,23 +24,24 @@ use crate::{
 /// [`PlotError`] where the picture cannot be drawn.
 #[must_use]
 pub fn motion(report: &Report) -> Option<Result<String, PlotError>> {
-    if !report.groups().is_empty() {
-        return compared(report);
-    }
-    Some(heights(report)?.svg())
+    heard(report, &[])
 }
 
-/// The same below the sound that the times were read off.
+/// The same below the sound that the times were read off, if there is one alone.
 ///
 /// # Errors
 /// [`PlotError`] where the picture cannot be drawn.
 #[must_use]
-pub fn heard(report: &Report, sound: &Sound) -> Option<Result<String, PlotError>> {
+pub fn heard(report: &Report, sounds: &[Sound]) -> Option<Result<String, PlotError>> {
     if !report.groups().is_empty() {
         return compared(report);
     }
-    let Wave { start, step, stretches, .. } = sound.wave();
-    Some(heights(report)?.wave(*start, *step, stretches.iter().copied()).svg())
+    let mut picture = heights(report)?;
+    if let [sound] = sounds {
+        let Wave { start, step, stretches, .. } = sound.wave();
+        picture = picture.wave(*start, *step, stretches.iter().copied());
+    }
+    Some(picture.svg())
 }
 
 /// The measured points, the fitted motion and the residuals.

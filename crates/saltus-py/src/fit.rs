@@ -261,19 +261,16 @@ impl Report {
 
     /// One of the pictures, as SVG; none where the report has nothing to draw.
     fn picture(&self, kind: &str) -> PyResult<Option<String>> {
-        type Draw = fn(&saltus_fit::Report) -> Option<Result<String, saltus_plot::PlotError>>;
-        let pictures: [(&'static str, Draw); 4] = [
-            ("motion", pictures::motion),
-            ("cor", pictures::cor),
-            ("ladder", pictures::ladder),
-            ("profile", pictures::profile),
+        type Draw<'a> = &'a dyn Fn(&saltus_fit::Report) -> Option<Result<String, saltus_plot::PlotError>>;
+        let motion = |report: &saltus_fit::Report| pictures::heard(report, &self.sounds);
+        let pictures: [(&'static str, Draw<'_>); 4] = [
+            ("motion", &motion),
+            ("cor", &pictures::cor),
+            ("ladder", &pictures::ladder),
+            ("profile", &pictures::profile),
         ];
         let (_, draw) = named(kind, "picture of a fit", &pictures, |(name, _)| name)?;
-        let picture = match &self.sounds[..] {
-            [sound] if kind == "motion" => pictures::heard(&self.report, sound),
-            _ => draw(&self.report),
-        };
-        picture.transpose().map_err(fail::saltus)
+        draw(&self.report).transpose().map_err(fail::saltus)
     }
 
     /// The fitted motion as a scene.

@@ -7,6 +7,7 @@ use saltus::Timing;
 
 pub use super::plan::Way;
 use super::plan::{Cost, Effect, Impact, Plan, PlanError, Record, RunError};
+pub use super::report::Seconds;
 use super::{Scene, Stepper};
 use saltus_bounce::effects::Gravity;
 

@@ -49,10 +49,7 @@ pub(crate) fn answer(files: &[(&str, &[u8])], options: &Options) -> Answer {
     })?;
     let report = fit.run(&table).map_err(|error| failed("fit", error))?;
     let report = fit.advised(&table, report, None).map_err(|error| failed("fit", error))?;
-    let motion = match table.sounds() {
-        [sound] => pictures::heard(&report, sound),
-        _ => pictures::motion(&report),
-    };
+    let motion = pictures::heard(&report, table.sounds());
     let mut drawn = Vec::new();
     for (name, picture) in [("motion", motion)].into_iter().chain(PICTURES.map(|(name, draw)| (name, draw(&report)))) {
         if let Some(picture) = picture.transpose().map_err(|error| failed("picture", error))? {

@@ -51,10 +51,7 @@ pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
         ReportFormat::Text => format!("{}\n", report.to_string().trim_end()),
         ReportFormat::Json => format!("{}\n", serde_json::to_string_pretty(&report).map_err(Error::new)?),
     };
-    let motion = |report: &Report| match table.sounds() {
-        [sound] => pictures::heard(report, sound),
-        _ => pictures::motion(report),
-    };
+    let motion = |report: &Report| pictures::heard(report, table.sounds());
     let pictures: [(_, Draw<'_>, _); 4] = [
         (&args.plot, &motion, "no picture: the table has no motion to draw"),
         (

@@ -61,12 +61,12 @@ fn table(sound: Sound, options: &ReadOptions) -> Table {
     if sound.clipped() > CLIPPED {
         notes.push(Note::Overdriven { part: sound.clipped() }.into());
     }
-    let chance = |(contacts, &chance): (&Vec<_>, &f64)| {
-        let once_in = (1.0 / chance).floor();
+    let chance = |(contacts, &evidence): (&Vec<_>, &f64)| {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below a thousand
-        (chance.ln() > -SURE).then_some(Doubt::Chance { contacts: contacts.len(), once_in: once_in as u64 })
+        let once_in = evidence.min(SURE).exp() as u64;
+        (evidence < SURE).then_some(Doubt::Chance { contacts: contacts.len(), once_in })
     };
-    let doubts = sound.drops().iter().zip(&sound.chance).filter_map(chance).collect();
+    let doubts = sound.drops().iter().zip(&sound.evidence).filter_map(chance).collect();
     let left_aside = aside(&sound.unused);
     let metadata = super::Metadata { drop: options.drop, ..super::Metadata::default() };
     Table {

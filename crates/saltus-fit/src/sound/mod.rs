@@ -19,7 +19,7 @@ use wave::Drawn;
 pub use wave::Wave;
 
 /// What comes so soon after a contact, s, and is fainter, is its echo or its ringing.
-const ECHO: f64 = 0.15;
+const RINGS: f64 = 0.15;
 
 /// A recorded sound, and the contacts of a ball in it.
 ///
@@ -49,7 +49,8 @@ pub struct Sound {
     name: String,
     part: Range<f64>,
     drops: Vec<Vec<Contact>>,
-    pub(crate) chance: Vec<f64>,
+    /// Of each drop, ln of one over how many as good ones come by chance.
+    pub(crate) evidence: Vec<f64>,
     pub(crate) unused: Vec<(f64, Unused)>,
     clipped: f64,
     wave: Wave,
@@ -89,13 +90,12 @@ impl Sound {
         let start = part.start.max(0.0);
         let begin = |spec| Ear::new(spec, start);
         let ear = wav::frames(name, &mut file, &(start..part.end), begin, |ear, frame| ear.push(frame))?;
-        let mut sound = Self::heard(name, start, ear)?;
-        file.rewind().map_err(|error| wav::unread(name, &error))?;
-        let around = sound.around();
-        let begin = |spec: Spec| (Drawn::new(), spec.rate);
-        let (drawn, rate) = wav::frames(name, file, &around, begin, |(drawn, _), frame| drawn.frame(frame))?;
-        sound.wave = drawn.wave(around.start, rate.into());
-        Ok(sound)
+        Self::heard(name, start, ear, |around| {
+            file.rewind().map_err(|error| wav::unread(name, &error))?;
+            let begin = |spec: Spec| (Drawn::new(), spec.rate);
+            let (drawn, rate) = wav::frames(name, file, around, begin, |(drawn, _), frame| drawn.frame(frame))?;
+            Ok(drawn.wave(around.start, rate.into()))
+        })
     }
 
     /// Listens to samples from -1 to 1 of one channel, `rate` a second.
@@ -109,27 +109,23 @@ impl Sound {
         }
         let mut ear = Ear::new(Spec { rate, channels: 1, step: f32::EPSILON }, 0.0);
         samples.iter().for_each(|&x| ear.push(&[if x.is_finite() { x } else { 0.0 }]));
-        let mut sound = Self::heard(name, 0.0, ear)?;
-        let around = sound.around();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at the ends of its range it stays there
-        let [from, to] = [around.start, around.end].map(|t| ((t * f64::from(rate)).ceil() as usize).min(samples.len()));
-        let mut drawn = Drawn::new();
-        samples[from..to].iter().for_each(|&x| drawn.frame(&[x]));
-        sound.wave = drawn.wave(around.start, rate.into());
-        Ok(sound)
+        Self::heard(name, 0.0, ear, |around| {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            // at the ends of its range it stays there
+            let frame = |t: f64| ((t * f64::from(rate)).ceil() as usize).min(samples.len());
+            let mut drawn = Drawn::new();
+            samples[frame(around.start)..frame(around.end)].iter().for_each(|&x| drawn.frame(&[x]));
+            Ok(drawn.wave(around.start, rate.into()))
+        })
     }
 
-    /// From a little before the first contact to a little after the last.
-    fn around(&self) -> Range<f64> {
-        /// The part of the time between them.
-        const LITTLE: f64 = 0.05;
-        let times = || self.drops.iter().flatten().map(|contact| contact.time);
-        let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
-        let little = LITTLE * (last - first);
-        (first - little).max(0.0)..last + little
-    }
-
-    fn heard(name: &str, start: f64, mut ear: Ear) -> Result<Self, TableError> {
+    /// The sound in which an ear has heard a ball; `draw` makes the wave of the part around it.
+    fn heard(
+        name: &str,
+        start: f64,
+        mut ear: Ear,
+        draw: impl FnOnce(&Range<f64>) -> Result<Wave, TableError>,
+    ) -> Result<Self, TableError> {
         ear.end();
         let onsets = std::mem::take(&mut ear.onsets);
         let mut chains = chains(&onsets);
@@ -145,12 +141,10 @@ impl Sound {
         let of = |chain: &Chain| chain.at.iter().zip(&chain.numbers).take(chain.counts).map(contact).collect();
         let used = |n: &usize| chains.iter().any(|chain| chain.at[..chain.counts].contains(n));
         let why = |n: usize| {
-            let of_ball = |m: &&usize| **m != n;
-            let contacts = || chains.iter().flat_map(|chain| &chain.at).filter(of_ball).map(|&m| &onsets[m]);
-            let follows = |contact: &Onset| (0.0..ECHO).contains(&(onsets[n].time - contact.time));
+            let mut contacts = chains.iter().flat_map(|chain| &chain.at).map(|&m| &onsets[m]);
             if chains.iter().any(|chain| chain.at.contains(&n)) {
                 Unused::Close
-            } else if contacts().any(|contact| follows(contact) && onsets[n].power < contact.power) {
+            } else if contacts.any(|contact| follows(&onsets[n], contact) && onsets[n].power < contact.power) {
                 Unused::Echo
             } else {
                 Unused::Stray
@@ -159,15 +153,10 @@ impl Sound {
         let unused = (0..onsets.len()).filter(|n| !used(n)).map(|n| (onsets[n].time, why(n))).collect();
         #[allow(clippy::cast_precision_loss)] // far below 2^52 frames
         let clipped = ear.clipped as f64 / ear.frames.max(1) as f64;
-        Ok(Self {
-            name: name.to_owned(),
-            part,
-            drops: chains.iter().map(of).collect(),
-            chance: chains.iter().map(|chain| (-chain.evidence).exp()).collect(),
-            unused,
-            clipped,
-            wave: Drawn::new().wave(start, 1.0),
-        })
+        let drops: Vec<Vec<Contact>> = chains.iter().map(of).collect();
+        let wave = draw(&around(&drops))?;
+        let evidence = chains.iter().map(|chain| chain.evidence).collect();
+        Ok(Self { name: name.to_owned(), part, drops, evidence, unused, clipped, wave })
     }
 
     /// The name of the file.
@@ -201,15 +190,28 @@ impl Sound {
     }
 }
 
+/// From a little before the first contact to a little after the last.
+fn around(drops: &[Vec<Contact>]) -> Range<f64> {
+    /// The part of the time between them.
+    const LITTLE: f64 = 0.05;
+    let times = || drops.iter().flatten().map(|contact| contact.time);
+    let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    let little = LITTLE * (last - first);
+    (first - little).max(0.0)..last + little
+}
+
+/// Whether a sound begins with a contact, or so soon after it that it may be of it.
+fn follows(onset: &Onset, contact: &Onset) -> bool {
+    (0.0..RINGS).contains(&(onset.time - contact.time))
+}
+
 /// Whether the contacts of a chain may be those of a ball: for sure; if it is likely, where most
 /// sounds as loud between them are contacts; else if chance would not make more than one such
 /// chain, where most of all sounds are.
 fn is_believed(onsets: &[Onset], chain: &Chain) -> bool {
     let contacts = || chain.at.iter().map(|&n| &onsets[n]);
     let least = contacts().map(|contact| contact.power).fold(f32::INFINITY, f32::min);
-    let echoes = |onset: &Onset| {
-        contacts().any(|contact| (0.0..ECHO).contains(&(onset.time - contact.time)) && onset.power <= contact.power)
-    };
+    let echoes = |onset: &Onset| contacts().any(|contact| follows(onset, contact) && onset.power <= contact.power);
     let most = |onsets: &[Onset]| {
         onsets.iter().filter(|onset| onset.power >= least && !echoes(onset)).count() < chain.at.len()
     };

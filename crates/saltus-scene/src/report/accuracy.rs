@@ -68,12 +68,16 @@ struct Measured {
     seconds: Option<Seconds>,
 }
 
-/// The median, the least and the greatest.
-#[derive(Serialize)]
-struct Seconds {
-    seconds: f64,
-    seconds_low: f64,
-    seconds_high: f64,
+/// How long a run took by the clock, in s, as reports in JSON have it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Seconds {
+    /// The median.
+    pub seconds: f64,
+    /// The least.
+    pub seconds_low: f64,
+    /// The greatest.
+    pub seconds_high: f64,
 }
 
 impl From<Timing> for Seconds {

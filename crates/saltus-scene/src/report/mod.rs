@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::Error;
 use crate::plan::{Event, Model, Moment, Record};
 
+pub use accuracy::Seconds;
 pub use table::{Table, Values};
 
 /// The most samples that are taken: a frame each at 1000 frames per second for three hours.
