@@ -205,6 +205,15 @@ fn every_format_of_wav_is_the_same_sound() {
 }
 
 #[test]
+fn a_recording_given_twice_counts_once() {
+    let path = root().join("examples/data/pingpong.wav");
+    let twice = Table::read_all(&[&path, &path], &ReadOptions::default()).unwrap();
+    assert_eq!((twice.trials().len(), twice.sounds().len()), (1, 1));
+    let report = Fit::new().run(&twice).unwrap();
+    assert!(report.to_string().contains("pingpong.wav"), "the copy is named: {report}");
+}
+
+#[test]
 fn a_part_of_a_recording_is_listened_to_on_its_own() {
     let (one, other) = (make(Kind::Clean, 5), make(Kind::Clean, 6));
     let other = Made { rate: one.rate, ..other };

@@ -26,6 +26,11 @@ pub(super) fn of_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Optio
     is_wav(bytes).then(|| Sound::read(name, Cursor::new(bytes), options.listened()).map(|sound| table(sound, options)))
 }
 
+/// Whether two tables are of one sound.
+pub(super) fn is_same(a: &Table, b: &Table) -> bool {
+    !a.sounds.is_empty() && a.trials == b.trials
+}
+
 impl Table {
     /// The contacts of a sound: a trial for each drop in it.
     #[must_use]
