@@ -1,13 +1,8 @@
 //! Which way a guard leaves a spent root where rounding hides it: its slope there decides, which a
 //! long stretch shows to more digits than a short one.
 
-use crate::certainty::{FAR, FEW, ROUGHLY, SURELY};
+use crate::certainty::{FAR, SURELY};
 use crate::poly::{Bernstein, DIVIDED};
-
-use super::Undefined;
-use super::looks::order;
-use super::proxy::Proxy;
-use super::search::{Part, Search, Side};
 
 /// What the stretches that begin at a spent root have shown of the guard there.
 ///
@@ -52,7 +47,7 @@ impl Departure {
     }
 
     /// Whether the guard rises from the root.
-    fn rises(&self) -> bool {
+    pub(super) fn rises(&self) -> bool {
         self.slope > SURE * self.doubt
     }
 
@@ -60,6 +55,16 @@ impl Departure {
     /// time: the jump at a touch may change the slope's sign, and it is not to be lost then.
     pub(super) fn touches(&self) -> bool {
         self.slope > -SURELY * self.doubt && self.order.is_some_and(|order| order.round() == 2.0)
+    }
+
+    /// When the polynomial on the best stretch falls through zero.
+    pub(super) fn falls(&self) -> Option<f64> {
+        self.rest.root().map(|root| root * self.length)
+    }
+
+    /// How long that stretch is.
+    pub(super) fn length(&self) -> f64 {
+        self.length
     }
 
     /// The steepest fall that the slope allows.
@@ -74,78 +79,7 @@ impl Departure {
     }
 }
 
-fn is_even(order: f64) -> bool {
-    order.round().rem_euclid(2.0) == 0.0
-}
-
-impl Search<'_> {
-    /// Whether the guard on `0..=b` is nothing but rounding, and rises on a longer
-    /// stretch: so a floor lets go of a ball, which rises as the cube of time, for long not by a
-    /// step of rounding.
-    pub(super) fn is_under_a_rise(
-        &mut self,
-        &Proxy { ref p, margin, least, .. }: &Proxy,
-        b: f64,
-    ) -> Result<bool, Undefined> {
-        let nowhere_below = least > -margin;
-        if nowhere_below && p.halves().0.end().min(p.end()) > FEW * (margin + self.roughness(b)) {
-            self.rise = Some(margin);
-            return Ok(false);
-        }
-        // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
-        // number by number its steps have an order.
-        let stays = |then: f64| ROUGHLY * then < margin && margin < SURELY * then;
-        Ok(self.rise.is_some_and(stays)
-            && nowhere_below
-            && p.end() < SURELY * FEW * margin
-            && self.is_rough(0.0, ROUGHLY * b)?)
-    }
-
-    /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =
-    /// `order` where that was seen.
-    ///
-    /// If the root is spent and m is odd, this is the fall that was spent; with m even it only
-    /// touched zero there, and falls again. Where rounding hides which it was, what longer
-    /// stretches have shown decides; and if they show that the guard rises first, it falls where
-    /// their polynomial does.
-    pub(super) fn left(&mut self, order: Option<f64>, b: f64) -> Part {
-        if !self.spent {
-            return Part::AtStart;
-        }
-        let told = self.departure.filter(|it| order.is_none() || it.is_far(b));
-        if let Some(it) = told.filter(Departure::rises)
-            && let Some(root) = it.rest.root()
-            && root * it.length > self.tick
-        {
-            return Part::Hidden(root * it.length);
-        }
-        let linear = order.is_some_and(|order| order.round() <= 1.0);
-        let touched = if order.is_some_and(is_even) {
-            Some(b)
-        } else {
-            told.filter(|it| !linear && it.touches()).map(|it| it.length)
-        };
-        if touched.is_some_and(|b| !self.comes_from_above(b)) { Part::AtStart } else { Part::None(Side::Outside) }
-    }
-
-    /// Whether the guard came to its spent root from above, along the flow that leaves it: a time
-    /// `b` before the root it is above it by half of what it is below it as long after, or more.
-    fn comes_from_above(&mut self, b: f64) -> bool {
-        let [before, after] = [-b, b].map(|s| (self.guard)(s) - self.base);
-        before > -0.5 * after
-    }
-
-    /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the
-    /// guard inside; or the fall, if there is none.
-    pub(super) fn inside_near(&mut self, fall: f64) -> Result<f64, Undefined> {
-        for k in 0..=16 {
-            for s in [fall * (1.0 + f64::from(k) * ROUGHLY * ROUGHLY), fall * (1.0 - f64::from(k) * ROUGHLY * ROUGHLY)]
-            {
-                if self.value(s)? >= 0.0 {
-                    return Ok(s);
-                }
-            }
-        }
-        Ok(fall)
-    }
+/// The m with which c tᵐ takes these values at times `a` and `b`.
+pub(super) fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
+    (at_b / at_a).ln() / (b / a).ln()
 }

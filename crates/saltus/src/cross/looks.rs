@@ -1,20 +1,14 @@
 //! A guard looked at sample by sample, where no polynomial fits it: close to the numbers' own
 //! spacing, or down in its rounding.
 
-use super::search::{Part, Search, Side};
+use super::departure::order;
+use super::probe::{LOOKS, MOST_TURNS, Part, Search, Side};
 use super::{Doubt, Evidence, Undefined};
 use crate::certainty::{FEW, ROUGHLY};
 
-/// How many samples are taken of a guard that seems to be nothing but rounding.
-const LOOKS: usize = 128;
 /// So many samples are taken of each step at least: with fewer, halves that are rounded to even
 /// could hide every other one.
 const PER_STEP: usize = 4;
-/// If they change direction no more often than this, they are not rounding and their signs count.
-const MOST_TURNS: usize = 8;
-/// Where on a stretch two neighbouring samples are compared, to see whether the guard stands still.
-const STANDS_AT: [f64; 2] = [0.3, 0.6];
-
 impl Search<'_> {
     fn walk(&mut self, a: f64, side: Side) -> Walk {
         Walk { side, last: self.flat.take().unwrap_or(a), base: self.base, tick: self.tick, rose: f64::NEG_INFINITY }
@@ -39,41 +33,6 @@ impl Search<'_> {
     /// of its steps count.
     fn passed(&mut self, from: Side, to: Side, b: f64) -> Part {
         if from == Side::Wall && to == Side::Outside { self.left(Some(1.0), b) } else { Part::None(to) }
-    }
-
-    /// Whether the guard seems to go in steps: it stands still between neighbouring samples.
-    pub(super) fn stands(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
-        for at in STANDS_AT {
-            let s = a + at * (b - a);
-            if self.value(s)? == self.value(s + (b - a) / LOOKS as f64)? {
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
-
-    /// Many samples, and how often they change direction.
-    fn samples(&mut self, a: f64, b: f64) -> Result<([(f64, f64); LOOKS], usize), Undefined> {
-        let mut samples = [(0.0, 0.0); LOOKS];
-        let (mut last, mut direction, mut turns) = (self.value(a)?, 0.0, 0);
-        for (k, sample) in samples.iter_mut().enumerate() {
-            #[allow(clippy::cast_precision_loss)] // small
-            let s = if k + 1 == LOOKS { b } else { a + (b - a) * ((k + 1) as f64 / LOOKS as f64) };
-            let value = self.value(s)?;
-            *sample = (s, value);
-            let change = value - last;
-            if change != 0.0 {
-                turns += usize::from(direction * change < 0.0);
-                direction = change.signum();
-            }
-            last = value;
-        }
-        Ok((samples, turns))
-    }
-
-    /// Whether the samples go up and down without order.
-    pub(super) fn is_rough(&mut self, a: f64, b: f64) -> Result<bool, Undefined> {
-        Ok(self.samples(a, b)?.1 > MOST_TURNS)
     }
 
     /// Samples of a guard that no polynomial fits.
@@ -154,11 +113,6 @@ impl Search<'_> {
         }
         Part::None(side)
     }
-}
-
-/// The m with which c tᵐ takes these values at times `a` and `b`.
-pub(super) fn order(at_a: f64, at_b: f64, a: f64, b: f64) -> f64 {
-    (at_b / at_a).ln() / (b / a).ln()
 }
 
 /// What samples of a guard show that no polynomial fits.

@@ -4,8 +4,10 @@
 pub(crate) mod chebyshev;
 mod departure;
 mod evidence;
+mod leave;
 mod looks;
 mod powers;
+mod probe;
 mod proxy;
 mod refine;
 mod search;
@@ -14,9 +16,9 @@ use crate::poly::{Bernstein, Shape};
 
 pub use evidence::{Doubt, Evidence};
 pub(crate) use powers::{Fall, FirstFall, Powers};
+pub(crate) use probe::AT_START;
+use probe::Search;
 pub(crate) use refine::{neighbours, settle};
-pub(crate) use search::AT_START;
-use search::Search;
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and
 /// negative at `outside`.

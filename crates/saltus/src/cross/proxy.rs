@@ -3,7 +3,7 @@
 
 use crate::poly::{Bernstein, SUMMED};
 
-use super::search::Search;
+use super::probe::Search;
 use super::{Undefined, chebyshev};
 
 impl Search<'_> {

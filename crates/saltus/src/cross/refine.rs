@@ -1,6 +1,6 @@
 //! A fall that is isolated, narrowed to neighbouring numbers.
 
-use super::search::{AT_START, Search};
+use super::probe::{AT_START, Search};
 use super::{Crossing, Doubt, Evidence, Undefined};
 use crate::certainty::{FAR, FEW, MINUTE};
 

@@ -1,90 +1,23 @@
 //! Halving an interval until bounds exclude a fall in each part, or show one.
 
-use crate::certainty::{FAR, MINUTE, NOTHING, ROUGHLY, ROUNDINGS, SMALL, SURELY, TINY};
+use crate::certainty::{FAR, MINUTE, ROUGHLY, ROUNDINGS, SMALL, SURELY};
 use crate::poly::{Bernstein, DIVIDED, Shape};
 
-use super::departure::Departure;
-use super::looks::{Look, order};
+use super::departure::{Departure, order};
+use super::looks::Look;
+use super::probe::{AT_START, Part, Search, Side};
 use super::proxy::Proxy;
 use super::refine::Passage;
 use super::{Crossing, Doubt, Evidence, Searched, Start, Undefined, settle};
 
 /// Halvings after which signs at the ends decide.
 const DEEPEST: u32 = 64;
-/// A fall within this fraction of the interval from its start is at its start.
-pub(crate) const AT_START: f64 = NOTHING * TINY;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
 /// A rise from a spent start is looked for at so many times, each nearer by the same part, down to
 /// 2⁻³³ of the stretch.
 const LOOKS_BACK: usize = 11;
-
-/// Compiled once for every guard: it is much code, and a call through a table costs little beside a
-/// guard on a dense output.
-pub(super) struct Search<'a> {
-    pub(super) guard: &'a mut dyn FnMut(f64) -> f64,
-    pub(super) span: f64,
-    /// The spacing of the guard's own time, which may be coarser than that of numbers within the
-    /// interval.
-    pub(super) tick: f64,
-    /// Whether the root at the start is spent.
-    pub(super) spent: bool,
-    /// The guard's value at the start, once it was asked.
-    start: Option<f64>,
-    /// That at a spent start.
-    pub(super) base: f64,
-    /// How the guard leaves a spent root at the start, as far as its samples have shown.
-    pub(super) departure: Option<Departure>,
-    /// What a guard on a step is rough by: close to its start, where the solution is zero but for
-    /// rounding, it is exact to no more than this times the square of the part of the step.
-    rough: f64,
-    /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros
-    /// after it are rounding and no plateau.
-    falls_smoothly: bool,
-    /// How far a guard that is zero at an open start may have been off on the shortest stretch on
-    /// which it was seen to rise from there.
-    pub(super) rise: Option<f64>,
-    evaluations: u32,
-    /// The largest magnitude of the guard met so far.
-    pub(super) largest: f64,
-    /// Where the stretch on which the guard is zero, or nothing but rounding, began, if it is on
-    /// one.
-    pub(super) flat: Option<f64>,
-    evidence: Evidence,
-    /// Between which times the samples of the whole interval turn up from their least.
-    turn: Option<[f64; 2]>,
-}
-
-/// On which side of its zero the guard is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
-    Inside,
-    Outside,
-    /// On a root at the start, not yet left.
-    Wall,
-}
-
-impl Side {
-    /// A zero leaves the guard on the side it came from.
-    pub(super) fn of(value: f64, came_from: Self) -> Self {
-        Self::beside(value, came_from, 0.0)
-    }
-
-    /// The same where rounding has left a spent root at `base`: what has fallen from there is
-    /// outside until it is above that.
-    pub(super) fn beside(value: f64, came_from: Self, base: f64) -> Self {
-        if came_from == Self::Outside && value <= base {
-            Self::Outside
-        } else if value > 0.0 {
-            Self::Inside
-        } else if value < 0.0 {
-            Self::Outside
-        } else {
-            came_from
-        }
-    }
-}
 
 /// An interval of the search.
 pub(super) struct Stretch {
@@ -118,80 +51,7 @@ enum Next {
     Looks,
 }
 
-/// What a part of the interval holds.
-pub(super) enum Part {
-    /// Its first fall lies between these times; with the root, where the polynomial is exact.
-    Fall { a: f64, b: f64, near: Option<f64> },
-    /// Its only fall lies between these times, close to the `guess` of an interpolant.
-    Falls { a: f64, b: f64, guess: f64 },
-    /// The guard falls at once from the root at the start.
-    AtStart,
-    /// Rounding hides a rise and the fall after it, which lies here.
-    Hidden(f64),
-    /// No fall; this is where the guard is at the end.
-    None(Side),
-}
-
-impl<'a> Search<'a> {
-    /// A search for a guard that bends by `bend` on a step, or by nothing where no step's rounding
-    /// spoils it, and sees times that are `tick` apart.
-    pub(super) fn new(guard: &'a mut dyn FnMut(f64) -> f64, span: f64, bend: f64, tick: f64) -> Self {
-        Self {
-            guard,
-            span,
-            tick,
-            spent: false,
-            start: None,
-            base: 0.0,
-            departure: None,
-            // A dense output starts with the exact slope, but its higher powers carry the error of
-            // the step and the rounding of its stages.
-            rough: TINY * bend,
-            falls_smoothly: false,
-            rise: None,
-            evaluations: 0,
-            largest: 0.0,
-            flat: None,
-            evidence: Evidence::Excluded,
-            turn: None,
-        }
-    }
-
-    /// The same, where the guard has this `value` at the start.
-    pub(super) fn at_start(self, value: f64) -> Self {
-        Self { start: Some(value), largest: value.abs(), ..self }
-    }
-
-    /// The guard at the start.
-    pub(super) fn start(&mut self) -> Result<f64, Undefined> {
-        let value = match self.start {
-            Some(value) if value.is_nan() => return Err(Undefined(0.0)),
-            Some(value) => value,
-            None => self.value(0.0)?,
-        };
-        self.start = Some(value);
-        Ok(value)
-    }
-
-    pub(super) fn value(&mut self, s: f64) -> Result<f64, Undefined> {
-        self.evaluations += 1;
-        let value = (self.guard)(s);
-        self.largest = self.largest.max(value.abs());
-        if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
-    }
-
-    /// The guard at some times in a row.
-    #[inline]
-    pub(super) fn values(&mut self, values: &mut [f64], time: impl Fn(usize) -> f64) -> Result<(), Undefined> {
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = (self.guard)(time(k));
-        }
-        self.evaluations += values.len() as u32;
-        self.largest = values.iter().fold(self.largest, |largest, value| largest.max(value.abs()));
-        let undefined = values.iter().position(|value| value.is_nan());
-        undefined.map_or(Ok(()), |k| Err(Undefined(time(k))))
-    }
-
+impl Search<'_> {
     /// The search, for a polynomial that is given to within a margin or for interpolants.
     pub(super) fn first_fall(mut self, start: Start, known: Option<(Bernstein, f64)>) -> Result<Searched, Undefined> {
         let side = self.side_at(start)?;
@@ -246,10 +106,6 @@ impl<'a> Search<'a> {
             }
         }
         Side::Wall
-    }
-
-    pub(super) fn weaken(&mut self, evidence: Evidence) {
-        self.evidence = self.evidence.and(evidence);
     }
 
     fn part(&mut self, stretch: &Stretch, side: Side) -> Result<Part, Undefined> {
@@ -428,19 +284,9 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Whether values off by so much are off by more than a guard's cancellation explains.
-    pub(super) fn is_rougher_than_rounding(&self, off: f64) -> bool {
-        off > FAR * f64::EPSILON * self.largest
-    }
-
     /// Where a spent root at the start lies on a stretch: a given polynomial is the change from it.
     fn base_of(&self, stretch: &Stretch) -> f64 {
         if stretch.known.is_some() { 0.0 } else { self.base }
-    }
-
-    /// How far a guard on a step may be off a time `s` after its start, if it is zero there.
-    pub(super) fn roughness(&self, s: f64) -> f64 {
-        self.rough * (s / self.span).powi(2)
     }
 
     /// Whether the guard is above its spent start anywhere in a row of times that shrink towards
