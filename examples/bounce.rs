@@ -7,7 +7,7 @@ use std::error::Error;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Hybrid, Simulation};
 use saltus_bounce::{Cor, Drop};
-use saltus_plot::{Arc, HeightTime};
+use saltus_plot::{HeightTime, Stroke};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (height, gravity, cor) = (1.0, 9.81, Cor::new(0.7)?);
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             unit *= piece.scale();
             height
         });
-        Arc::new(piece.start().seconds(), piece.span(), heights.collect())
+        Stroke::over_time(piece.start().seconds(), piece.span(), heights.collect())
     });
     let impacts: Vec<f64> = trajectory.jumps().iter().filter(|jump| jump.to == "flight").map(|jump| jump.t()).collect();
     let picture =

@@ -16,7 +16,7 @@ use saltus_examples::study::trials::{Plan, Trial, mean, of_mean_heights};
 use saltus_examples::study::{CONTACTS, DROP, EARLY, GRAVITY, MODELLED, RADIUS, REBOUNDS, keys, report};
 use saltus_fit::{Report, Verdict};
 use saltus_motion::{Export, Format, Frames, Rate, Snap};
-use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
+use saltus_plot::{Background, HeightTime, Mark, Measured, Residual, Stroke};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -282,7 +282,7 @@ fn film() -> Done {
         "In the lowest frame of the first contact the ball is {:.1} cm up; in another film it may be anywhere between that and the floor",
         100.0 * seen.contacts[0][1]
     );
-    let arcs: Vec<Arc> = Start { early: 0.0, ..START }.bounces(cor, 3).arcs();
+    let arcs: Vec<Stroke> = Start { early: 0.0, ..START }.bounces(cor, 3).arcs();
     let picture = HeightTime::new("What 30 frames a second show")
         .caption(&caption)
         .motion("e = 0.50", arcs)

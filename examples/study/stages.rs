@@ -2,7 +2,7 @@
 
 use saltus_bounce::{Cor, Drop};
 use saltus_fit::{Point, Report};
-use saltus_plot::{Arc, Background, HeightTime, Mark, Measured, Residual};
+use saltus_plot::{Background, HeightTime, Mark, Measured, Residual, Stroke};
 
 use super::equations::{Apex, flights, whole_bounce};
 
@@ -109,11 +109,11 @@ impl Curve {
 
     /// For a picture.
     #[must_use]
-    pub fn arcs(&self) -> Vec<Arc> {
+    pub fn arcs(&self) -> Vec<Stroke> {
         let arc = |&(from, until, apex): &(f64, f64, Apex)| {
             let coefficients =
                 vec![apex.at(self.gravity, from), apex.velocity(self.gravity, from), -0.5 * self.gravity];
-            Arc::new(from, until - from, coefficients)
+            Stroke::over_time(from, until - from, coefficients)
         };
         self.parts.iter().map(arc).collect()
     }

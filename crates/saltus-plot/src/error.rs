@@ -8,19 +8,19 @@ use std::fmt;
 /// # Example
 ///
 /// ```
-/// use saltus_plot::{Arc, HeightTime, PlotError};
+/// use saltus_plot::{HeightTime, PlotError, Stroke};
 ///
 /// let empty = HeightTime::new("Nothing yet").svg();
 /// assert!(matches!(empty, Err(PlotError::Empty)));
 ///
-/// let broken = HeightTime::new("Broken").motion("model", [Arc::new(0.0, 1.0, vec![f64::NAN])]).svg();
+/// let broken = HeightTime::new("Broken").motion("model", [Stroke::over_time(0.0, 1.0, vec![f64::NAN])]).svg();
 /// let message = broken.unwrap_err().to_string();
-/// assert!(message.contains("coefficient 0 of arc 1 of motion 1"), "{message}");
+/// assert!(message.contains("the start of stroke 1 of motion 1"), "{message}");
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum PlotError {
-    /// There is nothing to draw: no arc, no measurement, no contact, no residual.
+    /// There is nothing to draw: no stroke, no measurement, no contact, no residual.
     Empty,
     /// A number is NaN, infinite, or so far out (beyond 10³⁰⁰) that it might as well be.
     NotFinite {

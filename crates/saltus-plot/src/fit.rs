@@ -14,9 +14,7 @@
 
 use saltus_fit::{Measure, Method, Motion, Report, Sound, Verdict, Wave};
 
-use crate::{
-    Arc, Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke,
-};
+use crate::{Background, Chart, HeightTime, HeightUnit, Mark, Measure as Scale, Measured, PlotError, Residual, Stroke};
 
 /// The measured points, the fitted motion, and what is left between them.
 ///
@@ -67,7 +65,7 @@ fn heights(report: &Report) -> Option<HeightTime> {
     };
     let residuals = report.residuals().iter().map(|r| Residual::new(r.time, r.z).mark(mark(r.mark)));
     let mut picture = HeightTime::new(&report.title())
-        .motion(&label(report, motion), all.iter().flat_map(|(shift, motion)| arcs(motion, *shift)))
+        .motion(&label(report, motion), all.iter().flat_map(|(shift, motion)| flights(motion, *shift)))
         .measured(points)
         .contacts(all.iter().flat_map(|(shift, motion)| motion.contacts.iter().map(move |t| t + shift)))
         .residuals(residuals)
@@ -317,8 +315,11 @@ fn course(report: &Report, motion: &Motion) -> String {
     if report.series().is_empty() { format!("one COR of {:.3}", motion.cor) } else { "the fitted motion".to_owned() }
 }
 
-fn arcs(motion: &Motion, shift: f64) -> impl Iterator<Item = Arc> {
-    motion.flights.iter().map(move |flight| Arc::new(flight.start + shift, flight.span, flight.height.to_vec()))
+fn flights(motion: &Motion, shift: f64) -> impl Iterator<Item = Stroke> {
+    motion
+        .flights
+        .iter()
+        .map(move |flight| Stroke::over_time(flight.start + shift, flight.span, flight.height.to_vec()))
 }
 
 fn mark(of: saltus_fit::Mark) -> Mark {

@@ -1,9 +1,10 @@
 //! Height against time: what is measured, what the model says, and how far apart they are.
 
 use crate::axis::opened;
-use crate::data::{Arc, Mark, Measured, Residual};
+use crate::data::{Mark, Measured, Residual};
 use crate::error::{PlotError, finite};
 use crate::residuals;
+use crate::stroke::Stroke;
 use crate::theme::{Background, LARGEST, SMALLEST};
 use crate::unit::{HeightUnit, Unit};
 use crate::wave::Wave;
@@ -12,7 +13,7 @@ use crate::wave::Wave;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Motion {
     pub(crate) label: String,
-    pub(crate) arcs: Vec<Arc>,
+    pub(crate) strokes: Vec<Stroke>,
 }
 
 /// A picture of height against time.
@@ -26,7 +27,7 @@ pub(crate) struct Motion {
 /// # Example
 ///
 /// ```
-/// use saltus_plot::{Arc, HeightTime, Mark, Measured, Residual};
+/// use saltus_plot::{HeightTime, Mark, Measured, Residual, Stroke};
 ///
 /// // A ball from 1 m that keeps half its speed.
 /// let landing = (2.0_f64 / 9.8).sqrt();
@@ -36,7 +37,10 @@ pub(crate) struct Motion {
 ///     .caption("COR 0.50 ± 0.01")
 ///     .motion(
 ///         "e = 0.50",
-///         [Arc::new(0.0, landing, vec![1.0, 0.0, -4.9]), Arc::new(landing, flight, vec![0.0, speed, -4.9])],
+///         [
+///             Stroke::over_time(0.0, landing, vec![1.0, 0.0, -4.9]),
+///             Stroke::over_time(landing, flight, vec![0.0, speed, -4.9]),
+///         ],
 ///     )
 ///     .measured([
 ///         Measured::new(0.0, 1.0).height_error(0.01).mark(Mark::Release),
@@ -57,7 +61,7 @@ pub struct HeightTime {
     pub(crate) motions: Vec<Motion>,
     pub(crate) measured: Vec<Measured>,
     pub(crate) contacts: Vec<f64>,
-    pub(crate) grounds: Vec<Vec<Arc>>,
+    pub(crate) grounds: Vec<Vec<Stroke>>,
     floorless: bool,
     pub(crate) wave: Option<Wave>,
     pub(crate) residuals: Vec<Residual>,
@@ -97,8 +101,8 @@ impl HeightTime {
 
     /// Adds a curve. The first is solid, the next dashed, then dotted, then dash-dotted.
     #[must_use]
-    pub fn motion(mut self, label: &str, arcs: impl IntoIterator<Item = Arc>) -> Self {
-        self.motions.push(Motion { label: label.to_owned(), arcs: arcs.into_iter().collect() });
+    pub fn motion(mut self, label: &str, strokes: impl IntoIterator<Item = Stroke>) -> Self {
+        self.motions.push(Motion { label: label.to_owned(), strokes: strokes.into_iter().collect() });
         self
     }
 
@@ -119,8 +123,8 @@ impl HeightTime {
     /// Adds where the floor is, in place of the one at height zero: one that moves, or what is
     /// below a ball that travels. Contacts are marked on the floor that is nearest to a motion.
     #[must_use]
-    pub fn ground(mut self, arcs: impl IntoIterator<Item = Arc>) -> Self {
-        self.grounds.push(arcs.into_iter().collect());
+    pub fn ground(mut self, strokes: impl IntoIterator<Item = Stroke>) -> Self {
+        self.grounds.push(strokes.into_iter().collect());
         self
     }
 
@@ -146,11 +150,14 @@ impl HeightTime {
 
     /// How high the floor is at `t` in s under the motion that is nearest to it.
     pub(crate) fn floor(&self, t: f64) -> f64 {
-        let at = |arcs: &[Arc]| {
-            let arc = arcs.iter().find(|arc| arc.start() <= t && t <= arc.end())?;
-            Some(arc.height(t))
+        let at = |strokes: &[Stroke]| {
+            let on = |stroke: &&Stroke| stroke.start().0 <= t && t <= stroke.end().0;
+            let stroke = strokes.iter().find(on)?;
+            let (from, to) = (stroke.start().0, stroke.end().0);
+            let part = if to > from { (t - from) / (to - from) } else { 0.0 };
+            Some(stroke.at(part * stroke.span).1)
         };
-        let heights: Vec<f64> = self.motions.iter().filter_map(|motion| at(&motion.arcs)).collect();
+        let heights: Vec<f64> = self.motions.iter().filter_map(|motion| at(&motion.strokes)).collect();
         let far = |floor: f64| heights.iter().map(|height| (height - floor).abs()).fold(f64::INFINITY, f64::min);
         let floors = self.grounds.iter().filter_map(|ground| at(ground));
         floors.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(0.0)
@@ -208,16 +215,15 @@ impl HeightTime {
         if self.is_flat() {
             height.include(0.0);
         }
-        let motions = self.motions.iter().map(|motion| ("motion", &motion.arcs));
+        let motions = self.motions.iter().map(|motion| ("motion", &motion.strokes));
         let grounds = self.grounds.iter().map(|ground| ("ground", ground));
-        for (m, (what, arcs)) in motions.enumerate().chain(grounds.enumerate()) {
-            for (a, arc) in arcs.iter().enumerate() {
-                arc.check(|| format!("arc {} of {what} {}", a + 1, m + 1))?;
-                let (low, high) = arc.extent();
-                time.include(arc.start());
-                time.include(arc.end());
-                height.include(low);
-                height.include(high);
+        for (m, (what, strokes)) in motions.enumerate().chain(grounds.enumerate()) {
+            for (n, stroke) in strokes.iter().enumerate() {
+                let [across, up] = stroke.check(|| format!("stroke {} of {what} {}", n + 1, m + 1))?;
+                time.include(across.0);
+                time.include(across.1);
+                height.include(up.0);
+                height.include(up.1);
             }
         }
         for (i, point) in self.measured.iter().enumerate() {

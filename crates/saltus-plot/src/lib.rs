@@ -17,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Or data in, text out: a [`HeightTime`] picture takes arcs, measurements, contacts and residuals
-//! in seconds and metres, and gives one SVG document. Flights are drawn as what they are: a
+//! Or data in, text out: a [`HeightTime`] picture takes strokes, measurements, contacts and
+//! residuals in seconds and metres, and gives one SVG document. Flights are drawn as what they are: a
 //! parabola is one quadratic Bézier curve, not a polyline. The document names itself (`<title>`,
 //! `<desc>`, `role="img"`), scales (`viewBox`), follows light and dark surroundings, needs no fonts
 //! of its own, and tells lines and marks apart by shape as well as by colour.
@@ -26,11 +26,11 @@
 //! # Example
 //!
 //! ```
-//! use saltus_plot::{Arc, HeightTime, Mark, Measured};
+//! use saltus_plot::{HeightTime, Mark, Measured, Stroke};
 //!
 //! let fall = (2.0_f64 / 9.8).sqrt();
 //! let svg = HeightTime::new("One metre, let go")
-//!     .motion("free fall", [Arc::new(0.0, fall, vec![1.0, 0.0, -4.9])])
+//!     .motion("free fall", [Stroke::over_time(0.0, fall, vec![1.0, 0.0, -4.9])])
 //!     .measured([Measured::new(0.45, 0.0).time_error(0.01).mark(Mark::Contact)])
 //!     .contacts([fall])
 //!     .svg()?;
@@ -86,7 +86,7 @@ mod wave;
 
 pub use chart::{Chart, Disc};
 pub use coordinate::Coordinate;
-pub use data::{Arc, Mark, Measured, Residual};
+pub use data::{Mark, Measured, Residual};
 pub use error::PlotError;
 pub use height_time::HeightTime;
 pub use map::Map;

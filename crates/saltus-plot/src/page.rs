@@ -279,14 +279,14 @@ fn heights(
         let floor = PathElement::new(vec![(t0, 0.0), (t1, 0.0)], Ink::Floor.stroke(1.6 * ty.hairline()));
         chart.draw_series([floor]).map_err(failed)?;
     }
-    let grounds = picture.grounds.iter().map(|arcs| {
-        let (data, width) = (curve::path(arcs, x, y), 1.6 * ty.hairline());
+    let grounds = picture.grounds.iter().map(|ground| {
+        let (data, width) = (curve::path(ground, x, y), 1.6 * ty.hairline());
         Trace { data, ink: Ink::Floor, width, dash: Dash::Solid, alpha: 1.0 }
     });
     chart.draw_series(grounds).map_err(failed)?;
 
     for (i, motion) in picture.motions.iter().enumerate().rev() {
-        let data = curve::path(&motion.arcs, x, y);
+        let data = curve::path(&motion.strokes, x, y);
         let trace = Trace { data, ink: Ink::series(i), width: ty.line(), dash: Dash::series(i), alpha: 1.0 };
         chart.draw_series([trace]).map_err(failed)?;
     }

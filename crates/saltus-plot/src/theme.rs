@@ -18,9 +18,9 @@ pub(crate) const FAMILY: &str = "'Helvetica Neue',Helvetica,Arial,'Liberation Sa
 /// # Example
 ///
 /// ```
-/// use saltus_plot::{Arc, Background, HeightTime};
+/// use saltus_plot::{Background, HeightTime, Stroke};
 ///
-/// let picture = HeightTime::new("A drop").motion("model", [Arc::new(0.0, 0.4, vec![1.0, 0.0, -4.9])]);
+/// let picture = HeightTime::new("A drop").motion("model", [Stroke::over_time(0.0, 0.4, vec![1.0, 0.0, -4.9])]);
 /// assert!(picture.clone().svg()?.contains("prefers-color-scheme"));
 /// assert!(!picture.background(Background::White).svg()?.contains("prefers-color-scheme"));
 /// # Ok::<(), saltus_plot::PlotError>(())

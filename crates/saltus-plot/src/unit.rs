@@ -5,9 +5,9 @@
 /// # Example
 ///
 /// ```
-/// use saltus_plot::{Arc, HeightTime, HeightUnit};
+/// use saltus_plot::{HeightTime, HeightUnit, Stroke};
 ///
-/// let drop = Arc::new(0.0, 0.45, vec![1.0, 0.0, -4.9]);
+/// let drop = Stroke::over_time(0.0, 0.45, vec![1.0, 0.0, -4.9]);
 /// let picture = HeightTime::new("A drop").motion("free fall", [drop]);
 /// assert!(picture.clone().svg()?.contains("Height (cm)"));
 /// assert!(picture.height_unit(HeightUnit::Metres).svg()?.contains("Height (m)"));

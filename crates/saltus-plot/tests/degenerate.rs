@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-use saltus_plot::{Arc, HeightTime, Mark, Measured, PlotError, Residual};
+use saltus_plot::{HeightTime, Mark, Measured, PlotError, Residual, Stroke};
 
-fn drop() -> Arc {
-    Arc::new(0.0, 0.4, vec![1.0, 0.0, -4.9])
+fn drop() -> Stroke {
+    Stroke::over_time(0.0, 0.4, vec![1.0, 0.0, -4.9])
 }
 
 fn fault(picture: &HeightTime) -> String {
@@ -18,17 +18,23 @@ fn nothing_at_all_says_what_to_give() {
     let empty = HeightTime::new("Empty");
     assert_eq!(empty.svg(), Err(PlotError::Empty));
     assert!(fault(&empty).contains("give the picture something to show"));
-    assert_eq!(empty.motion("no arcs", []).svg(), Err(PlotError::Empty));
+    assert_eq!(empty.motion("nothing", []).svg(), Err(PlotError::Empty));
 }
 
 #[test]
 fn a_number_at_fault_is_named() {
     let new = || HeightTime::new("Faulty");
     let cases = [
-        (new().motion("m", [drop(), Arc::new(f64::NAN, 1.0, vec![])]), "start of arc 2 of motion 1 is NaN"),
-        (new().motion("m", [Arc::new(0.0, f64::INFINITY, vec![])]), "span of arc 1 of motion 1 is inf"),
-        (new().motion("m", [Arc::new(0.0, -1.0, vec![])]), "span of arc 1 of motion 1 is -1, but must not be negative"),
-        (new().motion("m", [Arc::new(0.0, 1e200, vec![0.0, 0.0, 1.0])]), "a height on arc 1 of motion 1 is inf"),
+        (new().motion("m", [drop(), Stroke::over_time(f64::NAN, 1.0, vec![])]), "start of stroke 2 of motion 1 is NaN"),
+        (new().motion("m", [Stroke::over_time(0.0, f64::INFINITY, vec![])]), "span of stroke 1 of motion 1 is inf"),
+        (
+            new().motion("m", [Stroke::over_time(0.0, -1.0, vec![])]),
+            "span of stroke 1 of motion 1 is -1, but must not be negative",
+        ),
+        (
+            new().motion("m", [Stroke::over_time(0.0, 1e200, vec![0.0, 0.0, 1.0])]),
+            "a point of stroke 1 of motion 1 is inf",
+        ),
         (new().measured([Measured::new(0.0, f64::NAN)]), "height of measurement 1 is NaN"),
         (new().measured([Measured::new(0.0, 1.0).height_error(-0.1)]), "height error of measurement 1 is -0.1"),
         (new().measured([Measured::new(0.0, 1.0).time_error(f64::NAN)]), "time error of measurement 1 is NaN"),
@@ -74,7 +80,10 @@ fn no_scale_is_too_large_or_too_small() {
                         Measured::new(0.0, sign * h).height_error(0.1 * h),
                         Measured::new(sign * t, 0.0).time_error(0.1 * t).mark(Mark::Contact),
                     ])
-                    .motion("m", [Arc::new(0.0, t, vec![h]), Arc::new(t, t, vec![h, h / t.max(1e-290)])])
+                    .motion(
+                        "m",
+                        [Stroke::over_time(0.0, t, vec![h]), Stroke::over_time(t, t, vec![h, h / t.max(1e-290)])],
+                    )
                     .contacts([t])
                     .residuals([Residual::new(t, sign * h)]);
                 match picture.svg() {

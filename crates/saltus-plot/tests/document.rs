@@ -7,7 +7,7 @@ mod pictures;
 use std::path::Path;
 
 use roxmltree::{Document, Node};
-use saltus_plot::{Arc, Background, HeightTime, HeightUnit, Mark, Measured, Residual};
+use saltus_plot::{Background, HeightTime, HeightUnit, Mark, Measured, Residual, Stroke};
 
 /// The elements with this tag, in order.
 fn tagged<'a, 'b>(document: &'a Document<'b>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'b>> {
@@ -122,7 +122,7 @@ fn the_flights_of_the_squash_ball_are_exact_parabolas() {
 #[test]
 fn words_are_escaped() {
     let hostile = "a < b & \"c\" </svg><script>alert(1)</script> \u{1b}\u{0}";
-    let arc = Arc::new(0.0, 1.0, vec![1.0, 0.0, -1.0]);
+    let arc = Stroke::over_time(0.0, 1.0, vec![1.0, 0.0, -1.0]);
     let svg = HeightTime::new(hostile).caption(hostile).description(hostile).motion(hostile, [arc]).svg().unwrap();
     let document = Document::parse(&svg).unwrap();
     assert!(tagged(&document, "script").next().is_none());
@@ -170,7 +170,7 @@ fn the_page_shows_through_unless_paper_is_asked_for() {
 fn thousands_of_bounces_stay_small() {
     let (mut arcs, contacts) = pictures::bouncing(1.0, |_| 0.999, 20_000);
     let end = contacts[contacts.len() - 1];
-    arcs.push(Arc::new(end, 100.0, vec![0.0]));
+    arcs.push(Stroke::over_time(end, 100.0, vec![0.0]));
     let svg = HeightTime::new("Zeno").motion("e = 0.999", arcs).contacts(contacts).svg().unwrap();
     assert!(svg.len() < 150_000, "{} bytes", svg.len());
     Document::parse(&svg).unwrap();

@@ -11,7 +11,6 @@ use super::leaps;
 use crate::axis::{Axis, opened, typeset};
 use crate::coordinate::Label;
 use crate::curve::path;
-use crate::data::Arc;
 use crate::error::{PlotError, finite};
 use crate::grain::grains;
 use crate::heading::{Heading, Legend, Sign};
@@ -19,9 +18,10 @@ use crate::marks::{Trace, event};
 use crate::measure::Measure;
 use crate::panel::{Area, band, failed, maps, mesh};
 use crate::polynomial::extent;
+use crate::stroke::Stroke;
 use crate::svg::{Canvas, Sheet, number};
 use crate::theme::{Background, CAPITAL, Dash, Ink, Type, width};
-use crate::traced::Traced;
+use crate::traced::{Part, Traced};
 use crate::unit::Unit;
 
 /// The width of a page, and the height of all its panels if each is high enough then, in px.
@@ -246,12 +246,12 @@ fn one(
     chart.draw_series([limits]).map_err(failed)?;
     for (n, &line) in panel.lines.iter().enumerate().rev() {
         let Pen { ink, dash, width, alpha } = Pen::of(n, panel.lines.len(), ty);
-        let arcs: Vec<Arc> = content.traced.parts().filter_map(|part| arc(part, line)).collect();
+        let strokes: Vec<Stroke> = content.traced.parts().filter_map(|part| stroke(part, line)).collect();
         let sides = leaps::sides(content.traced, line, (x, y), ty);
         let thin =
             Trace { data: sides.between, ink, width: 0.8 * ty.hairline(), dash: Dash::Dashed, alpha: 0.7 * alpha };
         chart.draw_series([thin]).map_err(failed)?;
-        let data = path(&arcs, x, y);
+        let data = path(&strokes, x, y);
         chart.draw_series([Trace { data, ink, width, dash, alpha }]).map_err(failed)?;
         let rings = Trace { data: sides.before, ink, width: 1.2 * ty.hairline(), dash: Dash::Solid, alpha };
         let dots = Trace { data: sides.after, ink, width: 2.0 * leaps::radius(ty), dash: Dash::Solid, alpha };
@@ -260,9 +260,11 @@ fn one(
     Ok(())
 }
 
-fn arc(part: &crate::traced::Part, line: usize) -> Option<Arc> {
+/// A coordinate over time.
+fn stroke(part: &Part, line: usize) -> Option<Stroke> {
     let coefficients = &part.coefficients[line];
-    (!coefficients.is_empty()).then(|| Arc::scaled(part.start, part.span, part.scale, coefficients.clone()))
+    let over = || Stroke::new(part.span / part.scale, vec![part.start, part.scale], coefficients.clone());
+    (!coefficients.is_empty()).then(over)
 }
 
 /// The picture in a sentence, for those who cannot see it.

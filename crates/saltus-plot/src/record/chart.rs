@@ -1,5 +1,6 @@
 //! Velocity, energy, phase portrait, apex ladder, force over deformation.
 
+use crate::polynomial::value;
 use crate::{Chart, Measure, PlotError, Stroke};
 use saltus_bounce::effects::Buoyancy;
 use saltus_scene::Contact;
@@ -73,11 +74,6 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
         }
     }
     product
-}
-
-/// A polynomial of time at `s`.
-fn value(coefficients: &[f64], s: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }
 
 /// Potential energy, kinetic, and that in the spring of a contact that takes time, of all balls,

@@ -1,6 +1,6 @@
 //! Height against time.
 
-use crate::{Arc, Background, HeightTime};
+use crate::{Background, HeightTime, Stroke};
 use saltus_scene::Motion;
 use saltus_scene::plan::{Moment, Record, With};
 
@@ -16,11 +16,11 @@ pub(super) fn picture(record: &Record) -> HeightTime {
     let mut picture = HeightTime::new(&super::title(scene)).caption(&super::caption(record));
     for ball in 0..record.balls() {
         let label = if record.balls() == 1 { String::new() } else { scene.ball_name(ball) };
-        let arcs = record.segments(ball).into_iter().map(|segment| {
+        let strokes = record.segments(ball).into_iter().map(|segment| {
             let heights = segment.coefficients.iter().map(Moment::height).collect();
-            Arc::new(segment.start, segment.span, heights)
+            Stroke::over_time(segment.start, segment.span, heights)
         });
-        picture = picture.motion(&label, arcs);
+        picture = picture.motion(&label, strokes);
     }
     for ground in grounds(record) {
         picture = picture.ground(ground);
@@ -41,14 +41,14 @@ pub(super) fn ground(record: &Record, ball: usize, t: f64) -> Option<f64> {
 
 /// The ground below each ball over time, each once; none where all of it lies at height zero, or
 /// where there is none.
-pub(super) fn grounds(record: &Record) -> Vec<Vec<Arc>> {
+pub(super) fn grounds(record: &Record) -> Vec<Vec<Stroke>> {
     let (scene, until) = (record.scene(), record.until());
     let fast = scene.floors.iter().map(|floor| match floor.motion {
         Some(Motion::Sine { frequency, .. }) => OF_PERIOD * frequency * until,
         _ => 0.0,
     });
     let count = fast.fold(PIECES, f64::max).min(MOST).ceil();
-    let mut grounds: Vec<Vec<Arc>> = Vec::new();
+    let mut grounds: Vec<Vec<Stroke>> = Vec::new();
     for ball in 0..record.balls() {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
         let times = (0..=count as u32).map(|k| until * (f64::from(k) / count));
@@ -58,7 +58,7 @@ pub(super) fn grounds(record: &Record) -> Vec<Vec<Arc>> {
         let mut points: Vec<[f64; 2]> = points.iter().copied().chain(edges).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let ground = joined(&points);
-        if ground.iter().any(|arc| arc.extent() != (0.0, 0.0)) && !grounds.contains(&ground) {
+        if ground.iter().any(|stroke| stroke.reach()[1] != (0.0, 0.0)) && !grounds.contains(&ground) {
             grounds.push(ground);
         }
     }
@@ -83,8 +83,8 @@ fn edge(at: impl Fn(f64) -> Option<[f64; 2]>, [mut a, mut b]: [[f64; 2]; 2]) -> 
     Some([a, b])
 }
 
-/// Straight arcs through points, one for all that lie on one line.
-fn joined(points: &[[f64; 2]]) -> Vec<Arc> {
+/// Straight strokes through points, one for all that lie on one line.
+fn joined(points: &[[f64; 2]]) -> Vec<Stroke> {
     /// How far a point may be from a line, as a part of what heights differ by.
     const NEAR: f64 = 1e-9;
     let heights = points.iter().map(|point| point[1]);
@@ -98,11 +98,11 @@ fn joined(points: &[[f64; 2]]) -> Vec<Arc> {
         }
         corners.push([t, h]);
     }
-    let arc = |pair: &[[f64; 2]]| {
+    let stroke = |pair: &[[f64; 2]]| {
         let ([s, a], [t, b]) = (pair[0], pair[1]);
-        Arc::new(s, t - s, vec![a, (b - a) / (t - s)])
+        Stroke::over_time(s, t - s, vec![a, (b - a) / (t - s)])
     };
-    corners.windows(2).map(arc).collect()
+    corners.windows(2).map(stroke).collect()
 }
 
 #[cfg(test)]
@@ -112,14 +112,16 @@ mod tests {
     use super::*;
 
     /// The scene's ground, and at how many impacts a ball was met on it.
-    fn met(toml: &str) -> (Vec<Vec<Arc>>, usize) {
+    fn met(toml: &str) -> (Vec<Vec<Stroke>>, usize) {
         let record = Scene::parse("scene", toml.as_bytes()).unwrap().plan().unwrap().run().unwrap();
         let grounds = grounds(&record);
         let mut count = 0;
         for impact in record.impacts().iter().filter(|impact| matches!(impact.with, With::Floor(_))) {
             let low = record.at(impact.ball, impact.t).unwrap().height();
-            let at = |ground: &Vec<Arc>| {
-                ground.iter().find(|arc| arc.start() <= impact.t && impact.t <= arc.end()).unwrap().height(impact.t)
+            let at = |ground: &Vec<Stroke>| {
+                let on = |stroke: &&Stroke| stroke.start().0 <= impact.t && impact.t <= stroke.end().0;
+                let stroke = ground.iter().find(on).unwrap();
+                stroke.at(impact.t - stroke.start().0).1
             };
             let near = grounds.iter().map(at).map(|floor| (low - floor).abs()).fold(f64::INFINITY, f64::min);
             // Straight pieces cut corners and waves a little.
@@ -150,10 +152,10 @@ mod tests {
         // Between treads the ground is upright, within a thousandth of a dot of a page.
         let (grounds, _) =
             met(&format!("{thrown}floor = {{ kind = 'stairs', from = -0.8, tread = 0.3, rise = 0.2 }}\n"));
-        let (level, edges): (Vec<&Arc>, Vec<&Arc>) =
-            grounds[0].iter().partition(|arc| arc.extent().0 == arc.extent().1);
+        let (level, edges): (Vec<&Stroke>, Vec<&Stroke>) =
+            grounds[0].iter().partition(|stroke| stroke.start().1 == stroke.end().1);
         assert!(level.len() == edges.len() + 1 && edges.len() >= 3, "{grounds:?}");
-        assert!(edges.iter().all(|edge| edge.length() < 3.0 / PIECES / 1000.0), "{edges:?}");
+        assert!(edges.iter().all(|edge| edge.span < 3.0 / PIECES / 1000.0), "{edges:?}");
         // The floor of old pictures, and what many balls share, is drawn once or not at all.
         assert!(met(fallen).0.is_empty());
         let two = "ball = [{ mass = 1, radius = 0.01, height = 1 }, { mass = 1, radius = 0.01, height = 2 }]\n";

@@ -1,6 +1,6 @@
 //! The path in space, and the ball at equal times.
 
-use crate::{Arc, Chart, Disc, Measure, PlotError, Stroke};
+use crate::{Chart, Disc, Measure, PlotError, Stroke};
 use saltus_scene::plan::{Moment, Record, Segment};
 use saltus_scene::{Floor, Shape};
 
@@ -104,7 +104,7 @@ pub(super) fn ghost(record: &Record) -> Chart {
         }
     }
     if aside && let grounds @ [_, ..] = &super::height::grounds(record)[..] {
-        let across = |arc: &Arc| Stroke::new(arc.length(), vec![pace * arc.start(), pace], arc.coefficients().to_vec());
+        let across = |s: &Stroke| Stroke::new(s.span, s.x.iter().map(|x| pace * x).collect(), s.y.clone());
         return chart.ground(grounds.iter().flatten().map(across));
     }
     let ends = if aside { [-step, step * f64::from(FRAMES + 1)] } else { reach[0] };

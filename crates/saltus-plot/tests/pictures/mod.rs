@@ -1,19 +1,19 @@
 //! The pictures the tests look at.
 
-use saltus_plot::{Arc, Background, HeightTime, HeightUnit, Mark, Measured, Residual};
+use saltus_plot::{Background, HeightTime, HeightUnit, Mark, Measured, Residual, Stroke};
 
 const G: f64 = 9.8;
 
 /// A ball dropped from `h` metres: the fall, `bounces` flights, and the times of contact.
-pub(crate) fn bouncing(h: f64, restitution: impl Fn(usize) -> f64, bounces: usize) -> (Vec<Arc>, Vec<f64>) {
+pub(crate) fn bouncing(h: f64, restitution: impl Fn(usize) -> f64, bounces: usize) -> (Vec<Stroke>, Vec<f64>) {
     let mut t = (2.0 * h / G).sqrt();
     let mut speed = G * t;
-    let mut arcs = vec![Arc::new(0.0, t, vec![h, 0.0, -0.5 * G])];
+    let mut arcs = vec![Stroke::over_time(0.0, t, vec![h, 0.0, -0.5 * G])];
     let mut contacts = vec![t];
     for n in 0..bounces {
         speed *= restitution(n);
         let span = 2.0 * speed / G;
-        arcs.push(Arc::new(t, span, vec![0.0, speed, -0.5 * G]));
+        arcs.push(Stroke::over_time(t, span, vec![0.0, speed, -0.5 * G]));
         t += span;
         contacts.push(t);
     }
@@ -99,7 +99,7 @@ pub(crate) fn pooled() -> HeightTime {
 pub(crate) fn zeno() -> HeightTime {
     let (mut arcs, contacts) = bouncing(1.0, |_| 0.9, 60);
     let t = arcs.last().map_or(0.0, |_| contacts[contacts.len() - 1]);
-    arcs.push(Arc::new(t, 10.0 - t, vec![0.0]));
+    arcs.push(Stroke::over_time(t, 10.0 - t, vec![0.0]));
     HeightTime::new("Let go from 1 m with COR 0.9")
         .caption("Infinitely many bounces end at t = 8.58 s; then rest")
         .motion("simulated", arcs)
