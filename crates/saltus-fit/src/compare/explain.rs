@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::exp;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::{FOLLOWED, FlightTrial, READINGS};
@@ -187,7 +188,7 @@ pub(crate) fn hypotheses(fits: &Fits<'_>, agreement: Option<&Agreement>) -> Resu
         (None, _) => {
             let trend = fits.heights.as_ref().filter(|k| k.trend.is_some_and(|p| p < REJECT));
             let Some(kind) = trend else { return Ok(Vec::new()) };
-            let one_cor = (kind.fitted.shared[0].exp(), fits.gravity.value, sigma_height);
+            let one_cor = (exp(kind.fitted.shared[0]), fits.gravity.value, sigma_height);
             Ok(height_zero(fits.evidence, one_cor)?.into_iter().collect())
         }
     }

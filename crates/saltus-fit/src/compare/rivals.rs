@@ -6,6 +6,7 @@
 
 use rayon::iter::{IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
+use crate::elementary::{ln, powf};
 use crate::error::FitError;
 use crate::finding::{Finding, FindingKind, Missing, Need, Untried};
 use crate::model::{Bounds, CorLaw, FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, Model, READINGS};
@@ -31,6 +32,9 @@ const BOUNCES: usize = 12;
 const TRIALS: usize = 30;
 /// The zero of a scale is off by a ball at most, and this is the largest: a basketball, m.
 const LARGEST_BALL: f64 = 0.25;
+/// BICs this close are the same: searches end with so much left open, and a difference counts from
+/// [`WEAK`] on.
+const TIE: f64 = 1e-6;
 /// Heights of which one is missing are looked for among so many, and need so many in their trial.
 const FEW: usize = 200;
 const RUN: usize = 5;
@@ -107,7 +111,7 @@ fn rivals(base: &Flight, ball: Option<f64>, (slowest, fastest, count): (f64, f64
         push(CorModel::Plastic, of(CorLaw::Plastic { middle }));
         push(CorModel::Power, of(CorLaw::Power { middle }));
         let knots = if count >= 2 * TREND { 4 } else { 3 };
-        let at = |k: usize| slowest * factor.powf(k as f64 / (knots - 1) as f64);
+        let at = |k: usize| slowest * powf(factor, k as f64 / (knots - 1) as f64);
         push(CorModel::Knots, of(CorLaw::Knots((0..knots).map(at).collect())));
     }
     if spans && factor > DRAG_SPEEDS {
@@ -213,7 +217,10 @@ pub(crate) fn compare(readings: &Readings, cor: f64) -> Result<Compared, FitErro
     list.retain(|m| m.0.chosen || m.0.cor.value <= 1.0);
     // Nor does a contact of a ball that bounces last longer than that.
     list.retain(|m| m.0.contact_s.is_none_or(|c| c.value < LONGEST_CONTACT));
-    list.sort_by(|a, b| a.0.bic.total_cmp(&b.0.bic));
+    // Models as good as each other stand in the order in which they are tried. (Nothing is added
+    // for the sign of zero.)
+    let rank = |m: &Tried| (m.0.bic / TIE).round() + 0.0;
+    list.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
     // Where one COR stands alone there is nothing for the trials to decide.
     let disputed = list.iter().filter(|m| m.0.bic < WEAK).count() > 1;
     for (choice, model, fitted) in list.iter_mut().filter(|m| disputed && m.0.bic < WEAK) {
@@ -289,10 +296,10 @@ fn tried(
     choice.missing = missing;
     choice.misfit = Some(misfit);
     choice.p = chi_square_p(fitted.chi_square, fitted.freedom).filter(|_| !readings.scattered);
-    choice.aicc = (n > p + 1.0).then(|| bic - p * n.ln() + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
+    choice.aicc = (n > p + 1.0).then(|| bic - p * ln(n) + 2.0 * p + 2.0 * p * (p + 1.0) / (n - p - 1.0));
     if model.law.of_speed() {
         let (slowest, fastest, _) = impacts(&model, &fitted);
-        let speed = |k: usize| slowest * (fastest / slowest).powf(k as f64 / (LISTED - 1) as f64);
+        let speed = |k: usize| slowest * powf(fastest / slowest, k as f64 / (LISTED - 1) as f64);
         let point = |k| {
             let Measured { value: cor, standard_error } = at(&model, &fitted, speed(k));
             SpeedCor { speed: speed(k), cor, standard_error }

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::elementary::ln;
 use crate::read::{Event, Trial};
 use crate::statistics::{Line, REJECT, SPARE, TREND, chi_square_p, variance_ratio_p};
 
@@ -92,7 +93,7 @@ pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opti
     let points = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
     let release = |trial: &Trial| trial.readings.first().filter(|r| r.event == Event::Release).and_then(|r| r.height);
     // In steps of the releases that count as one.
-    let step = |height: f64| (height.max(f64::MIN_POSITIVE).ln() / SAME_HEIGHT).round() as i64;
+    let step = |height: f64| (ln(height.max(f64::MIN_POSITIVE)) / SAME_HEIGHT).round() as i64;
     let mut settings: BTreeMap<(&str, Option<i64>), Vec<Point>> = BTreeMap::new();
     for (point, trial) in points().filter_map(|point| Some((point, trials.get(point.1 as usize)?))) {
         settings.entry((&trial.setting, release(trial).map(step))).or_default().push(point);

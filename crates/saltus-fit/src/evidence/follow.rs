@@ -8,6 +8,7 @@
 //! (Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260), for CORs from one end of the possible to the
 //! other; those that cost about as little as the best are its rivals.
 
+use crate::elementary::{exp, ln, powf};
 use crate::statistics::{CLEAR, NORMAL, SCATTER, TELLING, WEAK, median};
 
 /// Between two contacts that are kept lie up to so many flights, and up to one less that are left
@@ -204,9 +205,9 @@ impl Way {
     /// The least that it costs near a COR, and where.
     fn at_its_best(&self, runs: &[Run], near: f64, sigma: f64) -> (f64, f64) {
         let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let step = (CORS.1 / CORS.0).ln() / f64::from(CORS.2);
-        let (mut low, mut high) = (near.ln() - step, near.ln() + step);
-        let price = |log: f64| self.price(runs, log.exp(), sigma);
+        let step = ln(CORS.1 / CORS.0) / f64::from(CORS.2);
+        let (mut low, mut high) = (ln(near) - step, ln(near) + step);
+        let price = |log: f64| self.price(runs, exp(log), sigma);
         // The least of a function of doubles shows to the root of their spacing.
         while high - low > f64::EPSILON.sqrt() {
             let apart = golden * (high - low);
@@ -214,7 +215,7 @@ impl Way {
             if price(a) < price(b) { high = b } else { low = a }
         }
         let middle = 0.5 * (low + high);
-        (price(middle), middle.exp())
+        (price(middle), exp(middle))
     }
 
     /// The scatter of a time by what the way leaves; `None` of too few.
@@ -235,7 +236,7 @@ impl Way {
 
 fn tried() -> impl Iterator<Item = f64> {
     let (low, high, count) = CORS;
-    (0..=count).map(move |n| low * (high / low).powf(f64::from(n) / f64::from(count)))
+    (0..=count).map(move |n| low * powf(high / low, f64::from(n) / f64::from(count)))
 }
 
 /// All ways that are the cheapest under some COR, each once, at its best COR and with the best

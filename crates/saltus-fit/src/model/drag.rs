@@ -6,6 +6,8 @@
 //! the floor at v, with u = v √(k/G), rises ln(1 + u²)/(2k) in atan(u)/ω, falls in asinh(u)/ω, and
 //! arrives at v/√(1 + u²).
 
+use crate::elementary::{asinh, atan, atanh, cos, exp, exp_m1, ln, ln_1p, sinh, tan, tanh};
+
 /// Gravity and drag: G (length/time²) and k (1/length); k = 0 is a parabola.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Air {
@@ -43,7 +45,7 @@ impl Air {
         }
         let omega = (g * k).sqrt();
         let x = omega * tau;
-        let (log, slope) = if x >= 0.0 { (0.5 * x.sinh().powi(2).ln_1p(), x.tanh()) } else { (-x.cos().ln(), x.tan()) };
+        let (log, slope) = if x >= 0.0 { (0.5 * ln_1p(sinh(x).powi(2)), tanh(x)) } else { (-ln(cos(x)), tan(x)) };
         // sinh overflows long before its logarithm does.
         let log = if x > 300.0 { x - std::f64::consts::LN_2 } else { log };
         Sloped { value: log / k, by: [omega * slope / k, slope * x / (2.0 * g * k), (0.5 * slope * x - log) / (k * k)] }
@@ -66,12 +68,12 @@ impl Air {
             value: x / omega,
             by: [dx * du[0] / omega, (dx * du[1] - 0.5 * x / g) / omega, (dx * du[2] - 0.5 * x / k) / omega],
         };
-        let height = 0.5 * (u * u).ln_1p() / k;
+        let height = 0.5 * ln_1p(u * u) / k;
         let root = square.sqrt();
         let bend = -speed * u / (square * root);
         Hop {
-            rise: over_omega(u.atan(), 1.0 / square),
-            fall: over_omega(u.asinh(), 1.0 / root),
+            rise: over_omega(atan(u), 1.0 / square),
+            fall: over_omega(asinh(u), 1.0 / root),
             height: Sloped {
                 value: height,
                 by: [u * du[0] / (square * k), u * du[1] / (square * k), u * du[2] / (square * k) - height / k],
@@ -88,8 +90,8 @@ impl Air {
             return Sloped { value: v, by: [g / v.max(1e-12), height / v.max(1e-12), 0.0] };
         }
         // v² = (G/k) (1 − e^(−2kh)).
-        let left = (-2.0 * k * height).exp();
-        let square = -(g / k) * (-2.0 * k * height).exp_m1();
+        let left = exp(-2.0 * k * height);
+        let square = -(g / k) * exp_m1(-2.0 * k * height);
         let v = square.sqrt();
         let half = 0.5 / v.max(1e-12);
         Sloped {
@@ -111,12 +113,12 @@ impl Air {
         let (omega, w) = ((g * k).sqrt(), speed * (k / g).sqrt());
         let dw = [(k / g).sqrt(), -0.5 * w / g, 0.5 * w / k];
         let rest = 1.0 - w * w;
-        let (x, dx) = (w.atanh(), 1.0 / rest);
+        let (x, dx) = (atanh(w), 1.0 / rest);
         let time = Sloped {
             value: x / omega,
             by: [dx * dw[0] / omega, (dx * dw[1] - 0.5 * x / g) / omega, (dx * dw[2] - 0.5 * x / k) / omega],
         };
-        let height = -0.5 * (-w * w).ln_1p() / k;
+        let height = -0.5 * ln_1p(-w * w) / k;
         let by = [w * dw[0] / (rest * k), w * dw[1] / (rest * k), w * dw[2] / (rest * k) - height / k];
         (time, Sloped { value: height, by })
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use super::problem::{Bounds, Model};
+use crate::elementary::{exp, ln};
 use crate::evidence::Height;
 
 /// Heights against the number of contacts. Shared: L = ln e, and on request a trend. Own: a = ln
@@ -50,9 +51,9 @@ impl Model for Heights {
             // Of the logarithm or of the height, the derivative with respect to `predicted` and the
             // residual.
             let (weight, residual) = if self.logarithms {
-                (height / sigma, height / sigma * (height.ln() - predicted))
+                (height / sigma, height / sigma * (ln(height) - predicted))
             } else {
-                let expected = predicted.exp();
+                let expected = exp(predicted);
                 (expected / sigma, (height - expected) / sigma)
             };
             rows[(i, 0)] = weight;

@@ -14,6 +14,7 @@ use nalgebra::DMatrix;
 use super::dual::Dual;
 use super::places::GRAVITY;
 use super::problem::Bounds;
+use crate::elementary::{exp, ln, powf, sin_cos};
 
 /// The unknowns of contacts, side by side among all: T, s and κ.
 #[derive(Clone, Copy, Debug)]
@@ -39,8 +40,8 @@ impl Lasting {
     /// How long a contact takes.
     pub(super) fn time(self, values: &[f64], arrival: &Dual) -> Dual {
         let (time, s) = (values[self.place], values[self.place + 1]);
-        let faster = (arrival.value / self.speed).max(1e-3).ln();
-        let growth = (-s * faster).exp();
+        let faster = ln((arrival.value / self.speed).max(1e-3));
+        let growth = exp(-s * faster);
         let mut lasts = arrival.mapped(time * growth, -s * time * growth / arrival.value);
         lasts.by[self.place] += growth;
         lasts.by[self.place + 1] -= faster * time * growth;
@@ -75,10 +76,10 @@ impl Lasting {
 pub(super) fn depth([began, lasts, arrival, cor]: [&Dual; 4], time: f64) -> Dual {
     let e = cor.value.max(1e-9);
     let x = (time - began.value) / lasts.value;
-    let (sin, cos) = (PI * x).sin_cos();
-    let shape = e.powf(x) / PI;
+    let (sin, cos) = sin_cos(PI * x);
+    let shape = powf(e, x) / PI;
     let scale = arrival.value * lasts.value;
-    let by_x = scale * shape * (e.ln() * sin + PI * cos);
+    let by_x = scale * shape * (ln(e) * sin + PI * cos);
     let depth = scale * shape * sin;
     let by_cor = cor.mapped(0.0, depth * x / e);
     let by_speed = arrival.mapped(0.0, lasts.value * shape * sin);

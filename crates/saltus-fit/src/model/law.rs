@@ -2,6 +2,7 @@
 
 use super::dual::{Dual, Slopes};
 use super::problem::Bounds;
+use crate::elementary::{ln, powf};
 
 /// A law for the COR. Speeds are in m/s; beyond the range of speeds it was made for, a law is
 /// continued.
@@ -88,19 +89,19 @@ impl CorLaw {
                 (unknowns[0] * by[0] + unknowns[1] * by[1], (unknowns[1] - unknowns[0]) / (high - low))
             }
             Self::Viscoelastic { high } => {
-                let root = (speed / high).powf(0.1);
+                let root = powf(speed / high, 0.1);
                 let (value, slope) = pade(unknowns[0] * root);
                 by[0] = slope * root;
                 (value, slope * unknowns[0] * root * 0.1 / speed)
             }
             Self::Plastic { middle } => {
-                by[0] = (speed / middle).powf(-0.25);
+                by[0] = powf(speed / middle, -0.25);
                 (unknowns[0] * by[0], -0.25 * unknowns[0] * by[0] / speed)
             }
             Self::Power { middle } => {
-                by[0] = (speed / middle).powf(-unknowns[1]);
+                by[0] = powf(speed / middle, -unknowns[1]);
                 let value = unknowns[0] * by[0];
-                by[1] = -value * (speed / middle).ln();
+                by[1] = -value * ln(speed / middle);
                 (value, -unknowns[1] * value / speed)
             }
             Self::Knots(speeds) => knots(speeds, speed, unknowns, &mut by),

@@ -6,6 +6,7 @@ use std::fmt::{self, Formatter};
 use super::contract::{Difference, Group, Report};
 use super::lines::{paragraph, section, sentence};
 use super::numbers::{digits, pair};
+use crate::elementary::hypot;
 use crate::finding::{Finding, FindingKind};
 use crate::read::Table;
 use crate::verdict::Verdict;
@@ -33,9 +34,9 @@ impl Difference {
             greater: greater.name.clone(),
             less: less.name.clone(),
             value,
-            standard_error: x.standard_error.zip(y.standard_error).map(|(s, t)| s.hypot(t)),
-            low: value - (x.value - x.low).hypot(y.high - y.value),
-            high: value + (x.high - x.value).hypot(y.value - y.low),
+            standard_error: x.standard_error.zip(y.standard_error).map(|(s, t)| hypot(s, t)),
+            low: value - hypot(x.value - x.low, y.high - y.value),
+            high: value + hypot(x.high - x.value, y.value - y.low),
         })
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::residual::{Mark, Measure, Point, Residual};
+use crate::elementary::exp;
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::model::{Contacts, Heights};
 use crate::solve::fits::Fits;
@@ -132,10 +133,10 @@ fn of_times(kind: &Kind<Contacts>, evidence: &Evidence, gravity: f64) -> Vec<Mot
 
 /// The motion of each trial from the fit of its heights, the clock starting at the release.
 fn of_heights(kind: &Kind<Heights>, evidence: &Evidence, gravity: f64) -> Vec<Motion> {
-    let e = kind.fitted.shared[0].exp();
+    let e = exp(kind.fitted.shared[0]);
     let one = |(trial, own): (&TrialEvidence, &Vec<f64>)| {
         (trial.heights.len() > 1).then(|| {
-            let height = own[0].exp();
+            let height = exp(own[0]);
             let fall = (2.0 * height / gravity).sqrt();
             let durations = geometric(2.0 * fall * e, e, contacts(trial) - 1);
             Motion::of(trial.trial, [gravity, e], Some(height), fall, &durations)

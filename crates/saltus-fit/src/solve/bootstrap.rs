@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::fits::Fits;
 use super::one::{OneKind, identified};
 use super::{joint, kind};
+use crate::elementary::exp;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::Heights;
@@ -91,5 +92,5 @@ fn cor(drawn: &Evidence, fits: &Fits<'_>) -> Result<Option<f64>, FitError> {
     if !model.usable() {
         return Ok(None);
     }
-    Ok(identified(Heights::READINGS.name(), model.minimise())?.map(|f| f.shared[0].exp()))
+    Ok(identified(Heights::READINGS.name(), model.minimise())?.map(|f| exp(f.shared[0])))
 }

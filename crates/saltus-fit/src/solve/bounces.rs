@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimate::Estimate;
+use crate::elementary::{exp, ln};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::quantity::{Measured, Method};
 use crate::statistics::{NORMAL, REPLICATED};
@@ -37,7 +38,7 @@ impl Setting {
     /// ln √(h₂/h₁) and its variance.
     fn height_ratio(&self, before: (f64, Option<f64>), after: (f64, Option<f64>)) -> Log {
         let relative = |(h, s): (f64, Option<f64>)| (s.unwrap_or(self.sigma_height) / h).powi(2);
-        (0.5 * (after.0 / before.0).ln(), 0.25 * (relative(before) + relative(after)))
+        (0.5 * ln(after.0 / before.0), 0.25 * (relative(before) + relative(after)))
     }
 
     /// The fall from a release height, s.
@@ -48,14 +49,14 @@ impl Setting {
     /// ln of a ratio of intervals that share a contact, and its variance.
     fn interval_ratio(&self, before: f64, after: f64) -> Log {
         let (a, b) = (self.sigma_time / before, self.sigma_time / after);
-        ((after / before).ln(), 2.0 * (a * a + b * b + a * b))
+        (ln(after / before), 2.0 * (a * a + b * b + a * b))
     }
 
     /// ln of the first flight over twice the fall, and its variance.
     fn first_flight(&self, trial: &TrialEvidence) -> Option<Log> {
         let (height, _) = trial.release_height?;
         let flight = trial.contact(2)? - trial.contact(1)?;
-        Some(((flight / (2.0 * self.fall(height))).ln(), 2.0 * (self.sigma_time / flight).powi(2)))
+        Some((ln(flight / (2.0 * self.fall(height))), 2.0 * (self.sigma_time / flight).powi(2)))
     }
 }
 
@@ -71,7 +72,7 @@ fn mean(logs: &[Log]) -> Option<Measured> {
         let spread = logs.iter().map(|l| ((l.0 - log) / l.1).powi(2)).sum::<f64>().sqrt() / weight;
         error = error.max(spread * (n / (n - 1.0)).sqrt());
     }
-    let value = log.exp();
+    let value = exp(log);
     (value.is_finite() && error.is_finite()).then_some(Measured { value, standard_error: value * error })
 }
 
@@ -123,7 +124,7 @@ pub(crate) fn means(evidence: &Evidence, setting: &Setting) -> Vec<Estimate> {
         t.contact(1)?;
         let (last, interval) = t.intervals().last()?;
         let fall = 2.0 * setting.fall(height);
-        let log = ((interval / fall).ln(), 2.0 * (setting.sigma_time / interval).powi(2));
+        let log = (ln(interval / fall), 2.0 * (setting.sigma_time / interval).powi(2));
         (last >= 2).then(|| per_bounce(log, last))
     };
     let logs: Vec<Log> = evidence.trials.iter().filter_map(ends).collect();

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::ln;
 use crate::finding::{Gives, Missing};
 use crate::model::Law;
 use crate::quantity::{CorModel, Loss, Measured};
@@ -73,13 +74,13 @@ pub(crate) struct Misfit {
 impl Misfit {
     /// The BIC where the errors of the readings are taken from their scatter.
     pub(crate) fn by_scatter(self) -> f64 {
-        self.readings * (self.chi_square / self.readings).max(self.least).max(1e-300).ln()
-            + self.unknowns * self.readings.ln()
+        self.readings * ln((self.chi_square / self.readings).max(self.least).max(1e-300))
+            + self.unknowns * ln(self.readings)
     }
 
     /// The BIC where the errors are so many times those of the fit.
     pub(crate) fn by_errors(self, times: f64) -> f64 {
-        self.chi_square / (times * times) + self.unknowns * self.readings.ln()
+        self.chi_square / (times * times) + self.unknowns * ln(self.readings)
     }
 
     /// The probability that a model with more unknowns leaves so much less than `fewer` does by

@@ -8,6 +8,7 @@ use super::one::OneKind;
 use super::profile::Profile;
 use super::ratio;
 use super::tolerance::losses;
+use crate::elementary::exp;
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::{Contacts, Heights};
@@ -105,7 +106,7 @@ impl<'a> Fits<'a> {
             let model = Heights::with_sigma(self.evidence, kind.sigma.value);
             // Heights are fitted in the logarithm of the COR.
             let Measured { value: ln, standard_error } = kind.fitted.measured(0);
-            let best = Measured { value: ln.exp(), standard_error: ln.exp() * standard_error };
+            let best = Measured { value: exp(ln), standard_error: exp(ln) * standard_error };
             Profile::of(Method::Heights, &model, &kind.fitted, best, f64::ln)
         });
         let times = self.times.as_ref().map(|kind| {

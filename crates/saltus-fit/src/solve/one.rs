@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::least_squares::Failure;
 use super::successive::{Fitted, fit};
+use crate::elementary::{exp, ln};
 use crate::error::FitError;
 use crate::evidence::{ASSUMED_TIME, Evidence, Height, Moment};
 use crate::model::{Contacts, Heights, Model};
@@ -64,14 +65,14 @@ impl OneKind for Heights {
     }
 
     fn minimise(&self) -> Result<Fitted, Failure> {
-        let first = |t: &Vec<Height>| vec![t.first().map_or(0.0, |h| h.1.ln())];
+        let first = |t: &Vec<Height>| vec![t.first().map_or(0.0, |h| ln(h.1))];
         let start = self.trials.iter().map(first).collect();
         let straight = fit(&Self { logarithms: true, ..self.clone() }, &[-0.3], start)?;
         fit(self, &straight.shared, straight.own)
     }
 
     fn cor(shared: f64) -> (f64, f64) {
-        (shared.exp(), shared.exp())
+        (exp(shared), exp(shared))
     }
 
     fn usable(&self) -> bool {

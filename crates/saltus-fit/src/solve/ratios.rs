@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::choice::ModelChoice;
 use super::estimate::Estimate;
+use crate::elementary::{exp, ln};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::model::LONGEST_CONTACT;
 use crate::quantity::{CorModel, Measured, Method, Source, Sourced};
@@ -71,7 +72,7 @@ fn collect(trial: &TrialEvidence) -> Option<Ratios> {
         return None;
     }
     let n = whole.len();
-    let y = DVector::from_iterator(n, whole.iter().map(|w| ((w[2].1 - w[1].1) / (w[1].1 - w[0].1)).ln()));
+    let y = DVector::from_iterator(n, whole.iter().map(|w| ln((w[2].1 - w[1].1) / (w[1].1 - w[0].1))));
     let before = DVector::from_iterator(n, whole.iter().map(|w| w[1].1 - w[0].1));
     let mut b = DMatrix::zeros(n, n + 2);
     for (k, w) in whole.iter().enumerate() {
@@ -100,7 +101,7 @@ fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
         let factor = covariance.cholesky()?;
         let ones = factor.solve(&DVector::from_element(n, 1.0));
         parts.push((ones.sum(), ones.dot(&trial.y)));
-        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| ln(*d)).sum::<f64>();
         count += n as f64;
         factors.push(factor);
     }
@@ -114,7 +115,7 @@ fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
             r.dot(&factor.solve(&r))
         })
         .sum();
-    let deviance = log_det + weight.ln() + (count - 1.0) * square.ln();
+    let deviance = log_det + ln(weight) + (count - 1.0) * ln(square);
     let good = mean.is_finite() && square.is_finite() && weight > 0.0;
     good.then_some(Solved { mean, variance: 1.0 / weight, square, deviance, parts })
 }
@@ -155,7 +156,7 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
         return None;
     }
     let found = solve(&trials, scatter, reading)?;
-    let value = found.mean.exp();
+    let value = exp(found.mean);
     let mut error = found.variance.sqrt();
     let mut quantile = student(freedom);
     let replicated = trials.len() >= REPLICATED;
@@ -220,11 +221,11 @@ fn beside(trials: &[Ratios], one: &Estimate, scatter: f64, reading: f64) -> Vec<
         let zero = if sign == 0.0 { x((shortest * longest).sqrt()) } else { 0.0 };
         let Some(line) = line(trials, |t, k| x(t.before[k]) - zero, scatter, reading) else { continue };
         let Measured { value, standard_error } = line.level;
-        let (e, left) = (value.exp(), line.left / line.alone);
+        let (e, left) = (exp(value), line.left / line.alone);
         if line.slope * sign < 0.0 || !(0.0..=1.0).contains(&e) || left <= 0.0 {
             continue;
         }
-        let bic = count * left.ln() + count.ln();
+        let bic = count * ln(left) + ln(count);
         let cor = Measured { value: e, standard_error: e * standard_error };
         let mut model = ModelChoice::new(name, cor, bic);
         if name == CorModel::Contact && e < 1.0 {

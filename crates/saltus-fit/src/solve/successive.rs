@@ -10,6 +10,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::least_squares::{Failure, solve, step};
+use crate::elementary::hypot;
 use crate::model::{Bounds, Model};
 use crate::quantity::Measured;
 
@@ -89,7 +90,7 @@ impl Triangle {
                 }
                 // The reflection of (here | rows) about (1, pivot): the triangle's diagonal stays
                 // positive, and nothing cancels.
-                let length = here[j].hypot(below.sqrt());
+                let length = hypot(here[j], below.sqrt());
                 let head = -below / (here[j] + length);
                 let scale = -head / length;
                 let (mut pivot, mut rest) = panel.columns_range_pair_mut(j, j + 1..);

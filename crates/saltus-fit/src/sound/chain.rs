@@ -9,6 +9,7 @@
 use std::collections::HashMap;
 
 use super::onset::Onset;
+use crate::elementary::{exp, hypot, ln};
 
 /// The flights looked for, s: shorter ones are one sound, in three seconds a ball rises 11 m.
 const FLIGHTS: std::ops::RangeInclusive<f64> = 0.008..=3.0;
@@ -158,7 +159,7 @@ impl Listener<'_> {
             let middle = (chain.at.len() - 3) / 2;
             let again = self.followed([chain.at[middle], chain.at[middle + 1], chain.at[middle + 2]]);
             let surer = if again.at.len() + 1 >= chain.at.len() { again } else { chain.clone() };
-            Chain { evidence: surer.evidence - begun.ln(), ..surer }
+            Chain { evidence: surer.evidence - ln(begun), ..surer }
         };
         found.iter().map(again).collect()
     }
@@ -168,7 +169,7 @@ impl Listener<'_> {
         let [i, j, k] = seed;
         let flights = [self.time(j) - self.time(i), self.time(k) - self.time(j)];
         let (mut at, mut numbers, mut evidence) = (seed.to_vec(), vec![0, 1, 2], 0.0);
-        let mut ratios = vec![(flights[1] / flights[0]).ln()];
+        let mut ratios = vec![ln(flights[1] / flights[0])];
         let (mut last, mut flight) = (k, flights[1]);
         while let Some(link) = self.link((last, flight), &ratios, true) {
             at.push(link.onset);
@@ -208,10 +209,10 @@ impl Listener<'_> {
         let free = if ratios.len() == 1 { FREE } else { BOUND };
         // With the factor x from flight to flight: x, or x + x² for two.
         let span = |ratio: f64| {
-            let x = (sign * ratio).exp();
+            let x = exp(sign * ratio);
             flight * if flights == 1 { x } else { x + x * x }
         };
-        let due = |off: f64| span((expected + off).min(RATIOS.end.ln()));
+        let due = |off: f64| span((expected + off).min(ln(RATIOS.end)));
         let [near, far] = [due(-sign * free) - SLACK, due(sign * free) + SLACK];
         if far > *FLIGHTS.end() || near < *FLIGHTS.start() - SLACK {
             return None;
@@ -232,7 +233,7 @@ impl Listener<'_> {
             let part = apart(n) / flight;
             if flights == 1 { part } else { 0.5 * ((1.0 + 4.0 * part).sqrt() - 1.0) }
         };
-        let off = |n: usize| sign * factor(n).ln() - expected;
+        let off = |n: usize| sign * ln(factor(n)) - expected;
         let cost = |n: usize| (off(n) / free).powi(2) + ((self.levels[n] - self.levels[last]) / SPREAD).powi(2);
         let next = (from..to).filter(may).min_by(|&a, &b| cost(a).total_cmp(&cost(b)))?;
         // How many as good ones chance puts as near: as often as they come there, or on the way.
@@ -243,16 +244,16 @@ impl Listener<'_> {
         #[allow(clippy::cast_precision_loss)] // counts of sounds
         let often = (rivals as f64 / (far - near)).max((passed + 1) as f64 / apart(next));
         let missed = off(next).abs() * apart(next) + self.onsets[next].sigma + self.onsets[last].sigma;
-        let (x, ratio) = (factor(next), sign * factor(next).ln());
+        let (x, ratio) = (factor(next), sign * ln(factor(next)));
         let flight = if flights == 1 { flight * x } else { flight * x * x };
-        Some(Link { onset: next, flights, flight, ratio, worth: -(2.0 * missed * often).ln() })
+        Some(Link { onset: next, flights, flight, ratio, worth: -ln(2.0 * missed * often) })
     }
 
     /// How many contacts, from the first, have times that tell their flights.
     fn counting(&self, at: &[usize]) -> usize {
         let tells = |pair: &[usize]| {
             let [a, b] = [pair[0], pair[1]].map(|n| self.onsets[n]);
-            a.sigma.hypot(b.sigma) <= WORTH * (b.time - a.time)
+            hypot(a.sigma, b.sigma) <= WORTH * (b.time - a.time)
         };
         at.windows(2).take_while(|pair| tells(pair)).count() + 1
     }

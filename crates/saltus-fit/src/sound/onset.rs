@@ -4,6 +4,7 @@
 //! middle one is judged by all of them, so that hours take no more memory than seconds.
 
 use super::wav::Spec;
+use crate::elementary::{cos, hypot, ln, sin};
 
 /// What counts is the sound above this frequency, Hz: hum of the mains and its first overtones, and
 /// steps, are below; the click of a contact goes to some thousand.
@@ -48,7 +49,7 @@ pub(super) struct Onset {
 impl Onset {
     /// ln of its power.
     pub(super) fn level(&self) -> f64 {
-        f64::from(self.power).ln()
+        ln(f64::from(self.power))
     }
 }
 
@@ -71,7 +72,7 @@ impl HighPass {
 /// The coefficients of the filter for so many samples a second.
 fn coefficients(rate: f64) -> [f64; 3] {
     let w = std::f64::consts::TAU * LOWEST / rate;
-    let (cos, slope) = (w.cos(), w.sin() / std::f64::consts::SQRT_2);
+    let (cos, slope) = (cos(w), sin(w) / std::f64::consts::SQRT_2);
     [(1.0 + cos) / (2.0 * (1.0 + slope)), -2.0 * cos / (1.0 + slope), (1.0 - slope) / (1.0 + slope)]
 }
 
@@ -198,7 +199,7 @@ impl Ear {
             let [from, rise] = [(self.at * self.grain + begins) as f64, (doubled - begins) as f64];
             #[allow(clippy::cast_precision_loss)]
             let time = self.start + (from - (tail * self.grain) as f64) / self.rate;
-            let sigma = (0.5 * rise / self.rate).hypot(GRAIN / 12.0_f64.sqrt());
+            let sigma = hypot(0.5 * rise / self.rate, GRAIN / 12.0_f64.sqrt());
             self.onsets.push(Onset { time, sigma, power });
         }
     }

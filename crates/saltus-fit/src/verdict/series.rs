@@ -1,6 +1,7 @@
 //! What the recordings amount to, and what speaks against it.
 
 use super::judgement::{Cor, Judgement, NAMED, SAME};
+use crate::elementary::hypot;
 use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
 use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG};
 use crate::quantity::{Measured, Method, Sourced};
@@ -88,7 +89,7 @@ fn estimates(judgement: &mut Judgement, series: &Series, pooled: &Pooled) -> Vec
 /// Whether a COR differs from another by more than both errors and by more than matters.
 fn differs(a: Measured, b: Measured) -> bool {
     let apart = (a.value - b.value).abs();
-    apart > 2.0 * a.standard_error.hypot(b.standard_error) && apart > SAME
+    apart > 2.0 * hypot(a.standard_error, b.standard_error) && apart > SAME
 }
 
 /// The models beside the chosen one: where one fits as well with another COR, the interval takes in
@@ -204,7 +205,7 @@ impl Allowed {
         let (shift, spread) = (mean(|u| u.shift.value), mean(|u| u.shift.standard_error));
         let share = |of: Measured| of.value + NORMAL.copysign(of.value) * of.standard_error;
         let misfit = (tracks.iter().map(|track| track.reach.powi(2)).sum::<f64>() / count).sqrt();
-        let reach = (pooled.quantile * pooled.cor.standard_error.hypot(spread)).hypot(NORMAL * misfit);
+        let reach = hypot(pooled.quantile * hypot(pooled.cor.standard_error, spread), NORMAL * misfit);
         let part = |of: fn(&Unseen) -> Measured| {
             let shares = unseen.iter().map(|unseen| share(of(unseen)));
             shares.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
@@ -244,7 +245,7 @@ fn varying(judgement: &mut Judgement, pooled: &Pooled) {
         return;
     };
     let apart = most.value - least.value;
-    if apart > 0.01 && apart > 3.0 * most.standard_error.hypot(least.standard_error) {
+    if apart > 0.01 && apart > 3.0 * hypot(most.standard_error, least.standard_error) {
         judgement.doubt(FindingKind::ImpactsDiffer { low: least.value, high: most.value });
         let (low, high) = (least.value - 2.0 * least.standard_error, most.value + 2.0 * most.standard_error);
         judgement.reach(low, high, Widening::EveryImpact);
@@ -309,7 +310,7 @@ fn gravity_off(judgement: &mut Judgement, tracks: &[Track], (expected, pixels): 
     let by = |a: &&Track, b: &&Track| a.gravity.value.total_cmp(&b.gravity.value);
     if let Some((least, most)) = tracks.iter().min_by(by).zip(tracks.iter().max_by(by)).filter(|_| pixels) {
         let (low, high) = (least.gravity, most.gravity);
-        let surely = high.value - low.value > SURELY * high.standard_error.hypot(low.standard_error);
+        let surely = high.value - low.value > SURELY * hypot(high.standard_error, low.standard_error);
         if surely && high.value > MOVED * low.value {
             judgement.doubt(FindingKind::GravitiesDiffer { low: low.value, high: high.value });
         }

@@ -6,6 +6,7 @@
 
 use super::judgement::{Cor, Judgement, NAMED};
 use super::whole;
+use crate::elementary::hypot;
 use crate::error::FitError;
 use crate::evidence::follow::BOUNCES;
 use crate::evidence::{Evidence, TrialEvidence, has};
@@ -161,7 +162,7 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
         let share = NORMAL * BOUNCES * cor.value / (drops * trials.max(1) as f64).sqrt();
         shares.push(([share; 2], Widening::Averages { drops, share }));
     }
-    let side = |n: usize, own: f64| shares.iter().fold(own, |all, (share, _)| all.hypot(share[n]));
+    let side = |n: usize, own: f64| shares.iter().fold(own, |all, (share, _)| hypot(all, share[n]));
     let (below, above) = (side(0, cor.value - cor.low), side(1, cor.high - cor.value));
     judgement.cor = Some(Cor { low: (cor.value - below).max(0.0), high: cor.value + above, ..cor });
     for (_, why) in shares.into_iter().filter(|([low, high], _)| *low > NAMED * below || *high > NAMED * above) {

@@ -2,6 +2,7 @@
 
 use super::judgement::{Cor, Judgement};
 use crate::compare::rivals::Compared;
+use crate::elementary::hypot;
 use crate::finding::{Basis, Cause, Finding, FindingKind, Severity, Untried, Widening};
 use crate::quantity::{CorModel, Readings, Source, Sourced};
 use crate::solve::choice::{Misfit, ModelChoice};
@@ -56,7 +57,7 @@ pub(crate) fn models(judgement: &mut Judgement, list: &[ModelChoice]) -> bool {
         let Some(kind) = kind(model).filter(|k| !seen.contains(k)) else { continue };
         seen.push(kind);
         let apart = (model.cor.value - one.cor.value).abs();
-        let differ = apart > 2.0 * model.cor.standard_error.hypot(one.cor.standard_error) && apart > SAME;
+        let differ = apart > 2.0 * hypot(model.cor.standard_error, one.cor.standard_error) && apart > SAME;
         let (better, last_resort) = (model.bic < -CLEAR, kind == Kind::Each && !close.is_empty());
         if !last_resort && (better || differ) {
             let (bic, gives) = (model.bic, model.gives());
@@ -159,7 +160,7 @@ pub(crate) fn error_decides(
     let matters = |m: &&ModelChoice| {
         let apart = (m.cor.value - one.cor.value).abs();
         let errors =
-            m.cor.standard_error.hypot(one.cor.standard_error) * m.misfit.map_or(1.0, |m| m.scatter().min(1.0));
+            hypot(m.cor.standard_error, one.cor.standard_error) * m.misfit.map_or(1.0, |m| m.scatter().min(1.0));
         !m.chosen && (changes(m) > LEVEL || apart > SAME && apart > 2.0 * errors)
     };
     let best = list.iter().filter(matters).min_by(|a, b| by_scatter(a).total_cmp(&by_scatter(b)));

@@ -3,6 +3,7 @@
 use super::judgement::{Cor, Judgement};
 use super::single::single;
 use crate::compare::explain::Agreement;
+use crate::elementary::{exp, hypot};
 use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind};
 use crate::quantity::{Method, Readings, Source, Sourced};
@@ -96,7 +97,7 @@ fn methods(judgement: &mut Judgement, fits: &Fits<'_>, alone: bool) -> Option<Op
 fn first_flight_differs(fits: &Fits<'_>, chosen: Option<Option<Cor>>) -> Option<FindingKind> {
     let cor = chosen.flatten()?;
     let first = fits.mean(Method::FirstFlight).filter(|_| fits.joint.is_none()).and_then(Cor::of)?;
-    let error = first.standard_error.unwrap_or(0.0).hypot(cor.standard_error.unwrap_or(0.0));
+    let error = hypot(first.standard_error.unwrap_or(0.0), cor.standard_error.unwrap_or(0.0));
     let differs = (first.value - cor.value).abs() > FAR * error;
     differs.then_some(FindingKind::FirstFlightDiffers { cor: first.value })
 }
@@ -145,7 +146,7 @@ fn contradicted(judgement: &mut Judgement, fits: &Fits<'_>) {
     let found = fits.evidence.trials.iter().zip(&kind.fitted.own).find_map(|(trial, own)| {
         // A trial with a single height has no level of its own.
         let level = own.first().filter(|_| trial.heights.len() > 1)?;
-        let height = |n: usize| (level + 2.0 * n as f64 * kind.fitted.shared[0]).exp();
+        let height = |n: usize| exp(level + 2.0 * n as f64 * kind.fitted.shared[0]);
         let too_high = |n: &&usize| height(**n) > OUT * fits.sigma_height.value;
         trial.zeros.iter().find(too_high).map(|&n| (trial.trial, height(n), n))
     });
@@ -159,7 +160,7 @@ fn contradicted(judgement: &mut Judgement, fits: &Fits<'_>) {
 fn either(judgement: &mut Judgement, first: (By, Option<Cor>), second: (By, Option<Cor>)) -> Option<Cor> {
     let (Some(a), Some(b)) = (first.1, second.1) else { return first.1.or(second.1) };
     let (s, t) = (a.standard_error.unwrap_or(f64::INFINITY), b.standard_error.unwrap_or(f64::INFINITY));
-    if (a.value - b.value).abs() > SURELY * s.hypot(t) {
+    if (a.value - b.value).abs() > SURELY * hypot(s, t) {
         let (first, second) = (first.0, second.0);
         judgement.doubt(FindingKind::MethodsDiffer { first, first_cor: a.value, second, second_cor: b.value });
         return Some(Cor::within(0.5 * (a.value + b.value), a.low.min(b.low), a.high.max(b.high)));

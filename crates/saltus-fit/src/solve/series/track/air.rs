@@ -2,6 +2,7 @@
 //! misfit may hide.
 
 use super::{Candidates, Found};
+use crate::elementary::exp;
 use crate::model::{BEND, Dual, GRAVITY, LIGHT_DRAG, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
 use crate::quantity::Measured;
 use crate::solve::series::recording::Unseen;
@@ -102,7 +103,7 @@ impl Candidates {
         let highest = weighed.iter().map(|w| w.0).fold(f64::NEG_INFINITY, f64::max);
         let moments = |of: fn(f64, f64) -> f64| {
             let sums = weighed.iter().fold([0.0; 3], |sums, &(log, air, lens)| {
-                let (weight, x) = ((log - highest).exp(), of(air, lens));
+                let (weight, x) = (exp(log - highest), of(air, lens));
                 [sums[0] + weight, sums[1] + weight * x, sums[2] + weight * x * x]
             });
             let mean = sums[1] / sums[0];

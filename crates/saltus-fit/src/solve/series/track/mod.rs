@@ -8,6 +8,7 @@ use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
 use super::samples::Samples;
 use super::wild::wild;
+use crate::elementary::{asinh, atan, hypot};
 use crate::model::{BEFORE, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, Model, SPEED, Sample, TIME, Trajectory};
 use crate::quantity::Measured;
 use crate::solve::least_squares::Failure;
@@ -293,7 +294,7 @@ impl Candidates {
             let (mut low, mut high) = (0.0f64, 20.0f64);
             for _ in 0..60 {
                 let u = 0.5 * (low + high);
-                if u.atan() + u.asinh() < lasts { low = u } else { high = u }
+                if atan(u) + asinh(u) < lasts { low = u } else { high = u }
             }
             let departure = low / k.sqrt();
             cors.push((departure / arrival).clamp(0.01, 1.4));
@@ -374,7 +375,7 @@ impl Candidates {
     fn trust(&self, values: &[f64], choice: Choice) -> Vec<f64> {
         let noise = self.noise.max(LEAST_NOISE);
         let depths = self.model(&self.samples, choice).depths(values);
-        depths.into_iter().map(|depth| 1.0 / (depth / noise).hypot(1.0)).collect()
+        depths.into_iter().map(|depth| 1.0 / hypot(depth / noise, 1.0)).collect()
     }
 
     /// The robust standard deviation of residuals, not below what rounding leaves.

@@ -1,6 +1,7 @@
 //! Models of one recording weighed against each other, and the errors that they leave to the COR.
 
 use super::{CHOICES, Candidates, Choice, Found};
+use crate::elementary::ln;
 use crate::model::{BEFORE, Dual, Law, Sample};
 use crate::quantity::Measured;
 use crate::solve::robust::HUBER;
@@ -46,7 +47,7 @@ impl Candidates {
     /// By BIC, with the one unknown more that drift is; neighbouring residuals are alike.
     pub(super) fn is_clearly_better_than(&self, other: &Self) -> bool {
         let n = other.samples.len() as f64 / other.dependence.powi(2);
-        let gain = 2.0 * n * (other.least() / self.least()).ln() - n.ln();
+        let gain = 2.0 * n * ln(other.least() / self.least()) - ln(n);
         let span = self.samples.last().map_or(0.0, |s| s.time) - self.samples.first().map_or(0.0, |s| s.time);
         let moves = |f: &Found| {
             let place = self.model(&self.samples, f.choice).drift_place();
@@ -81,7 +82,7 @@ impl Candidates {
 
     /// The BIC of a model whose mean loss is this, from so many independent samples.
     fn bic(&self, found: &Found, samples: f64, loss: f64) -> f64 {
-        samples * loss.max(1e-18).ln() + self.unknowns(found) as f64 * samples.ln()
+        samples * ln(loss.max(1e-18)) + self.unknowns(found) as f64 * ln(samples)
     }
 
     /// How many unknowns a model has, but for those of which something is known before.
