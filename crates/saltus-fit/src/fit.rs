@@ -273,6 +273,7 @@ impl Fit {
             let fit = if named.air_shows(table, ball)? { named.drag(ball.drag()) } else { named };
             return fit.run_with(table, progress);
         }
+        let table = &*table.sized(self.known(table).gravity.value);
         let known = self.known(table);
         let table = &*table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
         let mut evidence = self.evidence(table, &known)?;
@@ -297,6 +298,7 @@ impl Fit {
 
     /// Whether the readings of a ball that the table names are better explained with its air.
     fn air_shows(&self, table: &Table, ball: Ball) -> Result<bool, FitError> {
+        let table = &*table.sized(self.known(table).gravity.value);
         let known = self.known(table);
         let table = table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
         let evidence = self.evidence(&table, &known)?;

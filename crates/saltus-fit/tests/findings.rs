@@ -195,6 +195,8 @@ fn every_remark_comes_back() {
         Note::SameUnit { column: column(), of: column() },
         Note::UnitBySize { column: column(), unit: "ms".to_owned() },
         Note::Pixels { column: column() },
+        Note::AnyRate { column: column(), rate: 24.0 },
+        Note::ByFlights { metres: 0.001 },
         Note::Misspelt { written: "hieght".to_owned(), heading: column(), meant: "height".to_owned() },
         Note::Restarts { times: 2 },
         Note::Downwards { shown: true },
@@ -232,5 +234,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (37, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (39, 6, 7));
 }

@@ -303,6 +303,18 @@ pub enum Note {
         /// The column.
         column: String,
     },
+    /// A count of frames without a rate, beside places without a scale.
+    AnyRate {
+        /// The column.
+        column: String,
+        /// Frames a second that stand in for those that nobody states.
+        rate: f64,
+    },
+    /// Heights in pixels beside times: their scale is the one by which flights last as they do.
+    ByFlights {
+        /// A pixel, m.
+        metres: f64,
+    },
     /// A word of a heading is misspelt.
     Misspelt {
         /// The word as it stands.

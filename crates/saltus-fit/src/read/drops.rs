@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::{Event, Reading, Span, Table};
+use super::{Event, Reading, Span, Table, Trial};
 use crate::finding::{Doubt, Note};
+use crate::statistics::median;
 
 impl Table {
     /// The balls, surfaces or sheets of the table, each with a COR of its own; a single one,
@@ -67,6 +68,42 @@ impl Table {
             }
         }
         table.notes.push(Note::ByTime { gravity: g }.into());
+        Cow::Owned(table)
+    }
+}
+
+impl Table {
+    /// The table with heights in pixels brought to the scale by which the flights between contacts
+    /// last as long as they do where gravity is `g`: a flight of T is g T²/8 high. The scale is the
+    /// median of those of all flights; without one that has both the table is left as it is.
+    pub(crate) fn sized(&self, g: f64) -> Cow<'_, Self> {
+        let of = |trial: &Trial| {
+            let time = |n: usize| trial.readings.iter().find(|r| (r.event, r.bounce) == (Event::Contact, n))?.time;
+            let apexes = trial.readings.iter().filter(|r| r.event == Event::Apex);
+            let scale = |apex: &Reading| {
+                let lasts = time(apex.bounce + 1)? - time(apex.bounce)?;
+                Some(g * lasts * lasts / 8.0 / apex.height.filter(|height| *height > 0.0)?)
+            };
+            apexes.filter_map(scale).collect::<Vec<f64>>()
+        };
+        let mut scales: Vec<f64> = self
+            .trials
+            .iter()
+            .filter(|_| self.metadata.pixels)
+            .flat_map(of)
+            .filter(|s| s.is_finite() && *s > 0.0)
+            .collect();
+        let Some(metres) = median(&mut scales) else { return Cow::Borrowed(self) };
+        let mut table = self.clone();
+        let sized = |height: &mut Option<f64>| *height = height.map(|h| metres * h);
+        for reading in table.trials.iter_mut().flat_map(|trial| &mut trial.readings) {
+            sized(&mut reading.height);
+            sized(&mut reading.sigma_height);
+        }
+        sized(&mut table.metadata.sigma_height);
+        sized(&mut table.metadata.drop);
+        table.metadata.pixels = false;
+        table.notes.push(Note::ByFlights { metres }.into());
         Cow::Owned(table)
     }
 }

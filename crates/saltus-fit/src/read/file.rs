@@ -189,7 +189,8 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let mut columns = Columns::named(region, options, metadata.drop.is_some())?;
     let rows = sifted(region, &columns)?;
     region.rows = rows.rows.iter().map(|row| row.at).collect();
-    columns.measure(region, options, metadata.frame_rate)?;
+    let any = columns.any_rate(region, options).filter(|_| metadata.frame_rate.is_none());
+    columns.measure(region, options, (metadata.frame_rate, any))?;
     columns.losses(metadata.drop);
     said::released(region, &columns)?;
     let averaged = said::averaged(region, &columns);
@@ -202,7 +203,7 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
         said::repeated(region, &columns),
     ];
     // A sound is sampled far more finely than a contact is heard.
-    let frame_rate = metadata.frame_rate.filter(|_| !columns.heard());
+    let frame_rate = metadata.frame_rate.or(any).filter(|_| !columns.heard());
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();

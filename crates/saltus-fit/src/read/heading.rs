@@ -8,7 +8,7 @@ use super::aside::Why;
 use super::phrases::Phrase;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
-use super::words::{Kind, Word, numbers, split};
+use super::words::{Kind, Word, numbers, split, unaddressed};
 pub(super) use inside::{DropHeight, Of, rate, release, released};
 
 /// What the numbers of a column measure.
@@ -134,7 +134,7 @@ pub(super) struct Heading {
 impl Heading {
     /// Takes a heading apart.
     pub(super) fn parse(text: &str) -> Self {
-        let (name, plain) = (text.trim(), narrow(text));
+        let (name, plain) = (text.trim(), narrow(&unaddressed(text)));
         let text = plain.trim();
         let mut heading = Self {
             text: name.to_owned(),

@@ -46,10 +46,14 @@ pub(super) enum Phrase {
     Apex,
     /// Counts the readings that a mean is of.
     Readings,
+    /// When a clock began.
+    Since,
+    /// Where something is under an instrument.
+    Below,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 19] = [
+    const ALL: [(&'static str, Self); 21] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -69,6 +73,8 @@ impl Phrase {
         ("contact", Self::Contact),
         ("apex", Self::Apex),
         ("readings", Self::Readings),
+        ("since", Self::Since),
+        ("below", Self::Below),
     ];
 
     /// The phrases of this kind, in the order of the file.

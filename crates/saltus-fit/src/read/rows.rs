@@ -1,6 +1,6 @@
 //! Which rows of a table hold readings, what their first cells call them, and which are left aside.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::Event;
 use super::aside::{LeftAside, Part, Why};
@@ -49,6 +49,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
     let diagram = columns.number().map_or_else(HashMap::new, |(key, _)| off_a_diagram(region, key));
     let lettered = columns.number().map_or_else(HashMap::new, |(key, _)| lettered(region, key));
     let void = judged::void(region, columns);
+    let told_apart = told_apart(region, columns);
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
         let line = region.view.line(row, key.unwrap_or(0));
@@ -69,7 +70,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Void, Part::Row));
             continue;
         }
-        if columns.all(&Kind::Setting).any(|n| Heading::parse(region.cell(row, n)).is_predicted()) {
+        if told_apart.iter().any(|&n| Heading::parse(region.cell(row, n)).is_predicted()) {
             found.aside.push(leave(Why::Predicted, Part::Row));
             continue;
         }
@@ -121,6 +122,18 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         found.rows.push(read);
     }
     Ok(found)
+}
+
+/// The columns whose words tell rows apart: settings, and those that are left aside and name every
+/// row, some alike: `source` above `simulation` and `experiment`.
+fn told_apart(region: &Region<'_>, columns: &Columns) -> Vec<usize> {
+    let words = |n: usize| {
+        let cells = || region.rows.iter().map(|&row| region.cell(row, n));
+        let named = cells().all(|cell| !cell.is_empty() && !cell.contains(|c: char| c.is_ascii_digit()));
+        named && cells().collect::<HashSet<&str>>().len() < region.rows.len()
+    };
+    let kind = |n: usize| &columns.columns[n].kind;
+    (0..columns.columns.len()).filter(|&n| *kind(n) == Kind::Setting || *kind(n) == Kind::Aside && words(n)).collect()
 }
 
 /// The words that a row begins with, and what they mean; those of trials may be anything.

@@ -253,8 +253,18 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Opt
     let rows = lines.clone().filter(alike).filter(number).count();
     // A title may hold any comma.
     let table = lines.clone().filter(alike).count();
-    // Of the lines around it most tell something, or greet.
-    let around = lines.clone().filter(|line| !alike(line) && parted(line).nth(1).is_none()).count();
+    // Names that each stand above a column of the rows are of the table, though fewer.
+    let columns = columns(lines.clone().filter(alike).map(|line| cells(line, 2)));
+    let first = lines.clone().position(|line| alike(&line) && number(&line)).unwrap_or(0);
+    let above = first.checked_sub(1).and_then(|at| lines.clone().nth(at)).map(|line| (line, cells(line, 2)));
+    let names = above.is_some_and(|(line, own)| {
+        !alike(&line) && !number(&line) && own.len() > 1 && own.len() + 1 == width && placed(&own, &columns).is_some()
+    });
+    let table = table + usize::from(names);
+    // Of the lines around it most tell something, or greet; a title may be parted by blanks.
+    let title = |n: usize, line: &&str| names && n + 1 < first && !number(line);
+    let plain = |(n, line): &(usize, &str)| !alike(line) && (parted(line).nth(1).is_none() || title(*n, line));
+    let around = lines.clone().enumerate().filter(plain).filter(|(n, _)| !(names && n + 1 == first)).count();
     let found = rows > 1
         && lines.clone().filter(alike).all(decimal)
         && (3 * table >= 2 * lines.clone().count() || table > rows && rows > 2 && table + around == lines.count());

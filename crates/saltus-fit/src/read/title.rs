@@ -34,7 +34,7 @@ pub(super) struct Stated {
 pub(super) fn stated(region: &Region<'_>) -> Stated {
     let mut found = Stated::default();
     let comments = region.view.grid.comments().take(ROWS).flat_map(|(_, text)| clauses(text));
-    let units = comments.flat_map(|text| Unit::listed(text).unwrap_or_else(|| of_all(text).into_iter().collect()));
+    let units = comments.flat_map(|text| Unit::listed(text).unwrap_or_else(|| of_clauses(text).into_iter().collect()));
     units.for_each(|unit| found.of_all(unit));
     if region.view.across {
         return found;
@@ -49,7 +49,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     for row in above.chain(below) {
         let line = region.view.line(row, 0);
         let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
-        let text = cells.join(" ");
+        // Emphasis is no word: `dropped from **1 m**`.
+        let text = cells.join(" ").replace('*', "");
         let (fps, height, sigma) = (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text));
         if fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
             found.length = found.length.or(Some((shown(&text), line)));
@@ -61,7 +62,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         } else if let Some((value, _)) = sigma {
             found.sigma.0 = found.sigma.0.or(Some(value));
         }
-        let of_clauses = || unit(&text).or_else(|| clauses(&text).find_map(of_all)).into_iter().collect();
+        let of_clauses = || of_clauses(&text).into_iter().collect();
         Unit::listed(&text).unwrap_or_else(of_clauses).into_iter().for_each(|unit| found.of_all(unit));
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
@@ -123,9 +124,8 @@ fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
 pub(super) fn drop(text: &str) -> Option<DropHeight> {
-    // What stands in brackets is a clause of its own, `our ball (dropped from 1 m)`.
-    let inside = text.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside);
-    clauses(text).chain(inside).find_map(|clause| {
+    // `our ball (dropped from 1 m)`.
+    clauses(text).chain(bracketed(text)).find_map(|clause| {
         let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
         let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
@@ -167,6 +167,29 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
 /// The parts of a sentence; a comma within a number parts none.
 fn clauses(text: &str) -> impl Iterator<Item = &str> {
     text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "))
+}
+
+/// What stands in brackets, a clause of its own.
+fn bracketed(text: &str) -> Option<&str> {
+    text.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside)
+}
+
+/// The unit that a clause states of all readings, whatever the others say; what stands behind a
+/// colon, or in brackets, is a clause too: `Results: heights in cm`, `three runs (all cm)`.
+fn of_clauses(text: &str) -> Option<Unit> {
+    let named = |clause: &str| {
+        let behind = || clause.split_once(':').map(|(_, behind)| behind).filter(|behind| !behind.trim().is_empty());
+        unit(clause).or_else(|| of_all(clause)).or_else(|| behind().and_then(|behind| unit(behind).or(of_all(behind))))
+    };
+    // In brackets words that say nothing need no `in`.
+    let plain = |word: &Word| matches!(word.kind, Kind::Known([Atom::Filler, ..]));
+    let inside = |text: &str| {
+        let (name, unit) = text.trim().rsplit_once(' ')?;
+        let unit = Unit::parse(unit).filter(|unit| !unit.unscaled())?;
+        split(name).iter().all(plain).then_some(unit)
+    };
+    let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)));
+    unit(text).or_else(|| clauses(text).find_map(named)).or_else(of_brackets)
 }
 
 /// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.

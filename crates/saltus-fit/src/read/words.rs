@@ -1,5 +1,7 @@
 //! The words of a heading, its letters and digits apart, and the numbers among them.
 
+use std::borrow::Cow;
+
 use super::phrases::Phrase;
 use super::vocabulary::{Atom, first_word, folded, meanings, unparted};
 
@@ -47,6 +49,10 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             // A sound peaks when the ball hits the floor.
             sound.kind = Kind::Known(&[Atom::Filler]);
             Kind::Known(&[Atom::Impact])
+        } else if Phrase::Since.is(&folded) {
+            // Of a clock, when it began; of a height, where: `tiempo desde el inicio`.
+            let timed = words.iter().any(|w| w.is(Atom::Time));
+            Kind::Known(if timed { &[Atom::After] } else { &[Atom::Filler] })
         } else if piece == "TID" {
             // The number of a track, where `tid` is the time in Swedish.
             Kind::Unknown
@@ -85,6 +91,7 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         words.push(Word { text, kind });
     }
     fallen(&mut words);
+    under_a_tool(&mut words);
     lettered(&mut words);
     // A number before a word is its place in an order, if none follows: '1. Rebound'.
     for n in 1..words.len() {
@@ -139,6 +146,23 @@ fn fallen(words: &mut [Word]) {
     }
 }
 
+/// What lies below an instrument is a place, and nothing that was lost: `distance below detector`.
+fn under_a_tool(words: &mut [Word]) {
+    for n in 0..words.len() {
+        let mut after = words[n + 1..].iter().skip_while(|w| matches!(w.kind, Kind::Known([Atom::Filler])));
+        if Phrase::Below.is(&folded(&words[n].text)) && after.next().is_some_and(|w| w.is(Atom::Tool)) {
+            words[n].kind = Kind::Known(&[Atom::Filler]);
+        }
+    }
+}
+
+/// The number that a Roman one of several letters, or the first, stands for.
+fn roman(text: &str) -> Option<usize> {
+    const COUNT: [&str; 12] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII"];
+    // `V` and `X` by themselves are signs of something else.
+    COUNT.iter().position(|n| *n == text && !matches!(*n, "V" | "X")).map(|n| n + 1)
+}
+
 /// A single letter behind a trial or a ball is its name, whatever else it means: `run A`, `ball x`;
 /// another one is not understood.
 pub(super) fn lettered(words: &mut [Word]) {
@@ -166,8 +190,12 @@ pub(super) fn lettered(words: &mut [Word]) {
         let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
         let named =
             n > 0 && [Atom::Trial, Atom::Repeat, Atom::Group, Atom::Label].iter().any(|atom| words[n - 1].is(*atom));
-        if one && named {
+        let counted = roman(&words[n].text);
+        let of_bounce = n > 0 && (words[n - 1].is(Atom::Rebound) || words[n - 1].is(Atom::Impact));
+        if (one || counted.is_some()) && named {
             words[n].kind = Kind::Letter;
+        } else if let Some(count) = counted.filter(|_| of_bounce) {
+            words[n].kind = Kind::Number(count);
         } else if matches!(words[n].kind, Kind::Letter) {
             words[n].kind = Kind::Unknown;
         }
@@ -178,8 +206,22 @@ fn greek(c: char) -> bool {
     matches!(c, '\u{370}'..='\u{3ff}')
 }
 
+/// A text without the addresses in it, `sam@school.example`: they are names, whatever their words
+/// mean elsewhere.
+pub(super) fn unaddressed(text: &str) -> Cow<'_, str> {
+    let address = |word: &str| {
+        let parted = |mark| word.split_once(mark).is_some_and(|(a, b)| !a.is_empty() && b.contains('.'));
+        parted("@") || parted("://")
+    };
+    if !text.split_whitespace().any(address) {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(text.split_whitespace().filter(|word| !address(word)).collect::<Vec<_>>().join(" "))
+}
+
 /// The runs of letters and digits of a text, its signs as words.
 pub(super) fn pieces(text: &str) -> Vec<String> {
+    let text = unaddressed(text);
     let mut spelt = String::with_capacity(text.len());
     let mut letters = text.chars().peekable();
     while let Some(c) = letters.next() {

@@ -147,7 +147,8 @@ fn same(cell: &str, value: &str) -> bool {
 
 /// A row that tells where the floor is gives every scale of heights its zero, and its direction.
 fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &ReadOptions) -> Result<(), TableError> {
-    let Some((row, column)) = rows.floor else { return Ok(()) };
+    let touched = rows.floor.or_else(|| touched(region, columns, rows).filter(|_| options.zero.is_none()));
+    let Some((row, column)) = touched else { return Ok(()) };
     let number = |row: usize| match region.view.read(row, column) {
         Cell::Number(m) => Some(m.value),
         _ => None,
@@ -162,6 +163,17 @@ fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &Read
     }
     columns.notes.push(Note::Floor { reading: region.cell(row, column).to_owned(), down });
     Ok(())
+}
+
+/// Where the ball touches the floor a place on a scale is that of the floor: the first of those
+/// rows, and the column, where all of them read the same.
+fn touched(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<(usize, usize)> {
+    let named = columns.one(&Kind::Event)?;
+    let (column, _, _) = columns.values().find(|(_, _, v)| v.what == What::Height && v.position)?;
+    let contact = |row: &&Row| super::rows::event(region.cell(row.at, named)) == Some(Event::Contact);
+    let mut contacts = rows.rows.iter().filter(contact).filter(|row| region.view.is_number(row.at, column));
+    let first = contacts.next()?;
+    contacts.all(|row| region.cell(row.at, column) == region.cell(first.at, column)).then_some((first.at, column))
 }
 
 /// Heights without a scale: places on a picture need a zero, and a pixel is the error of reading

@@ -1,6 +1,6 @@
 //! Columns whose headings are not understood: what is left aside, and what is an error.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::{Column, Columns, Kind};
 use crate::error::TableError;
@@ -186,6 +186,11 @@ impl Columns {
                 && values > 0
                 && self.columns[index].value().is_none()
             {
+                // What names every event alike says again what happened.
+                if self.of_events(region, index) {
+                    self.leave(index, Why::NotUnderstood);
+                    continue;
+                }
                 // Words that come again tell rows apart, whatever stands above them.
                 if 2 * apart <= cells.len() {
                     (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Setting, Vec::new());
@@ -212,6 +217,17 @@ impl Columns {
             return Err(self.nothing(region));
         }
         Ok(())
+    }
+
+    /// Whether all rows of an event bear the same word, of several events beside each other.
+    fn of_events(&self, region: &Region<'_>, index: usize) -> bool {
+        let Some(named) = self.one(&Kind::Event) else { return false };
+        let mut words: HashMap<Option<Event>, &str> = HashMap::new();
+        let alike = |&row: &usize| {
+            let word = region.cell(row, index);
+            *words.entry(event(region.cell(row, named))).or_insert(word) == word
+        };
+        region.rows.iter().all(alike) && words.len() > 1
     }
 
     /// No column is of use: why not, at the one that comes nearest.

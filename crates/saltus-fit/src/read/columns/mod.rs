@@ -3,6 +3,7 @@
 
 mod energies;
 mod faults;
+mod frames;
 mod pairs;
 mod shares;
 
@@ -141,17 +142,17 @@ impl Columns {
     }
 
     /// Gives the columns their quantities and units, by the rows that hold readings; `fps` is the
-    /// frame rate, where one is known.
+    /// frame rate, where one is known, and `any` what stands in for it.
     pub(super) fn measure(
         &mut self,
         region: &Region<'_>,
         options: &ReadOptions,
-        fps: Option<f64>,
+        (fps, any): (Option<f64>, Option<f64>),
     ) -> Result<(), TableError> {
         self.wordy(region);
         self.respelt(region);
         self.infer(region, options)?;
-        self.frames(region, fps)?;
+        self.frames(region, fps, any)?;
         self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;
@@ -354,29 +355,6 @@ impl Columns {
             self.columns[index].heading.unknown.clear();
             self.leave(index, Why::NotChosen);
         }
-        Ok(())
-    }
-
-    /// A count of frames is a time, if nothing else is and the frame rate is known.
-    fn frames(&mut self, region: &Region<'_>, fps: Option<f64>) -> Result<(), TableError> {
-        let Some(index) = self.one(&Kind::Frame) else { return Ok(()) };
-        if self.values().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval | What::Total)) {
-            self.leave(index, Why::Other);
-            return Ok(());
-        }
-        let fps = fps.ok_or_else(|| {
-            let name = shown(&self.columns[index].heading.text);
-            let (what, help) = if self.columns[index].heading.has(Atom::Sample) {
-                ("counts samples of a sound: how many", "give the sample rate of the recording, such as --fps 44100")
-            } else {
-                ("counts frames: how many were filmed", "give the frame rate of the camera, such as --fps 100")
-            };
-            region.header_error(index, format!("the column '{name}' {what} in a second?")).question().help(help)
-        })?;
-        let heading = &self.columns[index].heading;
-        let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
-        self.columns[index].kind = Kind::Value(plain(if between { What::Interval } else { What::Time }));
-        self.columns[index].unit = Some(Unit::frame(fps));
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Units that records state beside their numbers: `{"unit": "cm", "heights": [100, 64]}`,
 //! `{"height": {"value": 64, "unit": "cm"}}`.
 
-use super::super::heading::{At, Heading, Meaning};
+use super::super::heading::{At, Heading, Meaning, What};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit, names_unit};
 use super::super::vocabulary::folded;
@@ -44,8 +44,12 @@ fn within(node: Node, outer: &[Stated]) -> Node {
     if known.is_empty() {
         return Node::Record(rest.into_iter().map(|(name, node)| inner(name, within(node, &[]))).collect());
     }
+    // Beside numbers whose names say what they measure, a count has no unit.
+    let measures = |name: &str| Heading::parse(name).value().is_some_and(|value| value.what != What::Unsaid);
+    let said = rest.iter().any(|(name, _)| measures(name));
     let member = |(name, node): (String, Node)| {
-        let unit = of(&name, &known);
+        let counts = said && matches!(Heading::parse(&name).meaning, Meaning::Trial);
+        let unit = of(&name, &known).filter(|_| !counts);
         match (within(node, &known), unit) {
             (list @ Node::List(_), Some(unit)) if list.cells().is_some() => (format!("{name} ({unit})"), list),
             (Node::Cell(cell), Some(unit)) => (name, Node::Cell(bears(cell, unit))),

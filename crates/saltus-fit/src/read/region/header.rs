@@ -6,6 +6,7 @@ use super::super::cell::Cell;
 use super::super::columns::{LEVEL, of_samples};
 use super::super::grid::View;
 use super::super::heading::{Heading, Meaning, What};
+use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::meanings;
 
@@ -226,7 +227,7 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     if of_units(lower) {
         let name = |n: usize| match (cell(upper, n), cell(lower, n)) {
             (name, unit) if !name.is_empty() && !unit.is_empty() && !UNITLESS.contains(&unit.as_str()) => {
-                format!("{name} ({})", unit.trim_matches(['(', ')', '[', ']']).trim())
+                format!("{name} ({})", spelt(&unit))
             }
             (name, _) => name,
         };
@@ -259,6 +260,10 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     let name = |n: usize| match (above[n].as_str(), cell(lower, n)) {
         (name, lower) if lower.is_empty() => name.to_owned(),
         ("", lower) => lower,
+        // Among names a unit is that of the name above it.
+        (name, lower) if !cell(upper, n).is_empty() && of_units(&[lower.clone(), String::new()]) => {
+            format!("{name} ({})", spelt(&lower))
+        }
         // `Trial 1` above `Time (s)`, and `Trial 2` above another: runs side by side.
         (name, lower) if repeated => format!("{name}: {lower}"),
         (name, lower) => spanned(name, &lower),
@@ -318,12 +323,19 @@ fn spanned(name: &str, lower: &str) -> String {
     }
 }
 
+/// A unit in a line of them without the brackets around it, and without the word before it: `(cm)`,
+/// `in cm`.
+fn spelt(cell: &str) -> &str {
+    let bare = cell.trim_matches(['(', ')', '[', ']']).trim();
+    bare.split_once(' ').filter(|(word, _)| Phrase::In.is(word)).map_or(bare, |(_, unit)| unit.trim())
+}
+
 /// What stands for the unit of a count, in a line of units.
 const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
 
 /// Whether a line holds units and nothing else.
 pub(super) fn of_units(line: &[String]) -> bool {
-    let unit = |cell: &str| Unit::parse(cell.trim_matches(['(', ')', '[', ']'])).is_some();
+    let unit = |cell: &str| Unit::parse(spelt(cell)).is_some();
     let cells = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
     // In brackets there may be others that are not known.
     let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);

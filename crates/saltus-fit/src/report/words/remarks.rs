@@ -77,6 +77,15 @@ impl Display for Note {
             Self::Pixels { column } => {
                 write!(f, "'{column}' has no unit: taken as pixels of unknown size, which a COR does not need")
             }
+            Self::AnyRate { column, rate } => {
+                write!(
+                    f,
+                    "'{column}' counts frames of unknown rate, which a COR does not need: {rate} a second stand in"
+                )
+            }
+            Self::ByFlights { metres } => {
+                write!(f, "heights are in pixels of {:.3} mm, by which their flights last as they do", 1000.0 * metres)
+            }
             Self::Misspelt { written, heading, meant } => write!(f, "'{written}' in '{heading}' was read as '{meant}'"),
             Self::Restarts { times } => {
                 write!(f, "the clock starts again {times} times: read as {} recordings", times + 1)

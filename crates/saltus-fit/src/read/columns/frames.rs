@@ -1,0 +1,70 @@
+//! Counts of frames, and of samples: a clock where their rate is known, or where none is needed.
+
+use std::cmp::Ordering;
+
+use super::{Columns, Kind, plain};
+use crate::error::TableError;
+use crate::finding::Note;
+use crate::read::ReadOptions;
+use crate::read::aside::Why;
+use crate::read::cell::Cell;
+use crate::read::grid::shown;
+use crate::read::heading::{Role, What};
+use crate::read::region::Region;
+use crate::read::units::Unit;
+use crate::read::vocabulary::Atom;
+
+/// Frames a second where nobody states them and no COR needs them: the fewest that cameras film,
+/// since by the time of a flight its height is bounded, and the air that it allows for.
+const SLOWEST: f64 = 24.0;
+
+impl Columns {
+    /// The rate of frames that stands in for one that is not stated: where heights have no scale,
+    /// neither has their clock, and a COR is a ratio of either.
+    pub(in crate::read) fn any_rate(&self, region: &Region<'_>, options: &ReadOptions) -> Option<f64> {
+        let frames = self.one(&Kind::Frame).filter(|&n| !self.columns[n].heading.has(Atom::Sample))?;
+        let timed = self.values().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval | What::Total));
+        let scaled = options.scale.is_some() || options.height_unit.is_some();
+        let read = || self.values().filter(|(n, _, v)| *n != frames && v.role != Role::Error);
+        let bare = |n: usize| self.unit_of(region, n).or(region.units.1).is_none_or(Unit::unscaled);
+        // A film that shows no bounce lacks more than its rate.
+        let turns = |n: usize| {
+            let number = |&row: &usize| match region.view.read(row, n) {
+                Cell::Number(m) => Some(m.value),
+                _ => None,
+            };
+            let places: Vec<f64> = region.rows.iter().filter_map(number).collect();
+            let moves = |by: Ordering| places.windows(2).any(|w| w[1].partial_cmp(&w[0]) == Some(by));
+            moves(Ordering::Less) && moves(Ordering::Greater)
+        };
+        let open = !timed && !scaled && read().any(|(n, _, _)| turns(n));
+        (open && read().all(|(n, _, v)| v.position && bare(n))).then_some(SLOWEST)
+    }
+
+    /// A count of frames is a time, if nothing else is and the frame rate is known; `any` where one
+    /// stands in for it.
+    pub(super) fn frames(&mut self, region: &Region<'_>, fps: Option<f64>, any: Option<f64>) -> Result<(), TableError> {
+        let Some(index) = self.one(&Kind::Frame) else { return Ok(()) };
+        if self.values().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval | What::Total)) {
+            self.leave(index, Why::Other);
+            return Ok(());
+        }
+        let name = shown(&self.columns[index].heading.text);
+        let rate = fps.or(any).ok_or_else(|| {
+            let (what, help) = if self.columns[index].heading.has(Atom::Sample) {
+                ("counts samples of a sound: how many", "give the sample rate of the recording, such as --fps 44100")
+            } else {
+                ("counts frames: how many were filmed", "give the frame rate of the camera, such as --fps 100")
+            };
+            region.header_error(index, format!("the column '{name}' {what} in a second?")).question().help(help)
+        })?;
+        if fps.is_none() {
+            self.notes.push(Note::AnyRate { column: name, rate });
+        }
+        let heading = &self.columns[index].heading;
+        let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
+        self.columns[index].kind = Kind::Value(plain(if between { What::Interval } else { What::Time }));
+        self.columns[index].unit = Some(Unit::frame(rate));
+        Ok(())
+    }
+}
