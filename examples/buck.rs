@@ -1,6 +1,6 @@
 //! A buck converter with pulse-width modulation and a sampled controller, and a load that doubles.
 //!
-//! `cargo run --example buck` draws current, voltage and duty: see docs/gallery/buck.svg.
+//! `cargo run --example buck` draws current, voltage and duty: see docs/program/gallery/buck.svg.
 
 use std::error::Error;
 

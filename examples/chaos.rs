@@ -120,7 +120,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let doubles = cos.hypot(2.0 * (1.0 + COR * COR) / (1.0 + COR).powi(2));
     let ordered = attractors.concat().into_iter().filter(|[strength, _]| *strength < doubles - 0.02);
     let off = ordered.map(|[strength, phase]| (phase - (cos / strength).acos() / TAU).abs()).fold(0.0, f64::max);
-    println!("a million impacts in {:.1?}, phases exact to {off:.0e}: see docs/gallery/chaos.svg", began.elapsed());
+    println!(
+        "a million impacts in {:.1?}, phases exact to {off:.0e}: see docs/program/gallery/chaos.svg",
+        began.elapsed()
+    );
     assert!(off < 1e-10);
     Ok(())
 }

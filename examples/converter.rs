@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     gallery("converter", &picture.svg())?;
 
     // Published (E. Fossas, G. Olivar, IEEE Trans. Circuits and Systems I 43 (1996) 13): 24.516 V.
-    println!("the period doubles at {:.6} V: see docs/gallery/converter.svg", doubling.point.parameter);
+    println!("the period doubles at {:.6} V: see docs/program/gallery/converter.svg", doubling.point.parameter);
     assert!((doubling.point.parameter - 24.516).abs() < 1e-3);
     Ok(())
 }

@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let first = run.trajectory.jumps().get(..4).ok_or("too few jumps")?;
     let after = first[3].after;
     println!(
-        "four jumps at t = {:.12}, velocities {:?}: see docs/gallery/cradle.svg",
+        "four jumps at t = {:.12}, velocities {:?}: see docs/program/gallery/cradle.svg",
         first[0].t(),
         &after.as_slice()[5..]
     );

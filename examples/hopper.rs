@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let apexes: Vec<_> = trajectory.jumps().iter().filter(|jump| jump.to == "fall").collect();
     let thousandth = apexes.get(999).ok_or("fewer than a thousand hops")?;
     println!(
-        "hop 1000 after {:.12} s (exact {:.12}) to {:.12} m: see docs/gallery/hopper.svg",
+        "hop 1000 after {:.12} s (exact {:.12}) to {:.12} m: see docs/program/gallery/hopper.svg",
         thousandth.t(),
         1000.0 * period,
         thousandth.after[0]

@@ -95,7 +95,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (v, multiplier) =
         ((2.0 * juggler.wanted).sqrt(), 1.0 - 2.0 * (1.0 + juggler.cor) * juggler.gain * juggler.wanted);
     println!(
-        "v = {:.14} m/s (exact {v:.14}), multiplier {:.10}: see docs/gallery/juggler.svg",
+        "v = {:.14} m/s (exact {v:.14}), multiplier {:.10}: see docs/program/gallery/juggler.svg",
         steady.q[0], steady.multipliers[0].re
     );
     assert!((steady.q[0] / v - 1.0).abs() < 6e-15 && (steady.multipliers[0].re - multiplier).abs() < 1e-12);

@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pair = blocks(100_f64.powi(digits));
         counts.push(collide(&pair)?.end.stats.jumps);
     }
-    println!("{counts:?} collisions: see docs/gallery/pi.svg");
+    println!("{counts:?} collisions: see docs/program/gallery/pi.svg");
     assert_eq!(counts, [3, 31, 314, 3141, 31415]);
     Ok(())
 }

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         jumps.iter().filter(|jump| jump.to == Side::Sliding).map(|jump| jump.t()).collect(),
         jumps.iter().filter(|jump| jump.from == Side::Sliding).map(|jump| jump.t()).collect(),
     );
-    println!("slides from {enters:.6?} to {exits:.6?}: see docs/gallery/relay.svg");
+    println!("slides from {enters:.6?} to {exits:.6?}: see docs/program/gallery/relay.svg");
     let tangent = (1.0_f64 / strength).asin();
     assert!(exits.iter().zip(1_i32..).all(|(exit, k)| (exit - (f64::from(k) * PI + tangent)).abs() < 1e-11));
     assert!((enters[0] - 3.369_082_659_477_437).abs() < 2e-11 && (enters[1] - 5.905_416_136_003_556).abs() < 3e-11);

@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .line("apex of the stride that repeats", [[0.0, stride.q[0]], [8.0, stride.q[0]]]);
     gallery("slip", &picture.svg())?;
     let (apex, multiplier) = (stride.q[0], stride.multipliers[0].re);
-    println!("apex {apex:.13} m, multiplier {multiplier:.9}: see docs/gallery/slip.svg");
+    println!("apex {apex:.13} m, multiplier {multiplier:.9}: see docs/program/gallery/slip.svg");
     assert!((apex - 0.940_267_144_379_607).abs() < 5e-12);
     assert!((stride.period - 0.252_532_613_817_573).abs() < 5e-12 && (multiplier + 0.161_307_631_04).abs() < 1e-6);
     Ok(())

@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let slips: Vec<f64> = trajectory.jumps().iter().filter(|jump| jump.to == "slip").map(|jump| jump.t()).collect();
     let hundredth = slips.get(99).ok_or("fewer than a hundred cycles")?;
     let exact = holds / spring / belt + 99.0 * period;
-    println!("slip 100 at {hundredth:.12} s (exact {exact:.12}): see docs/gallery/stick_slip.svg");
+    println!("slip 100 at {hundredth:.12} s (exact {exact:.12}): see docs/program/gallery/stick_slip.svg");
     assert!((hundredth / exact - 1.0).abs() < 5e-12);
     Ok(())
 }

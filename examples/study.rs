@@ -2,7 +2,7 @@
 //! and what its film can tell.
 //!
 //! `cargo run --example study` compares each with the recorded motion, draws
-//! `docs/gallery/study-*.svg` and checks every number of `docs/study.md`.
+//! `docs/program/gallery/study-*.svg` and checks every number of `docs/trust/study.md`.
 
 use std::error::Error;
 

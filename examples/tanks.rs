@@ -33,7 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let exact = 2.0 / (leaks[0] + leaks[1] - inflow);
     let Stop::Zeno { limit } = run.end.stop else { return Err(format!("no limit: {}", run.end.stop).into()) };
-    println!("{} moves until {limit:.14} s (exact {exact:.14}): see docs/gallery/tanks.svg", run.end.stats.jumps);
+    println!(
+        "{} moves until {limit:.14} s (exact {exact:.14}): see docs/program/gallery/tanks.svg",
+        run.end.stats.jumps
+    );
     assert!((limit / exact - 1.0).abs() < 4e-14 && run.end.state.iter().all(|x| x.abs() < 1e-12));
     Ok(())
 }

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let period = time(high, low, outside) + time(low, high, tends);
     let exact = time(20.0, high, tends) + 50_000.0 * period;
     let switch = trajectory.jumps().get(100_000).ok_or("too few switches")?;
-    println!("switch 100 001 after {:.9} h (exact {exact:.9}): see docs/gallery/thermostat.svg", switch.t());
+    println!("switch 100 001 after {:.9} h (exact {exact:.9}): see docs/program/gallery/thermostat.svg", switch.t());
     assert!((switch.t() / exact - 1.0).abs() < 2e-11);
     Ok(())
 }

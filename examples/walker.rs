@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .dots("period doubling", doubled);
     gallery("walker", &picture.svg())?;
 
-    println!("stable up to a slope of {:.10} (published: 0.0151): see docs/gallery/walker.svg", at.parameter);
+    println!("stable up to a slope of {:.10} (published: 0.0151): see docs/program/gallery/walker.svg", at.parameter);
     assert!((at.parameter - 0.0151).abs() < 5e-5 && (at.orbit.multipliers[0].re + 1.0).abs() < 1e-8);
     Ok(())
 }

@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (gain, kept) = (4.0 * wheel.g * wheel.slope.sin() * wheel.half.sin(), (2.0 * wheel.half).cos().powi(2));
     let exact = (kept * gain / (1.0 - kept)).sqrt();
     println!(
-        "ω = {:.14} (exact {exact:.14}), multiplier {:.12}: see docs/gallery/wheel.svg",
+        "ω = {:.14} (exact {exact:.14}), multiplier {:.12}: see docs/program/gallery/wheel.svg",
         gait.q[0], gait.multipliers[0].re
     );
     assert!((gait.q[0] - exact).abs() < 1e-12 && (gait.multipliers[0].re - kept).abs() < 1e-10);

@@ -9,7 +9,7 @@ const [wasm, page, language = "en"] = process.argv.slice(2);
 const read = (...path) => readFileSync(join(here, ...path), "utf8");
 const words = JSON.parse(read("words", `${language}.json`));
 
-const OWN = `# A ball of your own: move a slider, or write here. docs/scenes.md lists the keys.
+const OWN = `# A ball of your own: move a slider, or write here. docs/use/scenes.md lists the keys.
 gravity = "9.81 m/s^2"
 restitution = 0.75
 friction = 0.4

@@ -1,8 +1,8 @@
 //! What accuracy costs: work–precision of seven systems, each against its closed form, a published
 //! value, or a tighter run.
 //!
-//! `cargo run --release --example accuracy` measures and rewrites the tables of `docs/accuracy.md`
-//! and its pictures.
+//! `cargo run --release --example accuracy` measures and rewrites the tables of
+//! `docs/trust/accuracy.md` and its pictures.
 
 mod dragged;
 mod page;
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         section.draw()?;
     }
     page::rewrite(&sections, &machine())?;
-    println!("docs/accuracy.md and {} pictures are written", sections.len());
+    println!("docs/trust/accuracy.md and {} pictures are written", sections.len());
     Ok(())
 }
 

@@ -89,7 +89,7 @@ fn time(point: &WorkPoint) -> String {
 
 /// Puts what was measured into the page.
 pub(crate) fn rewrite(sections: &[Section], machine: &str) -> Result<(), Box<dyn Error>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/accuracy.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/trust/accuracy.md");
     let page = std::fs::read_to_string(&path)?;
     let (before, rest) = page.split_once(FROM).ok_or("the page has no place for what is measured")?;
     let (_, after) = rest.split_once(TO).ok_or("the place for what is measured has no end")?;
@@ -98,7 +98,7 @@ pub(crate) fn rewrite(sections: &[Section], machine: &str) -> Result<(), Box<dyn
         let Section { name, title, system, reference, .. } = section;
         let _ = write!(
             measured,
-            "\n### {title}\n\n{system} Against {reference}.\n\n![{title}: time over error](gallery/accuracy-{name}.svg)\n\n{}",
+            "\n### {title}\n\n{system} Against {reference}.\n\n![{title}: time over error](../program/gallery/accuracy-{name}.svg)\n\n{}",
             section.table()
         );
     }

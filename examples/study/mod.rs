@@ -3,8 +3,8 @@
 //!
 //! A squash ball was dropped from 1 m on cement and filmed at 30 frames per second, ten times;
 //! `data/squash-on-cement.csv` has the means. The program `study` runs what is here and draws it;
-//! `docs/study.md` tells it. Numbers in brackets, as in (8), are those that the study gives its
-//! equations.
+//! `docs/trust/study.md` tells it. Numbers in brackets, as in (8), are those that the study gives
+//! its equations.
 
 pub mod equations;
 pub mod film;

@@ -1,5 +1,5 @@
 //! The catalogue of hard cases: each case of `hardcases.json` is run here, each of its observables
-//! is judged at the case's own tolerance, and `docs/hard-cases.md` shows what came out.
+//! is judged at the case's own tolerance, and `docs/trust/hard-cases.md` shows what came out.
 //!
 //! A case that is missed stays, marked with its reason; its test asserts that it is missed as it is
 //! known to be, so that a cure is noticed. The page is rewritten by

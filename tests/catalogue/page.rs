@@ -1,4 +1,4 @@
-//! `docs/hard-cases.md`: written from the cases and their reports, and compared with them.
+//! `docs/trust/hard-cases.md`: written from the cases and their reports, and compared with them.
 
 use std::fmt::Write as _;
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +10,7 @@ use crate::cases::Entry;
 use crate::report::{Ours, Report, Tally};
 use crate::survey::{SOURCES, SURVEY, Seen};
 
-const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/hard-cases.md");
+const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/trust/hard-cases.md");
 
 /// The two tests below may both write.
 static PAGE: Mutex<()> = Mutex::new(());
@@ -258,7 +258,7 @@ fn survey(out: &mut String) {
     for (title, cases) in &SURVEY {
         let _ = write!(out, "\n### {title}\n\n| case | right answer | test |\n|---|---|---|\n");
         for Seen(case, answer, file, name) in *cases {
-            let _ = writeln!(out, "| {case} | {answer} | [`{name}`](../tests/tests/{file}) |");
+            let _ = writeln!(out, "| {case} | {answer} | [`{name}`](../../tests/tests/{file}) |");
         }
     }
 }
@@ -274,14 +274,21 @@ fn heading(family: &str) -> (&'static str, &'static str) {
         "root" => ("Crossings", "Hard to find, hard to tell apart, or not there."),
         "simultaneous" => (
             "Several at once",
-            "Corners, cradles, cascades, collapse, and the billiard whose collisions count the digits of π.\n\n![The collisions of two blocks and a wall](gallery/pi.svg)",
+            "Corners, cradles, cascades, collapse, and the billiard whose collisions count the digits of π.\n\n![The collisions of two blocks and a wall](../program/gallery/pi.svg)",
         ),
-        "table" => ("A table that shakes", "![A ball on a vibrating table: its periodic bounces](gallery/table.svg)"),
-        "filippov" => ("Sliding and switching", "![A relay driven by a sine: slides and exits](gallery/relay.svg)"),
+        "table" => (
+            "A table that shakes",
+            "![A ball on a vibrating table: its periodic bounces](../program/gallery/table.svg)",
+        ),
+        "filippov" => {
+            ("Sliding and switching", "![A relay driven by a sine: slides and exits](../program/gallery/relay.svg)")
+        }
         "contact" => {
             ("Contact that takes time", "Force laws, from soft to 10¹² N/m, by steps and by their closed forms.")
         }
-        "locomotion" => ("Walking, hopping, juggling", "![The gaits of the simplest walker](gallery/walker.svg)"),
+        "locomotion" => {
+            ("Walking, hopping, juggling", "![The gaits of the simplest walker](../program/gallery/walker.svg)")
+        }
         "sensitivity" => {
             ("Derivatives through jumps", "No differences are taken; see [sensitivities.md](sensitivities.md).")
         }

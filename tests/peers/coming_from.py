@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the programs of docs/coming-from.md, those in Rust and those in Python, and prints lines, times and relative errors.
+"""Runs the programs of docs/program/coming-from.md, those in Rust and those in Python, and prints lines, times and relative errors.
 
 Wants SciPy. The program in Rust is built under target/coming-from, with optimization.
 """
@@ -13,7 +13,7 @@ import numpy
 from scipy.linalg import expm
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs/coming-from.md").read_text()
+PAGE = (ROOT / "docs/program/coming-from.md").read_text()
 
 
 def converter():

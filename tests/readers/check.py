@@ -4,7 +4,7 @@
     cargo build --release --bin saltus
     python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix] [--only=blender,usd]
 
-With --matrix every example scene at several frame rates, with and without squash, and a table for docs/motion.md at the end. With --only those readers alone,
+With --matrix every example scene at several frame rates, with and without squash, and a table for docs/use/motion.md at the end. With --only those readers alone,
 and contacts and sounds.
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed

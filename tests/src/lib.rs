@@ -6,23 +6,23 @@
 pub struct Readme;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/model.md")]
+#[doc = include_str!("../../docs/program/model.md")]
 pub struct Model;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/fitting.md")]
+#[doc = include_str!("../../docs/use/fitting.md")]
 pub struct Fitting;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/coming-from.md")]
+#[doc = include_str!("../../docs/program/coming-from.md")]
 pub struct ComingFrom;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/sensitivities.md")]
+#[doc = include_str!("../../docs/program/sensitivities.md")]
 pub struct Sensitivities;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/simulating.md")]
+#[doc = include_str!("../../docs/use/simulating.md")]
 pub struct Simulating;
 
 pub mod any_scene;
@@ -33,21 +33,21 @@ pub mod sturm;
 pub mod watched;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/physics.md")]
+#[doc = include_str!("../../docs/trust/physics.md")]
 pub struct Physics;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/tutorial.md")]
+#[doc = include_str!("../../docs/program/tutorial.md")]
 pub struct Tutorial;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/study.md")]
+#[doc = include_str!("../../docs/trust/study.md")]
 pub struct Study;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/cookbook.md")]
+#[doc = include_str!("../../docs/program/cookbook.md")]
 pub struct Cookbook;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/accuracy.md")]
+#[doc = include_str!("../../docs/trust/accuracy.md")]
 pub struct Accuracy;

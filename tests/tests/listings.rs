@@ -89,7 +89,9 @@ fn dependencies(root: &Path, page: &str, code: &str) -> String {
 #[test]
 fn listings_compile_with_what_they_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let mut pages: Vec<PathBuf> = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let inside = |folder: &Path| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut pages: Vec<PathBuf> = inside(&root.join("docs"));
+    pages = pages.iter().filter(|path| path.is_dir()).flat_map(|folder| inside(folder)).collect();
     pages.push(root.join("README.md"));
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     let mut crates: BTreeMap<String, Vec<Listing>> = BTreeMap::new();

@@ -28,7 +28,7 @@ fn every_scene_runs() {
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .map(|path| fs::read_to_string(path).unwrap())
         .collect();
-    let page = fs::read_to_string(root.join("docs/scenes.md")).unwrap();
+    let page = fs::read_to_string(root.join("docs/use/scenes.md")).unwrap();
     texts.extend(page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()));
     assert!(texts.len() >= 24);
     for text in texts {

@@ -101,17 +101,17 @@ fn a_draw_shot_by_the_textbook() {
 /// Each block of TOML in the page is a scene, and no key is left out.
 #[test]
 fn the_page_about_scenes() {
-    let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    let page = fs::read_to_string(root().join("docs/use/scenes.md")).unwrap();
     let blocks: Vec<&str> = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     assert!(blocks.len() >= 10);
     for block in blocks {
-        Scene::parse("docs/scenes.md", block.as_bytes()).unwrap_or_else(|error| panic!("{error}\nin:\n{block}"));
+        Scene::parse("docs/use/scenes.md", block.as_bytes()).unwrap_or_else(|error| panic!("{error}\nin:\n{block}"));
     }
     let words: Vec<&str> = page.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
     let mut missing: Vec<String> =
         keys().into_iter().map(|(_, key)| key).filter(|key| !words.contains(&&**key)).collect();
     missing.dedup();
-    assert!(missing.is_empty(), "docs/scenes.md says nothing of {missing:?}");
+    assert!(missing.is_empty(), "docs/use/scenes.md says nothing of {missing:?}");
 }
 
 /// Every table of the schema with each of its keys.

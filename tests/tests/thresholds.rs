@@ -1,5 +1,6 @@
 //! Every number that decides between a step and a jump, as the sources have it: the thresholds
-//! themselves in `docs/numerics.md`, the counts and steps beside them in `docs/thresholds.md`.
+//! themselves in `docs/trust/numerics.md`, the counts and steps beside them in
+//! `docs/trust/thresholds.md`.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
@@ -183,8 +184,8 @@ fn the_page_lists_every_threshold() {
         }
     }
     page.push_str(LIMITS);
-    holds(&root.join("docs/thresholds.md"), &page);
-    let numerics = root.join("docs/numerics.md");
+    holds(&root.join("docs/trust/thresholds.md"), &page);
+    let numerics = root.join("docs/trust/numerics.md");
     let kept = fs::read_to_string(&numerics).unwrap();
     let (before, rest) = kept.split_once(BEGIN).unwrap();
     let (_, after) = rest.split_once(END).unwrap();

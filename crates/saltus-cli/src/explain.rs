@@ -57,7 +57,7 @@ pub(crate) struct Explain {
     /// When to stop these runs, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-    /// How to write it; docs/simulating.md describes its JSON.
+    /// How to write it; docs/use/simulating.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
 }

@@ -17,7 +17,7 @@ use crate::staging::Staging;
 /// Every flight is one exact parabola between two contacts where the format can hold it. Hops
 /// shorter than a frame are left out. It ends in one line: how many keys, how far a contact is from
 /// a frame, how far the file is from the motion, and by how much squash and stretch depart from it.
-/// See docs/motion.md.
+/// See docs/use/motion.md.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Export {
     /// The scene; `-` for standard input.

@@ -34,7 +34,7 @@ const NAME: usize = 100;
 /// The one is a scene, or a table of bounces, whose fitted motion is varied. A key is the path of a
 /// value in the scene file, as in `ball.height`, or says how the motion is shown: fps, snap,
 /// on-twos, squash, stretch, exaggerate, hold, loop, mirror. `index.json` has the values, frames
-/// and contacts of every motion. See docs/motion.md.
+/// and contacts of every motion. See docs/use/motion.md.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = VARIATIONS)]
 pub(crate) struct Library {

@@ -18,7 +18,7 @@ use crate::scenes::{ended, ending, note, planned, scene};
 
 /// Simulate a scene, or a ball that bounces on a level floor.
 ///
-/// A scene is a TOML file; see docs/scenes.md. Without one, --drop and --cor say all there is:
+/// A scene is a TOML file; see docs/use/scenes.md. Without one, --drop and --cor say all there is:
 /// gravity and a constant coefficient of restitution, every flight an exact parabola. Without
 /// --until the run ends when nothing happens any more.
 #[derive(Debug, ClapArgs)]

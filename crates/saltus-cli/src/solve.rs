@@ -33,7 +33,7 @@ and any other number of the scene by its key, such as drag.per_length or floor.a
 ///
 /// Each freedom is a number of the scene that may be changed; all others stay. Without a scene the
 /// ball falls from 1 m by the Earth's gravity and keeps 0.7 of its speed at each contact. See
-/// docs/directing.md.
+/// docs/use/directing.md.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = WISHES)]
 pub(crate) struct Solve {

@@ -18,7 +18,7 @@ fn the_main_job() {
     let output = saltus().arg("fit").arg(squash()).arg("--plot").arg(&svg).output().unwrap();
     assert!(output.status.success());
     golden(&root().join("crates/saltus-cli/tests/golden/squash.txt"), &text(&output.stdout));
-    golden(&root().join("docs/squash-on-cement.svg"), &fs::read_to_string(&svg).unwrap());
+    golden(&root().join("docs/use/squash-on-cement.svg"), &fs::read_to_string(&svg).unwrap());
     assert!(text(&output.stderr).contains("squash.svg"), "where the picture went is said");
     // The report quoted in the README is the report printed.
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
@@ -33,7 +33,7 @@ fn pictures_of_a_fit() {
     let (profile, ladder, squash) = (path("profile.svg"), path("ladder.svg"), squash());
     let squash = squash.to_str().unwrap();
     done(&["-q", "fit", squash, "--plot-profile", &profile, "--plot-ladder", &ladder]);
-    golden(&root().join("docs/squash-profile.svg"), &fs::read_to_string(&profile).unwrap());
+    golden(&root().join("docs/use/squash-profile.svg"), &fs::read_to_string(&profile).unwrap());
     let ladder = fs::read_to_string(&ladder).unwrap();
     assert!(ladder.contains("Apex (cm)") && ladder.contains("one COR of 0.496"), "{ladder}");
     // What there is nothing to draw of is said, and no file is made.

@@ -103,7 +103,7 @@ fn trials_and_groups_are_all_drawn() {
 #[test]
 fn a_measurement_is_planned() {
     let folder = TempDir::new().unwrap();
-    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fitting.md")).unwrap();
+    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/use/fitting.md")).unwrap();
     let planned = saltus(folder.path(), &["fit", "--want", "0.005", "--ball", "tennis"]);
     assert!(planned.status.success() && guide.contains(&text(&planned.stdout)), "{}", text(&planned.stdout));
     let values = ["fit", "--values", "100 64 41 26 cm", "--want", "0.004", "--format", "json", "--sigma-zero", "0"];
@@ -120,7 +120,7 @@ fn a_measurement_is_planned() {
 #[test]
 fn the_first_example_of_the_guide_is_what_is_printed() {
     let folder = TempDir::new().unwrap();
-    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/fitting.md")).unwrap();
+    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/use/fitting.md")).unwrap();
     fs::write(folder.path().join("drop.csv"), fenced(&guide, "```csv\n")).unwrap();
     let command: Vec<&str> = fenced(&guide, "```sh\n").split_whitespace().skip(1).collect();
     let output = saltus(folder.path(), &command);

@@ -1,5 +1,5 @@
-//! docs/fitting-inside.md lists every finding, and the constants that decide with the values that
-//! they have.
+//! docs/change/fitting-inside.md lists every finding, and the constants that decide with the values
+//! that they have.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
@@ -11,7 +11,7 @@ fn root() -> PathBuf {
 }
 
 fn page() -> String {
-    fs::read_to_string(root().join("../../../docs/fitting-inside.md")).unwrap()
+    fs::read_to_string(root().join("../../../docs/change/fitting-inside.md")).unwrap()
 }
 
 /// The files whose constants decide what is found.

@@ -93,7 +93,7 @@ fn a_ball_with_echoes_that_others_recorded() {
 }
 
 /// Of each kind so many, by default a few: `SOUNDS=200 SALTUS_BLESS=1 cargo test -p saltus-fit
-/// --test sound made_sounds` writes the table of docs/sound.md.
+/// --test sound made_sounds` writes the table of docs/use/sound.md.
 #[test]
 fn made_sounds_are_heard_or_refused() {
     let count: u64 = std::env::var("SOUNDS").ok().map_or(25, |count| count.parse().unwrap());
@@ -163,7 +163,7 @@ fn made_sounds_are_heard_or_refused() {
     if std::env::var_os("SOUNDS").is_none() {
         return;
     }
-    let page = root().join("docs/sound.md");
+    let page = root().join("docs/use/sound.md");
     let text = std::fs::read_to_string(&page).unwrap();
     let (from, to) = ("<!-- written by the test sound: begin -->\n", "<!-- end -->");
     let begin = text.find(from).unwrap() + from.len();

@@ -202,7 +202,7 @@ impl Motion {
         named.map(|(name, values)| Ok((name, column(values)?))).collect()
     }
 
-    /// The same as JSON: docs/simulating.md.
+    /// The same as JSON: docs/use/simulating.md.
     #[pyo3(signature = (every=None, fps=None))]
     fn json(&self, every: Option<f64>, fps: Option<f64>) -> PyResult<String> {
         self.0.json(sampling(every, fps)).map_err(fail::value)

@@ -1,7 +1,7 @@
 //! Kinds of a table: what each is called, what it is, and which keys it takes, declared once.
 //!
 //! From the declaration come what a file may say, the check that refuses keys of another kind, its
-//! message, and the description in the schema. A test holds docs/scenes.md to it.
+//! message, and the description in the schema. A test holds docs/use/scenes.md to it.
 
 /// Declares the kinds of a table. `none` is what the table is where no kind is named, with the keys
 /// it takes then.

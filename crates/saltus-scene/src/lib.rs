@@ -2,7 +2,7 @@
 //! read into a [`Scene`].
 //!
 //! A scene is data. It does not say how it is to be run; every number in it has been checked, every
-//! law is made. What the keys mean, with units and defaults, is in `docs/scenes.md`; [`schema`]
+//! law is made. What the keys mean, with units and defaults, is in `docs/use/scenes.md`; [`schema`]
 //! gives it to editors.
 //!
 //! A scene is planned, and run: a [`Record`] is all that happened. From there a few lines lead to a

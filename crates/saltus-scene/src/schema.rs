@@ -77,11 +77,11 @@ mod tests {
         }
     }
 
-    /// Every kind of a table has a row in docs/scenes.md that names its keys; the kinds and keys
-    /// are those of the schema, which come from the one declaration of each table.
+    /// Every kind of a table has a row in docs/use/scenes.md that names its keys; the kinds and
+    /// keys are those of the schema, which come from the one declaration of each table.
     #[test]
     fn docs_have_every_kind_with_its_keys() {
-        let docs = include_str!("../../../docs/scenes.md");
+        let docs = include_str!("../../../docs/use/scenes.md");
         let root: serde_json::Value = serde_json::from_str(SCHEMA).unwrap();
         let mut found = 0;
         for (table, key) in [("floor", "kind"), ("contact", "law"), ("restitution", "law")] {
@@ -90,10 +90,11 @@ mod tests {
             for kind in kinds {
                 let (name, about) = (kind["const"].as_str().unwrap(), kind["description"].as_str().unwrap());
                 let row = |line: &&str| line.starts_with('|') && line.contains(&format!("\"{name}\""));
-                let row = docs.lines().find(row).unwrap_or_else(|| panic!("docs/scenes.md has no row of \"{name}\""));
+                let row =
+                    docs.lines().find(row).unwrap_or_else(|| panic!("docs/use/scenes.md has no row of \"{name}\""));
                 for key in about.split('`').skip(1).step_by(2) {
                     let mut words = row.split(|c: char| !c.is_ascii_lowercase() && c != '_');
-                    assert!(words.any(|word| word == key), "\"{name}\" in docs/scenes.md has no `{key}`: {row}");
+                    assert!(words.any(|word| word == key), "\"{name}\" in docs/use/scenes.md has no `{key}`: {row}");
                     found += 1;
                 }
             }

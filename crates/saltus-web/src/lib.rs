@@ -2,8 +2,8 @@
 //!
 //! A message is the length of its JSON (four bytes, the lowest first), the JSON, and bytes that the
 //! JSON tells the lengths of. The page asks for [`room`], writes its question there, calls
-//! [`answer`] for the length of the answer, and reads that at [`place`]. `docs/page.md` lists the
-//! questions.
+//! [`answer`] for the length of the answer, and reads that at [`place`]. `docs/use/page.md` lists
+//! the questions.
 //!
 //! Three functions need no generated bindings, and so neither a tool to make them nor the script
 //! that comes with them. Nothing is read or written through a pointer on this side.

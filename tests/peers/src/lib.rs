@@ -1,5 +1,5 @@
 //! The comparison of saltus with other Rust integrators: what it measures, and how.
-//! `docs/comparison.md` has the results.
+//! `docs/trust/comparison.md` has the results.
 
 pub mod machine;
 pub mod right;

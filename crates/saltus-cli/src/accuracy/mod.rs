@@ -43,7 +43,7 @@ pub(crate) struct Accuracy {
     /// When to stop, such as `4s`; otherwise when the scene says.
     #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
     pub(crate) until: Option<f64>,
-    /// How to write it; docs/accuracy.md describes its JSON.
+    /// How to write it; docs/trust/accuracy.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
 }

@@ -73,7 +73,7 @@ pub(crate) struct Fit {
     /// Write the scene anew where it exists.
     #[arg(long, requires = "scene")]
     pub(crate) force: bool,
-    /// How to write the report, or why there is none; docs/fitting.md describes the JSON.
+    /// How to write the report, or why there is none; docs/use/fitting.md describes the JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
     /// Write the report to a file; `-` for standard output.

@@ -27,7 +27,7 @@ fn share(text: &str) -> Result<Share, String> {
 ///
 /// A key is the path of a value in the scene file, as in `ball.height`, whether the file says it or
 /// not. Runs go on all cores; the table is the same to the byte on any number of them. A sweep that
-/// was broken off is gone on with by --resume. See docs/sweeping.md.
+/// was broken off is gone on with by --resume. See docs/use/sweeping.md.
 #[derive(Debug, ClapArgs)]
 #[command(after_help = VARIATIONS)]
 pub(crate) struct Sweep {

@@ -11,7 +11,8 @@ use crate::quantity::{Ball, CorModel, Measured, Readings, Sourced};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
-#[allow(missing_docs)] // docs/fitting-inside.md lists every kind with what raises it; the fields are named in full.
+// docs/change/fitting-inside.md lists every kind with what raises it; the fields are named in full.
+#[allow(missing_docs)]
 pub enum FindingKind {
     // The reading of the table.
     ReadNote {

@@ -302,7 +302,7 @@ impl Table {
     /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's
     /// and phyphox' programs export; bare numbers, if the options say what they are), workbooks
     /// (`.xlsx`, `.xls`), zip archives of CSV, and sounds (`.wav`, see [`Sound`]).
-    /// `docs/fitting.md` shows every layout.
+    /// `docs/use/fitting.md` shows every layout.
     ///
     /// The reader of workbooks may panic over a damaged one. That becomes an error like any other,
     /// but the program's panic hook hears of it first and, as it is by default, prints a line to

@@ -2,8 +2,8 @@
 //! every kind with every known fault.
 //!
 //! `cargo test -p saltus-fit --test trust` runs a few of each; with `RUNS=200` and `-- --nocapture`
-//! it prints the table of docs/fitting-inside.md; `SEED=1000` begins at another number, `KIND=Film`
-//! runs one kind.
+//! it prints the table of docs/change/fitting-inside.md; `SEED=1000` begins at another number,
+//! `KIND=Film` runs one kind.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 

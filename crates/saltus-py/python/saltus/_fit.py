@@ -47,7 +47,7 @@ class Finding:
     """Something that a fit found.
 
     ``severity`` is ``"refusal"``, ``"doubt"`` or ``"note"``, ``kind`` its name in
-    docs/fitting.md, ``at`` where in the table it is, ``numbers`` what belongs to its kind.
+    docs/use/fitting.md, ``at`` where in the table it is, ``numbers`` what belongs to its kind.
     """
 
     kind: str
@@ -77,7 +77,7 @@ class Fit:
         return cls(_core.Report.from_json(text))
 
     def to_json(self) -> str:
-        """The report as JSON, for programs; docs/fitting.md describes it."""
+        """The report as JSON, for programs; docs/use/fitting.md describes it."""
         return self._json
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
@@ -274,7 +274,7 @@ def fit(
 
     Amounts are numbers in SI units or text with a unit: ``sigma_height=0.005`` is
     ``sigma_height="5 mm"``. Each option is that of ``saltus fit``, by the same name; see
-    docs/fitting.md.
+    docs/use/fitting.md.
 
     >>> import saltus
     >>> fit = saltus.fit([100, 64, 41, 26], "cm", sigma_height="5 mm")

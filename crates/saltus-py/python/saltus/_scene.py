@@ -53,7 +53,7 @@ class Scene:
     """A scene as text, which can be kept, compared and sent.
 
     ``source`` is a path, text in TOML, a dict, or nothing; ``keys`` are keys of the scene, which go
-    before those of a dict. docs/scenes.md lists the keys. Amounts are numbers in SI units, or text
+    before those of a dict. docs/use/scenes.md lists the keys. Amounts are numbers in SI units, or text
     with a unit.
 
     >>> import saltus
@@ -172,7 +172,7 @@ class Motion:
         return pandas.DataFrame(self.table(every=every, fps=fps))
 
     def to_json(self, *, every: float | None = None, fps: float | None = None) -> str:
-        """What the tool writes with ``--format json``; docs/simulating.md describes it."""
+        """What the tool writes with ``--format json``; docs/use/simulating.md describes it."""
         return self._core.json(every, fps)
 
     @property
@@ -197,7 +197,7 @@ class Motion:
 
         The format is that of the extension (``.glb``, ``.gltf``, ``.usda``, ``.usdz``,
         ``.lottie``, ``.svg``, ``.html``, ``.csv``, ``.wav``), or ``to``, by its name in
-        docs/motion.md. ``tolerance`` is how far keys may be from the motion, in m.
+        docs/use/motion.md. ``tolerance`` is how far keys may be from the motion, in m.
         """
         extension = Path(path).suffix.lower()
         if to is None and extension not in EXTENSIONS:
@@ -260,7 +260,7 @@ class Accuracy:
     ``reference`` what every run is compared with, and ``reference_error`` how far that may be off.
     ``trials`` has a dict for each setting tried, ``effects`` one for each effect left out or put
     in: ``run``, ``error`` (``impacts_s``, ``apexes_m``, ``places_m``, ``energy_share``), ``steps``,
-    ``flows``, ``guards``, ``seconds``, or ``refused``. docs/accuracy.md describes them.
+    ``flows``, ``guards``, ``seconds``, or ``refused``. docs/trust/accuracy.md describes them.
     """
 
     def __init__(self, text: str) -> None:
@@ -349,7 +349,7 @@ def solve(
     fps: float = 24.0,
     first_frame: int = 0,
 ) -> Solved:
-    """The scene in which wishes come true: docs/directing.md has wishes and freedoms.
+    """The scene in which wishes come true: docs/use/directing.md has wishes and freedoms.
 
     >>> import saltus
     >>> solved = saltus.solve("touch 1 at frame 24", free="throw")

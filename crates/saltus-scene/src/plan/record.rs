@@ -290,7 +290,7 @@ pub(super) trait RecordedRun: Send + Sync {
 }
 
 /// A recorded run of a scene. It may be sent between threads and shared; serialised it is the JSON
-/// of docs/simulating.md.
+/// of docs/use/simulating.md.
 ///
 /// ```
 /// use saltus_scene::Scene;

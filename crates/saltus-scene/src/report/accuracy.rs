@@ -1,4 +1,4 @@
-//! What accuracy costs, as JSON; the contract is written down in docs/accuracy.md.
+//! What accuracy costs, as JSON; the contract is written down in docs/trust/accuracy.md.
 
 use saltus::Timing;
 use serde::Serialize;
@@ -115,7 +115,7 @@ impl Row {
 
 impl Accuracy {
     /// All of it as JSON: every setting tried, the one to take for a `target`, and what each of the
-    /// effects in `toggles` changes; docs/accuracy.md describes it.
+    /// effects in `toggles` changes; docs/trust/accuracy.md describes it.
     ///
     /// ```
     /// use saltus_scene::Scene;

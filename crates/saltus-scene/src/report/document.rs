@@ -1,4 +1,4 @@
-//! A run as JSON; the contract is written down in docs/simulating.md.
+//! A run as JSON; the contract is written down in docs/use/simulating.md.
 
 use serde::{Serialize, Serializer};
 
@@ -121,7 +121,7 @@ impl Document {
     }
 }
 
-/// The contract of docs/simulating.md, without samples.
+/// The contract of docs/use/simulating.md, without samples.
 impl Serialize for Record {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Document::of(self, None).map_err(serde::ser::Error::custom)?.serialize(serializer)
@@ -130,7 +130,7 @@ impl Serialize for Record {
 
 impl Record {
     /// The jumps, the impacts and, if asked for, samples as JSON; the contract is written down in
-    /// docs/simulating.md. Without samples it is what serialising the record gives.
+    /// docs/use/simulating.md. Without samples it is what serialising the record gives.
     ///
     /// # Errors
     /// [`Error`] for more than ten million samples.

@@ -1,4 +1,4 @@
-//! Right or wrong: the second table of `docs/comparison.md`.
+//! Right or wrong: the second table of `docs/trust/comparison.md`.
 //!
 //! Each case runs for each solver in a process of its own, which is ended after a while: some never
 //! come back.

@@ -1,4 +1,4 @@
-//! How fast, at equal error: the tables of `docs/comparison.md`.
+//! How fast, at equal error: the tables of `docs/trust/comparison.md`.
 
 use saltus::{Auto, Dop853, Tsit5};
 use saltus_peers::machine;
