@@ -45,11 +45,15 @@ const fitted = measure(
   },
   () => tab("compare"),
 );
-load(first ?? SCENES[Object.keys(SCENES)[0]]);
+// The first answer is the fit, unless an address asks for a scene.
+const [[name, own]] = Object.entries(SCENES);
+if (first === null) fitted.then(() => load(own, name));
+else load(first);
 addEventListener("hashchange", () => {
   const toml = linked();
   if (toml === null) return;
   tab("play");
   load(toml);
 });
+performance.mark("asked");
 fitted.then(() => { document.documentElement.dataset.ready = performance.now().toFixed(1); });

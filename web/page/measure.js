@@ -4,6 +4,7 @@ import { EXAMPLE } from "./parts.js";
 import { ask } from "./engine.js";
 import { at, draw, made, problem, save, say, tell } from "./elements.js";
 import { grid, textOf } from "./grid.js";
+import { record } from "./record.js";
 import { heard } from "./sound.js";
 
 /// The largest files that are taken, together, in MB: more takes longer than anyone waits.
@@ -49,25 +50,31 @@ function show(answer) {
   const verdict = say(`verdict.${report.verdict}`);
   at("verdict").textContent = verdict;
   at("verdict").className = report.verdict;
-  at("headline").textContent = answer.headline ? say("headline", { value: answer.headline }) : "";
+  const cor = (value) => (value ? say("headline", { value }) : undefined);
+  at("headline").textContent = cor(answer.headline) ?? "";
   at("reason").textContent = report.reason.charAt(0).toUpperCase() + report.reason.slice(1) + ".";
   const group = ({ name, verdict: of, headline, reason }) =>
-    made("li", { textContent: say("group", { name, verdict: say(`verdict.${of}`), headline: headline ?? reason }) });
+    made("li", { textContent: say("group", { name, verdict: say(`verdict.${of}`), headline: cor(headline) ?? reason }) });
   at("groups").replaceChildren(...answer.groups.map(group));
   problem(at("problem"));
   draw(at("fit-pictures"), answer.pictures);
   at("fit-saves").hidden = false;
   at("save-svg").disabled = !motionOf(answer);
+  at("save-wav").hidden = recording() === undefined;
   at("play-fit").disabled = answer.scene === null;
   at("compare-fit").disabled = !report.motions?.length;
   at("report").hidden = false;
   at("text").textContent = answer.text;
   shown?.mark();
-  tell(say("fit.done", { name: report.table, verdict, headline: answer.headline ?? "" }));
+  tell(say("fit.done", { name: report.table, verdict, headline: cor(answer.headline) ?? "" }));
   for (const listener of listeners) listener(answer);
 }
 
 const motionOf = ({ pictures }) => pictures.find(([kind]) => kind === "motion")?.[1];
+
+/// The only file, if it is a sound.
+const recording = () => (files.length === 1 && sounds(files[0]) ? files[0] : undefined);
+const sounds = ({ name }) => /\.wav$/i.test(name);
 
 function fail(error) {
   last = undefined;
@@ -94,10 +101,12 @@ function table() {
   at("table-title").textContent = say("table.of", { name: files.map(({ name }) => name).join(", ") });
   at("add-row").hidden = text === undefined;
   if (text === undefined) {
-    const names = files.map(({ name, bytes }) => ({ name, text: textOf(bytes) }));
-    const part = ({ name, text: content }) =>
-      content === undefined ? made("p", { textContent: say("table.binary", { name }) }) : made("pre", { textContent: content.slice(0, 4000) });
-    at("grid").replaceChildren(...names.map(part));
+    const part = (one) => {
+      const content = textOf(one.bytes);
+      if (content !== undefined) return made("pre", { textContent: content.slice(0, 4000) });
+      return made("p", { textContent: say(sounds(one) ? "table.sound" : "table.binary", one) });
+    };
+    at("grid").replaceChildren(...files.map(part));
     return;
   }
   shown = grid(at("grid"), text, (changed, others) => {
@@ -155,6 +164,8 @@ export function measure(play, compare) {
   on("save-json", () => save(`${stem()}.json`, last.json, "application/json"));
   on("save-csv", () => save(`${stem()}.csv`, csv(), "text/csv"));
   on("save-svg", () => save(`${stem()}.svg`, motionOf(last), "image/svg+xml"));
+  on("save-wav", () => save(`${stem()}.wav`, recording().bytes, "audio/wav"));
+  record(take);
   on("play-fit", () => play(last.scene));
   on("compare-fit", compare);
 

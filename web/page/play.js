@@ -146,9 +146,10 @@ async function pictures() {
   }
 }
 
-/// A scene from elsewhere.
-export function load(toml) {
+/// A scene, by its name in the list if it has one.
+export function load(toml, name) {
   at("toml").value = toml;
+  at("scenes").value = name ?? "";
   return run({ knobs: true }, false);
 }
 
@@ -190,7 +191,7 @@ export const linked = () => new URLSearchParams(location.hash.slice(1)).get("sce
 export function play() {
   screen = player(at("stage"), paint);
   at("scenes").append(...Object.keys(SCENES).map((name) => made("option", { value: name, textContent: name })));
-  at("scenes").addEventListener("change", () => load(SCENES[at("scenes").value]));
+  at("scenes").addEventListener("change", ({ target: { value } }) => load(SCENES[value], value));
   at("planets").append(made("option", { value: "", textContent: say("planet.none") }));
   at("planets").addEventListener("change", () => {
     if (at("planets").value !== "") turned("gravity", Number(at("planets").value));

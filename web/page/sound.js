@@ -42,7 +42,7 @@ export async function heard(file) {
   if (!ENDINGS.test(file.name)) return file;
   try {
     const sound = await new OfflineAudioContext(1, 1, RATE).decodeAudioData(file.bytes.slice().buffer);
-    return { name: `${file.name}.wav`, bytes: wav(sound) };
+    return { name: file.name.replace(ENDINGS, ".wav"), bytes: wav(sound) };
   } catch {
     return file;
   }

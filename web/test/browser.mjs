@@ -14,11 +14,11 @@ export const pictures = join(target, "web-pictures");
 mkdirSync(pictures, { recursive: true });
 
 let browser;
-export async function start() {
+export async function start(...flags) {
   const known = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
   const path = process.env.CHROMIUM ?? execFileSync("sh", ["-c", `ls ${known.join(" ")} 2>/dev/null | head -1`], { encoding: "utf8" }).trim();
   // Pictures are of the same pixels everywhere; nothing needs a sandbox that containers do not have.
-  browser = await chromium.launch({ executablePath: path, args: ["--no-sandbox", "--force-color-profile=srgb"] });
+  browser = await chromium.launch({ executablePath: path, args: ["--no-sandbox", "--force-color-profile=srgb", ...flags] });
 }
 export const stop = () => browser.close();
 
@@ -74,13 +74,16 @@ export const told = (path) => execFileSync(tool, ["fit", "-q", basename(path)], 
 /// Sums of squares and probabilities below this are what is left of rounding.
 const ROUNDING = 1e-20;
 
-/// Asserts that two documents are alike, numbers to 1e-9 of themselves.
-export function alike(got, wanted, place = "") {
+/// How near numbers are that are the same, as a part of themselves.
+const SAME = 1e-9;
+
+/// Asserts that two documents are alike, numbers to a part of themselves.
+export function alike(got, wanted, within = SAME, place = "") {
   if (typeof got === "number" && typeof wanted === "number") {
-    const near = Math.abs(got - wanted) <= Math.max(ROUNDING, 1e-9 * Math.max(Math.abs(got), Math.abs(wanted)));
+    const near = Math.abs(got - wanted) <= Math.max(ROUNDING, within * Math.max(Math.abs(got), Math.abs(wanted)));
     assert.ok(near, `${place}: ${got} is not ${wanted}`);
   } else if (got !== null && wanted !== null && typeof got === "object" && typeof wanted === "object") {
     assert.deepEqual(Object.keys(got), Object.keys(wanted), `keys of ${place}`);
-    for (const key of Object.keys(got)) alike(got[key], wanted[key], `${place}/${key}`);
+    for (const key of Object.keys(got)) alike(got[key], wanted[key], within, `${place}/${key}`);
   } else assert.equal(got, wanted, place);
 }

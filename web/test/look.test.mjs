@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { on, pictures, start, stop } from "./browser.mjs";
 
-before(start);
+before(() => start());
 after(stop);
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");

@@ -6,9 +6,9 @@ import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
 import { alike, fitted, give, html, on, root, saved, start, stop, told } from "./browser.mjs";
-import { DECIDED, NEAR } from "./rounded.mjs";
+import { LEFT, NEAR } from "./rounded.mjs";
 
-before(start);
+before(() => start());
 after(stop);
 
 const tables = (folder) => readdirSync(join(root, folder)).map((name) => join(root, folder, name));
@@ -18,15 +18,24 @@ const share = Number(process.env.SHARE ?? 12);
 const handed = tables("crates/saltus-fit/tests/handed").filter((_, n) => n % share === 0);
 const known = [...tables("examples/data").filter((path) => path.endsWith(".csv")), ...tables("crates/saltus-fit/tests/tables"), ...handed].filter((path) => statSync(path).isFile());
 
-test("it opens with a fit, is small, and asks nobody", () =>
-  on(async (page) => {
-    const size = statSync(html).size;
-    const ready = await page.evaluate(() => document.documentElement.dataset.ready);
-    console.log(`saltus.html: ${(size / 1e6).toFixed(2)} MB; first fit ${ready} ms after opening`);
-    assert.ok(size <= 3e6);
-    assert.equal(await page.textContent("#verdict"), "Doubtful");
-    assert.match(await page.textContent("#headline"), /between 0\.41 and 0\.75/);
-  }));
+test("it opens with a fit, is small, and asks nobody", async () => {
+  const size = statSync(html).size;
+  const opened = [];
+  for (let n = 0; n < 5; n += 1) {
+    await on(async (page) => {
+      opened.push(await page.evaluate(() => [
+        Number(document.documentElement.dataset.ready),
+        performance.getEntriesByName("asked")[0].startTime,
+        performance.getEntriesByType("navigation")[0].responseEnd,
+      ]));
+      assert.equal(await page.textContent("#verdict"), "Doubtful");
+      assert.match(await page.textContent("#headline"), /between 0\.41 and 0\.75/);
+    });
+  }
+  const [fitted, asked, read] = opened.sort(([a], [b]) => a - b)[0].map(Math.round);
+  console.log(`saltus.html: ${(size / 1e6).toFixed(2)} MB; fastest of ${opened.length}: read after ${read} ms, asked after ${asked}, fitted after ${fitted}`);
+  assert.ok(size <= 3e6);
+});
 
 test("it opens from a server", async () => {
   const server = createServer((_, answer) => answer.setHeader("content-type", "text/html").end(readFileSync(html)));
@@ -35,8 +44,6 @@ test("it opens from a server", async () => {
   await on(async (page) => assert.equal(await page.textContent("#verdict"), "Doubtful"), { url, offline: false });
   server.close();
 });
-
-const decided = Object.values(DECIDED).flat();
 
 test(`${known.length} files are fitted as by the tool`, () =>
   on(async (page) => {
@@ -54,9 +61,8 @@ test(`${known.length} files are fitted as by the tool`, () =>
           const got = JSON.parse((await saved(page, "#save-json")).bytes);
           assert.equal(got.verdict, wanted.verdict);
           read += 1;
-          if (decided.includes(basename(path))) continue;
           assert.equal((await page.textContent("#text")).trim(), told(path));
-          if (!NEAR.includes(basename(path))) alike(got, wanted);
+          alike(got, wanted, NEAR.includes(basename(path)) ? LEFT : undefined);
         }
       } catch (error) {
         different[basename(path)] = error.message.slice(0, 200);
@@ -77,7 +83,7 @@ test("sounds are heard, by the browser's decoder where they are no WAV", () =>
     // The decoder looks at the bytes and not at the name; it gives another rate.
     await give(page, [{ name: "drop.m4a", bytes: readFileSync(path) }]);
     const got = JSON.parse((await saved(page, "#save-json")).bytes);
-    assert.equal(got.table, "drop.m4a.wav");
+    assert.equal(got.table, "drop.wav");
     assert.ok(Math.abs(got.cor.value - wanted.cor.value) < 0.0005, `${got.cor.value} is not ${wanted.cor.value}`);
     await give(page, [{ name: "noise.mp3", bytes: Buffer.from("no sound at all") }]);
     assert.equal(await page.textContent("#verdict"), "Not read");
@@ -250,6 +256,8 @@ test("files at random do no harm", () =>
       const ended = (await page.textContent("#problem")).includes("started anew");
       const verdict = ended ? "ended" : await page.textContent("#verdict");
       verdicts[verdict] = (verdicts[verdict] ?? 0) + 1;
+      // Noise has no COR.
+      assert.ok(n % 8 >= 2 || !["Trusted", "Doubtful"].includes(verdict), `${seed.name}: ${await page.textContent("#headline")}`);
     }
     console.log(`${count} files at random:`, verdicts);
   }));

@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { html, on, root, saved, start, stop } from "./browser.mjs";
 
-before(start);
+before(() => start());
 after(stop);
 
 const scenes = readdirSync(join(root, "examples/scenes")).filter((name) => name.endsWith(".toml"));
