@@ -206,6 +206,8 @@ test("what cannot be read is said", () =>
 
 test("a Worker that breaks down or does not end is ended, and another goes on", () =>
   on(async (page, { faults }) => {
+    // Nothing else is asked then.
+    await page.waitForFunction(() => document.querySelectorAll("#run-pictures img").length > 0);
     const ended = async (how) => {
       await page.workers().at(-1).evaluate(how);
       await page.click("#example");
