@@ -138,6 +138,35 @@ impl Columns {
         }
     }
 
+    /// Columns called as two others are but for one word, which names a ball or a surface in those:
+    /// it names one here as well, `Rebound zorb (cm)` beside `Rebound golf (cm)`.
+    pub(super) fn siblings(&mut self) {
+        let without =
+            |text: &str, words: &str| text.split_whitespace().filter(|word| *word != words).collect::<String>();
+        let named: Vec<(String, Value)> = self
+            .values()
+            .filter(|(_, c, v)| c.heading.unknown.is_empty() && !v.group.is_empty() && v.role == Role::Reading)
+            .map(|(_, c, v)| (without(&c.heading.text, &v.group), v.clone()))
+            .collect();
+        // One alone may be named by chance.
+        if !named.iter().any(|(text, of)| named.iter().any(|(other, v)| other == text && v.group != of.group)) {
+            return;
+        }
+        for column in &mut self.columns {
+            let [word] = column.heading.unknown.as_slice() else { continue };
+            let (word, rest) = (word.clone(), without(&column.heading.text, word));
+            let own = column.heading.value();
+            let alike = |(text, of): &&(String, Value)| {
+                *text == rest && own.is_some_and(|v| (v.what, v.at, v.role) == (of.what, of.at, of.role))
+            };
+            let found = named.iter().find(alike).filter(|_| rest.len() < column.heading.text.len());
+            if let Some((_, of)) = found {
+                column.kind = Kind::Value(Value { group: word, ..of.clone() });
+                column.heading.unknown.clear();
+            }
+        }
+    }
+
     /// Columns whose words are not understood: left aside, unless their cells may tell balls or
     /// surfaces apart.
     pub(super) fn not_understood(&mut self, region: &Region<'_>) -> Result<(), TableError> {

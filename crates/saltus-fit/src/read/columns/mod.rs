@@ -131,6 +131,7 @@ impl Columns {
         found.shares(region);
         found.energies(region);
         found.one_sided();
+        found.siblings();
         found.lacking(region, released);
         found.not_understood(region)?;
         found.drops(region);

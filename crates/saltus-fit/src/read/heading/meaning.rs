@@ -17,7 +17,9 @@ impl Heading {
         let numbers = numbers(words);
         let named = !numbers.trial.is_empty() || !numbers.group.is_empty() || !numbers.bounce.is_empty();
         let judges = |w: &Word| w.is(Atom::Counts) && !w.is(Label);
-        if (has(Note) || has(Atom::Measure) || !words.is_empty() && words.iter().all(judges)) && self.unit.is_none() {
+        // The time of day of an impact is its time.
+        let remark = has(Note) && !(has(Atom::Time) && has(Atom::Impact));
+        if (remark || has(Atom::Measure) || !words.is_empty() && words.iter().all(judges)) && self.unit.is_none() {
             return Meaning::Aside(Why::Note);
         }
         if has(Predicted) {
