@@ -8,7 +8,7 @@ use super::one::OneKind;
 use super::profile::Profile;
 use super::ratio;
 use super::tolerance::losses;
-use crate::elementary::exp;
+use crate::elementary::{exp, ln};
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::model::{Contacts, Heights};
@@ -105,9 +105,9 @@ impl<'a> Fits<'a> {
         let heights = self.heights.as_ref().map(|kind| {
             let model = Heights::with_sigma(self.evidence, kind.sigma.value);
             // Heights are fitted in the logarithm of the COR.
-            let Measured { value: ln, standard_error } = kind.fitted.measured(0);
-            let best = Measured { value: exp(ln), standard_error: exp(ln) * standard_error };
-            Profile::of(Method::Heights, &model, &kind.fitted, best, f64::ln)
+            let Measured { value: log, standard_error } = kind.fitted.measured(0);
+            let best = Measured { value: exp(log), standard_error: exp(log) * standard_error };
+            Profile::of(Method::Heights, &model, &kind.fitted, best, ln)
         });
         let times = self.times.as_ref().map(|kind| {
             let model = Contacts::with_sigma(self.evidence, kind.sigma.value);
