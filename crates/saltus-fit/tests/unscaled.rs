@@ -17,7 +17,8 @@ fn value(report: &Report) -> f64 {
     report.cor().unwrap_or_else(|| panic!("{report}")).value
 }
 
-/// Places of a ball of this COR, dropped from 900 px, by the frame; a frame lasts `per` of the fall.
+/// Places of a ball of this COR, dropped from 900 px, by the frame; a frame lasts `per` of the
+/// fall.
 fn film(e: f64, per: f64) -> String {
     let (mut contacts, mut speeds) = (vec![1.0], vec![2.0 * e]);
     for n in 0..3 {

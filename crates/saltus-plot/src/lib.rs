@@ -18,8 +18,8 @@
 //! ```
 //!
 //! Or data in, text out: a [`HeightTime`] picture takes strokes, measurements, contacts and
-//! residuals in seconds and metres, and gives one SVG document. Flights are drawn as what they are: a
-//! parabola is one quadratic Bézier curve, not a polyline. The document names itself (`<title>`,
+//! residuals in seconds and metres, and gives one SVG document. Flights are drawn as what they are:
+//! a parabola is one quadratic Bézier curve, not a polyline. The document names itself (`<title>`,
 //! `<desc>`, `role="img"`), scales (`viewBox`), follows light and dark surroundings, needs no fonts
 //! of its own, and tells lines and marks apart by shape as well as by colour.
 //!

@@ -4,9 +4,10 @@
 use saltus_bounce::units::Quantity;
 
 use super::aside::{LeftAside, Part as Kind, Why};
+use super::clause;
 use super::columns::Columns;
 use super::foreign;
-use super::grid::{Grid, View};
+use super::grid::{Grid, ROWS, View};
 use super::heading::{Heading, What};
 use super::heard;
 use super::json;
@@ -238,7 +239,7 @@ fn titled(region: &Region<'_>, table: &mut Table) {
         let heading = Heading::parse(text);
         heading.turns() && !(heading.has(Atom::Cor) && heading.turned_by().iter().all(|atom| *atom == Atom::Derived))
     };
-    let turned = |text: &str| match title::frame_rate(text) {
+    let turned = |text: &str| match clause::frame_rate(text) {
         Some(_) => turns(&text.replace("rate", "")),
         None => turns(text),
     };
@@ -256,7 +257,7 @@ fn titled(region: &Region<'_>, table: &mut Table) {
         let clauses = said.split([',', ';', '(']).flat_map(|part| part.split(". "));
         speaks(said) || clauses.filter(|clause| !clause.contains(|c: char| c.is_ascii_digit())).any(speaks)
     };
-    let comment = || region.view.grid.comments().take(said::ROWS).find(|(_, text)| whole(text));
+    let comment = || region.view.grid.comments().take(ROWS).find(|(_, text)| whole(text));
     let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
     table.doubts.extend(title.or_else(comment));
 }

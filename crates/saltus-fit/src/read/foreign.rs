@@ -4,7 +4,8 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use super::workbook::{Content, MANY, Part, TABLES};
+use super::grid::MANY;
+use super::workbook::{Content, Part, TABLES};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to

@@ -9,10 +9,10 @@ pub(super) use blocks::bulleted;
 use values::{LIST, listed_numbers, listed_values, named_list};
 
 use super::cell::{self, Cell};
-use super::columns::LEVEL;
+use super::clause;
 use super::heading::Heading;
 use super::phrases::Phrase;
-use super::title;
+use super::sequence::LEVEL;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::ordinal;
@@ -32,7 +32,7 @@ pub(super) fn table(text: &str) -> Option<String> {
 /// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
     // The only line that tells where the ball was dropped from.
-    let mut drops = text.lines().filter(|line| title::drop(line).is_some());
+    let mut drops = text.lines().filter(|line| clause::drop(line).is_some());
     let drop = drops.next().filter(|_| drops.next().is_none()).map(remarked);
     // Lengths by themselves are of bounces below a line that names these, or below the height of
     // release where most fall; there they are of trials where they do not.
@@ -70,13 +70,13 @@ fn listed(text: &str) -> Option<String> {
         let parted =
             line.split_once("<-").or(line.split_once(": ")).or(line.split_once('=')).or_else(dash).or_else(arrow);
         let dropped = || {
-            let height = drop.filter(|of| *of == line).and_then(title::drop)?.metres();
+            let height = drop.filter(|of| *of == line).and_then(clause::drop)?.metres();
             Some((true, format!("drop height\t{height} m")))
         };
         // A line that tells where the ball was dropped from names no column.
         let found = parted.or_else(|| measured(line).filter(|_| dropped().is_none()));
         let Some((name, values)) = found else {
-            let other = || prose(line) || of_others(line) || title::frame_rate(line).is_some();
+            let other = || prose(line) || of_others(line) || clause::frame_rate(line).is_some();
             return dropped().or_else(|| other().then(|| (false, format!("#{line}"))));
         };
         let number = |value: &String| matches!(cell::read(value, false), Cell::Number(_));

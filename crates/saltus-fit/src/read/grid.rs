@@ -7,12 +7,17 @@ use saltus_bounce::units::Quantity;
 
 use super::Metadata;
 use super::cell::{self, Cell};
-use super::title;
+use super::clause;
 use crate::error::{Place, TableError};
 
 /// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
 /// hundred megabytes.
 pub(super) const CELLS: usize = 1 << 22;
+/// More rows than these are not looked through for words, nor comments.
+pub(super) const ROWS: usize = 200;
+/// Nobody hands in so many columns, sheets or files of an archive, nor a reading of so many
+/// characters.
+pub(super) const MANY: usize = 1000;
 
 /// A text of cells.
 pub(super) struct Grid<'a> {
@@ -228,7 +233,7 @@ impl<'a> Grid<'a> {
         for (n, line) in self.text.lines().enumerate() {
             let Some(comment) = line.strip_prefix('#') else { continue };
             let Some((key, value)) = comment.split_once(':') else {
-                found.frame_rate = found.frame_rate.or(title::frame_rate(comment));
+                found.frame_rate = found.frame_rate.or(clause::frame_rate(comment));
                 continue;
             };
             let value = value.trim();
@@ -256,7 +261,7 @@ impl<'a> Grid<'a> {
                 "sigma height" | "height error" => (&mut found.sigma_height, Quantity::Length),
                 "sigma time" | "time error" => (&mut found.sigma_time, Quantity::Time),
                 _ => {
-                    found.frame_rate = found.frame_rate.or(title::frame_rate(comment));
+                    found.frame_rate = found.frame_rate.or(clause::frame_rate(comment));
                     continue;
                 }
             };

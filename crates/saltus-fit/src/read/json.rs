@@ -6,8 +6,9 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::grid::MANY;
 use super::heading::{Heading, Meaning};
-use super::workbook::{Content, MANY, Part, TABLES};
+use super::workbook::{Content, Part, TABLES};
 
 /// A longer text is none of records; a value of it takes some ten times its length, bytes.
 const LONGEST: usize = 16 << 20;

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 
 use super::aside::Why;
 use super::cell::Cell;
-use super::columns::{Column, Columns, Kind, LEVEL};
+use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::region::Region;
 use super::rows::{Row, Rows};
+use super::sequence::LEVEL;
 use super::vocabulary::Atom;
 use super::words::split;
 use crate::error::TableError;

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::ReadOptions;
 use super::aside::Why;
 use super::cell::{Cell, clock};
-use super::columns::{Columns, Kind, LEVEL};
+use super::columns::{Columns, Kind, level};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
@@ -14,7 +14,6 @@ use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
 use crate::finding::Note;
-use crate::statistics::median;
 
 impl Columns {
     /// `Drop` is the height of release beside trials; beside readings that say what they are it may
@@ -381,23 +380,4 @@ impl Columns {
             }
         }
     }
-}
-
-/// Whether heights side by side are nearly as high as one another, and well below the release:
-/// repeats, and not bounces.
-pub(super) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
-    let number = |row: usize, column: usize| match region.view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
-    let ratios = |pairs: &[(usize, usize)]| {
-        let all = region
-            .rows
-            .iter()
-            .flat_map(|&row| pairs.iter().filter_map(move |&(a, b)| Some(number(row, b)? / number(row, a)?)));
-        median(&mut all.collect::<Vec<f64>>())
-    };
-    let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
-    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
-    below && ratios(&later).is_some_and(|later| later > LEVEL)
 }

@@ -6,7 +6,7 @@ use saltus_bounce::units::Quantity;
 use super::ReadOptions;
 use super::cell::Cell;
 use super::columns::{Column, Columns, Kind as Of};
-use super::grid::shown;
+use super::grid::{ROWS, shown};
 use super::heading::{At, Heading, Role, Value, What};
 use super::phrases::Phrase;
 use super::region::Region;
@@ -16,9 +16,6 @@ use super::words::{Kind, Word, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::statistics::median;
-
-/// More rows than these are not looked through for words, nor comments.
-pub(super) const ROWS: usize = 200;
 
 /// Whether a text says that something bounces, or is dropped.
 fn says(text: &str) -> bool {

@@ -11,6 +11,7 @@ use std::panic::{UnwindSafe, catch_unwind};
 use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError};
 use zip::ZipArchive;
 
+use super::grid::MANY;
 use super::old_workbook;
 use crate::error::TableError;
 
@@ -20,9 +21,7 @@ const UNPACKED: u64 = 128 << 20;
 const TEXT: usize = 64 << 20;
 /// Tables of a page of the web, or of a text of JSON, that are read.
 pub(super) const TABLES: usize = 100;
-/// Nobody hands in so many columns, sheets or files of an archive, nor a reading of so many
-/// characters.
-pub(super) const MANY: usize = 1000;
+
 /// How much of another reader's message is shown, in characters.
 const SHOWN: usize = 200;
 

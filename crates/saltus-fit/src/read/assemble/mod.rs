@@ -170,7 +170,7 @@ fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &Read
 fn touched(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<(usize, usize)> {
     let named = columns.one(&Kind::Event)?;
     let (column, _, _) = columns.values().find(|(_, _, v)| v.what == What::Height && v.position)?;
-    let contact = |row: &&Row| super::rows::event(region.cell(row.at, named)) == Some(Event::Contact);
+    let contact = |row: &&Row| super::named::event(region.cell(row.at, named)) == Some(Event::Contact);
     let mut contacts = rows.rows.iter().filter(contact).filter(|row| region.view.is_number(row.at, column));
     let first = contacts.next()?;
     contacts.all(|row| region.cell(row.at, column) == region.cell(first.at, column)).then_some((first.at, column))

@@ -1,19 +1,16 @@
 //! Columns that stand for others where nothing else is read: energies for heights, the speeds or
 //! energies of one side of the impacts for those of the row, samples of a sound for times.
 
-use super::{Columns, Kind, LEVEL};
+use super::{Columns, Kind};
 use crate::finding::Note;
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Heading, Role, What};
+use crate::read::heading::{At, Role, What};
 use crate::read::region::Region;
+use crate::read::sequence::{LEVEL, of_samples};
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
-
-/// Numbers of samples rise by more than this from contact to contact, where trials are counted by
-/// ones: at 8000 a second, the slowest that sounds are recorded at, it is an eightieth of a second.
-const SAMPLES: f64 = 100.0;
 
 impl Columns {
     /// Energies are read as the heights that a ball has them at, where a table has no other
@@ -149,25 +146,4 @@ impl Columns {
         });
         !time.heading.has(Atom::Impact) && (time.heading.of_tops() || counted || both)
     }
-}
-
-/// Whether a column is of samples of a sound, by its heading and its cells.
-pub(in crate::read) fn of_samples<'a>(heading: &Heading, cells: impl Iterator<Item = &'a str>) -> bool {
-    let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
-    heading.counts_samples() && if between { many(cells) } else { leap(cells) }
-}
-
-/// Whether cells hold whole numbers that are many, as those of the samples of a flight are.
-fn many<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
-    let many = |cell: &str| cell.parse().is_ok_and(|value: f64| value.fract() == 0.0 && value > SAMPLES);
-    let mut cells = cells.filter(|cell| !cell.is_empty()).peekable();
-    cells.peek().is_some() && cells.all(many)
-}
-
-/// Whether cells hold whole numbers that rise as those of samples do.
-fn leap<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
-    let whole = |cell: &str| cell.parse().ok().filter(|value: &f64| value.fract() == 0.0);
-    let numbers: Vec<Option<f64>> = cells.filter(|cell| !cell.is_empty()).map(whole).collect();
-    let rises = |pair: &[Option<f64>]| matches!(pair, [Some(a), Some(b)] if b - a > SAMPLES);
-    numbers.len() > 1 && numbers.windows(2).all(rises)
 }

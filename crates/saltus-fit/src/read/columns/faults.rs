@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Column, Columns, Kind};
+use super::{Column, Columns, Kind, level};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::read::Event;
@@ -10,9 +10,8 @@ use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::{Cell, read};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Heading, Meaning, Role, Value, What};
+use crate::read::named::event;
 use crate::read::region::Region;
-use crate::read::roles::level;
-use crate::read::rows::event;
 use crate::read::units::Dimension;
 use crate::read::vocabulary::{Atom, folded, nearest};
 

@@ -7,17 +7,16 @@ mod frames;
 mod pairs;
 mod shares;
 
-pub(super) use energies::of_samples;
-pub(super) use shares::LEVEL;
+pub(super) use shares::level;
 use shares::of_hundredths;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::{Cell, dated};
+use super::clause;
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::region::Region;
-use super::title;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
@@ -168,7 +167,7 @@ impl Columns {
     }
 
     fn push(&mut self, mut heading: Heading) {
-        if title::names_rate(&heading.text) {
+        if clause::names_rate(&heading.text) {
             (heading.unknown, heading.meaning) = (Vec::new(), Meaning::Aside(Why::Other));
         }
         for (written, meant) in &heading.misspelt {

@@ -8,8 +8,8 @@ use crate::read::aside::Why;
 use crate::read::cell::{Cell, respelt};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
+use crate::read::named::{OFF, between, bounce};
 use crate::read::region::Region;
-use crate::read::rows::{OFF, between, bounce};
 use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::Atom;
 

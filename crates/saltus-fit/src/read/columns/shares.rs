@@ -7,12 +7,10 @@ use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Of, Role, Value, What};
 use crate::read::region::Region;
+use crate::read::sequence::LEVEL;
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
-
-/// A ball that keeps more of its height at every bounce does not differ from one that is dropped
-/// again and again.
-pub(in crate::read) const LEVEL: f64 = 0.95;
+use crate::statistics::median;
 
 /// Parts of the height of release fall by about the first of them from bounce to bounce, where
 /// those of the height before stay: so much of it is left to a COR that changes.
@@ -112,4 +110,23 @@ impl Columns {
         let cell = |row: &usize| matches!(region.view.read(*row, index), Cell::Number(m) if percent(m.unit));
         percent(self.columns[index].heading.unit) || region.rows.iter().any(cell)
     }
+}
+
+/// Whether heights side by side are nearly as high as one another, and well below the release:
+/// repeats, and not bounces.
+pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
+    let number = |row: usize, column: usize| match region.view.read(row, column) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let ratios = |pairs: &[(usize, usize)]| {
+        let all = region
+            .rows
+            .iter()
+            .flat_map(|&row| pairs.iter().filter_map(move |&(a, b)| Some(number(row, b)? / number(row, a)?)));
+        median(&mut all.collect::<Vec<f64>>())
+    };
+    let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
+    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
+    below && ratios(&later).is_some_and(|later| later > LEVEL)
 }

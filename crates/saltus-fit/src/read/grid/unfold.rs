@@ -3,9 +3,8 @@
 use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
 use super::super::phrases::Phrase;
-use super::super::said::ROWS;
 use super::super::units::{Dimension, Unit, names_unit};
-use super::Grid;
+use super::{Grid, ROWS};
 
 /// What stands between readings of one cell, words beside these; blanks last, since units stand
 /// behind them.

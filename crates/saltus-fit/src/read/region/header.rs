@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::super::cell::Cell;
-use super::super::columns::{LEVEL, of_samples};
 use super::super::grid::View;
 use super::super::heading::{Heading, Meaning, What};
 use super::super::phrases::Phrase;
+use super::super::sequence::{LEVEL, of_samples};
 use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::meanings;
 

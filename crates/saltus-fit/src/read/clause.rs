@@ -1,0 +1,257 @@
+//! What a clause of text states: a frame rate, the height of release, the unit and the error of all
+//! readings, a length.
+
+use super::cell::{self, Cell};
+use super::heading::{At, DropHeight, Heading, Role, rate, released};
+use super::named::names_floor;
+use super::phrases::Phrase;
+use super::units::{Dimension, Unit};
+use super::vocabulary::{Atom, folded};
+use super::words::{Kind, Word, split};
+use crate::quantity::Ball;
+
+/// The number that a text ends in, and the text before it.
+fn last_number(text: &str) -> Option<(f64, &str)> {
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',');
+    let before = text.trim_end_matches(digits);
+    let value: f64 = text[before.len()..].replace(',', ".").parse().ok()?;
+    (value.is_finite() && value > 0.0).then_some((value, before.trim_end_matches([' ', ':', '='])))
+}
+
+/// `240 fps`, `Frame rate: 240`, `44.1 kHz`, 1/s.
+pub(super) fn frame_rate(text: &str) -> Option<f64> {
+    let named = || {
+        let text = folded(text);
+        let (value, before) = last_number(text.trim_end())?;
+        Phrase::Rate.is(before).then_some(value)
+    };
+    rate(text).map(|(value, _)| value).or_else(named)
+}
+
+/// Whether a heading names a rate of frames or samples, `fps`, `Frame rate (Hz)`.
+pub(super) fn names_rate(name: &str) -> bool {
+    let name = folded(name);
+    let bare = name.split(['(', '[', '/']).next().unwrap_or_default().replace('_', " ");
+    Phrase::Rate.is(bare.trim().trim_end_matches(" hz"))
+}
+
+/// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
+/// clause that states it every word up to the number has to be understood.
+pub(super) fn drop(text: &str) -> Option<DropHeight> {
+    // `our ball (dropped from 1 m)`.
+    clauses(text).chain(bracketed(text)).find_map(|clause| {
+        let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
+        let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
+        let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
+        if let Some((height, before, after)) = released(clause) {
+            // The sign that stands for it: `Fallhöhe h0 = 1 m`.
+            let named = before.trim_end_matches([' ', '=', ':', '(']);
+            let sign = ["h0", "h_0", "h₀"].iter().find_map(|sign| named.strip_suffix(sign));
+            let (before, after) = (split(sign.unwrap_or(named)), split(after));
+            let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
+            // What is dropped from a height is dropped from it, wherever it falls.
+            // A ball `from 1 m` was dropped from there.
+            let of_drop = |w: &Word| w.is(Atom::Release) || w.is(Atom::Label) && after.is_empty();
+            let said = before.iter().any(of_drop) && before.iter().any(of_height);
+            let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
+            // Whoever dropped it, and whatever for: `we let the ball fall from 1 m`.
+            let from = before.iter().rposition(|w| w.is(Atom::Release)).map(|at| &before[at..]);
+            // No ball is so large: `una pallina da 1 metro` was dropped from there.
+            let beyond = Ball::ALL.iter().all(|ball| ball.diameter() < height.metres());
+            let told = whole
+                && from.is_some_and(|words| words.len() > 1 && words.iter().all(plain))
+                && before.last().is_some_and(|w| {
+                    Phrase::From.is(&folded(&w.text)) || w.is(Atom::Filler) && beyond && after.is_empty()
+                })
+                && !before.iter().any(turns);
+            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told;
+            return fits.then_some(height);
+        }
+        let (value, before) = last_number(clause.trim_end())?;
+        let heading = Heading::parse(before);
+        let unit = heading.unit.filter(|unit| unit.dimension == Dimension::Length && !unit.unscaled())?;
+        (heading.unknown.is_empty() && heading.has(Atom::Release) && !heading.turns()).then(|| DropHeight {
+            text: clause.trim().to_owned(),
+            value,
+            unit,
+        })
+    })
+}
+
+/// The parts of a sentence; a comma within a number parts none.
+pub(super) fn clauses(text: &str) -> impl Iterator<Item = &str> {
+    text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "))
+}
+
+/// What stands in brackets, a clause of its own.
+fn bracketed(text: &str) -> Option<&str> {
+    text.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside)
+}
+
+/// The unit that a clause states of all readings, whatever the others say; what stands behind a
+/// colon, or in brackets, is a clause too: `Results: heights in cm`, `three runs (all cm)`.
+pub(super) fn of_clauses(text: &str) -> Option<Unit> {
+    let named = |clause: &str| {
+        let behind = || clause.split_once(':').map(|(_, behind)| behind).filter(|behind| !behind.trim().is_empty());
+        unit(clause).or_else(|| of_all(clause)).or_else(|| behind().and_then(|behind| unit(behind).or(of_all(behind))))
+    };
+    // In brackets words that say nothing need no `in`.
+    let plain = |word: &Word| matches!(word.kind, Kind::Known([Atom::Filler, ..]));
+    let inside = |text: &str| {
+        let (name, unit) = text.trim().rsplit_once(' ')?;
+        let unit = Unit::parse(unit).filter(|unit| !unit.unscaled())?;
+        split(name).iter().all(plain).then_some(unit)
+    };
+    let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)));
+    unit(text).or_else(|| clauses(text).find_map(named)).or_else(of_brackets)
+}
+
+/// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.
+/// Every word has to be understood.
+pub(super) fn error(text: &str) -> Option<(f64, Dimension)> {
+    let (name, size) = text.split_once([':', '=', '±'])?;
+    let size = size.trim().trim_start_matches(['±', '+', '/', '-', ' ']);
+    let Cell::Number(measured) = cell::read(size, false) else { return None };
+    let (heading, unit) = (Heading::parse(name), measured.unit.filter(|unit| !unit.unscaled())?);
+    let stated = heading.has(Atom::Error) || text.contains('±');
+    let alike = match unit.dimension {
+        Dimension::Length => !heading.has(Atom::Time) && !heading.has(Atom::Interval),
+        Dimension::Time => !heading.has(Atom::Height) && !heading.has(Atom::Distance),
+        _ => false,
+    };
+    let fits = stated && alike && heading.unknown.is_empty() && !heading.turns() && measured.value > 0.0;
+    fits.then(|| (unit.si(measured.value), unit.dimension))
+}
+
+/// `All heights in cm`: the unit of what names none. Every word has to be understood, and nothing
+/// is counted.
+fn unit(text: &str) -> Option<Unit> {
+    let heading = Heading::parse(text);
+    let value = heading.value().filter(|_| heading.unknown.is_empty() && !heading.has(Atom::Release))?;
+    let unit = heading.unit.filter(|unit| value.what.dimension() == Some(unit.dimension) && !unit.unscaled());
+    let counted = text.contains(|c: char| c.is_ascii_digit());
+    let several = heading.text.trim().contains(' ') && value.at == At::Row && value.role == Role::Reading;
+    unit.filter(|_| several && !counted)
+}
+
+/// `all in cm`, `here are the numbers (cm)`: the unit that a clause of no other words states.
+fn of_all(clause: &str) -> Option<Unit> {
+    let clause = clause.trim().trim_end_matches([':', '.']);
+    let bare = clause.trim_matches(['(', ')', '.']);
+    let bracketed = clause.ends_with(')') && !clause.starts_with('(');
+    let (name, unit) = bare.rsplit_once([' ', '('])?;
+    let unit = Unit::parse(unit.trim_matches(['(', ')'])).filter(|unit| !unit.unscaled())?;
+    let plain = |word: &Word| match word.kind {
+        Kind::Known(atoms) => atoms
+            .iter()
+            .all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number)),
+        _ => false,
+    };
+    let words = split(name);
+    if bracketed && words.len() > 1 && words.iter().all(plain) {
+        return Some(unit);
+    }
+    let last = words.last().is_some_and(|word| Phrase::In.is(&folded(&word.text)));
+    (last && words.len() > 1 && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
+}
+
+/// Whether a text states a length and speaks of heights, places or the floor: `the floor is at the
+/// 12 cm mark`.
+pub(super) fn states_length(text: &str) -> bool {
+    let words: Vec<&str> =
+        text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';', ':', '='])).collect();
+    let length = |unit: Option<Unit>| unit.is_some_and(|u| u.dimension == Dimension::Length && !u.unscaled());
+    let measured = |text: &str| matches!(cell::read(text, false), Cell::Number(m) if length(m.unit));
+    let stated = words.iter().any(|word| measured(word))
+        || words.windows(2).any(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()) && measured(&pair.join(" ")));
+    let of_heights = split(text)
+        .iter()
+        .any(|w| [Atom::Height, Atom::Position, Atom::Distance, Atom::Release].iter().any(|atom| w.is(*atom)));
+    stated && (of_heights || names_floor(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn titles_state_rates_and_heights() {
+        for (text, fps, height) in [
+            ("Filmed at 240 fps", Some(240.0), None),
+            ("Frame rate: 59.94", Some(59.94), None),
+            ("Video mit 120 Bilder/s", Some(120.0), None),
+            ("Drop height: 100 cm", None, Some(1.0)),
+            ("Drop height (cm) 150", None, Some(1.5)),
+            ("Fallhöhe = 1,2 m", None, Some(1.2)),
+            ("Ball dropped from 2 m", None, Some(2.0)),
+            ("Experiment 3, Table 2", None, None),
+            ("The ball was released 5 cm from the edge", None, None),
+            ("Expected drop height: 1 m", None, None),
+            ("Mass (g) 58", None, None),
+            ("TP n°4 : rebonds ; hauteur initiale h0 = 1,50 m", None, Some(1.5)),
+            ("Test of batch 3, drop height 305 mm onto a steel block", None, Some(0.305)),
+            ("By group 4 on 3 May, dropped from 1.20 m onto the gym floor", None, Some(1.2)),
+            ("Predicted for a ball dropped from 1.20 m", None, None),
+            ("Bonjour, voici la balle (lâchée de 1,20 m)", None, Some(1.2)),
+            ("abbiamo lasciato cadere la pallina da 1 metro.", None, Some(1.0)),
+            ("Zorb and I dropped the ball from 1.5 m", None, Some(1.5)),
+            ("Zorb dropped the ball beside a 2 m rule", None, None),
+            ("Zorb dropped a ball of 5 cm", None, None),
+            ("Zorb dropped the wobble from 2 m", None, None),
+        ] {
+            assert_eq!((frame_rate(text), drop(text).map(|drop| drop.metres())), (fps, height), "{text}");
+        }
+    }
+
+    #[test]
+    fn titles_state_units_and_errors() {
+        for (text, of_time, metres) in [
+            ("All heights in cm", None, Some(0.01)),
+            ("Heights in m", None, Some(1.0)),
+            ("Times in ms", Some(0.001), None),
+            ("Alle Höhen in cm", None, Some(0.01)),
+            ("Height of the wobble in m", None, None),
+            ("They wobbled all in m", None, None),
+            ("Drop height in cm", None, None),
+            ("Ball diameter in cm", None, None),
+            ("Bounce 1 in cm", None, None),
+        ] {
+            let found = unit(text).map(|unit| (unit.dimension, unit.si(1.0)));
+            let expected = of_time.map(|s| (Dimension::Time, s)).or(metres.map(|m| (Dimension::Length, m)));
+            assert_eq!(found, expected, "{text}");
+        }
+        for (text, metres) in [
+            ("all in cm", Some(0.01)),
+            ("here are the numbers (cm):", Some(0.01)),
+            ("ball (cm)", None),
+            ("the wobbles (cm)", None),
+            ("drop (cm)", None),
+        ] {
+            assert_eq!(of_all(text).map(|unit| unit.si(1.0)), metres, "{text}");
+        }
+        for (text, expected) in [
+            ("Uncertainty in heights: ±1 cm", Some((0.01, Dimension::Length))),
+            ("Heights ± 5 mm", Some((0.005, Dimension::Length))),
+            ("Error of times = 0.01 s", Some((0.01, Dimension::Time))),
+            ("Uncertainty in heights: 0.01 s", None),
+            ("Diameter: 6.7 cm", None),
+            ("Heights were wobbly: ± 1 cm", None),
+        ] {
+            assert_eq!(error(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_length_that_is_said_of_heights_is_not_passed_over() {
+        for (text, states) in [
+            ("Heights measured to the top of the ball (diameter 6.7 cm)", true),
+            ("The floor is at the 12 cm mark of the tape", true),
+            ("Distance from the ceiling; floor is at 240cm", true),
+            ("Tennis ball, diameter 6.7 cm, mass 58 g", false),
+            ("Table 3: bounce heights of 2 balls", false),
+            ("Bounce heights, class 7b", false),
+        ] {
+            assert_eq!(states_length(text), states, "{text}");
+        }
+    }
+}
