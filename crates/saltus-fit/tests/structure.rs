@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// From what everything rests on to what rests on everything. A file uses its own stage and those
 /// before it.
 const STAGES: [&[&str]; 11] = [
-    &["word", "statistics", "error", "quantity", "orientation", "finding"],
+    &["elementary", "word", "statistics", "error", "quantity", "orientation", "finding"],
     &["sound"],
     &["read"],
     &["evidence"],

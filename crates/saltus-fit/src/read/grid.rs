@@ -13,8 +13,6 @@ use crate::error::{Place, TableError};
 /// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
 /// hundred megabytes.
 pub(super) const CELLS: usize = 1 << 22;
-/// More rows than these are not looked through for words, nor comments.
-pub(super) const ROWS: usize = 200;
 /// Nobody hands in so many columns, sheets or files of an archive, nor a reading of so many
 /// characters.
 pub(super) const MANY: usize = 1000;

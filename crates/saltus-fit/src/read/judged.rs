@@ -4,10 +4,9 @@
 use std::collections::HashSet;
 
 use super::columns::{Column, Columns, Kind};
-use super::grid::ROWS;
 use super::phrases::Phrase;
 use super::region::Region;
-use super::vocabulary::{Atom, folded, footnotes, meanings};
+use super::vocabulary::{Atom, ROWS, folded, footnotes, meanings};
 use super::words::{Kind as WordKind, split};
 
 /// What a cell answers.

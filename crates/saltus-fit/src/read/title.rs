@@ -3,11 +3,11 @@
 
 use super::cell::Cell;
 use super::clause::{clauses, drop, error, frame_rate, names_rate, of_clauses, states_length};
-use super::grid::{ROWS, shown};
+use super::grid::shown;
 use super::heading::{DropHeight, Heading};
 use super::region::Region;
 use super::units::{Dimension, Unit};
-use super::vocabulary::folded;
+use super::vocabulary::{ROWS, folded};
 
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -196,6 +196,9 @@ pub(super) fn nearest(word: &str) -> Option<&'static str> {
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
 
+/// More rows than these are not looked through for words, nor comments.
+pub(super) const ROWS: usize = 200;
+
 /// Words of fewer letters may well be others.
 const MISSPELT: usize = 6;
 

@@ -4,7 +4,8 @@ use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit, names_unit};
-use super::{Grid, ROWS};
+use super::super::vocabulary::ROWS;
+use super::Grid;
 
 /// What stands between readings of one cell, words beside these; blanks last, since units stand
 /// behind them.
