@@ -331,6 +331,14 @@ impl View<'_> {
         cell::read(self.cell(row, column), self.grid.thousands())
     }
 
+    /// The number that a cell holds, in its own unit.
+    pub(super) fn number(&self, row: usize, column: usize) -> Option<f64> {
+        match self.read(row, column) {
+            Cell::Number(measured) => Some(measured.value),
+            _ => None,
+        }
+    }
+
     /// Whether a cell holds a number, a stopwatch's time, or what is meant as one.
     pub(super) fn is_number(&self, row: usize, column: usize) -> bool {
         matches!(self.read(row, column), Cell::Number(_) | Cell::Wrong(_))

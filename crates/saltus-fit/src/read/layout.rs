@@ -212,10 +212,7 @@ pub(super) fn layout(
 /// high as it was before, one of the two columns is something else.
 fn before_the_release(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let first = rows.rows.first().filter(|row| row.bounce == Some(0))?;
-    let number = |n: usize| match region.view.read(first.at, n) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
+    let number = |n: usize| region.view.number(first.at, n);
     let (before, column, _) = columns.values().find(|(n, _, v)| v.at == At::Release && number(*n).is_some())?;
     let loses = |n: usize| number(n) < number(before);
     let (_, height, _) = columns.values().find(|(n, _, v)| (v.what, v.at) == (What::Height, At::Row) && !loses(*n))?;
@@ -331,10 +328,7 @@ fn one_release(region: &Region<'_>, columns: &Columns, rows: &Rows, tracks: &[Tr
 
 /// Whether no height is above the one in the row before.
 fn falling_throughout(region: &Region<'_>, rows: &Rows, track: &Track) -> bool {
-    let number = |row: &Row| match region.view.read(row.at, track.height?) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
+    let number = |row: &Row| region.view.number(row.at, track.height?);
     let heights: Vec<f64> = rows.rows.iter().filter_map(number).collect();
     heights.windows(2).all(|pair| pair[1] <= pair[0])
 }

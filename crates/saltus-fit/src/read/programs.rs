@@ -130,15 +130,14 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
 /// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
 /// stand at the contacts.
 fn labels(view: View<'_>) -> Option<Region<'_>> {
-    let number = |row: usize, column: usize| match view.read(row, column) {
-        Cell::Number(measured) => Some(measured.value),
-        _ => None,
-    };
     let label = |row: usize| {
         let text = view.cell(row, 2);
         view.width(row) == 3
             && (text.is_empty() || text.starts_with(char::is_alphabetic))
-            && number(row, 0).zip(number(row, 1)).is_some_and(|(start, end)| start <= end && end - start < LABEL)
+            && view
+                .number(row, 0)
+                .zip(view.number(row, 1))
+                .is_some_and(|(start, end)| start <= end && end - start < LABEL)
     };
     let rows = view.rows();
     (view.grid.delimiter == b'\t' && rows > 2 && (0..rows).all(label)).then(|| {

@@ -64,6 +64,11 @@ impl<'a> Region<'a> {
         self.view.cell(row, column)
     }
 
+    /// The numbers of a column in the rows that hold readings, each in its own unit.
+    pub(super) fn numbers(&self, column: usize) -> impl Iterator<Item = f64> {
+        self.rows.iter().filter_map(move |&row| self.view.number(row, column))
+    }
+
     /// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them
     /// left out.
     pub(super) fn counts(&self, column: usize) -> bool {

@@ -109,11 +109,7 @@ impl Columns {
 
     /// Whether the numbers of a column rise from row to row.
     fn add_up(&self, region: &Region<'_>, index: usize) -> bool {
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(m) => Some(m.value),
-            _ => None,
-        };
-        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        let numbers: Vec<f64> = region.numbers(index).collect();
         numbers.len() > 1 && numbers.windows(2).all(|pair| pair[1] > pair[0])
     }
 
@@ -314,10 +310,7 @@ impl Columns {
             .map(|(n, _, _)| n)
             .collect();
         for index in between {
-            let number = |row: &usize| match region.view.read(*row, index) {
-                Cell::Number(m) => Some(m.value),
-                _ => clock(region.cell(*row, index)),
-            };
+            let number = |row: &usize| region.view.number(*row, index).or_else(|| clock(region.cell(*row, index)));
             let times: Vec<f64> = region.rows.iter().filter_map(number).collect();
             if times.len() > 2
                 && times.windows(2).all(|pair| pair[1] > pair[0])

@@ -168,16 +168,13 @@ fn sums(region: &Region<'_>, columns: &Columns, row: usize, above: &[Row]) -> bo
     if above.len() < 2 || above.iter().any(|r| region.cell(r.at, key).is_empty()) {
         return false;
     }
-    let number = |row: usize, column: usize| match region.view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
     let mean = |column: usize| {
-        let all: Vec<f64> = above.iter().filter_map(|r| number(r.at, column)).collect();
+        let all: Vec<f64> = above.iter().filter_map(|r| region.view.number(r.at, column)).collect();
         #[allow(clippy::cast_precision_loss)] // rows of a table
         (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
     };
-    let pairs: Vec<(f64, f64)> = columns.values().filter_map(|(n, _, _)| Some((number(row, n)?, mean(n)?))).collect();
+    let pairs: Vec<(f64, f64)> =
+        columns.values().filter_map(|(n, _, _)| Some((region.view.number(row, n)?, mean(n)?))).collect();
     !pairs.is_empty() && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * b.abs())
 }
 

@@ -115,11 +115,7 @@ impl Columns {
     /// The unit of times that bear none, where only one of seconds and milliseconds makes them last
     /// as long as a ball bounces. A COR from times needs none.
     fn by_size(&mut self, region: &Region<'_>, index: usize) -> Option<Unit> {
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(m) => Some(m.value),
-            _ => None,
-        };
-        let numbers: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        let numbers: Vec<f64> = region.numbers(index).collect();
         if numbers.len() < 3 {
             return None;
         }
@@ -186,11 +182,7 @@ impl Columns {
     fn of_the_drop(&self, region: &Region<'_>, index: usize, dimension: Dimension) -> Option<Unit> {
         let drop = self.columns[index].value()?.drop.as_ref().or(region.drop.as_ref());
         let drop = drop.filter(|drop| drop.unit.dimension == dimension)?;
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(m) => Some(m.value),
-            _ => None,
-        };
-        let most = region.rows.iter().filter_map(number).fold(0.0, f64::max);
+        let most = region.numbers(index).fold(0.0, f64::max);
         (NEAR * drop.value..=drop.value).contains(&most).then_some(drop.unit)
     }
 
@@ -205,13 +197,7 @@ impl Columns {
         if units.iter().any(|(_, other)| *other != unit) || unit.unscaled() {
             return None;
         }
-        let most = |column: usize| {
-            let number = |row: &usize| match region.view.read(*row, column) {
-                Cell::Number(m) => Some(m.value),
-                _ => None,
-            };
-            region.rows.iter().filter_map(number).fold(0.0, f64::max)
-        };
+        let most = |column: usize| region.numbers(column).fold(0.0, f64::max);
         let (own, other) = (most(index), most(from));
         let sane = own > 0.0 && (NEAR * other..=other / NEAR).contains(&own);
         let release = self.columns[from].value().is_some_and(|v| v.at == At::Release);

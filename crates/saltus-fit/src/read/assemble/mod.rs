@@ -7,7 +7,6 @@ mod stated;
 use std::collections::{HashMap, HashSet};
 
 use super::aside::{LeftAside, Part, Why};
-use super::cell::Cell;
 use super::columns::{Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, What};
@@ -149,10 +148,7 @@ fn same(cell: &str, value: &str) -> bool {
 fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &ReadOptions) -> Result<(), TableError> {
     let touched = rows.floor.or_else(|| touched(region, columns, rows).filter(|_| options.zero.is_none()));
     let Some((row, column)) = touched else { return Ok(()) };
-    let number = |row: usize| match region.view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
+    let number = |row: usize| region.view.number(row, column);
     let (Some(zero), Some(first)) = (number(row), rows.rows.iter().find_map(|r| number(r.at))) else {
         return Err(region.view.error(row, column, "the floor is no number").help("write what the scale reads there"));
     };

@@ -46,11 +46,7 @@ impl Columns {
     /// Hundredths of the energy that are lost at every bounce: of the height before, unless they
     /// add up from bounce to bounce.
     fn lost_each(&mut self, region: &Region<'_>, index: usize) {
-        let number = |row: &usize| match region.view.read(*row, index) {
-            Cell::Number(m) => Some(m.value),
-            _ => None,
-        };
-        let lost: Vec<f64> = region.rows.iter().filter_map(number).collect();
+        let lost: Vec<f64> = region.numbers(index).collect();
         let parts = lost.iter().all(|lost| (0.0..100.0).contains(lost));
         let add_up = lost.len() > 1 && lost.windows(2).all(|pair| pair[0] < LEVEL * pair[1]);
         if parts && !add_up {

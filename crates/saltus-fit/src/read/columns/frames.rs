@@ -7,7 +7,6 @@ use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::ReadOptions;
 use crate::read::aside::Why;
-use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{Role, What};
 use crate::read::region::Region;
@@ -29,11 +28,7 @@ impl Columns {
         let bare = |n: usize| self.unit_of(region, n).or(region.units.1).is_none_or(Unit::unscaled);
         // A film that shows no bounce lacks more than its rate.
         let turns = |n: usize| {
-            let number = |&row: &usize| match region.view.read(row, n) {
-                Cell::Number(m) => Some(m.value),
-                _ => None,
-            };
-            let places: Vec<f64> = region.rows.iter().filter_map(number).collect();
+            let places: Vec<f64> = region.numbers(n).collect();
             let moves = |by: Ordering| places.windows(2).any(|w| w[1].partial_cmp(&w[0]) == Some(by));
             moves(Ordering::Less) && moves(Ordering::Greater)
         };

@@ -12,7 +12,7 @@ use shares::of_hundredths;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
-use super::cell::{Cell, dated};
+use super::cell::dated;
 use super::clause;
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
@@ -445,11 +445,7 @@ impl Columns {
 
 /// Whether all numbers of a column are the same, there being several.
 fn constant(region: &Region<'_>, column: usize) -> bool {
-    let number = |row: &usize| match region.view.read(*row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
-    let mut numbers = region.rows.iter().filter_map(number);
+    let mut numbers = region.numbers(column);
     let first = numbers.next();
     let mut rest = numbers.peekable();
     rest.peek().is_some() && rest.all(|n| Some(n) == first)

@@ -67,13 +67,7 @@ impl Columns {
         }
         let percent = self.is_percent(region, index);
         let whole = if percent { 100.0 } else { 1.0 };
-        let numbers = |index: usize| -> Vec<f64> {
-            let number = |row: &usize| match region.view.read(*row, index) {
-                Cell::Number(measured) => Some(measured.value),
-                _ => None,
-            };
-            region.rows.iter().filter_map(number).collect()
-        };
+        let numbers = |index: usize| region.numbers(index).collect::<Vec<f64>>();
         let of = self.columns[index].heading.share;
         let part = |n: &usize| {
             let numbers = numbers(*n);
@@ -115,15 +109,10 @@ impl Columns {
 /// Whether heights side by side are nearly as high as one another, and well below the release:
 /// repeats, and not bounces.
 pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
-    let number = |row: usize, column: usize| match region.view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
     let ratios = |pairs: &[(usize, usize)]| {
-        let all = region
-            .rows
-            .iter()
-            .flat_map(|&row| pairs.iter().filter_map(move |&(a, b)| Some(number(row, b)? / number(row, a)?)));
+        let all = region.rows.iter().flat_map(|&row| {
+            pairs.iter().filter_map(move |&(a, b)| Some(region.view.number(row, b)? / region.view.number(row, a)?))
+        });
         median(&mut all.collect::<Vec<f64>>())
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();

@@ -168,12 +168,10 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
 /// Whether numbers fall from column to column in every row that has any, each to less than `LEVEL`
 /// of the one before: bounces one after the other, and no repeats.
 fn falling(view: View<'_>, rows: Range<usize>, first: usize, count: usize) -> bool {
-    let number = |row: usize, column: usize| match view.read(row, column) {
-        Cell::Number(m) => Some(m.value),
-        _ => None,
-    };
     let mut pairs = rows
-        .flat_map(|row| (first + 1..first + count).filter_map(move |c| number(row, c - 1).zip(number(row, c))))
+        .flat_map(|row| {
+            (first + 1..first + count).filter_map(move |c| view.number(row, c - 1).zip(view.number(row, c)))
+        })
         .peekable();
     pairs.peek().is_some() && pairs.all(|(before, after)| after < LEVEL * before)
 }
