@@ -1,5 +1,6 @@
 //! From a table to a report: the stages in order.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use crate::compare::{self, Wanted};
@@ -273,9 +274,8 @@ impl Fit {
             let fit = if named.air_shows(table, ball)? { named.drag(ball.drag()) } else { named };
             return fit.run_with(table, progress);
         }
-        let table = &*table.sized(self.known(table).gravity.value);
-        let known = self.known(table);
-        let table = &*table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
+        let (table, known) = self.scaled(table);
+        let table = &*table;
         let mut evidence = self.evidence(table, &known)?;
         if let Some(drag) = self.drag.filter(|drag| *drag > 0.0) {
             evidence = verdict::in_a_vacuum(table, evidence, (&known, drag))?;
@@ -298,9 +298,7 @@ impl Fit {
 
     /// Whether the readings of a ball that the table names are better explained with its air.
     fn air_shows(&self, table: &Table, ball: Ball) -> Result<bool, FitError> {
-        let table = &*table.sized(self.known(table).gravity.value);
-        let known = self.known(table);
-        let table = table.at_gravity(known.gravity.value, known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value));
+        let (table, known) = self.scaled(table);
         let evidence = self.evidence(&table, &known)?;
         verdict::air_shows(&table, &evidence, (&known, ball.drag()))
     }
@@ -312,6 +310,14 @@ impl Fit {
         }
         let ball = table.trials().first()?.ball?;
         table.trials().iter().all(|trial| trial.ball == Some(ball)).then_some(ball)
+    }
+
+    /// The table with what follows from the gravity that is known, and what is known of it.
+    fn scaled<'a>(&self, table: &'a Table) -> (Cow<'a, Table>, Known) {
+        let sized = table.sized(self.known(table).gravity.value);
+        let known = self.known(&sized);
+        let sigma_time = known.sigma_time.map_or(Contacts::ASSUMED, |s| s.value);
+        (Table::at_gravity(sized, known.gravity.value, sigma_time), known)
     }
 
     /// What is known before anything is fitted: gravity, and the errors of reading as far as

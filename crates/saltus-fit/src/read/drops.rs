@@ -32,11 +32,11 @@ impl Table {
     /// The rebound after the only flight, of time T, is g T²/8. From release at h to rest a ball
     /// takes T = t (1 + e)/(1 - e) with the time of fall t = √(2h/g), so that e = (T - t)/(T + t),
     /// and it rebounds to e² h. To contact n it takes t (1 + 2e + … + 2eⁿ⁻¹).
-    pub(crate) fn at_gravity(&self, g: f64, sigma: f64) -> Cow<'_, Self> {
-        if self.trials.iter().all(|trial| trial.timed.is_none()) {
-            return Cow::Borrowed(self);
+    pub(crate) fn at_gravity(table: Cow<'_, Self>, g: f64, sigma: f64) -> Cow<'_, Self> {
+        if table.trials.iter().all(|trial| trial.timed.is_none()) {
+            return table;
         }
-        let mut table = self.clone();
+        let mut table = table.into_owned();
         for trial in &mut table.trials {
             let Some(timed) = trial.timed.take() else { continue };
             let Some(drop) = trial.readings.iter().find(|r| r.event == Event::Release).and_then(|r| r.height) else {
