@@ -40,13 +40,13 @@ const KINDS: [Kind; 3] = [
     },
     Kind {
         title: "Counts",
-        text: "How often something is done at most, or looked at. More would cost time, fewer would leave more doubts.\n\n",
+        text: "How often something is done at most, or looked at. More would cost time, fewer would leave more\ndoubts.\n\n",
         most: usize::MAX,
         holds: Constant::is_count,
     },
     Kind {
         title: "Steps, methods, and what is derived",
-        text: "How long steps and pieces are, when the method changes, numbers of published methods and formats, and\nwhat is made of the thresholds above.\n\n",
+        text: "How long steps and pieces are, when the method changes, numbers of published methods and formats,\nand what is made of the thresholds above.\n\n",
         most: usize::MAX,
         holds: |_| true,
     },

@@ -1,7 +1,7 @@
 //! The COR from files.
 
 use saltus_bounce::units::Quantity;
-use saltus_fit::{Ball, Fit, ReadOptions, Report, Table};
+use saltus_fit::{Ball, Fit, ReadOptions, Report, Sound, Table};
 use saltus_plot::{PlotError, fit as pictures};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -154,16 +154,7 @@ impl Options {
             Some(other) => return Err(wrong("direction", format!("'{other}' is neither up nor down"))),
         }
         if let Some(text) = given(&self.listen) {
-            let time = |text: &str, none: f64| match given(text) {
-                None => Ok(none),
-                Some(text) => Quantity::Time.parse(text).map_err(|error| wrong("listen", error)),
-            };
-            let (from, to) = text.split_once("..").unwrap_or((text, text));
-            let part = time(from, 0.0)?..time(to, f64::INFINITY)?;
-            if part.start < 0.0 || part.is_empty() {
-                return Err(wrong("listen", format!("'{text}' is no part of a sound, such as 0.5s..4s")));
-            }
-            options = options.listen(part);
+            options = options.listen(Sound::stretch(text).map_err(|error| wrong("listen", error))?);
         }
         if let Some(drop) = amount("drop", &self.drop, Quantity::Length)? {
             options = options.drop_height(drop);

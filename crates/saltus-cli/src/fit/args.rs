@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args as ClapArgs;
 use saltus_bounce::units::Quantity;
-use saltus_fit::{CorModel, Loss};
+use saltus_fit::{CorModel, Loss, Sound};
 
-use crate::parse::{RATES, ReportFormat, number, positive, quantity};
+use crate::parse::{RATES, ReportFormat, number, positive};
 
 /// Headers of tables that are understood.
 const LAYOUTS: &str = "Layouts of tables, for example:
@@ -126,7 +126,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub(crate) header: Option<Vec<String>>,
     /// The part of a sound to listen to, such as `0.5s..4s`, `2s..` or `..4s`.
-    #[arg(long, value_name = "TIME..TIME", value_parser = stretch)]
+    #[arg(long, value_name = "TIME..TIME", value_parser = Sound::stretch)]
     pub(crate) listen: Option<Range<f64>>,
     /// How many frames were filmed in a second, where the table counts frames.
     #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
@@ -309,21 +309,5 @@ fn filter(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((column, value)) if !column.trim().is_empty() => Ok((column.trim().to_owned(), value.trim().to_owned())),
         _ => Err(format!("'{text}' is not of the form column=value")),
-    }
-}
-
-/// A stretch of time, either end of which may be left out.
-fn stretch(text: &str) -> Result<Range<f64>, String> {
-    let (from, to) =
-        text.split_once("..").ok_or_else(|| format!("'{text}' is no stretch of time, such as 0.5s..4s"))?;
-    let end =
-        |text: &str, open: f64| if text.trim().is_empty() { Ok(open) } else { quantity(Quantity::Time)(text.trim()) };
-    let (from, to) = (end(from, 0.0)?, end(to, f64::INFINITY)?);
-    if from >= 0.0 && from < to {
-        Ok(from..to)
-    } else {
-        Err(format!(
-            "'{text}' is no stretch of a recording: its end must come after its start, and that no sooner than 0 s"
-        ))
     }
 }

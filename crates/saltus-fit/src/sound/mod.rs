@@ -9,6 +9,8 @@ mod wave;
 use std::io::{Read, Seek};
 use std::ops::Range;
 
+use saltus_bounce::units::Quantity;
+
 use crate::error::TableError;
 pub(crate) use chain::SURE;
 use chain::{Chain, LIKELY, chains};
@@ -80,6 +82,34 @@ pub(crate) enum Unused {
 }
 
 impl Sound {
+    /// The part of a recording that a text names, in s: `0.5s..4s`, `2s..`, `..4s`.
+    ///
+    /// ```
+    /// use saltus_fit::Sound;
+    /// assert_eq!(Sound::stretch("500ms..4s"), Ok(0.5..4.0));
+    /// assert_eq!(Sound::stretch("2s.."), Ok(2.0..f64::INFINITY));
+    /// assert!(Sound::stretch("4s..1s").is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// A sentence for a text that names none.
+    pub fn stretch(text: &str) -> Result<Range<f64>, String> {
+        let (from, to) =
+            text.split_once("..").ok_or_else(|| format!("'{text}' is no stretch of time, such as 0.5s..4s"))?;
+        let end = |text: &str, open: f64| match text.trim() {
+            "" => Ok(open),
+            text => Quantity::Time.parse(text).map_err(|error| error.to_string()),
+        };
+        let (from, to) = (end(from, 0.0)?, end(to, f64::INFINITY)?);
+        if from >= 0.0 && from < to {
+            Ok(from..to)
+        } else {
+            Err(format!(
+                "'{text}' is no stretch of a recording: its end must come after its start, and that no sooner than 0 s"
+            ))
+        }
+    }
+
     /// Listens to a `part` in s of a WAV file of 8 to 32 bits, integers or floats, of any rate from
     /// 4000 samples a second on and of any number of channels.
     ///
