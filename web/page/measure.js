@@ -117,29 +117,43 @@ function table() {
   });
 }
 
+/// Says that `size` bytes are more than are taken, if they are.
+function large(size) {
+  const megabytes = size / 1e6;
+  if (megabytes <= MOST) return false;
+  asked += 1;
+  fail({ message: say("failed.large", { size: Math.ceil(megabytes), most: MOST }) });
+  return true;
+}
+
+/// Shows files in place of those that there are, and fits them.
+function put(list) {
+  files = list;
+  table();
+  return fit();
+}
+
 /// Fits what was dropped, pasted or chosen.
 export async function take(list) {
-  if (list.length === 0) return;
-  const megabytes = list.reduce((sum, file) => sum + file.size, 0) / 1e6;
-  if (megabytes > MOST) {
-    asked += 1;
-    fail({ message: say("failed.large", { size: Math.ceil(megabytes), most: MOST }) });
-    return;
-  }
+  if (list.length === 0 || large(list.reduce((sum, file) => sum + file.size, 0))) return;
   const read = async (file) => heard({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+  let found;
   try {
-    files = await Promise.all(list.map(read));
+    found = await Promise.all(list.map(read));
   } catch {
     // What is dropped may be a folder, or be gone.
     asked += 1;
     fail({ message: say("failed.unread", { name: list.map(({ name }) => name).join(", ") }) });
     return;
   }
-  table();
-  await fit();
+  await put(found);
 }
 
-const of = (name, text) => take([new File([text], name)]);
+/// Text that is at hand is shown at once: what is typed or pasted next goes into its cells.
+async function of(name, text) {
+  const bytes = new TextEncoder().encode(text);
+  if (!large(bytes.length)) await put([{ name, bytes }]);
+}
 
 function csv() {
   if (files.length === 1 && textOf(files[0].bytes) !== undefined) return textOf(files[0].bytes);
