@@ -120,6 +120,20 @@ const H: [[f64; 8]; 3] = [
     ],
 ];
 
+/// Half way, what the stages add to the mean of both ends, and to the slope between them.
+const HALF_WAY: [[f64; 8]; 2] = half_way();
+
+const fn half_way() -> [[f64; 8]; 2] {
+    let mut rows = [[0.0; 8]; 2];
+    let mut k = 0;
+    while k < 8 {
+        rows[0][k] = 0.25 * (H[0][k] + 0.5 * (H[1][k] + 0.5 * H[2][k]));
+        rows[1][k] = 0.25 * (H[1][k] + H[2][k]);
+        k += 1;
+    }
+    rows
+}
+
 impl Stepper for Rodas5P {
     /// The stages, the slope at the start, and how far the dense output is off half way.
     type Stages<S: State> = ([S; 8], S, S);
@@ -232,7 +246,8 @@ impl Stepper for Rodas5P {
 /// The b₀, b₁, b₂ of the dense output.
 #[inline]
 fn inner<S: State>(x: &S, u: [&S; 8]) -> [S; 3] {
-    H.each_ref().map(|h| x.with(|i| weighted(h, u, i)))
+    let of_stages = |weights: &[f64; 8]| x.with(|i| weighted(weights, u, i));
+    [of_stages(&H[0]), of_stages(&H[1]), of_stages(&H[2])]
 }
 
 /// How far the dense output is off half way in the directions in which the flow is stiff.
@@ -249,10 +264,10 @@ fn off_half_way<S: State>(
     (x, end): (&S, &S),
     u: &[S; 8],
 ) -> S {
-    let [b0, b1, b2] = inner(x, u.each_ref());
-    let bent = |i: usize| b0.get(i) + 0.5 * (b1.get(i) + 0.5 * b2.get(i));
-    let f = flow(t + 0.5 * h, &x.with(|i| 0.5 * (x.get(i) + end.get(i) + 0.5 * bent(i))));
-    let slope = |i: usize| end.get(i) - x.get(i) + 0.25 * (b1.get(i) + b2.get(i));
+    let of_stages = |weights: &[f64; 8]| x.with(|i| weighted(weights, u.each_ref(), i));
+    let (bent, turned) = (of_stages(&HALF_WAY[0]), of_stages(&HALF_WAY[1]));
+    let f = flow(t + 0.5 * h, &x.with(|i| 0.5 * (x.get(i) + end.get(i)) + bent.get(i)));
+    let slope = |i: usize| end.get(i) - x.get(i) + turned.get(i);
     let off = system.solve(&x.with(|i| GAMMA * (h * f.get(i) - slope(i))));
     let slow = system.solve(&off);
     x.with(|i| off.get(i) - slow.get(i))

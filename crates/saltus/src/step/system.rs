@@ -110,12 +110,18 @@ impl System<'_> {
     pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
         let n = self.order.len();
         for i in 0..n {
-            let known: f64 = (0..i).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
-            self.work[i] = right.get(self.order[i]) - known;
+            let mut value = right.get(self.order[i]);
+            for j in 0..i {
+                value -= self.matrix[i * n + j] * self.work[j];
+            }
+            self.work[i] = value;
         }
         for i in (0..n).rev() {
-            let known: f64 = (i + 1..n).map(|j| self.matrix[i * n + j] * self.work[j]).sum();
-            self.work[i] = (self.work[i] - known) * self.matrix[i * n + i];
+            let mut value = self.work[i];
+            for j in i + 1..n {
+                value -= self.matrix[i * n + j] * self.work[j];
+            }
+            self.work[i] = value * self.matrix[i * n + i];
         }
         right.with(|i| self.work[i])
     }
