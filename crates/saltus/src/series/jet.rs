@@ -33,7 +33,8 @@ pub struct Jet<'a>(Number<'a>);
 #[derive(Clone, Copy)]
 enum Number<'a> {
     Constant(f64),
-    Placed(&'a Pass<'a>, usize),
+    /// At a place on the tape, in its row.
+    Placed(&'a Pass<'a>, usize, &'a Row),
 }
 
 use Number::{Constant, Placed};
@@ -41,7 +42,7 @@ use Number::{Constant, Placed};
 impl<'a> Jet<'a> {
     #[inline(always)]
     pub(super) fn at(pass: &'a Pass<'a>, place: usize) -> Self {
-        Self(Placed(pass, place))
+        Self(Placed(pass, place, pass.row(place)))
     }
 
     /// The number itself, without its series: what a flow may decide by.
@@ -56,7 +57,7 @@ impl<'a> Jet<'a> {
         match self.0 {
             Constant(a) if k == 0 => a,
             Constant(_) => 0.0,
-            Placed(pass, place) => pass.row(place)[k % MOST_COEFFICIENTS].get(),
+            Placed(_, _, row) => row[k % MOST_COEFFICIENTS].get(),
         }
     }
 
@@ -67,7 +68,7 @@ impl<'a> Jet<'a> {
     pub(super) fn function(self, of: impl FnOnce(f64) -> f64, next: impl FnOnce(usize, &Row, &Row) -> f64) -> Self {
         match self.0 {
             Constant(a) => of(a).into(),
-            Placed(pass, place) => Self::next(pass, |k, c| next(k, pass.row(place), c)),
+            Placed(pass, _, a) => Self::next(pass, |k, c| next(k, a, c)),
         }
     }
 
@@ -83,9 +84,9 @@ impl<'a> Jet<'a> {
     ) -> Self {
         match (self.0, other.0) {
             (Constant(a), Constant(b)) => of(a, b).into(),
-            (Constant(a), Placed(pass, b)) => Self::next(pass, |k, c| left(k, a, pass.row(b), c)),
-            (Placed(pass, a), Constant(b)) => Self::next(pass, |k, _| right(k, pass.row(a), b)),
-            (Placed(pass, a), Placed(_, b)) => Self::next(pass, |k, c| both(k, pass.row(a), pass.row(b), c)),
+            (Constant(a), Placed(pass, _, b)) => Self::next(pass, |k, c| left(k, a, b, c)),
+            (Placed(pass, _, a), Constant(b)) => Self::next(pass, |k, _| right(k, a, b)),
+            (Placed(pass, _, a), Placed(_, _, b)) => Self::next(pass, |k, c| both(k, a, b, c)),
         }
     }
 
@@ -96,16 +97,15 @@ impl<'a> Jet<'a> {
         pass.next.set(place + 1);
         let row = pass.row(place);
         row[k].set(coefficient(k, row));
-        Self::at(pass, place)
+        Self(Placed(pass, place, row))
     }
 
     /// |a|: a or -a, whichever is positive just after the present time. A step ends where it would be the other.
     #[inline]
     #[must_use]
     pub fn abs(self) -> Self {
-        let Placed(pass, place) = self.0 else { return self.value().abs().into() };
+        let Placed(pass, place, a) = self.0 else { return self.value().abs().into() };
         Self::next(pass, |k, c| {
-            let a = pass.row(place);
             // The first coefficient that is not zero decides.
             let leading = (0..k).find(|&j| a[j].get() != 0.0);
             let same = match leading {
@@ -121,9 +121,9 @@ impl<'a> Jet<'a> {
     /// theirs computed so far.
     #[inline]
     pub(super) fn together(self, other: Self, of: Self, next: impl FnOnce(usize, &Row, &Row, &Row) -> (f64, f64)) {
-        if let (Placed(pass, c), Placed(_, d), Placed(_, a)) = (self.0, other.0, of.0) {
-            let (k, c, d) = (pass.k % MOST_COEFFICIENTS, pass.row(c), pass.row(d));
-            let (first, second) = next(k, pass.row(a), c, d);
+        if let (Placed(pass, _, c), Placed(_, _, d), Placed(_, _, a)) = (self.0, other.0, of.0) {
+            let k = pass.k % MOST_COEFFICIENTS;
+            let (first, second) = next(k, a, c, d);
             c[k].set(first);
             d[k].set(second);
         }
@@ -232,7 +232,7 @@ impl Mul for Jet<'_> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        if let (Placed(_, a), Placed(_, b)) = (self.0, other.0)
+        if let (Placed(_, a, _), Placed(_, b, _)) = (self.0, other.0)
             && a == b
         {
             return self.square();

@@ -133,9 +133,9 @@ struct Pass<'a> {
     next: Cell<usize>,
 }
 
-impl Pass<'_> {
+impl<'a> Pass<'a> {
     #[inline]
-    fn row(&self, place: usize) -> &Row {
+    fn row(&self, place: usize) -> &'a Row {
         self.rows.get(place).unwrap_or(self.spare)
     }
 }
