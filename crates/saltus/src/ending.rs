@@ -47,8 +47,8 @@ impl Options {
     /// Whether the deadline has passed.
     #[inline]
     pub(crate) fn overdue<E>(&self) -> Option<Stop<E>> {
-        let (after, due) = (self.deadline?, self.due?);
-        (Instant::now() >= due).then_some(Stop::Deadline { after })
+        let due = self.due?;
+        (Instant::now() >= due).then(|| Stop::Deadline { after: self.deadline.unwrap_or_default() })
     }
 
     /// A run begins now, or goes on.

@@ -103,6 +103,13 @@ impl Span {
         self.end.since(self.now)
     }
 
+    /// The same as far as a stepper can go: an endless one ends near the end of numbers, where a
+    /// state at rest still stands and any other is infinite, which is an error.
+    #[inline]
+    pub(crate) fn in_numbers(self) -> Self {
+        Self { end: if self.end.seconds() < LAST { self.end } else { Time::new(LAST) }, ..self }
+    }
+
     /// How far past its end is still at it: what rounding has made of times counted from its start.
     #[inline]
     pub(crate) fn grace(&self) -> f64 {

@@ -244,9 +244,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.before = None;
                 self.closed(mode, x, formula, clock, observer)
             }
-            Solution::Series(flow) => self.by_series(mode, *x, flow, *clock, observer),
+            Solution::Series(flow) => self.by_series(mode, *x, flow, clock.in_numbers(), observer),
             // Nor is an exact solution cut in stops.
-            _ => self.stepped(mode, *x, *clock, true, observer),
+            _ => self.stepped(mode, *x, clock.in_numbers(), true, observer),
         };
         let end = end?;
         self.stayed_inside(mode, x, now, &end, observer)?;

@@ -20,7 +20,7 @@ use super::crossing::{OnStep, Range, Step};
 use super::exact::natural;
 use super::near::Near;
 use super::smooth::Arrival;
-use super::stepped::{SHORTEST, evened, remaining, wrong_dimension};
+use super::stepped::{SHORTEST, evened, wrong_dimension};
 use super::{Advance, ArcEnd};
 
 /// The lowest order.
@@ -60,11 +60,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut c = [x; MOST_COEFFICIENTS];
         self.tape.anew(None);
         loop {
-            let remaining = remaining(&clock);
+            let remaining = clock.remaining();
             if let Some(stop) = self.over(remaining) {
                 return self.ended(mode, stop, clock.now, x);
             }
-            let longest = remaining.min(self.options.longest_step).min(self.smooth.ahead(clock.now));
+            let to_stop = self.smooth.ahead(clock.now);
+            let longest = remaining.min(self.options.longest_step).min(to_stop);
             let wanted = longest.min(AS_LAST * self.memory.last_duration - clock.now.since(began));
             let Some(mut expansion) = self.expanded(mode, flow, clock.now, &x, order, &mut c)? else {
                 return self.stepped(mode, x, clock, first, observer);
@@ -102,7 +103,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 ));
             }
             let told = observer.piece(mode, &Piece::new(clock.now, h, unit, c));
-            let Arrival { time, at_stop } = self.arrival(&clock, h, remaining);
+            let Arrival { time, at_stop } = self.arrival(&clock, h, (remaining, to_stop));
             clock.now = time;
             if told.is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });

@@ -194,10 +194,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Where a step of `h` from the present time ends: at the end of the span, at a stop, or before
     /// both.
     #[inline]
-    pub(super) fn arrival(&self, clock: &Span, h: f64, remaining: f64) -> Arrival {
+    pub(super) fn arrival(&self, clock: &Span, h: f64, (remaining, to_stop): (f64, f64)) -> Arrival {
         if h >= remaining {
             Arrival { time: clock.end, at_stop: false }
-        } else if h >= self.smooth.ahead(clock.now) {
+        } else if h >= to_stop {
             Arrival { time: Time::new(self.smooth.stop), at_stop: true }
         } else {
             Arrival { time: clock.now.after(h), at_stop: false }

@@ -16,7 +16,7 @@ use crate::piece::{Piece, horner};
 use crate::poly::value_and_slope;
 use crate::state::State;
 use crate::step::{Stepper, Trial};
-use crate::time::{LAST, Span, Time, resolution};
+use crate::time::{Span, Time, resolution};
 
 use super::crossing::{OnStep, Range, Step, exceeds};
 use super::grazing::is_alike;
@@ -45,97 +45,93 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn stepped<O: Observer<A>>(
         &mut self,
         mode: A::Mode,
-        mut x: A::State,
+        start: A::State,
         mut clock: Span,
         mut first: bool,
         observer: &mut O,
     ) -> Result<ArcEnd<A>, Error> {
         self.stepper = self.stepper.adapted(self.memory.gait.stiff);
-        let mut slope = self.slope(mode, clock.now, &x)?;
+        let rate = self.slope(mode, clock.now, &start)?;
         let before = self.memory.before.take();
-        self.memory.kept = before.and_then(|(y, fell)| match (is_alike(&fell, &slope), is_alike(&y, &x)) {
+        self.memory.kept = before.and_then(|(y, fell)| match (is_alike(&fell, &rate), is_alike(&y, &start)) {
             (true, _) => Some(Kept::Slope),
             (false, true) => Some(Kept::State),
             (false, false) => None,
         });
-        if !slope.is_finite() {
-            let which = Some(not_finite(&slope));
-            return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &x, which));
+        if !rate.is_finite() {
+            let which = Some(not_finite(&rate));
+            return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &start, which));
         }
+        // Copies: what others refer to is kept in memory, and waited for at every step.
+        let (mut x, mut slope) = (start, rate);
         let unguarded = self.automaton.edges(mode).is_empty();
         let began = clock.now;
         loop {
-            let remaining = remaining(&clock);
+            let remaining = clock.remaining();
             if let Some(stop) = self.over(remaining) {
                 return self.ended(mode, stop, clock.now, x);
             }
-            let ahead = remaining.min(self.smooth.ahead(clock.now));
-            let (mut h, longest) = self.before_step(mode, clock.now, &x, &slope, ahead);
-            let mut trial;
-            loop {
-                let size = evened(h, longest);
-                trial = self.trial(mode, clock.now.seconds(), &x, &slope, size);
-                if self.is_accepted(mode, clock.now, (&x, &slope), (&mut h, size), &trial) {
-                    h = size;
-                    break;
-                }
-                if h <= SHORTEST * resolution(clock.now.seconds()) {
-                    return self.too_short(mode, clock.now, (&x, &slope), size, &trial);
-                }
-            }
-            let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, remaining);
+            let to_stop = self.smooth.ahead(clock.now);
+            let Some((h, trial)) = self.accepted(mode, clock.now, (&x, &slope), remaining.min(to_stop)) else {
+                return self.too_short(mode, clock.now, (&{ x }, &{ slope }));
+            };
+            let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, (remaining, to_stop));
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
-            let state = if clear && !observer.wants_pieces() {
+            if clear {
                 self.memory.walls.clear(); // clear of zero
-                trial.end
-            } else {
-                let dense = self.dense(mode, clock.now.seconds(), &x, h, &trial);
-                let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
-                if first && h > f64::EPSILON * clock.now.seconds().abs() && self.contradicted(mode, &x, &slope, step) {
-                    self.memory.stats.steps -= 1;
-                    self.memory.stats.rejected += 1;
-                    self.memory.step = Some(ROUGHLY * h); // far shorter, for a motion that is far slower
+                if !at_stop && !observer.wants_pieces() {
+                    (clock.now, x, first, slope) = (arrival, trial.end, false, trial.slope);
                     continue;
                 }
-                if first {
-                    self.find_staying(mode, step, &slope);
-                }
-                let limit = if h < remaining { h } else { h + clock.grace() };
-                let range = Range { limit, first, roughly: true };
-                let found = if clear {
-                    None
-                } else if limit > 2.0 * h {
-                    self.on_line(mode, (&slope, step), range, observer)?
-                } else {
-                    self.first_crossing(mode, step, range, Some(&mut *observer))?
-                };
-                if first && !self.memory.idle.is_empty() {
-                    let reached = found.as_ref().map_or(limit, |found| found.crossing.inside);
-                    if let Some(edge) = self.chatters(mode, step, reached) {
-                        return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
-                    }
-                }
-                if let Some(rough) = found {
-                    // The rest of the step was not used, and says nothing of the next.
-                    self.memory.cut(h.max(NEXT_ARC * (clock.now.since(began) + rough.crossing.root)));
-                    return self.closed_in(mode, (&x, &slope, step), (&rough, range), remaining, observer);
-                }
-                // Where guards were looked at, the state goes on from where they were asked last.
-                let state = if clear { trial.end } else { horner(step.c, 1.0) };
-                if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
-                    return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
-                }
-                state
+            }
+            let dense = self.dense(mode, clock.now.seconds(), &{ x }, h, &{ trial });
+            let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
+            if first
+                && h > f64::EPSILON * clock.now.seconds().abs()
+                && self.contradicted(mode, &{ x }, &{ slope }, step)
+            {
+                self.memory.stats.steps -= 1;
+                self.memory.stats.rejected += 1;
+                self.memory.step = Some(ROUGHLY * h); // far shorter, for a motion that is far slower
+                continue;
+            }
+            if first {
+                self.find_staying(mode, step, &{ slope });
+            }
+            let limit = if h < remaining { h } else { h + clock.grace() };
+            let range = Range { limit, first, roughly: true };
+            let found = if clear {
+                None
+            } else if limit > 2.0 * h {
+                self.on_line(mode, (&{ slope }, step), range, observer)?
+            } else {
+                self.first_crossing(mode, step, range, Some(&mut *observer))?
             };
-            (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
-            if at_stop {
-                if let Some(edge) = self.pass_stop(mode, clock.now, &x)? {
+            if first && !self.memory.idle.is_empty() {
+                let reached = found.as_ref().map_or(limit, |found| found.crossing.inside);
+                if let Some(edge) = self.chatters(mode, step, reached) {
                     return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
                 }
-                slope = self.slope(mode, clock.now, &x)?;
+            }
+            if let Some(rough) = found {
+                // The rest of the step was not used, and says nothing of the next.
+                self.memory.cut(h.max(NEXT_ARC * (clock.now.since(began) + rough.crossing.root)));
+                return self.closed_in(mode, (&{ x }, &{ slope }, step), (&rough, range), remaining, observer);
+            }
+            // Where guards were looked at, the state goes on from where they were asked last.
+            let state = if clear { trial.end } else { horner(step.c, 1.0) };
+            if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
+                return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
+            }
+            (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
+            if at_stop {
+                if let Some(edge) = self.pass_stop(mode, clock.now, &{ x })? {
+                    return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
+                }
+                slope = self.slope(mode, clock.now, &{ x })?;
             }
             if !self.memory.walls.is_empty() {
-                self.keep_staying(mode, clock.now, &x, h);
+                self.keep_staying(mode, clock.now, &{ x }, h);
             }
         }
     }
@@ -207,41 +203,53 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ArcEnd::after(Some(found.edge), told, close.time, close.state)
     }
 
-    /// The size to try for the next step, and the longest that it may have.
-    #[inline]
-    fn before_step(&mut self, mode: A::Mode, now: Time, x: &A::State, slope: &A::State, remaining: f64) -> (f64, f64) {
-        self.change_method();
-        let longest = remaining.min(self.options.longest_step);
-        let h = self.memory.step.unwrap_or_else(|| {
-            let (tolerance, order) = (self.options.tolerance, self.stepper.error_order());
-            first_step(|t, x| self.flow(mode, t, x), now.seconds(), x, slope, &tolerance, order, longest)
-        });
-        (h, longest)
-    }
-
-    /// Whether the error estimate accepts a `trial` of the size `h`, and from `wanted` the size of
-    /// the next one.
-    #[inline(always)]
-    fn is_accepted(
+    /// A step that the error estimate accepts, no longer than what is `ahead`, and its size; none
+    /// where that is as short as the spacing of time.
+    #[inline(always)] // else a trial would be moved, and waited for
+    fn accepted(
         &mut self,
         mode: A::Mode,
         now: Time,
         (x, slope): (&A::State, &A::State),
-        (wanted, h): (&mut f64, f64),
-        trial: &Trial<A::State, M::Stages<A::State>>,
-    ) -> bool {
-        let error = self.square_of_error(x, h, trial);
-        let (accepted, factor) = self.memory.controller.judge(error, h);
-        if accepted {
-            self.memory.stats.steps += 1;
-            self.memory.step = Some(if h < *wanted { (h * factor).max(*wanted) } else { h * factor });
-            self.notice_stiffness(mode, now.seconds(), x, h, trial, slope);
-        } else {
+        ahead: f64,
+    ) -> Option<SizedTrial<A, M>> {
+        self.change_method();
+        let longest = ahead.min(self.options.longest_step);
+        let tolerance = self.options.tolerance;
+        let mut wanted = match self.memory.step {
+            Some(h) => h,
+            None => {
+                let order = self.stepper.error_order();
+                first_step(
+                    |t, x| self.flow(mode, t, x),
+                    now.seconds(),
+                    &{ *x },
+                    &{ *slope },
+                    &tolerance,
+                    order,
+                    longest,
+                )
+            }
+        };
+        loop {
+            let h = evened(wanted, longest);
+            let trial = self.trial(mode, now.seconds(), x, slope, h);
+            let error = self.square_of_error(x, h, &trial);
+            let (accepted, factor) = self.memory.controller.judge(error, h);
+            if accepted {
+                self.memory.stats.steps += 1;
+                self.memory.step = Some(if h < wanted { (h * factor).max(wanted) } else { h * factor });
+                self.notice_stiffness(mode, now.seconds(), x, h, &trial, slope);
+                return Some((h, trial));
+            }
             self.memory.stats.rejected += 1;
             self.memory.gait.rejected();
-            *wanted = h * factor;
+            wanted = h * factor;
+            if wanted <= SHORTEST * resolution(now.seconds()) {
+                self.memory.step = Some(h);
+                return None;
+            }
         }
-        accepted
     }
 
     /// The square of the error of a `trial` of the size `h` from `x`, in what the tolerance allows;
@@ -257,16 +265,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// error.
     #[cold]
     #[inline(never)]
-    fn too_short(
-        &mut self,
-        mode: A::Mode,
-        now: Time,
-        (x, slope): (&A::State, &A::State),
-        h: f64,
-        trial: &Trial<A::State, M::Stages<A::State>>,
-    ) -> Result<ArcEnd<A>, Error> {
+    fn too_short(&mut self, mode: A::Mode, now: Time, (x, slope): (&A::State, &A::State)) -> Result<ArcEnd<A>, Error> {
         let place = Place::new(now.seconds(), mode, None::<A::Edge>, x);
-        if !self.square_of_error(x, h, trial).is_nan() {
+        let h = self.memory.step.unwrap_or_default();
+        let trial = self.retried(mode, now.seconds(), x, slope, h);
+        if !self.square_of_error(x, h, &trial).is_nan() {
             return Err(Error::new(ErrorKind::StepSize, place));
         }
         let which = Some(not_finite(&trial.slope)).filter(|which| !which.is_empty());
@@ -454,6 +457,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
+/// The size of a step, and what it is tried to lead to.
+type SizedTrial<A, M> = (f64, Trial<<A as Automaton>::State, <M as Stepper>::Stages<<A as Automaton>::State>>);
+
 type CloserOf<A, M> = Closer<<A as Automaton>::State, <M as Stepper>::Dense<<A as Automaton>::State>>;
 
 /// A step `h` that ends closer to a crossing, with x' there, and how far `ahead` that may be.
@@ -469,13 +475,6 @@ struct Closer<S, D> {
 #[inline(never)]
 fn slope_of<S: State>(c: &[S], scale: f64, s: f64) -> S {
     c[0].with(|i| value_and_slope(c, |c| c.get(i), s / scale).1 / scale)
-}
-
-/// What is left of a span: an endless one ends near the end of numbers, where a state at rest still
-/// stands and any other is infinite, which is an error.
-#[inline]
-pub(super) fn remaining(span: &Span) -> f64 {
-    span.end.since(span.now).min(LAST - span.now.seconds())
 }
 
 /// A step of `h`, with `longest` left to go: the last one is stretched or halved a little rather
