@@ -7,7 +7,7 @@
 //!
 //! What the solver does not say by itself is settled here: numbers are checked to be finite before
 //! and after; columns and right-hand side are scaled to norm one, since the solver's absolute gap
-//! accepts wrong answers to small problems; the rank is tested by singular values, since a
+//! accepts wrong answers to small problems; the rank is tested by the condition, since a
 //! rank-deficient problem is called solved too; only an accepted status, or optimality conditions
 //! that hold, complementarity included, count as solved; and the answer is compared with, and
 //! replaced by, that of a direct factorisation on the unknowns that are not at a bound, so its
@@ -87,9 +87,8 @@ fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], always: bool) 
         high: (0..n).map(|j| bounds[j].high * (column[j] / length)).collect(),
     };
     let free = scaled.direct(&vec![None; n]).ok_or(Failure::NotIdentified)?;
-    let within = (0..n).all(|j| scaled.low[j] < free[j] && free[j] < scaled.high[j]);
-    let (z, active) = if within && !always { (free, vec![None; n]) } else { scaled.bounded(&free)? };
-    let inverse = scaled.inverse(&active).ok_or(Failure::NotIdentified)?;
+    let within = (0..n).all(|j| scaled.low[j] < free.0[j] && free.0[j] < scaled.high[j]);
+    let ((z, inverse), active) = if within && !always { (free, vec![None; n]) } else { scaled.bounded(&free.0)? };
     let mut answer = DVector::from_fn(n, |j, _| z[j] * length / column[j]);
     for j in 0..n {
         // Snap: an unknown at a bound is on it, not 1e-10 beside it.
@@ -112,6 +111,9 @@ enum Side {
     High,
 }
 
+/// A minimum, and (XᵀX)⁻¹ there.
+type Direct = (DVector<f64>, DMatrix<f64>);
+
 /// The problem with columns and right-hand side of norm one.
 struct Scaled {
     x: DMatrix<f64>,
@@ -121,49 +123,40 @@ struct Scaled {
 }
 
 impl Scaled {
-    /// The minimum with some unknowns held at a bound, by singular values; `None` where the rest is
-    /// not determined.
-    fn direct(&self, held: &[Option<Side>]) -> Option<DVector<f64>> {
+    /// The minimum with some unknowns held at a bound, and (XᵀX)⁻¹ on the others, by X = Q R;
+    /// `None` where they are not determined.
+    ///
+    /// R takes sums, products and roots only, and so its bits are the same on every machine. Its
+    /// condition ‖R‖ ‖R⁻¹‖ in Frobenius' norm is that of singular values to a factor of n.
+    fn direct(&self, held: &[Option<Side>]) -> Option<Direct> {
         let n = self.x.ncols();
         let mut z = DVector::from_fn(n, |j, _| match held[j] {
             Some(Side::Low) => self.low[j],
             Some(Side::High) => self.high[j],
             None => 0.0,
         });
+        let mut inverse = DMatrix::zeros(n, n);
         let free: Vec<usize> = (0..n).filter(|&j| held[j].is_none()).collect();
         if free.is_empty() {
-            return Some(z);
+            return Some((z, inverse));
         }
-        let part = self.x.select_columns(&free);
-        let rest = &self.y - &self.x * &z;
-        let svd = part.try_svd(true, true, f64::EPSILON, 1000)?;
-        let (large, small) = (svd.singular_values.max(), svd.singular_values.min());
-        if small.is_nan() || small * CONDITION <= large {
+        let mut rest = &self.y - &self.x * &z;
+        let qr = self.x.select_columns(&free).qr();
+        qr.q_tr_mul(&mut rest);
+        let r = qr.unpack_r();
+        let found = r.solve_upper_triangular(&rest.rows(0, free.len()))?;
+        let back = r.solve_upper_triangular(&DMatrix::identity(free.len(), free.len()))?;
+        let condition = r.norm() * back.norm();
+        if condition.is_nan() || condition >= CONDITION {
             return None;
         }
-        let found = svd.solve(&rest, 0.0).ok()?;
-        for (k, &j) in free.iter().enumerate() {
-            z[j] = found[k];
-        }
-        Some(z)
-    }
-
-    /// (XᵀX)⁻¹ on the unknowns that are not held.
-    fn inverse(&self, held: &[Option<Side>]) -> Option<DMatrix<f64>> {
-        let n = self.x.ncols();
-        let free: Vec<usize> = (0..n).filter(|&j| held[j].is_none()).collect();
-        let mut inverse = DMatrix::zeros(n, n);
-        if free.is_empty() {
-            return Some(inverse);
-        }
-        let svd = self.x.select_columns(&free).try_svd(false, true, f64::EPSILON, 1000)?;
-        let v = svd.v_t?;
         for (a, &i) in free.iter().enumerate() {
+            z[i] = found[a];
             for (b, &j) in free.iter().enumerate() {
-                inverse[(i, j)] = (0..v.nrows()).map(|k| v[(k, a)] * v[(k, b)] / svd.singular_values[k].powi(2)).sum();
+                inverse[(i, j)] = back.row(a).dot(&back.row(b));
             }
         }
-        Some(inverse)
+        Some((z, inverse))
     }
 
     fn inside(&self, z: &DVector<f64>, slack: f64) -> bool {
@@ -177,7 +170,7 @@ impl Scaled {
     /// open; it is then mended bound by bound until the conditions of a minimum hold, which for a
     /// convex problem make it the only one. The two are compared by what they minimise, which is
     /// sharp where the unknowns are not.
-    fn bounded(&self, free: &DVector<f64>) -> Result<(DVector<f64>, Vec<Option<Side>>), Failure> {
+    fn bounded(&self, free: &DVector<f64>) -> Result<(Direct, Vec<Option<Side>>), Failure> {
         let reach = FAR * (1.0 + free.amax());
         let n = free.len();
         // Should the solver give up, the conditions of a minimum still decide alone.
@@ -186,12 +179,12 @@ impl Scaled {
             Err(_) => (None, vec![None; n]),
         };
         for _ in 0..10 + 4 * n {
-            let z = self.direct(&active).ok_or(Failure::NotIdentified)?;
-            let Some((j, side)) = self.violation(&z, &active) else {
-                let ours = self.squares(&z);
+            let found = self.direct(&active).ok_or(Failure::NotIdentified)?;
+            let Some((j, side)) = self.violation(&found.0, &active) else {
+                let ours = self.squares(&found.0);
                 let theirs = solver.as_ref().map_or(ours, |solver| self.squares(solver));
                 if (ours - theirs).abs() <= AGREE {
-                    return Ok((z, active));
+                    return Ok((found, active));
                 }
                 return Err(Failure::Solver(format!(
                     "solver and factorisation leave {theirs:.3e} and {ours:.3e} of 1"
