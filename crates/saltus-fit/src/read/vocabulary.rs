@@ -174,25 +174,30 @@ impl Atom {
     }
 }
 
+/// All words with their meanings, in the order of the file, which is taken apart once.
+fn words() -> impl Iterator<Item = (&'static str, &'static [Atom])> {
+    static ALL: OnceLock<Vec<(&'static str, Vec<Atom>)>> = OnceLock::new();
+    let parsed = || entries().map(|(word, names)| (word, names.filter_map(Atom::of).collect())).collect();
+    ALL.get_or_init(parsed).iter().map(|(word, atoms)| (*word, atoms.as_slice()))
+}
+
 /// The meanings of a word in lower case without accents; `None` if it is not known.
 pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
-    static ALL: OnceLock<HashMap<&'static str, Vec<Atom>>> = OnceLock::new();
-    let all = ALL.get_or_init(|| entries().map(|(word, names)| (word, names.filter_map(Atom::of).collect())).collect());
-    all.get(word).map(Vec::as_slice)
+    static ALL: OnceLock<HashMap<&'static str, &'static [Atom]>> = OnceLock::new();
+    ALL.get_or_init(|| words().collect()).get(word).copied()
 }
 
 /// The signs of notes below a table.
 pub(super) fn footnotes() -> impl Iterator<Item = char> {
-    let signs = entries().filter(|(_, names)| names.clone().eq(["footnote"]));
-    signs.filter_map(|(sign, _)| sign.chars().next())
+    words().filter(|(_, atoms)| *atoms == [Atom::Footnote]).filter_map(|(sign, _)| sign.chars().next())
 }
 
 /// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three
 /// letters.
 pub(super) fn nearest(word: &str) -> Option<&'static str> {
     let most = word.chars().count().min(LONGEST) / 3;
-    let says = |(_, names): &(&str, std::str::Split<'_, char>)| names.clone().any(|name| name != "filler");
-    let known = entries().filter(says).map(|(known, _)| (distance(word, known), known));
+    let says = |(_, atoms): &(&str, &[Atom])| atoms.iter().any(|atom| *atom != Atom::Filler);
+    let known = words().filter(says).map(|(known, _)| (distance(word, known), known));
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
 
@@ -214,21 +219,21 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
             c => c,
         };
         let spelt: String = word.chars().map(letter).collect();
-        let known = entries().map(|(known, _)| known).find(|known| *known == spelt)?;
-        return Some((known, meanings(known)?));
+        return words().find(|(known, _)| *known == spelt);
     }
     let letters = word.chars().count();
     if letters < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
-    let near = |known: &&str| {
+    let begins = word.chars().next();
+    let near = |(known, _): &(&str, &[Atom])| {
+        if known.chars().next() != begins {
+            return false;
+        }
         let long = known.chars().count();
-        long >= MISSPELT
-            && known.chars().next() == word.chars().next()
-            && letters.abs_diff(long) < 2
-            && slip(word, known)
+        long >= MISSPELT && letters.abs_diff(long) < 2 && slip(word, known)
     };
-    let mut found = entries().map(|(known, _)| known).filter(near).filter_map(|known| Some((known, meanings(known)?)));
+    let mut found = words().filter(near);
     let first = found.next()?;
     found.all(|(_, atoms)| atoms == first.1).then_some(first)
 }
@@ -243,10 +248,7 @@ pub(super) fn short_for(word: &str) -> Option<(&'static str, &'static [Atom])> {
     if word.chars().count() < SHORT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
-    let mut found = entries()
-        .map(|(known, _)| known)
-        .filter(|known| known.starts_with(word) || consonants(known).eq(word.chars()))
-        .filter_map(|k| Some((k, meanings(k)?)));
+    let mut found = words().filter(|(known, _)| known.starts_with(word) || consonants(known).eq(word.chars()));
     let first = found.next()?;
     let alike = |(_, atoms): (&str, &'static [Atom])| meaning(atoms).eq(meaning(first.1));
     (first.1.iter().all(|atom| atom.measures()) && found.all(alike)).then_some(first)
