@@ -43,7 +43,6 @@ function scenes() {
 /// What the modules import from parts.js.
 const parts = {
   WORDS: words,
-  WORKER: read("page/worker.js"),
   EXAMPLE: read("../examples/data/squash-on-cement.csv"),
   SCENES: scenes(),
 };
@@ -69,26 +68,29 @@ function joined(entry) {
     text.push(`const $${module} = (() => {\n${body}\nreturn { ${exported.join(", ")} };\n})();`);
   }
   add(entry);
-  // No text ends the script before its end.
-  return text.join("\n").replaceAll("</", "<\\/");
+  return whole(text.join("\n"));
 }
+
+/// No text ends the script before its end.
+const whole = (script) => script.replaceAll("</", "<\\/");
 
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll('"', "&quot;");
 
 const style = read("page/style.css");
+const begin = whole(`const WORKER = ${JSON.stringify(read("page/worker.js"))};\n${read("page/begin.js")}`);
 const script = joined("main");
 // Nothing is loaded from anywhere, nothing in a table runs, and nothing is sent.
 const policy = [
   "default-src 'none'",
-  `script-src ${hash(script)} 'wasm-unsafe-eval'`,
+  `script-src ${hash(begin)} ${hash(script)} 'wasm-unsafe-eval'`,
   "worker-src blob:",
   `style-src ${hash(style)}`,
   "img-src blob: data:",
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-const filled = { POLICY: policy, STYLE: style, SCRIPT: script, WASM: packed(readFileSync(wasm)) };
+const filled = { POLICY: policy, STYLE: style, BEGIN: begin, SCRIPT: script, WASM: packed(readFileSync(wasm)) };
 /// A word of the interface, which every language has to have.
 function word(key) {
   if (!(key in words)) throw new Error(`words/${language}.json has no "${key}"`);
@@ -97,7 +99,7 @@ function word(key) {
 for (const key of Object.keys(JSON.parse(read("words/en.json")))) word(key);
 const html = read("page.html")
   .replace(/\{\{([\w.]+)\}\}/g, (_, key) => escaped(word(key)))
-  .replace(/@(POLICY|STYLE|SCRIPT|WASM)@/g, (_, key) => filled[key]);
+  .replace(/@(POLICY|STYLE|BEGIN|SCRIPT|WASM)@/g, (_, key) => filled[key]);
 // The mark at the start says UTF-8 whatever a server says.
 writeFileSync(page, `\ufeff${html}`);
 console.log(`${page}: ${(statSync(page).size / 1e6).toFixed(2)} MB`);

@@ -1,29 +1,63 @@
-// Compiled bytes as text in a page: without notes for tools, packed, and seven bits to a character.
+// Compiled bytes as text in a page: without notes and names for tools, packed, and seven bits to a
+// character.
 import { gzipSync } from "node:zlib";
 
-/// Sections of a WebAssembly module that hold no part of the program have the number 0.
+/// Sections of a WebAssembly module that hold no part of the program have the number 0, that of the
+/// names by which it is called 7.
 const NOTES = 0;
+const NAMES = 7;
+/// What libraries name for tools that write bindings: thousands of names, which take longer to make
+/// than the program itself.
+const FOR_TOOLS = /^_/;
 /// Characters that a page may not hold as they are, or that do not survive: the end of text, ends
 /// of lines, and the start of a tag.
 const UNSAFE = new Set([0x00, 0x0a, 0x0d, 0x3c]);
-/// What is added to them; the lowest seven bits stay.
-const LIFT = 0x100;
+/// What is added to them; the lowest seven bits stay, and every character is one byte in memory.
+const LIFT = 0x80;
 
-/// The module without sections for tools.
+/// The number of a module at `at`, seven bits to a byte, and where it ends.
+function number(module, at) {
+  let [value, shift, byte] = [0, 0, 0];
+  do {
+    byte = module[at];
+    at += 1;
+    value += (byte & 0x7f) * 2 ** shift;
+    shift += 7;
+  } while (byte & 0x80);
+  return [value, at];
+}
+
+/// A number as a module has it.
+function numbered(value) {
+  const bytes = [];
+  for (; value > 0x7f; value >>= 7) bytes.push(0x80 | (value & 0x7f));
+  return Buffer.from([...bytes, value]);
+}
+
+/// The names of a section without those for tools.
+function called(section) {
+  const kept = [];
+  let [count, at] = number(section, 0);
+  for (; count > 0; count -= 1) {
+    const start = at;
+    const [length, name] = number(section, at);
+    // Behind the name its kind, a byte, and its number.
+    at = number(section, name + length + 1)[1];
+    if (!FOR_TOOLS.test(section.toString("utf8", name, name + length))) kept.push(section.subarray(start, at));
+  }
+  return Buffer.concat([numbered(kept.length), ...kept]);
+}
+
+/// The module without what is for tools.
 function bare(module) {
   const kept = [module.subarray(0, 8)];
   for (let at = 8; at < module.length; ) {
-    const start = at;
-    let [size, shift, byte] = [0, 0, 0];
-    at += 1;
-    do {
-      byte = module[at];
-      at += 1;
-      size += (byte & 0x7f) * 2 ** shift;
-      shift += 7;
-    } while (byte & 0x80);
-    at += size;
-    if (module[start] !== NOTES) kept.push(module.subarray(start, at));
+    const kind = module[at];
+    const [size, start] = number(module, at + 1);
+    at = start + size;
+    const section = module.subarray(start, at);
+    const content = kind === NAMES ? called(section) : section;
+    if (kind !== NOTES) kept.push(Buffer.from([kind]), numbered(content.length), content);
   }
   return Buffer.concat(kept);
 }

@@ -1,6 +1,5 @@
 // Questions to the Worker. It is ended when it breaks down or takes too long, and another started.
 
-import { WORKER } from "./parts.js";
 import { say } from "./elements.js";
 
 /// How long an answer may take, s.
@@ -16,10 +15,9 @@ let count = 0;
 let changed = () => {};
 let quiet;
 
-function start() {
-  const source = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
-  worker = new Worker(source);
-  URL.revokeObjectURL(source);
+/// Takes a Worker of `begin.js`, which nobody has asked yet.
+function start(one) {
+  worker = one;
   worker.onmessage = ({ data }) => {
     // What does not start would not start again.
     if (data.broken !== undefined) failed("start");
@@ -55,7 +53,7 @@ function failed(kind, values) {
 export function end(kind, values = {}) {
   worker.onmessage = null;
   worker.terminate();
-  start();
+  start(begun());
   failed(kind, values);
 }
 
@@ -91,4 +89,4 @@ export function ask(json, parts = []) {
 /// Calls `listener` with whether answers are long in coming.
 export const watch = (listener) => { changed = listener; };
 
-start();
+start(first);

@@ -21,7 +21,8 @@ function unpacked(text) {
 }
 
 async function open(text) {
-  const stream = new Blob([unpacked(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const bytes = new ReadableStream({ start: (queue) => (queue.enqueue(unpacked(text)), queue.close()) });
+  const stream = bytes.pipeThrough(new DecompressionStream("gzip"));
   const headers = { "content-type": "application/wasm" };
   const module = await WebAssembly.compileStreaming(new Response(stream, { headers }));
   const imports = {};

@@ -29,6 +29,8 @@ test("it opens with a fit, is small, and asks nobody", async () => {
       ]));
       assert.equal(await page.textContent("#verdict"), "Doubtful");
       assert.match(await page.textContent("#headline"), /between 0\.41 and 0\.75/);
+      // Names for tools, of which libraries have thousands, are made for nobody.
+      assert.deepEqual((await page.workers()[0].evaluate(async () => Object.keys(await ready))).sort(), ["answer", "memory", "place", "room"]);
     });
   }
   const [fitted, asked, read] = opened.sort(([a], [b]) => a - b)[0].map(Math.round);
