@@ -5,6 +5,7 @@ import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
+import { kept, planted } from "./altered.mjs";
 import { alike, fitted, give, html, on, root, saved, start, stop, told } from "./browser.mjs";
 
 before(() => start());
@@ -264,4 +265,30 @@ test("files at random do no harm", () =>
       assert.ok(n % 8 >= 2 || !["Trusted", "Doubtful"].includes(verdict), `${seed.name}: ${await page.textContent("#headline")}`);
     }
     console.log(`${count} files at random:`, verdicts);
+  }));
+
+test("a table written in another way has no other COR", () =>
+  on(async (page) => {
+    const count = Number(process.env.ALTERED_TABLES ?? 60);
+    const next = random(36);
+    const whole = (most) => Math.floor(next() * most);
+    const seeds = planted(join(root, "crates/saltus-fit/tests")).filter((table) => kept(table, whole) !== undefined);
+    assert.ok(seeds.length > 10, `${seeds.length} tables`);
+    const [verdicts, wrong] = [{}, []];
+    for (let n = 0; n < count; n += 1) {
+      const seed = seeds[whole(seeds.length)];
+      const { ways, text } = kept(seed, whole);
+      await give(page, [{ name: seed.name, bytes: Buffer.from(text) }]);
+      const verdict = await page.textContent("#verdict");
+      verdicts[verdict] = (verdicts[verdict] ?? 0) + 1;
+      if (verdict !== "Trusted") continue;
+      const { cor } = JSON.parse((await saved(page, "#save-json")).bytes);
+      // Of groups each has its own.
+      if (cor === null || cor === undefined) continue;
+      const off = Math.abs(cor.value - seed.truth);
+      if (off > Math.max(3 * cor.standard_error, seed.near)) wrong.push(`${seed.name} by ${ways}: ${cor.value}, not ${seed.truth}`);
+    }
+    console.log(`${count} tables written in another way:`, verdicts);
+    assert.deepEqual(wrong, []);
+    assert.ok(verdicts.Trusted > count / 2);
   }));
