@@ -1,9 +1,44 @@
 //! Runs the code in the project's pages as documentation tests, and keeps what several tests share;
 //! those are in this package's `tests` folder, fuzz targets in `fuzz`.
 
+pub mod any_scene;
+pub mod random_scene;
+pub mod reference;
+pub mod scene_laws;
+pub mod sturm;
+pub mod watched;
+
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus/README.md")]
+pub struct Engine;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-derive/README.md")]
+pub struct Derive;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-bounce/README.md")]
+pub struct Bounce;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-scene/README.md")]
+pub struct Scene;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-fit/README.md")]
+pub struct Fit;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-plot/README.md")]
+pub struct Plot;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../crates/saltus-motion/README.md")]
+pub struct KeyFrames;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/program/model.md")]
@@ -24,13 +59,6 @@ pub struct Sensitivities;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/use/simulating.md")]
 pub struct Simulating;
-
-pub mod any_scene;
-pub mod random_scene;
-pub mod reference;
-pub mod scene_laws;
-pub mod sturm;
-pub mod watched;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/trust/physics.md")]
