@@ -56,8 +56,8 @@ impl Drop {
         self.height * self.cor.value().powf(2.0 * f64::from(n))
     }
 
-    /// When the bounces have died out, t₀ (1 + e)/(1 - e), in s; `None` for e = 1, which never
-    /// rests.
+    /// The time when the bounces have died out, t₀ (1 + e)/(1 - e), in s; `None` for e = 1, which
+    /// never rests.
     #[must_use]
     pub fn rest_time(&self) -> Option<f64> {
         let e = self.cor.value();

@@ -47,9 +47,9 @@ pub struct Friction {
 /// Velocity and spin just after an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rebound<V, S> {
-    /// Of the centre, in m/s, relative to the wall.
+    /// The velocity of the centre, in m/s, relative to the wall.
     pub velocity: V,
-    /// In rad/s.
+    /// The spin in rad/s.
     pub spin: S,
 }
 
@@ -110,8 +110,8 @@ impl Friction {
         }
         let gain = approach + restitution.rebound(approach);
         let tangent = Vector2::new(normal[1], -normal[0]);
-        // The point of contact lies at -R n: seen with the wall below, its velocity along the wall
-        // is v + R ω.
+        // The point of contact lies at -R n: with the wall below, its velocity along the wall is v
+        // + R ω.
         let slip = velocity.dot(&tangent) + ball.radius() * spin;
         let push = -self.push(ball, slip.abs(), gain) * slip.signum();
         Rebound {

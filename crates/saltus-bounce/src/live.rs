@@ -44,11 +44,11 @@ pub struct Live<'a, A: Automaton, M> {
     from: CheckpointOf<A>,
     mode: A::Mode,
     state: A::State,
-    /// What follows the present arc, if it is known.
+    /// The start of the next arc, if the end of the present one has been computed.
     next: Option<CheckpointOf<A>>,
     jumps: [Option<JumpOf<A>>; 2],
     pieces: Vec<Kept<A::State>>,
-    /// How many pieces of the present arc came before those kept.
+    /// The number of pieces of the present arc before those kept.
     before: usize,
     /// Whether only the limit of bounces is still to come, too soon for the state to move.
     stands: bool,
@@ -57,9 +57,9 @@ pub struct Live<'a, A: Automaton, M> {
     most_jumps: usize,
 }
 
-/// What a frame shows.
+/// The state at a frame.
 pub struct Frame<A: Automaton> {
-    /// In s.
+    /// The time in s.
     pub t: f64,
     /// The mode.
     pub mode: A::Mode,
@@ -170,8 +170,8 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         self.now.seconds()
     }
 
-    /// Advances by `dt` ≥ 0 in s, at most to the end of the span; each jump on the way is told to
-    /// `event`, in order.
+    /// Advances by `dt` ≥ 0 in s, at most to the end of the span, and calls `event` with each jump
+    /// on the way, in order.
     ///
     /// # Errors
     /// See [`Error`].

@@ -60,7 +60,7 @@ pub(crate) fn ratio(f: impl Fn(f64) -> f64, z: f64) -> f64 {
 /// The root of an increasing function with its slope, between `low` (where it is not positive) and
 /// `high`, from `guess`.
 ///
-/// Newton's steps where they stay inside what is known of the root, halving where they do not; ends
+/// Newton's steps where they stay inside the bracket of the root, halving where they do not; ends
 /// when the bracket no longer shrinks.
 pub(crate) fn increasing_root(f: impl Fn(f64) -> (f64, f64), mut low: f64, mut high: f64, guess: f64) -> f64 {
     let mut x = guess.clamp(low, high);

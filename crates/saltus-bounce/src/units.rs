@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// What a quantity measures; decides which units are understood and which SI unit the number comes
-/// back in.
+/// The kind of a quantity; decides which units are understood and in which SI unit the number comes
+/// back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
@@ -22,9 +22,9 @@ pub enum Quantity {
     Angle,
     /// A spin, in radians per second.
     AngularSpeed,
-    /// How often something happens, in hertz.
+    /// A frequency, in hertz.
     Frequency,
-    /// How fast something decays, per second.
+    /// A rate of decay, per second.
     Rate,
     /// Something per length, in 1/m: a curvature, or drag per distance.
     PerLength,

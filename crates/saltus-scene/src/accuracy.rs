@@ -26,25 +26,25 @@ const TIMES: u32 = 1000;
 /// Impacts slower than this share of the fastest are not asked for one by one.
 const SLOW: f64 = 1e-3;
 
-/// How far one run of a scene is from another. Infinite where the other run breaks off.
+/// The difference of one run of a scene from another. Infinite where the other run breaks off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Of the times of impacts, in s: the largest. Impacts slower than a thousandth of the fastest
-    /// are not compared one by one.
+    /// The largest difference of the times of impacts, in s. Impacts slower than a thousandth of
+    /// the fastest are not compared one by one.
     pub impacts: f64,
-    /// Of the heights of apexes between those impacts, in m: the largest.
+    /// The largest difference of the heights of apexes between those impacts, in m.
     pub apexes: f64,
-    /// Of the places of the balls at 1001 times from start to end, in m: the largest.
+    /// The largest difference of the places of the balls at 1001 times from start to end, in m.
     pub position: f64,
-    /// Of the energy halfway between those impacts and at the end, as a share of its greatest: the
-    /// largest.
+    /// The largest difference of the energy halfway between those impacts and at the end, as a
+    /// share of its greatest.
     pub energy: f64,
-    /// How many impacts it lacks or has in another order.
+    /// The number of impacts that the run lacks or has in another order.
     pub missed: usize,
 }
 
 impl Difference {
-    /// How far `other` is from `reference`, two runs of `scene`.
+    /// The difference of `other` from `reference`, two runs of `scene`.
     #[must_use]
     pub fn between(scene: &Scene, reference: &Record, other: &Record) -> Self {
         let (wanted, got) = (reference.impacts(), other.impacts());
@@ -102,8 +102,8 @@ impl Difference {
         self.share(target, doubt) <= 1.0
     }
 
-    /// How much of `target` it takes up, if the reference is off by `doubt`: up to 1 it is within
-    /// it. Infinite where an impact is missed.
+    /// The error as a share of `target`, if the reference is off by `doubt`: at most 1 if it is
+    /// within it. Infinite where an impact is missed.
     #[must_use]
     pub fn share(&self, target: Target, doubt: &Self) -> f64 {
         if self.missed > 0 {
@@ -120,7 +120,7 @@ fn place_at_end(record: &Record, ball: usize, t: f64) -> Option<nalgebra::Vector
     (t - end <= 1e-12 * t).then(|| record.at(ball, end)).flatten().map(|moment| moment.position)
 }
 
-/// The energy of all balls at `t` in J, or in J/kg where no mass is known.
+/// The energy of all balls at `t` in J, or in J/kg where the scene gives no mass.
 fn energy(scene: &Scene, record: &Record, t: f64) -> f64 {
     let mut sum = 0.0;
     for (ball, n) in scene.balls.iter().zip(0..) {
@@ -133,12 +133,12 @@ fn energy(scene: &Scene, record: &Record, t: f64) -> f64 {
     sum
 }
 
-/// How exact a run has to be.
+/// The accuracy that a run has to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Of every place and every apex, in m.
+    /// The error allowed of every place and every apex, in m.
     pub length: Option<f64>,
-    /// Of the time of every impact, in s.
+    /// The error allowed of the time of every impact, in s.
     pub time: Option<f64>,
 }
 
@@ -147,25 +147,25 @@ impl Target {
     pub const DEFAULT: Self = Self { length: Some(1e-3), time: Some(1e-3) };
 }
 
-/// One way to run a scene, how far it is off, and what it costs.
+/// A way to run a scene, with its error and its cost.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Trial {
     /// The way.
     pub way: Way,
-    /// What came of it, or why there is nothing.
+    /// The outcome, or why there is none.
     pub outcome: Result<Outcome, String>,
 }
 
-/// What came of a run.
+/// The outcome of a run: its error and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// How far it is from the reference.
+    /// The difference from the reference.
     pub difference: Difference,
-    /// What it cost, in counts.
+    /// The cost in counts.
     pub cost: Cost,
-    /// What it cost in time on this machine, if it was timed.
+    /// The cost in time on this machine, if it was timed.
     pub timing: Option<Timing>,
 }
 
@@ -177,7 +177,7 @@ impl Outcome {
     }
 }
 
-/// What accuracy costs in a scene.
+/// The cost of accuracy in a scene.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -199,7 +199,7 @@ pub struct Accuracy {
     trials: Vec<Trial>,
 }
 
-/// What another scene, with one effect toggled, is off by, and what it costs.
+/// The difference that one effect makes, left out or put in, and its cost.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Toggle {
@@ -207,7 +207,7 @@ pub struct Toggle {
     pub effect: Effect,
     /// Whether it was left out, or put in.
     pub without: bool,
-    /// What came of it, or why there is nothing.
+    /// The outcome, or why there is none.
     pub outcome: Result<Outcome, String>,
 }
 
@@ -226,7 +226,7 @@ impl Accuracy {
         Self::of(scene, true)
     }
 
-    /// The same without times: the same on every machine.
+    /// Runs the scene in every way without timing: the result is the same on every machine.
     ///
     /// # Errors
     /// As for [`timed`](Self::timed).
@@ -292,17 +292,17 @@ impl Accuracy {
         Ok(Outcome { difference, cost: record.cost(), timing })
     }
 
-    /// How the reference was made: by formulas where they solve the scene, or else to a tolerance
-    /// two orders tighter than any trial.
+    /// The way in which the reference was made, and the reference: by formulas where they solve the
+    /// scene, or else to a tolerance two orders tighter than any trial.
     #[must_use]
     pub const fn reference(&self) -> (Way, &Record) {
         (self.by, &self.reference)
     }
 
-    /// How far off the reference itself may be: its difference from a run to ten times its
-    /// tolerance. Where formulas made it, what rounding leaves of it: its difference from the scene
-    /// whose gravity and velocities are a unit in the last place larger. That is next to nothing,
-    /// but for balls that hit each other often.
+    /// The error of the reference itself: its difference from a run to ten times its tolerance.
+    /// Where formulas made it, the error is that of rounding: the difference from the scene whose
+    /// gravity and velocities are a unit in the last place larger. That is next to nothing, but for
+    /// balls that hit each other often.
     #[must_use]
     pub const fn doubt(&self) -> &Difference {
         &self.doubt
@@ -348,7 +348,7 @@ impl Accuracy {
         self.frontier(target).into_iter().find(meets)
     }
 
-    /// What a further digit costs by a stepper: the factor by which the evaluations grow as the
+    /// The cost of a further digit by a stepper: the factor by which the evaluations grow as the
     /// error falls to a tenth, by least squares of the logarithms over the trials whose error
     /// stands clear of the reference's; `None` if there are fewer than three.
     #[must_use]
@@ -373,8 +373,8 @@ impl Accuracy {
         (xx > 0.0).then(|| 10_f64.powf(xy / xx))
     }
 
-    /// What each effect changes and costs: the scene with it left out or put in, against the
-    /// reference, to the tolerance that the plan would choose.
+    /// The difference that each effect makes, and its cost: the scene with it left out or put in,
+    /// against the reference, to the tolerance that the plan would choose.
     #[must_use]
     pub fn toggled(&self, scene: &Scene) -> Vec<Toggle> {
         let until = self.reference.until();
@@ -402,7 +402,7 @@ fn nudged(scene: &Scene) -> Scene {
     nudged
 }
 
-/// Why there is no answer.
+/// An error of the comparison: the reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AccuracyError {

@@ -13,8 +13,7 @@ use saltus_bounce::effects::{
     AIR_DENSITY, AIR_VISCOSITY, Buoyancy, Gravity, LinearDrag, Magnus, QuadraticDrag, SpinDecay,
 };
 
-/// What acts on the balls of a scene in flight, beside gravity: each effect only if the scene names
-/// it.
+/// The effects on the balls of a scene in flight, beside gravity: each only if the scene names it.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -30,9 +29,9 @@ use saltus_bounce::effects::{
 pub struct Effects {
     /// The density of the air, or whatever the ball flies in, in kg/m³.
     pub density: f64,
-    /// Its viscosity in Pa s.
+    /// The viscosity of the air in Pa s.
     pub viscosity: f64,
-    /// Its velocity (x, y, up) in m/s; `None` where the scene names no wind.
+    /// The velocity of the air (x, y, up) in m/s; `None` where the scene names no wind.
     pub wind: Option<Vector3<f64>>,
     /// Drag in proportion to the speed.
     pub linear: Option<Linear>,
@@ -44,34 +43,34 @@ pub struct Effects {
     pub added_mass: bool,
     /// Lift by spin: slope κ and saturation σ.
     pub lift: Option<[f64; 2]>,
-    /// How spin decays.
+    /// The decay of spin.
     pub spin_decay: Option<Decay>,
 }
 
-/// How linear drag is given.
+/// The drag rate of linear drag, given or computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Linear {
     /// A rate in 1/s.
     Rate(f64),
-    /// By the viscosity of the air.
+    /// The rate by Stokes's law, from the viscosity of the air.
     Viscous,
 }
 
-/// How quadratic drag is given.
+/// The coefficient of quadratic drag, given or computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quadratic {
-    /// Per length, in 1/m.
+    /// The coefficient per length, in 1/m.
     PerLength(f64),
-    /// A drag coefficient.
+    /// The drag coefficient of the ball in its air.
     Coefficient(f64),
 }
 
-/// How the decay of spin is given.
+/// The law by which spin decays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Decay {
-    /// Within a time in s.
+    /// A decay to 1/e within a time in s.
     Within(f64),
-    /// In proportion to the speed, with a coefficient.
+    /// A decay in proportion to the speed, with a coefficient.
     InFlight(f64),
 }
 

@@ -10,8 +10,8 @@ use super::space::Space;
 use super::value::{AngularSpeed, At, Length, Mass, Measure, Number, OneOrMany, Real, Speed};
 use saltus_bounce::Sphere;
 
-/// One ball: what it is, and how it starts. Vectors are (x, y, up) in m, m/s and rad/s; what a
-/// scene does not name is zero.
+/// A ball and its start. Vectors are (x, y, up) in m, m/s and rad/s; what a scene does not name is
+/// zero.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -22,31 +22,31 @@ use saltus_bounce::Sphere;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Ball {
-    /// What it is called.
+    /// The name.
     pub name: Option<String>,
-    /// What it is made of, as the presets call it.
+    /// The material, as the presets call it.
     pub material: Option<String>,
-    /// In m; `None` for a point.
+    /// The radius in m; `None` for a point.
     pub radius: Option<f64>,
-    /// In kg.
+    /// The mass in kg.
     pub mass: Option<f64>,
-    /// I/(m R²): 2/5 unless given.
+    /// The moment of inertia over m R²: 2/5 unless given.
     pub inertia: f64,
-    /// Where it starts.
+    /// The place of the start.
     pub start: Start,
-    /// In m/s.
+    /// The velocity in m/s.
     pub velocity: Vector3<f64>,
-    /// In rad/s, by the right-hand rule; in a planar scene only -y turns. `None` where the scene
-    /// names no spin.
+    /// The spin in rad/s, by the right-hand rule; in a planar scene only -y turns. `None` where the
+    /// scene names no spin.
     pub spin: Option<Vector3<f64>>,
 }
 
-/// Where a ball starts, in m.
+/// The place where a ball starts, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
-    /// Its lowest point is here.
+    /// The place of its lowest point.
     Lowest(Vector3<f64>),
-    /// Its centre is here.
+    /// The place of its centre.
     Centre(Vector3<f64>),
 }
 
@@ -55,7 +55,7 @@ impl Ball {
         Vector3::new(0.0, 0.0, self.radius.unwrap_or(0.0))
     }
 
-    /// Where its lowest point starts, in m.
+    /// The place where its lowest point starts, in m.
     #[must_use]
     pub fn lowest(&self) -> Vector3<f64> {
         match self.start {
@@ -64,7 +64,7 @@ impl Ball {
         }
     }
 
-    /// Where its centre starts, in m.
+    /// The place where its centre starts, in m.
     #[must_use]
     pub fn centre(&self) -> Vector3<f64> {
         match self.start {
@@ -73,7 +73,7 @@ impl Ball {
         }
     }
 
-    /// The ball as a body, if its radius and its mass are known.
+    /// The ball as a body, if it has a radius and a mass.
     #[must_use]
     pub fn sphere(&self) -> Option<Sphere> {
         Sphere::with_inertia(self.radius?, self.mass?, self.inertia).ok()

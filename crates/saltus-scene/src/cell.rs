@@ -4,18 +4,18 @@ use std::borrow::Cow;
 
 use crate::number::number;
 
-/// What stands in a cell.
+/// The content of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Nothing: the run has no such thing.
+    /// An empty cell: the run has no such result.
     None,
-    /// In SI units.
+    /// A number in SI units.
     Number(f64),
     /// A number as text.
     Written(String),
-    /// Of impacts, say.
+    /// A count, such as that of impacts.
     Count(u64),
-    /// Why a run ended, say.
+    /// A word, such as why a run ended.
     Word(String),
 }
 

@@ -1,4 +1,4 @@
-//! What a table of many runs may have of each, and how it is written.
+//! The columns of a table of many runs, and the forms in which it is written.
 
 use crate::cell::Cells;
 
@@ -6,39 +6,39 @@ use crate::cell::Cells;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Column {
-    /// How many impacts there were.
+    /// The number of impacts.
     Impacts,
-    /// When the first began.
+    /// The time of the first impact.
     FirstImpact,
-    /// And the last.
+    /// The time of the last impact.
     LastImpact,
-    /// How high the first ball rose after its first impact.
+    /// The height of the first ball's apex after its first impact.
     FirstApex,
-    /// From when on everything was at rest.
+    /// The time from which everything is at rest.
     Rest,
-    /// Why the run ended: "time", "jumps", "zeno", "evaluations", "cascade"; or "refused" or
+    /// The reason of the end: "time", "jumps", "zeno", "evaluations", "cascade"; or "refused" or
     /// "failed", and there was no run.
     End,
-    /// When it ended.
+    /// The time of the end.
     EndTime,
-    /// Where each ball was then.
+    /// The place of each ball at the end.
     Position,
-    /// How fast each ball was then.
+    /// The velocity of each ball at the end.
     Velocity,
-    /// How fast each ball turned then.
+    /// The spin of each ball at the end.
     Spin,
-    /// How many jumps there were.
+    /// The number of jumps.
     Jumps,
-    /// How many steps were tried.
+    /// The number of trial steps.
     Steps,
-    /// How often flows and guards were evaluated.
+    /// The number of evaluations of flows and guards.
     Evaluations,
-    /// Why there was no run.
+    /// The reason why there was no run.
     Why,
 }
 
 impl Column {
-    /// Every one, in the order in which they are written.
+    /// All columns, in the order in which they are written.
     pub const ALL: [Self; 14] = [
         Self::Impacts,
         Self::FirstImpact,
@@ -56,7 +56,7 @@ impl Column {
         Self::Why,
     ];
 
-    /// Its name, which heads its cells where it has one for all balls.
+    /// The name of the column, which heads its cells where it has one for all balls.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ impl Column {
         }
     }
 
-    /// What it says of a run.
+    /// A sentence about the column.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -110,20 +110,20 @@ impl Column {
     }
 }
 
-/// How rows are written.
+/// A form in which rows are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowFormat {
-    /// For a spreadsheet: cells with commas between.
+    /// CSV, for a spreadsheet.
     Csv,
-    /// For programs: an object of JSON in each line.
+    /// JSON Lines, for programs: an object in each line.
     Jsonl,
 }
 
 impl RowFormat {
-    /// Both.
+    /// Both forms.
     pub const ALL: [Self; 2] = [Self::Csv, Self::Jsonl];
 
-    /// Its name, which is what its files end in.
+    /// The name of the form, which is also the ending of its files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -132,7 +132,7 @@ impl RowFormat {
         }
     }
 
-    /// What it is for.
+    /// A sentence about the form.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

@@ -12,7 +12,7 @@ use saltus_bounce::contact::{ContactLaw, Elastic, Hertz, HuntCrossley, KelvinVoi
 use saltus_bounce::restitution::Cor;
 use saltus_bounce::units::Quantity;
 
-/// How ball and floor touch.
+/// The law of contact between ball and floor.
 ///
 /// ```
 /// use saltus_scene::{Contact, Scene};
@@ -24,7 +24,7 @@ use saltus_bounce::units::Quantity;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Contact {
-    /// In an instant, by the law of restitution.
+    /// Impact in an instant, by the law of restitution.
     #[default]
     Rigid,
     /// A linear spring and damper.
@@ -36,8 +36,8 @@ pub enum Contact {
 }
 
 impl Contact {
-    /// The energy in J that a ball has in the spring of its contact when it is pressed in by
-    /// `deformation` in m: what it took without damping.
+    /// The energy in J that is stored in the spring of the contact at a `deformation` in m: the
+    /// work of the elastic force.
     ///
     /// ```
     /// use saltus_scene::Scene;

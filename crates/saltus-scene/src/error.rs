@@ -67,13 +67,13 @@ impl SceneError {
         self.column
     }
 
-    /// What is wrong, without the place.
+    /// The message without the place.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What to do about it.
+    /// Advice: what to do about it.
     #[must_use]
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
@@ -110,7 +110,7 @@ impl fmt::Debug for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Why something cannot be made of a scene or of its run, and what to do.
+/// An error about a scene or its run: what is wrong, and what to do.
 ///
 /// ```
 /// use saltus_scene::{Sampling, Scene};
@@ -143,7 +143,7 @@ impl fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// Something wrong with a range of bytes, before it is known whose they are.
+/// A fault at a range of bytes, before its file has a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) span: Range<usize>,
@@ -152,7 +152,7 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// What `says` says at `span`; what follows its first ": " is the help.
+    /// The fault `says` at `span`; what follows the first ": " of `says` is the help.
     pub(super) fn new(span: Range<usize>, says: impl fmt::Display) -> Self {
         let says = says.to_string();
         let (message, help) = match says.split_once(": ") {

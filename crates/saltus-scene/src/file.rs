@@ -317,8 +317,8 @@ impl File {
     }
 }
 
-/// The law of a ball on a floor: what is said of the floor, then of the scene, then what the
-/// materials have.
+/// The law of a ball on a floor: that of the floor, else that of the scene, else the preset of the
+/// materials.
 fn law(said: Option<Said>, ball: Option<&str>, floor: Option<&str>, at: &Range<usize>) -> Result<Law, Fault> {
     let pick = match said {
         Some(Said::Law(law)) => return Ok(law),

@@ -15,92 +15,92 @@ use super::space::Space;
 use super::value::{Angle, At, Length, Measure, OneOrMany, Pairs, PerLength, Real, Short};
 use saltus_bounce::friction::Friction;
 
-/// One floor, wall or box. Lengths in m, angles in rad.
+/// A floor, a wall or a box. Lengths in m, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Floor {
-    /// What it is called.
+    /// The name.
     pub name: Option<String>,
-    /// What it is made of, as the presets call it.
+    /// The material, as the presets call it.
     pub material: Option<String>,
-    /// Its shape.
+    /// The shape.
     pub shape: Shape,
-    /// How a level floor moves; `None` if it stands.
+    /// The motion of a level floor; `None` if it stands.
     pub motion: Option<Motion>,
-    /// Its friction, or the scene's.
+    /// The friction, or that of the scene.
     pub friction: Friction,
 }
 
-/// The shape of a floor, and where it is.
+/// The shape of a floor, and its place.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
-    /// Level, at this height.
+    /// A level floor.
     Level {
-        /// In m.
+        /// The height in m.
         height: f64,
     },
     /// A plane that rises towards x.
     Incline {
-        /// Above the horizontal, in rad.
+        /// The angle above the horizontal, in rad.
         angle: f64,
-        /// At x = 0, in m.
+        /// The height at x = 0, in m.
         height: f64,
     },
     /// Stairs down towards x.
     Stairs {
         /// The height of the top step in m.
         top: f64,
-        /// Where the first edge is, in m along x.
+        /// The place of the first edge, in m along x.
         from: f64,
         /// The depth of a step in m.
         tread: f64,
         /// The height of a step in m.
         rise: f64,
-        /// How many steps go down; `None` for no end of them.
+        /// The number of steps down; `None` for no end of them.
         count: Option<u32>,
     },
     /// An upright wall.
     Wall {
         /// Whether it stands across y instead of x.
         across_y: bool,
-        /// Where it is along its axis, in m.
+        /// The place along its axis, in m.
         at: f64,
         /// Whether the balls are on the side where the coordinate is greater.
         faces_up: bool,
     },
     /// The inside of a box, its middle at x = y = 0, its bottom at `height`.
     Box {
-        /// (x, y, up) in m; y is 0 in a planar scene.
+        /// The size (x, y, up) in m; y is 0 in a planar scene.
         size: Vector3<f64>,
         /// The height of its bottom in m.
         height: f64,
         /// Whether it has no lid.
         open: bool,
     },
-    /// height + (curvature/2) (x - centre)².
+    /// A parabola, height + (curvature/2) (x - centre)².
     Parabola {
-        /// In 1/m: hollow above zero, a hill below.
+        /// The curvature in 1/m: hollow above zero, a hill below.
         curvature: f64,
-        /// In m.
+        /// The place of the vertex along x, in m.
         centre: f64,
-        /// In m.
+        /// The height of the vertex in m.
         height: f64,
     },
-    /// height + amplitude sin(2πx/wavelength + phase).
+    /// A sine, height + amplitude sin(2πx/wavelength + phase).
     Sine {
-        /// In m.
+        /// The amplitude in m.
         amplitude: f64,
-        /// In m.
+        /// The wavelength in m.
         wavelength: f64,
-        /// In rad.
+        /// The phase at x = 0, in rad.
         phase: f64,
-        /// In m.
+        /// The mean height in m.
         height: f64,
     },
-    /// Straight from point to point, and as straight on beyond the first and the last.
+    /// A polyline, which goes straight on beyond the first and the last point.
     Polyline {
-        /// Two or more, (x, height) in m, by increasing x.
+        /// The points (x, height) in m, two or more, by increasing x.
         points: Arc<[[f64; 2]]>,
     },
 }

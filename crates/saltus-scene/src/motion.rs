@@ -8,26 +8,26 @@ use serde::Deserialize;
 use super::error::Fault;
 use super::value::{Angle, At, Frequency, Length, Measure, Pairs, Real, Time};
 
-/// How a level floor moves about its height.
+/// The motion of a level floor about its height.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Motion {
-    /// amplitude sin(2π frequency t + phase).
+    /// A vibration, amplitude sin(2π frequency t + phase).
     Sine {
-        /// In m.
+        /// The amplitude in m.
         amplitude: f64,
-        /// In Hz.
+        /// The frequency in Hz.
         frequency: f64,
-        /// In rad.
+        /// The phase at t = 0, in rad.
         phase: f64,
     },
-    /// At these times in s this far above its height in m, straight between, still before and
-    /// after.
+    /// A schedule: pairs of a time in s and the height above its own in m, straight between, still
+    /// before and after.
     Schedule(Vec<[f64; 2]>),
 }
 
 impl Motion {
-    /// From when on it is still, in s; `None` if it never is.
+    /// The time from which the floor is still, in s; `None` if it never is.
     pub(super) fn ends(&self) -> Option<f64> {
         match self {
             Self::Sine { .. } => None,
@@ -35,7 +35,7 @@ impl Motion {
         }
     }
 
-    /// How fast the floor is at most, in m/s.
+    /// The greatest speed of the floor, in m/s.
     fn fastest(&self) -> f64 {
         match self {
             Self::Sine { amplitude, frequency, .. } => std::f64::consts::TAU * frequency * amplitude,
@@ -46,7 +46,7 @@ impl Motion {
         }
     }
 
-    /// How far above its height the floor is at `t` in s, in m.
+    /// The height of the floor above its own at `t` in s, in m.
     #[must_use]
     pub fn offset(&self, t: f64) -> f64 {
         match self {

@@ -35,8 +35,8 @@ impl Scene {
         Self::parse_with(name, toml, Run::default())
     }
 
-    /// The same, where what `run` says goes before what the text says under `[run]`: so a scene
-    /// that says no end can be given one.
+    /// Reads a scene as [`Scene::parse`] does, with the settings of `run` before those under
+    /// `[run]`: a scene without an end can be given one.
     ///
     /// ```
     /// use saltus_scene::{Run, Scene};
@@ -90,10 +90,10 @@ pub enum ReadError {
     File {
         /// Its path.
         path: std::path::PathBuf,
-        /// What the system says.
+        /// The error of the system.
         error: std::io::Error,
     },
-    /// What stands in it.
+    /// The error in the text of the file.
     Scene(SceneError),
 }
 
@@ -282,7 +282,7 @@ fn plain(wanted: &str) -> &str {
     }
 }
 
-/// What to do with a key that is not known where it stands.
+/// Advice about an unknown key.
 fn unknown(key: &str, known: &[&str]) -> String {
     let mut homes = schema::homes(key);
     if !homes.is_empty() {

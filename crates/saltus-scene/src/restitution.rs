@@ -1,5 +1,5 @@
-//! What an impact leaves of the speed: a number, a range, a law, or what is known of a material on
-//! another.
+//! Laws of restitution of a scene: a number, a range, a function of the speed, or the preset of two
+//! materials.
 
 #[cfg(test)]
 use schemars::JsonSchema;
@@ -26,20 +26,21 @@ use saltus_bounce::restitution::{Cor, Knots, Linear, Plastic, Restitution, Visco
 #[non_exhaustive]
 #[allow(clippy::large_enum_variant)] // a scene has few of them, and copies none while it runs
 pub enum Law {
-    /// One number.
+    /// A constant coefficient.
     Cor(Cor),
-    /// A number that is known to lie between two; a run takes the one `pick` of the way up.
+    /// A coefficient between two bounds; a run takes the one at the part `pick` of the way up.
     Range {
-        /// The lowest and the highest.
+        /// The lowest and the highest coefficient.
         cor: [Cor; 2],
-        /// From 0, the lowest, to 1, the highest.
+        /// The part of the way up, from 0, the lowest, to 1, the highest.
         pick: f64,
     },
-    /// What is known of the materials; a run takes the number `pick` of the way up.
+    /// The coefficients measured of a pair of materials; a run takes the one at the part `pick` of
+    /// the way up.
     Preset {
         /// The pair of materials, with its source.
         preset: &'static Preset,
-        /// From 0, the lowest, to 1, the highest.
+        /// The part of the way up, from 0, the lowest, to 1, the highest.
         pick: f64,
     },
     /// A line over the speed.

@@ -7,15 +7,15 @@ use serde::Deserialize;
 use super::error::Fault;
 use super::value::{At, Measure, Number, Time};
 
-/// How long and how precisely to run.
+/// The end of a run, and the accuracy of its steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Run {
-    /// When to stop, in s; `None`: when everything has come to rest.
+    /// The time of the end, in s; `None`: as soon as everything is at rest.
     pub until: Option<f64>,
     /// The relative tolerance of steps, where any are taken.
     pub tolerance: Option<f64>,
-    /// After how many jumps to stop.
+    /// The number of jumps after which a run ends.
     pub most_jumps: Option<u32>,
     /// The stepper to use instead of the one the plan would choose.
     pub stepper: Option<Stepper>,
@@ -51,7 +51,7 @@ pub enum Stepper {
 }
 
 impl Stepper {
-    /// Its name in the literature.
+    /// The name of the method in the literature.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -71,13 +71,13 @@ impl Stepper {
     }
 }
 
-/// What is drawn of a run.
+/// The pictures of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Picture {
     /// The title; `None` for one made from the scene.
     pub title: Option<String>,
-    /// What is drawn.
+    /// The kind of picture.
     pub kind: Kind,
 }
 
@@ -119,7 +119,7 @@ impl Kind {
         Self::Ghost,
     ];
 
-    /// Its name.
+    /// The name of the kind of picture.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -134,7 +134,7 @@ impl Kind {
         }
     }
 
-    /// What it shows.
+    /// A sentence about the picture.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

@@ -30,25 +30,25 @@ use super::source::Source;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Scene {
-    /// How many coordinates it needs: 1 (up), 2 (x, up) or 3 (x, y, up).
+    /// The number of coordinates: 1 (up), 2 (x, up) or 3 (x, y, up).
     pub dimensions: usize,
-    /// At least one.
+    /// The balls, at least one.
     pub balls: Vec<Ball>,
-    /// Downwards.
+    /// Gravity, downwards.
     pub gravity: Gravity,
-    /// What else acts in flight.
+    /// The other effects in flight.
     pub effects: Effects,
     /// Floors, walls and boxes; may be empty.
     pub floors: Vec<Floor>,
-    /// How balls and floors touch.
+    /// The law of contact of balls and floors.
     pub contact: Contact,
     /// Restitution between balls; `None` for one ball.
     pub collision: Option<Law>,
     /// Friction between balls.
     pub collision_friction: Friction,
-    /// When it ends and how it is stepped.
+    /// The end of the run, and its steps.
     pub run: Run,
-    /// What is drawn.
+    /// The kinds of pictures.
     pub picture: Picture,
     /// Restitution by floor, then by ball; empty rows where contact takes time.
     pub(super) laws: Vec<Vec<Law>>,
@@ -56,7 +56,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What a ball is called, counted from 0: its name, or its number.
+    /// The name of a ball, counted from 0, or its number where it has none.
     #[must_use]
     pub fn ball_name(&self, ball: usize) -> String {
         let name = self.balls.get(ball).and_then(|ball| ball.name.clone());

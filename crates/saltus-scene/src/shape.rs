@@ -13,7 +13,7 @@ use super::{Ball, Floor, Shape};
 
 /// How far rounding may let things overlap, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
-/// More steps than can be told apart.
+/// The greatest number of steps that an outline of stairs shows.
 const MOST_STEPS: u32 = 2000;
 /// Points of the outline of a curve, and of each of its waves.
 const POINTS: u32 = 400;
@@ -159,7 +159,7 @@ impl Floor {
             .unwrap_or(up)
     }
 
-    /// How high the floor is at x in m and t in s; none of a wall.
+    /// The height of the floor at x in m and t in s; none of a wall.
     ///
     /// ```
     /// use saltus_scene::Scene;

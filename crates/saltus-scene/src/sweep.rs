@@ -48,18 +48,18 @@ pub struct Sweep<'a> {
 pub struct Row {
     /// The line, its end included.
     pub text: String,
-    /// Its cells that are numbers, in the order of [`Sweep::headers`].
+    /// The cells that are numbers, in the order of [`Sweep::headers`].
     pub numbers: Vec<Option<f64>>,
-    /// Why it came to nothing, if it did.
+    /// The reason why there is no result, if there is none.
     pub why: Option<String>,
 }
 
-/// Why there is no run.
+/// The reason why a run has no outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Nothing {
     /// "refused" for a scene that cannot be run, "failed" for a run that broke.
     pub end: &'static str,
-    /// In one line.
+    /// The reason, in one line.
     pub why: String,
 }
 
@@ -71,8 +71,7 @@ impl<'a> Sweep<'a> {
     /// the scene says. The rows have `columns`, or all that the scene has.
     ///
     /// # Errors
-    /// [`Error`] if a key varies twice, the number of runs is not known, or the first run cannot be
-    /// planned.
+    /// [`Error`] if a key varies twice, a range has no count, or the first run cannot be planned.
     pub fn new(
         name: &str,
         toml: &'a [u8],
@@ -93,13 +92,13 @@ impl<'a> Sweep<'a> {
         Ok(Self { template, vary, end: run, runs, first, rows })
     }
 
-    /// How many runs there are.
+    /// The number of runs.
     #[must_use]
     pub const fn runs(&self) -> u64 {
         self.runs
     }
 
-    /// What varies.
+    /// The keys that vary.
     #[must_use]
     pub const fn vary(&self) -> &Vary {
         self.vary
@@ -123,13 +122,13 @@ impl<'a> Sweep<'a> {
         self.rows.header()
     }
 
-    /// What the row of a run begins with.
+    /// The beginning of the row of a run: its number and its values.
     #[must_use]
     pub fn beginning(&self, run: u64) -> String {
         self.rows.beginning(run)
     }
 
-    /// What came of a run, counted from 0.
+    /// The outcome of a run, counted from 0.
     ///
     /// # Errors
     /// [`Nothing`]: the scene is refused with these values, or its run failed.

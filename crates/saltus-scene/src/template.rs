@@ -45,8 +45,8 @@ impl<'a> Template<'a> {
     /// Reads a file in which `keys` are to be set; `name` stands for it in messages.
     ///
     /// # Errors
-    /// [`SceneError`] when the text is no TOML. Whether it is a scene is seen when it is made into
-    /// one.
+    /// [`SceneError`] when the text is no TOML; whether it is a scene is checked when it is made
+    /// into one.
     pub fn parse(name: &str, toml: &'a [u8], keys: &[&'a str]) -> Result<Self, SceneError> {
         let bytes = read::unmarked(toml);
         let parsed = read::text(bytes).and_then(|text| Ok((text, read::table(text)?)));
@@ -79,7 +79,7 @@ impl<'a> Template<'a> {
         read::made(self.text, table, run)
     }
 
-    /// Where key `n` is said to stand: behind the end of the file, its value behind it.
+    /// The place of key `n` in messages: behind the end of the file, its value behind it.
     const fn mark(&self, n: usize) -> usize {
         self.bytes.len() + 1 + 2 * n
     }

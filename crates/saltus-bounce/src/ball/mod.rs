@@ -95,7 +95,7 @@ impl<F: VerticalFlight, R: Restitution> Ball<F, R> {
         Self { flight, restitution, floor: 0.0 }
     }
 
-    /// The same over a floor at `height` in m. The state still counts from the floor.
+    /// This ball over a floor at `height` in m. The state still counts from the floor.
     ///
     /// ```
     /// use saltus_bounce::{Ball, Cor};

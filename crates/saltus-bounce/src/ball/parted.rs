@@ -8,7 +8,7 @@ use super::Ball;
 use crate::flight::{QuadraticDragFlight, VerticalFlight};
 use crate::restitution::Restitution;
 
-/// What a ball under quadratic drag is doing.
+/// The phase of a ball under quadratic drag: rising, falling, or at rest.
 ///
 /// ```
 /// use saltus_bounce::{Ball, Phase};
@@ -33,7 +33,7 @@ impl Phase {
     }
 }
 
-/// Where a phase ends.
+/// The end of a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// v falls through zero.

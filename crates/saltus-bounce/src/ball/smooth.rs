@@ -7,10 +7,10 @@ use super::Ball;
 use crate::flight::{LinearDragFlight, VacuumFlight, VerticalFlight};
 use crate::restitution::Restitution;
 
-/// What the ball is doing.
+/// The mode of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// In the air.
+    /// Flight.
     Flight,
     /// Lying on the floor.
     Rest,

@@ -1,4 +1,4 @@
-//! The same cloud, advanced from event to event with what is known of the next ones.
+//! A cloud advanced from event to event, with a list of the next events of each ball.
 
 use saltus::{Automaton, Time};
 

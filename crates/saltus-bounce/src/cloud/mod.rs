@@ -66,10 +66,10 @@ struct Walls<const D: usize, R> {
     law: R,
 }
 
-/// What touches what: the edge.
+/// The edge: an impact of two balls, or of a ball and a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touch {
-    /// Two balls, the one of lower number first.
+    /// An impact of two balls, the one of lower number first.
     Balls(usize, usize),
     /// A ball and the wall at the low end of an axis.
     Low {
@@ -101,7 +101,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
         Ok(Self { masses, radii, gravity: [0.0; D], law: restitution, walls: None })
     }
 
-    /// Under a gravity in m/s², by components.
+    /// This cloud under a gravity in m/s², by components.
     ///
     /// # Errors
     /// [`ParameterError`] unless it is finite.
@@ -112,8 +112,8 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
         Ok(Self { gravity, ..self })
     }
 
-    /// In a box from the corner `low` to the corner `high`, in m, whose walls are met by the law
-    /// `restitution`.
+    /// This cloud in a box from the corner `low` to the corner `high`, in m, whose walls are met by
+    /// the law `restitution`.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite and the box has an inside.
@@ -279,7 +279,7 @@ pub struct OverlapError {
 }
 
 impl OverlapError {
-    /// What overlaps.
+    /// The pair that overlaps.
     #[must_use]
     pub const fn touch(&self) -> Touch {
         self.touch

@@ -6,16 +6,16 @@ use super::{Compliant, Moment, Stage};
 use crate::contact::ContactLaw;
 use nalgebra::Vector2;
 
-/// One contact of a recorded run.
+/// A contact of a recorded run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// When it began, in s.
+    /// The time of touch, in s.
     pub touch: f64,
     /// The speed of approach then, in m/s.
     pub speed: f64,
-    /// From touch to the greatest deformation, in s; `None` if the run ends before.
+    /// The time from touch to the greatest deformation, in s; `None` if the run ends before.
     pub compression: Option<f64>,
-    /// From touch to lift-off, in s; `None` if the ball does not leave.
+    /// The time from touch to lift-off, in s; `None` if the ball does not leave.
     pub duration: Option<f64>,
     /// The greatest deformation, in m, as far as the run goes.
     pub deformation: f64,

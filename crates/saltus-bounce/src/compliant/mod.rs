@@ -65,18 +65,18 @@ pub struct Compliant<L> {
     law: L,
 }
 
-/// What the ball is doing.
+/// The mode of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// In the air, until first contact.
+    /// Flight, until first contact.
     Fall,
-    /// In contact, being pressed in.
+    /// Contact, while the deformation grows.
     Compression,
-    /// In contact, on the way out.
+    /// Contact, while the deformation decreases.
     Restitution,
-    /// In the air, until the apex.
+    /// Flight, until the apex.
     Rise,
-    /// In contact for good.
+    /// Contact without end.
     Lying,
 }
 

@@ -57,7 +57,7 @@ impl Elastic {
 }
 
 impl Hertz {
-    /// With k = `constant` in N/m^(3/2).
+    /// A Hertz contact with k = `constant` in N/m^(3/2).
     ///
     /// # Errors
     /// [`ParameterError`] unless it is finite and positive.
@@ -68,7 +68,7 @@ impl Hertz {
         }
     }
 
-    /// Of a ball of `radius` in m on a flat floor.
+    /// The contact of a ball of `radius` in m on a flat floor.
     ///
     /// # Errors
     /// [`ParameterError`] unless the radius is finite and positive, and one of the two bodies at

@@ -36,7 +36,7 @@ pub struct HuntCrossley {
 }
 
 impl HuntCrossley {
-    /// With k = `constant` in N/m^(3/2) and χ = `damping` in N s/m^(5/2).
+    /// A Hunt–Crossley contact with k = `constant` in N/m^(3/2) and χ = `damping` in N s/m^(5/2).
     ///
     /// # Errors
     /// [`ParameterError`] unless k is finite and positive, χ finite and not negative.
@@ -47,7 +47,8 @@ impl HuntCrossley {
         })
     }
 
-    /// With k = `constant` in N/m^(3/2), damped so that the COR is `cor` at `speed` in m/s.
+    /// A contact with k = `constant` in N/m^(3/2), damped so that the COR is `cor` at `speed` in
+    /// m/s.
     ///
     /// # Errors
     /// [`ParameterError`] unless `cor` is above zero (no damping is enough for zero) and the others

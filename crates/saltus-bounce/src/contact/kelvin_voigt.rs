@@ -89,8 +89,8 @@ impl KelvinVoigt {
         Ok(law.with_tension())
     }
 
-    /// The same spring and damper, sticky: the contact ends only where the deformation does,
-    /// pulling before.
+    /// This spring and damper with adhesion: the contact pulls at its end, and ends only where the
+    /// deformation does.
     #[must_use]
     pub const fn with_tension(self) -> Self {
         Self { tension: true, ..self }

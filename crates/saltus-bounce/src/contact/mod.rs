@@ -17,15 +17,14 @@ pub use hertz::{Elastic, Hertz};
 pub use hunt_crossley::HuntCrossley;
 pub use kelvin_voigt::KelvinVoigt;
 
-/// What a contact without other forces (gravity, drag) does to a ball that comes in at a given
-/// speed.
+/// The outcome of a contact without other forces (gravity, drag), by the speed of impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
     /// The effective coefficient of restitution: speed at release over speed at touch.
     pub cor: Cor,
-    /// From touch to release, in s.
+    /// The time from touch to release, in s.
     pub duration: f64,
-    /// From touch to the greatest deformation, in s.
+    /// The time from touch to the greatest deformation, in s.
     pub compression: f64,
     /// The greatest deformation, in m.
     pub deformation: f64,
@@ -59,8 +58,8 @@ pub trait ContactLaw {
         deformation
     }
 
-    /// This law, if it is a linear one: the motion in contact is then known by a formula, and no
-    /// step is taken.
+    /// This law, if it is a linear one: the motion in contact then has a formula, and no step is
+    /// taken.
     fn linear(&self) -> Option<KelvinVoigt> {
         None
     }

@@ -29,7 +29,7 @@ pub struct Buoyancy {
 }
 
 impl Buoyancy {
-    /// Of `ball` in a fluid of `density` in kg/m³ under `gravity`.
+    /// The buoyancy of `ball` in a fluid of `density` in kg/m³ under `gravity`.
     ///
     /// # Errors
     /// [`ParameterError`] unless the density is finite and not negative.
@@ -37,7 +37,7 @@ impl Buoyancy {
         Ok(Self { gravity, ratio: not_negative("a density in kg/m^3", density)? / ball.density() })
     }
 
-    /// What is left of gravity, g (1 - r), in m/s² downwards.
+    /// The net gravity, g (1 - r), in m/s² downwards.
     #[must_use]
     pub const fn net_gravity(self) -> f64 {
         self.gravity.value() * (1.0 - self.ratio)

@@ -6,11 +6,11 @@ use saltus::Jet;
 /// given.
 #[derive(Clone, Copy, Debug)]
 pub struct JetMotion<'j, const N: usize> {
-    /// In m/s; inside a [`Wind`](super::Wind) relative to the air.
+    /// The velocity in m/s; inside a [`Wind`](super::Wind) relative to the air.
     pub velocity: [Jet<'j>; N],
     /// |velocity| in m/s; its series ends where the ball stands still.
     pub speed: Jet<'j>,
-    /// In rad/s, as many coordinates as the spin has, and zeros.
+    /// The spin in rad/s: as many coordinates as the ball's spin has, then zeros.
     pub spin: [Jet<'j>; 3],
 }
 

@@ -27,7 +27,7 @@ pub struct LinearDrag {
 }
 
 impl LinearDrag {
-    /// With c = `rate` in 1/s.
+    /// Linear drag with c = `rate` in 1/s.
     ///
     /// # Errors
     /// [`ParameterError`] unless it is finite and not negative.
@@ -38,7 +38,7 @@ impl LinearDrag {
         }
     }
 
-    /// Of a sphere in a fluid of `viscosity` μ in Pa s: c = 6πμR/m.
+    /// Stokes drag of a sphere in a fluid of `viscosity` μ in Pa s: c = 6πμR/m.
     ///
     /// # Errors
     /// [`ParameterError`] unless the viscosity is finite and positive.

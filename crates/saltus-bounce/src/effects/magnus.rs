@@ -39,7 +39,7 @@ pub struct Magnus {
 }
 
 impl Magnus {
-    /// On `ball` in air of `density` in kg/m³, with κ = `slope` and σ = `saturation`.
+    /// The lift of `ball` in air of `density` in kg/m³, with κ = `slope` and σ = `saturation`.
     ///
     /// # Errors
     /// [`ParameterError`] unless the density is finite and positive, κ and σ finite and not

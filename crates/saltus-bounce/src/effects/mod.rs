@@ -35,7 +35,7 @@ pub const AIR_DENSITY: f64 = 1.225;
 /// The viscosity of the same air in Pa s (ISO 2533:1975).
 pub const AIR_VISCOSITY: f64 = 1.789_4e-5;
 
-/// How a ball spins: not at all `()`, in the plane `f64`, in space [`Vector3`]; in rad/s.
+/// The spin of a ball: none `()`, in the plane `f64`, in space [`Vector3`]; in rad/s.
 pub trait Spin: Copy + Debug + PartialEq {
     /// No spin.
     const NONE: Self;
@@ -82,13 +82,13 @@ impl Spin for Vector3<f64> {
 /// A moment of a flight, as an effect sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<const N: usize, S = ()> {
-    /// In s.
+    /// The time in s.
     pub t: f64,
-    /// Of the ball's centre or lowest point, in m; no effect here depends on which.
+    /// The place of the ball's centre or lowest point, in m; no effect here depends on which.
     pub position: SVector<f64, N>,
-    /// In m/s; inside a [`Wind`] relative to the air.
+    /// The velocity in m/s; inside a [`Wind`] relative to the air.
     pub velocity: SVector<f64, N>,
-    /// In rad/s.
+    /// The spin in rad/s.
     pub spin: S,
 }
 
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(Effect::<2>::acceleration(&(), &at(vector![1.0, 1.0], ())), vector![0.0, 0.0]);
     }
 
-    /// What holds an effect that is not said over jets does not say all itself.
+    /// A sum of effects has no series if one of them has none.
     #[test]
     fn no_series_holds_less_than_all() {
         struct Unsaid;

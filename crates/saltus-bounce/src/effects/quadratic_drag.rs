@@ -30,7 +30,7 @@ pub struct QuadraticDrag {
 }
 
 impl QuadraticDrag {
-    /// With k = `per_length` in 1/m.
+    /// Quadratic drag with k = `per_length` in 1/m.
     ///
     /// # Errors
     /// [`ParameterError`] unless it is finite and not negative.
@@ -41,7 +41,7 @@ impl QuadraticDrag {
         }
     }
 
-    /// Of a sphere in air of `density` in kg/m³, with the drag `coefficient` C.
+    /// The drag of a sphere in air of `density` in kg/m³, with the drag `coefficient` C.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite, the density positive, the coefficient not
@@ -50,8 +50,8 @@ impl QuadraticDrag {
         Self::body(ball.mass(), ball.cross_section(), density, coefficient)
     }
 
-    /// Of a body of `mass` in kg with a cross-section of `area` in m², in air of `density` in
-    /// kg/m³, with the drag `coefficient` C.
+    /// The drag of a body of `mass` in kg with a cross-section of `area` in m², in air of `density`
+    /// in kg/m³, with the drag `coefficient` C.
     ///
     /// # Errors
     /// [`ParameterError`] unless all are finite and positive; the coefficient may be zero.

@@ -33,7 +33,7 @@ pub struct SpinDecay {
 }
 
 impl SpinDecay {
-    /// To a fraction 1/e within `time` τ in s, whatever the speed.
+    /// A decay to a fraction 1/e within `time` τ in s, whatever the speed.
     ///
     /// # Errors
     /// [`ParameterError`] unless τ is finite and positive.
@@ -41,7 +41,7 @@ impl SpinDecay {
         Ok(Self { steady: 1.0 / positive("a time constant in s", time)?, per_length: 0.0 })
     }
 
-    /// In proportion to the speed, with the `coefficient` C.
+    /// A decay in proportion to the speed, with the `coefficient` C.
     ///
     /// # Errors
     /// [`ParameterError`] unless C is finite and not negative.

@@ -31,7 +31,7 @@ pub struct LinearDragFlight {
 }
 
 impl LinearDragFlight {
-    /// Under `gravity` in m/s² with the drag rate c = `drag` in 1/s.
+    /// A flight under `gravity` in m/s² with the drag rate c = `drag` in 1/s.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite and not negative.

@@ -17,9 +17,9 @@ pub use vacuum::VacuumFlight;
 /// The highest point of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apex {
-    /// When it is reached, in s from the start.
+    /// The time of the apex, in s from the start.
     pub time: f64,
-    /// How far it lies above the start, in m.
+    /// The height of the apex above the start, in m.
     pub rise: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct Impact {
     pub speed: f64,
 }
 
-/// A vertical flight whose solution is known.
+/// A vertical flight with a solution in closed form.
 ///
 /// Times and speeds of impact, apexes and depths fallen are sums and products of positive terms: a
 /// few roundings off, from no drag at all to terminal velocities of micrometres per second, whether

@@ -46,7 +46,7 @@ pub struct QuadraticDragFlight {
 const NOTHING: f64 = 1e-280;
 
 impl QuadraticDragFlight {
-    /// Under `gravity` in m/s² with k = `drag` in 1/m.
+    /// A flight under `gravity` in m/s² with k = `drag` in 1/m.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite and not negative.

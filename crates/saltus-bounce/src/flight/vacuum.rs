@@ -24,7 +24,7 @@ pub struct VacuumFlight {
 }
 
 impl VacuumFlight {
-    /// Under `gravity` in m/s², downwards.
+    /// A flight under `gravity` in m/s², downwards.
     ///
     /// # Errors
     /// [`ParameterError`] unless `gravity` is finite and not negative.

@@ -18,7 +18,7 @@ where
     G: Grip<3, Vector3<f64>>,
     C: Restitution,
 {
-    /// A time `s` later, where each ball's solution is known.
+    /// The state a time `s` later, where each ball has a solution.
     fn flown(&self, stances: Stances<N>, t: f64, x: &Flying<N>, s: f64) -> Flying<N> {
         x.map(|ball| {
             let (flyer, stance, x) = (&self.balls.get(ball)?.1, stances.of(ball), x.ball(ball));

@@ -19,8 +19,8 @@ pub use state::{Flying, Stances};
 /// A ball of a flock: as a body, and as it flies.
 pub type Member<E, W, R, G> = (Sphere, Flyer<3, Vector3<f64>, E, W, R, G>);
 
-/// Up to N spheres in space, each a [`Flyer`] with effects, walls, restitution and grip of its own,
-/// that bounce off each other.
+/// Spheres in space, at most N, each a [`Flyer`] with effects, walls, restitution and grip of its
+/// own, that bounce off each other.
 ///
 /// State [`Flying`]; mode [`Stances`], what each ball is doing; edges [`Meeting`]. Positions are
 /// those of the lowest points. At an impact of two balls the law of `restitution` holds along the
@@ -68,20 +68,20 @@ pub struct Flock<const N: usize, E, W, R = Cor, G = (), C = Cor> {
     faces: usize,
 }
 
-/// What may happen: the edge, by the number of its place in the order of edges.
+/// The edge, by the number of its place in the order of edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Meeting(pub(super) usize);
 
-/// What a [`Meeting`] is in a state.
+/// The event that a [`Meeting`] is in a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Happens {
-    /// Two balls meet, the one of lower number first.
+    /// An impact of two balls, the one of lower number first.
     Balls(usize, usize),
     /// Something happens to one ball.
     To(usize, Event<3>),
     /// A wall changes its motion, at a time of its schedule.
     Change,
-    /// Nothing: it belongs to what the ball is not doing.
+    /// No event: the edge belongs to a stance in which the ball is not.
     Nothing,
 }
 
@@ -136,7 +136,7 @@ where
         place < self.pairs() + self.balls.len() * self.faces
     }
 
-    /// What `meeting` is where the balls do what `stances` says.
+    /// The event that `meeting` is where the stances of the balls are `stances`.
     #[must_use]
     pub fn happens(&self, meeting: Meeting, stances: &Stances<N>) -> Happens {
         if meeting == CHANGE {

@@ -5,21 +5,21 @@ use saltus::State;
 
 use crate::flyer::{Moving, Stance};
 
-/// What each of up to N balls is doing: the mode of a flock.
+/// The stances of at most N balls: the mode of a flock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stances<const N: usize>([Stance<3>; N]);
 
 impl<const N: usize> Stances<N> {
-    /// All in flight in a space that is not cut into cells.
+    /// The stances of balls that all fly, in a space that is not cut into cells.
     pub const FLIGHT: Self = Self([Stance::FLIGHT; N]);
 
-    /// What `ball` is doing; flight for one that there is not.
+    /// The stance of `ball`; flight if there is no such ball.
     #[must_use]
     pub fn of(&self, ball: usize) -> Stance<3> {
         self.0.get(ball).copied().unwrap_or(Stance::FLIGHT)
     }
 
-    /// The same, but for `ball`.
+    /// These stances with another one of `ball`.
     #[must_use]
     pub fn with(mut self, ball: usize, stance: Stance<3>) -> Self {
         if let Some(of) = self.0.get_mut(ball) {
@@ -53,25 +53,25 @@ impl<const N: usize> Flying<N> {
         Self { balls: std::array::from_fn(at), count: balls.len().min(N), stances: Stances::FLIGHT }
     }
 
-    /// The same balls, doing what `stances` says.
+    /// These balls with the stances `stances`.
     #[must_use]
     pub const fn doing(self, stances: Stances<N>) -> Self {
         Self { stances, ..self }
     }
 
-    /// What the balls are doing: the mode to start in.
+    /// The stances of the balls: the mode to start in.
     #[must_use]
     pub const fn stances(&self) -> Stances<N> {
         self.stances
     }
 
-    /// How many balls there are.
+    /// The number of balls.
     #[must_use]
     pub const fn count(&self) -> usize {
         self.count
     }
 
-    /// One of the balls; at rest at the origin if there is none of this number.
+    /// The motion of a ball; at rest at the origin if there is none of this number.
     #[must_use]
     pub fn ball(&self, ball: usize) -> Moving<3, Vector3<f64>> {
         self.balls.get(ball).copied().unwrap_or(NOWHERE)

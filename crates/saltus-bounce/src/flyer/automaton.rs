@@ -240,7 +240,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     #[inline]
     fn clocks(&self, _: Stance<N>) -> Clocks<'_, Event<N>> {
-        // Known when the walls are: a scene in which none changes has no clock.
+        // The walls alone decide it: a scene in which none changes has no clock.
         let changing = self.walls.changes(f64::NEG_INFINITY).is_some();
         if changing { Clocks::asked(self, Event::Change) } else { Clocks::none() }
     }

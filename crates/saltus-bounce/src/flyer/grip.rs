@@ -156,7 +156,7 @@ impl<const N: usize, S: Turning> Grip<N, S> for Keeps {
 pub struct Block(f64);
 
 impl Block {
-    /// With Coulomb's `coefficient` μ.
+    /// A grip with Coulomb's `coefficient` μ.
     ///
     /// # Errors
     /// [`ParameterError`] unless μ is finite and not negative.
@@ -197,7 +197,7 @@ impl<const N: usize> Grip<N, ()> for Block {
 pub struct Rolls {
     /// The ball.
     pub ball: Sphere,
-    /// Its friction on every wall.
+    /// The friction of the ball on every wall.
     pub friction: Friction,
 }
 

@@ -39,9 +39,9 @@ pub use stance::{Event, Stance};
 /// In space a slip that begins slowly is along the push at first ([`Stance::Yield`]), for its
 /// direction would be stiff.
 ///
-/// Every mode is entered and left because of a force; no speed is called slow. Under uniform
+/// Every mode is entered and left because of a force; there is no threshold of speed. Under uniform
 /// effects ([`Effect::uniform`]) flights, and contacts with planes at rest, are exact parabolas,
-/// and rides on floors that move are known by formula: no step is taken. Else they are stepped.
+/// and rides on floors that move have a formula: no step is taken. Else they are stepped.
 ///
 /// Where an effect has a kink that flights pass through ([`Effect::kink`]; quadratic drag, v|v|,
 /// has one at v = 0 in a single coordinate), a flight has a second edge, [`Event::Turn`], so that

@@ -17,11 +17,11 @@ use crate::effects::{Motion, Spin};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving<const N: usize, S = ()> {
-    /// In m.
+    /// The place in m.
     pub position: SVector<f64, N>,
-    /// In m/s.
+    /// The velocity in m/s.
     pub velocity: SVector<f64, N>,
-    /// In rad/s.
+    /// The spin in rad/s.
     pub spin: S,
 }
 
@@ -32,7 +32,7 @@ impl<const N: usize> Moving<N> {
         Self { position, velocity, spin: () }
     }
 
-    /// The same with `spin` in rad/s.
+    /// This motion with `spin` in rad/s.
     #[must_use]
     pub const fn spinning<S: Turning>(self, spin: S) -> Moving<N, S> {
         Moving { position: self.position, velocity: self.velocity, spin }

@@ -4,15 +4,15 @@ use nalgebra::SVector;
 
 use crate::walls::Face;
 
-/// What the ball is doing.
+/// The mode of the ball: flight, or a kind of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stance<const N: usize> {
-    /// In the air.
+    /// Flight.
     Flight {
-        /// In which cell.
+        /// The cell in which the ball flies.
         cell: usize,
     },
-    /// In contact with a face, and slipping on it or free to.
+    /// Contact with a face, with slip or free to slip.
     Slide {
         /// The face.
         face: Face,
@@ -20,22 +20,22 @@ pub enum Stance<const N: usize> {
         /// -n₀). Zero where there is no friction.
         along: SVector<f64, N>,
     },
-    /// In space, in contact with a face on which friction has just given way: the slip is along the
+    /// Contact with a face, in space, on which friction has just given way: the slip is along the
     /// push, for it has no direction of its own yet.
     Yield {
         /// The face.
         face: Face,
         /// The push when friction gave way, the change of slip without friction, in m/s².
         push: SVector<f64, N>,
-        /// When it gave way, in s.
+        /// The time when friction gave way, in s.
         since: f64,
     },
-    /// In contact with a face without slip: it lies, is carried, or rolls.
+    /// Contact with a face without slip: the ball lies, is carried, or rolls.
     Hold {
         /// The face.
         face: Face,
     },
-    /// In contact with several planes at rest.
+    /// Contact with several planes at rest.
     Corner {
         /// The cell.
         cell: usize,
@@ -45,7 +45,7 @@ pub enum Stance<const N: usize> {
 }
 
 impl<const N: usize> Stance<N> {
-    /// In the air of a space that is not cut into cells.
+    /// Flight in a space that is not cut into cells.
     pub const FLIGHT: Self = Self::Flight { cell: 0 };
 
     /// The cell.
@@ -68,7 +68,7 @@ impl<const N: usize> Stance<N> {
     }
 }
 
-/// What ends a stance.
+/// The event that ends a stance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<const N: usize> {
     /// The ball meets a face: an impact, or the passage into the next cell.
@@ -79,7 +79,7 @@ pub enum Event<const N: usize> {
     Stop {
         /// The face.
         face: Face,
-        /// As in [`Stance::Slide`], or the push of [`Stance::Yield`].
+        /// The direction of [`Stance::Slide`], or the push of [`Stance::Yield`].
         along: SVector<f64, N>,
     },
     /// Friction no longer holds it.
@@ -88,9 +88,9 @@ pub enum Event<const N: usize> {
     Veer {
         /// The face.
         face: Face,
-        /// As in [`Stance::Yield`].
+        /// The push of [`Stance::Yield`].
         push: SVector<f64, N>,
-        /// As in [`Stance::Yield`].
+        /// The time of [`Stance::Yield`].
         since: f64,
     },
     /// A wall changes its motion, at a time of its schedule.

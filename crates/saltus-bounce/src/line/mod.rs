@@ -64,7 +64,7 @@ pub struct Line<const N: usize, R = Cor> {
     wall: Option<(f64, R)>,
 }
 
-/// How many balls lie still on the floor, one upon the other; the mode.
+/// The number of balls that lie still on the floor, one upon the other; the mode.
 ///
 /// It also remembers how fast the balls have been; two modes are equal if as many balls lie.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ pub struct Lying {
 }
 
 impl Lying {
-    /// Nothing lies.
+    /// The mode in which no ball lies.
     pub const NONE: Self = Self::balls(0);
 
     /// The first `count` balls lie.
@@ -83,7 +83,7 @@ impl Lying {
         Self { balls: count, fastest: 0.0 }
     }
 
-    /// How many balls lie.
+    /// The number of balls that lie.
     #[must_use]
     pub const fn count(self) -> usize {
         self.balls
@@ -113,13 +113,13 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         Ok(Self { masses, laws: [restitution; N], gravity: 0.0, floor: false, wall: None })
     }
 
-    /// With a floor at 0, below the first ball.
+    /// This line with a floor at 0, below the first ball.
     #[must_use]
     pub fn on_floor(self) -> Self {
         Self { floor: true, ..self }
     }
 
-    /// With a gravity in m/s² towards the floor.
+    /// This line under a gravity in m/s² towards the floor.
     ///
     /// # Errors
     /// [`ParameterError`] unless it is finite and not negative.
@@ -127,8 +127,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         Ok(Self { gravity: not_negative("a gravity in m/s^2", gravity)?, ..self })
     }
 
-    /// With a wall beyond the last ball, which meets it by `restitution` where the gaps add up to
-    /// `length` in m.
+    /// This line with a wall beyond the last ball, which meets it by `restitution` where the gaps
+    /// add up to `length` in m.
     ///
     /// # Errors
     /// [`ParameterError`] unless the length is finite and positive.
@@ -136,8 +136,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         Ok(Self { wall: Some((positive("a length in m", length)?, restitution)), ..self })
     }
 
-    /// With a law of its own for one contact: 0 is the floor's, i that of the balls i - 1 and i.
-    /// Other numbers change nothing.
+    /// This line with another law for one contact: 0 is the floor's, i that of the balls i - 1 and
+    /// i. Other numbers change nothing.
     #[must_use]
     pub fn contact(mut self, contact: usize, restitution: R) -> Self {
         if let Some(law) = self.laws.get_mut(contact) {

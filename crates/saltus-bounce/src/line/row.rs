@@ -23,7 +23,7 @@ pub struct Row<const N: usize> {
 }
 
 impl<const N: usize> Row<N> {
-    /// From positions of points in rising order.
+    /// The state of points at these positions, in rising order.
     #[must_use]
     pub fn at(positions: [f64; N], velocities: [f64; N]) -> Self {
         let gap = |i: usize| if i == 0 { positions[0] } else { positions[i] - positions[i - 1] };

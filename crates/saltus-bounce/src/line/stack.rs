@@ -46,8 +46,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
     }
 
     /// Balls that touch, from contact `first` on, and whose relative speed is rounding move as one:
-    /// left alone they would hand that rounding to and fro for ever, before a neighbour's impact is
-    /// seen.
+    /// left alone they would exchange that rounding without end, before a neighbour's impact is
+    /// found.
     fn in_touch(&self, lying: Lying, first: usize, rounding: f64, x: Row<N>) -> (Lying, Row<N>) {
         let slow = |i: usize| i >= first && x.gaps[i] == 0.0 && approach(i, &x).abs() <= rounding;
         self.merged(lying, &std::array::from_fn(slow), &x)

@@ -1,8 +1,8 @@
-//! What is known of real balls on real floors: coefficients of restitution with their spread, their
+//! Presets of real balls on real floors: coefficients of restitution with their spread, their
 //! speeds and their sources.
 //!
 //! A preset is a range, never a single number: a rule of a sport bounds it, a measurement scatters.
-//! A pair of which nothing is known is refused, not guessed.
+//! A pair without a preset is refused, not guessed.
 
 mod table;
 
@@ -11,7 +11,7 @@ use std::fmt;
 use crate::restitution::{Cor, CorError};
 use table::{Evidence, PRESETS};
 
-/// What is known of one ball on one floor.
+/// The coefficient of restitution of one ball on one floor, measured or by a rule of a sport.
 ///
 /// ```
 /// use saltus_bounce::materials;
@@ -55,8 +55,8 @@ impl Preset {
         }
     }
 
-    /// The slowest and the fastest impact in m/s at which this is known; `None` if the source does
-    /// not say. A rule that gives a height h of drop is known at √(2gh), air left out.
+    /// The slowest and the fastest impact of the measurement in m/s; `None` if the source gives
+    /// none. Of a rule with a drop of height h it is √(2gh), without air.
     #[must_use]
     pub fn speeds(&self) -> Option<[f64; 2]> {
         match self.evidence {
@@ -65,13 +65,13 @@ impl Preset {
         }
     }
 
-    /// Under which conditions.
+    /// The conditions under which the range holds.
     #[must_use]
     pub const fn note(&self) -> &'static str {
         self.note
     }
 
-    /// Who says so.
+    /// The source of the range.
     #[must_use]
     pub const fn source(&self) -> &'static str {
         self.source
@@ -96,13 +96,13 @@ impl fmt::Display for Preset {
     }
 }
 
-/// All that is known.
+/// All presets.
 #[must_use]
 pub const fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-/// What is known of `ball` on `floor`, named in letters of any case.
+/// The preset of `ball` on `floor`, named in letters of any case.
 ///
 /// # Errors
 /// [`UnknownPair`], with the nearest pairs that are known.
@@ -121,7 +121,7 @@ pub fn find(ball: &str, floor: &str) -> Result<&'static Preset, UnknownPair> {
     })
 }
 
-/// A ball and a floor of which nothing is known here.
+/// A pair of ball and floor without a preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnknownPair {
     ball: String,
@@ -130,7 +130,7 @@ pub struct UnknownPair {
 }
 
 impl UnknownPair {
-    /// The known pairs most like what was asked for, the likest first.
+    /// The pairs with presets that are most like the one asked for, the likest first.
     #[must_use]
     pub fn near(&self) -> &[&'static Preset] {
         &self.near

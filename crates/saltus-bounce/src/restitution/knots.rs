@@ -80,16 +80,16 @@ pub enum KnotsError {
     Count(usize),
     /// A speed that is negative or not finite.
     Speed {
-        /// Which knot, counted from 1.
+        /// The number of the knot, counted from 1.
         knot: usize,
-        /// Its speed in m/s.
+        /// The speed of this knot in m/s.
         speed: f64,
     },
     /// A speed that is not above the one before.
     Order {
-        /// Which knot, counted from 1.
+        /// The number of the knot, counted from 1.
         knot: usize,
-        /// Its speed in m/s.
+        /// The speed of this knot in m/s.
         speed: f64,
         /// The speed of the knot before in m/s.
         last: f64,

@@ -23,7 +23,7 @@ pub struct Plastic {
 }
 
 impl Plastic {
-    /// With e = 1 up to `yield_speed` in m/s.
+    /// Plastic impact with e = 1 up to `yield_speed` in m/s.
     ///
     /// # Errors
     /// [`ParameterError`] unless `yield_speed` is finite and positive.

@@ -35,8 +35,8 @@ pub struct Viscoelastic {
 const PADE: [f64; 4] = [0.501_086, 1.153_45, 0.577_977, 0.532_178];
 
 impl Viscoelastic {
-    /// From the dissipation time A in s, the Hertz stiffness k in N/m^(3/2) and the effective mass
-    /// m in kg.
+    /// Viscoelastic impact by the dissipation time A in s, the Hertz stiffness k in N/m^(3/2) and
+    /// the effective mass m in kg.
     ///
     /// # Errors
     /// [`ParameterError`] unless A is finite and not negative, k and m finite and positive.

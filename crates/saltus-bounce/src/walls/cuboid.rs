@@ -23,7 +23,7 @@ pub struct Cuboid<const N: usize> {
 }
 
 impl<const N: usize> Cuboid<N> {
-    /// Between the corner `low` and the corner `high`, in m.
+    /// The box between the corner `low` and the corner `high`, in m.
     ///
     /// # Errors
     /// [`ParameterError`] unless every coordinate is finite and that of `high` above that of `low`.

@@ -24,8 +24,8 @@ pub struct Ground<F, D, C> {
 }
 
 impl<F: Fn(f64) -> f64, D: Fn(f64) -> f64, C: Fn(f64) -> f64> Ground<F, D, C> {
-    /// From the `height` f(x) in m, its derivative `slope` f', and the second one `curve` f'' in
-    /// 1/m.
+    /// The ground of the `height` f(x) in m, its derivative `slope` f', and the second one `curve`
+    /// f'' in 1/m.
     #[must_use]
     pub const fn new(height: F, slope: D, curve: C) -> Self {
         Self { height, slope, curve }
@@ -70,7 +70,7 @@ pub struct Round<const N: usize> {
 }
 
 impl<const N: usize> Round<N> {
-    /// What lies within `radius` of `centre`, in m, is solid.
+    /// The outside of a round obstacle: all within `radius` of `centre`, in m, is solid.
     ///
     /// # Errors
     /// [`ParameterError`] unless the centre is finite and the radius finite and positive.
@@ -81,7 +81,7 @@ impl<const N: usize> Round<N> {
         Ok(Self { centre, radius: positive("a radius in m", radius)?, sign: 1.0 })
     }
 
-    /// What lies beyond `radius` from `centre`, in m, is solid.
+    /// The inside of a round bowl: all beyond `radius` from `centre`, in m, is solid.
     ///
     /// # Errors
     /// [`ParameterError`] unless the centre is finite and the radius finite and positive.

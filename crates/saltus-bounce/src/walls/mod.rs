@@ -23,7 +23,7 @@ pub use moving::{Lift, Shaken, Table};
 pub use plane::Plane;
 pub use stairs::Stairs;
 
-/// One face of one cell.
+/// A face of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Face {
     /// The cell, below [`Walls::cells`].

@@ -74,7 +74,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// With the amplitude A in m and the angular frequency ω in rad/s; φ = 0, m = 0.
+    /// A vibration of the amplitude A in m and the angular frequency ω in rad/s; φ = 0, m = 0.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite and not negative.
@@ -87,7 +87,7 @@ impl Table {
         })
     }
 
-    /// The same with the phase φ in rad at t = 0, about the height m = `mean` in m.
+    /// This vibration with the phase φ in rad at t = 0, about the height m = `mean` in m.
     ///
     /// # Errors
     /// [`ParameterError`] unless both are finite.
@@ -123,7 +123,8 @@ pub struct Shaken<H, V, A> {
 }
 
 impl<H: Fn(f64) -> f64, V: Fn(f64) -> f64, A: Fn(f64) -> f64> Shaken<H, V, A> {
-    /// From `height` in m, its derivative `velocity` and the second one `acceleration`, all smooth.
+    /// A floor of the `height` in m, its derivative `velocity` and the second one `acceleration`,
+    /// all smooth.
     #[must_use]
     pub const fn new(height: H, velocity: V, acceleration: A) -> Self {
         Self { height, velocity, acceleration }
@@ -166,8 +167,8 @@ pub struct Lift {
 }
 
 impl Lift {
-    /// At `height` in m at the first time, moving at `velocity` in m/s until then; from each time
-    /// in s on with the acceleration beside it, in m/s².
+    /// A floor at `height` in m at the first time, moving at `velocity` in m/s until then; from
+    /// each time in s on with the acceleration beside it, in m/s².
     ///
     /// # Errors
     /// [`ParameterError`] unless all numbers are finite and the times rise.

@@ -31,8 +31,8 @@ impl<const N: usize> Plane<N> {
         Self::wall(up, -height)
     }
 
-    /// All points p with n·p + `offset` = 0; n is `normal`, towards the ball's side and of any
-    /// length.
+    /// The plane of all points p with n·p + `offset` = 0; n is `normal`, towards the ball's side
+    /// and of any length.
     ///
     /// # Errors
     /// [`ParameterError`] unless every number is finite and the normal is not zero.

@@ -1,67 +1,67 @@
-//! What is shown and is not the motion of the scene.
+//! Departures of what is shown from the motion of the scene.
 
 use std::fmt;
 
-/// How what is shown departs from the motion of the scene; lengths in m.
+/// A departure of what is shown from the motion of the scene; lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Departure {
-    /// One hop alone, as a loop.
+    /// A single hop is shown, as a loop.
     Loop {
-        /// Counted from 1.
+        /// The number of the hop, counted from 1.
         hop: u32,
     },
     /// Hops shorter than a frame are left out.
     Cut {
-        /// How high they are in m, at most.
+        /// The greatest height of such a hop, in m.
         height: f64,
-        /// How far heights are from the run for it, in m, at most: the ball lies where it would
-        /// hop, or a floor would carry it.
+        /// The greatest difference of heights from the run, in m: the ball lies where it would hop,
+        /// or a floor would carry it.
         off: f64,
     },
-    /// Contacts are on whole frames and gravity is kept: tops move.
+    /// Contacts are moved to whole frames and gravity is kept: tops move.
     SnappedByGravity {
-        /// By this much in m, at most.
+        /// The largest change of a top, in m.
         tops: f64,
     },
-    /// Contacts are on whole frames and heights are kept: the end moves.
+    /// Contacts are moved to whole frames and heights are kept: the end moves.
     SnappedByHeights {
-        /// By this much in s.
+        /// The change of the end, in s.
         end: f64,
     },
     /// The ball is squashed.
     Squashed {
-        /// To this part of its height.
+        /// The least height of the ball, as a part of its own.
         to: f64,
-        /// How many times as far as the contact's law has it; `None` where no law says how far.
+        /// The squash as a multiple of that by the contact's law; `None` where no law gives one.
         of_law: Option<f64>,
     },
     /// The ball is stretched by hand.
     Stretched {
-        /// To this part of its length.
+        /// The greatest length of the ball, as a multiple of its own.
         to: f64,
     },
-    /// Contacts are shorter than a frame, so that their squash may not be seen.
+    /// Contacts are shorter than a frame, so that their squash may fall between frames.
     Short {
-        /// How many.
+        /// The number of such contacts.
         contacts: usize,
     },
     /// Contacts are held.
     Held {
-        /// For so many.
+        /// The number of frames, or of drawings.
         count: u32,
-        /// Drawings, each of two frames, instead of frames.
+        /// Whether `count` counts drawings, each of two frames.
         drawings: bool,
-        /// By how much the end is later, in s.
+        /// The delay of the end, in s.
         later: f64,
     },
     /// A floor moves, and is drawn where it is at the start.
     StillFloor,
     /// A loop begins anew.
     Again {
-        /// At this frame.
+        /// The frame after the last of the loop.
         last: f64,
-        /// Which is this one.
+        /// The first frame of the loop, which it equals.
         first: i32,
     },
 }
@@ -130,7 +130,7 @@ pub fn at_most(metres: f64) -> String {
     in_units(metres, tiny, rounded_up)
 }
 
-/// A length that a person can picture.
+/// A length in a unit of its size, such as "2.12 mm".
 #[must_use]
 pub fn length(metres: f64) -> String {
     in_units(metres, |mm| format!("{mm:.1e}"), |number, digits| format!("{number:.digits$}"))

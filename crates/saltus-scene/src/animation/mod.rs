@@ -1,5 +1,4 @@
-//! A run as the motion that is shown: cut, snapped and held as asked for, with its squash and
-//! stretch.
+//! The motion that is shown of a run: cut, snapped and held as asked for, with squash and stretch.
 
 mod departure;
 
@@ -11,20 +10,20 @@ use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, 
 use crate::plan::{Impact, Record, Segment, Sides, With};
 use crate::{Error, Scene};
 
-/// Frames for which a squash is seen where a contact is an instant and no hold is asked for: the
-/// contact, the squash, and off again.
+/// The number of frames for which a squash is shown where a contact is an instant and no hold is
+/// asked for: the contact, the squash, and off again.
 const HELD: u32 = 2;
 
-/// How far a ball is squashed.
+/// The amount of squash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squash {
-    /// As the law of a contact that takes time has it.
+    /// The squash by the law of a contact that takes time.
     Law,
-    /// By a part of its height, from 0 to 1, in the fastest contact.
+    /// A part of the ball's height, from 0 to 1, in the fastest contact.
     Part(f64),
 }
 
-/// How a run is shown.
+/// Settings by which a run is shown.
 ///
 /// ```
 /// use saltus_motion::{Format, Frames};
@@ -39,20 +38,20 @@ pub enum Squash {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Staging {
-    /// How frames are counted.
+    /// The count of frames.
     pub frames: Frames,
     /// Whether contacts move to whole frames, and what stays then.
     pub snap: Option<Snap>,
-    /// How far the ball is squashed in contacts.
+    /// The squash of the ball in contacts; `None` for a round ball.
     pub squash: Option<Squash>,
-    /// By which part the ball is longer at the greatest speed, along its velocity; 0 for not at
-    /// all.
+    /// The part by which the ball is longer at the greatest speed, along its velocity; 0 for no
+    /// stretch.
     pub stretch: f64,
-    /// Squash and stretch so many times as much.
+    /// The factor of squash and stretch.
     pub exaggerate: f64,
-    /// For how many frames each contact is held at least; what comes after is later.
+    /// The number of frames for which each contact is held at least; what comes after is later.
     pub hold: Option<u32>,
-    /// Only this hop, counted from 1, to be played for ever.
+    /// The hop that is shown alone, as a loop, counted from 1; `None` for the whole run.
     pub looped: Option<u32>,
     /// Whether left and right are turned around.
     pub mirror: bool,
@@ -60,17 +59,17 @@ pub struct Staging {
     pub apexes: bool,
 }
 
-/// What is shown of a run.
+/// The motion that is shown of a run, and how it departs from the run.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Stage {
     /// The motion, cut, snapped and held.
     pub motion: Motion,
-    /// How frames are counted.
+    /// The count of frames.
     pub frames: Frames,
     /// Squash and stretch.
     pub shape: saltus_motion::Shape,
-    /// How it departs from the run.
+    /// The departures from the run.
     pub departures: Vec<Departure>,
     /// The radius in m that balls without one are drawn with, where there are any.
     pub drawn: Option<f64>,
@@ -81,8 +80,8 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// What is shown as a file; where more than gravity acts, keys are within `tolerance` in m of
-    /// the motion.
+    /// The file of a format; where more than gravity acts, keys are within `tolerance` in m of the
+    /// motion.
     ///
     /// # Errors
     /// [`Error`] where the format cannot hold it.
@@ -93,9 +92,9 @@ impl Stage {
             .map_err(Error::new)
     }
 
-    /// How far the heights of a file are from those of the run, in m, at most: what the file is off
-    /// by, and what the hops left out are. Where contacts are moved in time, by snapping, by
-    /// holding or to a loop, it is how far they are from the motion as it is shown.
+    /// The greatest difference of the heights of a file from those of the run, in m: the error of
+    /// the file, and that of the hops left out. Where contacts are moved in time, by snapping, by
+    /// holding or to a loop, it is the difference from the motion as it is shown.
     #[must_use]
     pub fn height_error(&self, file: &File) -> f64 {
         let moved = |departure: &Departure| {
@@ -110,8 +109,7 @@ impl Stage {
         file.miss.height + if moved { 0.0 } else { cut.fold(0.0, f64::max) }
     }
 
-    /// How exact a file is, and how it departs from the run, in a line: figures are bounds, rounded
-    /// upwards.
+    /// A line about a file: its error and its departures from the run, as bounds, rounded upwards.
     #[must_use]
     pub fn says(&self, file: &File) -> String {
         let Self { motion, frames, shape, departures, .. } = self;
@@ -141,7 +139,7 @@ impl Stage {
 const SUNK: f64 = 1e-5;
 
 impl Staging {
-    /// As the run is: no snapping, a round ball, every contact as long as it lasts.
+    /// Settings that change nothing: no snapping, a round ball, every contact as long as it lasts.
     #[must_use]
     pub const fn new(frames: Frames) -> Self {
         Self {
@@ -166,7 +164,7 @@ impl Staging {
         scene.run.until.map_or(Ok(()), |until| self.frames.holds(until)).map_err(Error::new)
     }
 
-    /// A run as it is to be shown.
+    /// The motion that is shown of a run.
     ///
     /// # Errors
     /// [`Error`] where there is no such hop, contacts cannot move to frames, or no law says how far

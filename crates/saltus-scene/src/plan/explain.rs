@@ -41,7 +41,7 @@ const DRAG_COEFFICIENT: f64 = 0.47;
 const TRIED_FRICTION: f64 = 0.3;
 
 impl Effect {
-    /// All of them.
+    /// All effects.
     pub const ALL: [Self; 10] = [
         Self::Gravity,
         Self::LinearDrag,
@@ -55,7 +55,7 @@ impl Effect {
         Self::Deformation,
     ];
 
-    /// Its name.
+    /// The name of the effect.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -232,7 +232,7 @@ impl Scene {
     }
 }
 
-/// How a mode is advanced.
+/// The method by which a mode is advanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Advance {
@@ -240,11 +240,11 @@ pub enum Advance {
     Exact,
     /// A formula gives the motion: no step.
     Formula,
-    /// By Taylor series, of an order that the tolerance asks for.
+    /// Taylor series, of an order by the tolerance.
     Series,
-    /// By the steps of this explicit method.
+    /// Steps of this explicit method.
     Explicit(&'static str),
-    /// By the steps of this method for stiff flows.
+    /// Steps of this method for stiff flows.
     Stiff(&'static str),
 }
 
@@ -268,21 +268,21 @@ impl fmt::Display for Advance {
     }
 }
 
-/// How a plan advances one mode.
+/// A mode of a plan and its method.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ModePlan {
     /// The mode.
     pub name: &'static str,
-    /// How it is advanced.
+    /// The method by which the mode is advanced.
     pub advance: Advance,
-    /// Why so.
+    /// The reason of the choice.
     pub why: &'static str,
     /// The edges that are watched.
     pub edges: Vec<String>,
 }
 
-/// What a plan says of itself; written with `{}` it is a page for people.
+/// The explanation of a plan; written with `{}` it is a page for people.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Explanation {
@@ -290,15 +290,15 @@ pub struct Explanation {
     pub model: Model,
     /// The effects the scene names, with their numbers.
     pub named: Vec<String>,
-    /// Those it does not name, and that cost nothing.
+    /// The effects that the scene does not name, and that cost nothing.
     pub left_out: Vec<Effect>,
-    /// What the state holds, one entry for each coordinate.
+    /// The coordinates of the state, one entry for each.
     pub coordinates: Vec<String>,
-    /// How each mode is advanced.
+    /// The method by which each mode is advanced.
     pub modes: Vec<ModePlan>,
     /// The relative tolerance of steps; `None` where no step is taken.
     pub tolerance: Option<f64>,
-    /// What the model leaves out that the scene may have.
+    /// The approximations of the model that matter in this scene.
     pub notes: Vec<String>,
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 use crate::SceneError;
 use crate::source::Source;
 
-/// Why a scene cannot be run, where in it that is said, and what to do.
+/// An error of planning: why a scene cannot be run, the place in the scene, and what to do.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -40,8 +40,7 @@ impl PlanError {
         self
     }
 
-    /// What is wrong, with line and column, where the scene was read from a text that names the
-    /// place.
+    /// The message with line and column, where the scene was read from a text that names the place.
     #[must_use]
     pub fn in_text(&self) -> Option<&SceneError> {
         self.found.as_deref()
@@ -65,7 +64,7 @@ impl fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-/// Why a run failed.
+/// An error of a run: the reason why it failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunError(String);
 

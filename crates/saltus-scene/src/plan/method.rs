@@ -8,22 +8,22 @@ use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
 
 use crate::Stepper;
 
-/// How a run is made.
+/// A way to run a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Way {
-    /// Every flight by formula.
+    /// Formulas for every flight.
     Formulas,
-    /// By a stepper to a relative tolerance.
+    /// Steps to a relative tolerance.
     Steps {
         /// The stepper.
         stepper: Stepper,
         /// The tolerance.
         tolerance: f64,
     },
-    /// Frame by frame, contacts dealt with where frames end: as game loops do.
+    /// Frame by frame, with contacts at the ends of frames, as game loops do.
     Frames {
-        /// In frames per second.
+        /// The rate in frames per second.
         rate: f64,
     },
 }

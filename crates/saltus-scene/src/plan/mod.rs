@@ -68,7 +68,7 @@ pub enum Model {
 }
 
 impl Model {
-    /// Its name.
+    /// The name of the model.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -127,7 +127,7 @@ impl fmt::Debug for Plan {
 }
 
 impl Plan {
-    /// What was chosen, and why.
+    /// The explanation of the plan: what was chosen, and why.
     #[must_use]
     pub const fn explain(&self) -> &Explanation {
         &self.explanation
@@ -155,7 +155,7 @@ impl Plan {
         self
     }
 
-    /// Runs it in this way, instead of as it was planned.
+    /// The plan with another way to run it.
     pub(super) fn by(mut self, way: Way) -> Self {
         match way {
             Way::Formulas => {}
@@ -174,7 +174,7 @@ impl Plan {
         self.options.solved
     }
 
-    /// The stepper it would use where it has to.
+    /// The stepper of the plan where one is needed.
     pub(super) const fn stepper(&self) -> Stepper {
         self.options.method.0
     }
@@ -187,7 +187,8 @@ impl Plan {
         self.run_while(&mut || ControlFlow::Continue(()))
     }
 
-    /// The same; `ask` is called between steps and jumps, and `Break` ends the run.
+    /// Runs from the scene's start, as [`run`](Self::run); `ask` is called between steps and jumps,
+    /// and `Break` ends the run.
     ///
     /// # Errors
     /// As [`run`](Self::run), and where `ask` ended it.
@@ -205,14 +206,14 @@ impl Plan {
         Ok(Record { run, scene: Arc::clone(&self.scene), model: self.explanation.model, until, end, rest })
     }
 
-    /// Runs from the scene's start, and keeps what came of it only: many times faster than
+    /// Runs from the scene's start, and keeps the outcome only: many times faster than
     /// [`run`](Self::run) where a formula solves the motion.
     ///
     /// # Errors
     /// As [`run`](Self::run).
     pub fn outcome(&self) -> Result<Outcome, RunError> {
         match self.explanation.model {
-            // What a contact that takes time comes to is seen along it only.
+            // Durations and forces of contacts are taken from the recorded motion.
             Model::Compliant => Ok(Outcome::of(&self.run()?)),
             _ => self.runner.outcome(&self.options),
         }

@@ -1,4 +1,4 @@
-//! What comes of a run whose motion is not kept.
+//! The outcome of a run whose motion is not kept.
 
 use std::ops::ControlFlow;
 
@@ -7,7 +7,7 @@ use saltus::{Automaton, EndingOf, JumpOf, Observer, Piece};
 use super::record::{Apex, Cost, End, Moment, Record, Tops};
 use super::view::{SceneView, impact, moment, segment};
 
-/// What came of a run: what a table of many runs wants to know of each.
+/// The outcome of a run: the results that a table of many runs has of each.
 ///
 /// ```
 /// use saltus_scene::Scene;
@@ -21,28 +21,28 @@ use super::view::{SceneView, impact, moment, segment};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// How many impacts there were.
+    /// The number of impacts.
     pub impacts: usize,
-    /// When the first began, in s.
+    /// The time of the first impact, in s.
     pub first_impact: Option<f64>,
-    /// When the last began, in s.
+    /// The time of the last impact, in s.
     pub last_impact: Option<f64>,
     /// The first apex of the first ball after its first impact.
     pub first_apex: Option<Apex>,
-    /// From when on everything was at rest, in s, if it was.
+    /// The time from which everything is at rest, in s, if it is.
     pub rest: Option<f64>,
-    /// Why the run ended.
+    /// The reason of the end.
     pub end: End,
     /// The time reached, in s.
     pub until: f64,
-    /// Each ball then.
+    /// Each ball at the end.
     pub balls: Vec<Moment>,
-    /// What the run cost.
+    /// The cost of the run.
     pub cost: Cost,
 }
 
 impl Outcome {
-    /// What came of a run that was recorded.
+    /// The outcome of a recorded run.
     pub(crate) fn of(record: &Record) -> Self {
         let impacts = record.impacts();
         let first = impacts.iter().find(|impact| impact.ball == 0);

@@ -14,16 +14,16 @@ use crate::Scene;
 /// A ball at a moment. Vectors are (x, y, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Of its lowest point, in m; the centre is a radius above.
+    /// The place of the lowest point, in m; the centre is a radius above.
     pub position: Vector3<f64>,
-    /// In m/s.
+    /// The velocity in m/s.
     pub velocity: Vector3<f64>,
-    /// In rad/s; zero where the scene carries none.
+    /// The spin in rad/s; zero where the scene has none.
     pub spin: Vector3<f64>,
 }
 
 impl Moment {
-    /// At the origin, at rest.
+    /// A ball at rest at the origin.
     pub const ZERO: Self = {
         let zero = Vector3::new(0.0, 0.0, 0.0);
         Self { position: zero, velocity: zero, spin: zero }
@@ -59,11 +59,11 @@ impl Mul<f64> for Moment {
 /// exactly, or a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// When it starts, in s.
+    /// The start in s.
     pub start: f64,
-    /// How long it lasts, in s.
+    /// The duration in s.
     pub span: f64,
-    /// What the ball is doing.
+    /// The name of the ball's mode.
     pub mode: &'static str,
     /// Whether it is in the air.
     pub flight: bool,
@@ -78,14 +78,14 @@ impl Segment {
         self.coefficients.iter().rev().fold(Moment::ZERO, |sum, c| sum * s + *c)
     }
 
-    /// When it ends, in s.
+    /// The end in s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.start + self.span
     }
 }
 
-/// What a ball meets.
+/// The other side of an impact: a floor, or another ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum With {
@@ -99,11 +99,11 @@ pub enum With {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Impact {
-    /// When it begins, in s.
+    /// The time of first touch, in s.
     pub t: f64,
     /// The ball, counted from 0.
     pub ball: usize,
-    /// What it meets.
+    /// The other side of the impact.
     pub with: With,
     /// The speed of approach along the normal just before, in m/s.
     pub approach: f64,
@@ -114,8 +114,8 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// The effective coefficient of restitution: speed after over speed before; `None` where either
-    /// is not known.
+    /// The effective coefficient of restitution: speed after over speed before; `None` where the
+    /// record has not both.
     #[must_use]
     pub fn cor(&self) -> Option<f64> {
         self.rebound.filter(|_| self.approach > 0.0).map(|rebound| rebound / self.approach)
@@ -125,7 +125,7 @@ impl Impact {
 /// A contact that takes time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
-    /// From touch to lift-off, in s; `None` if the ball does not leave.
+    /// The time from touch to lift-off, in s; `None` if the ball does not leave.
     pub duration: Option<f64>,
     /// The greatest force, in N.
     pub force: f64,
@@ -137,13 +137,13 @@ pub struct Press {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
-    /// When, in s.
+    /// The time in s.
     pub t: f64,
-    /// How many jumps there have been, this one included.
+    /// The number of jumps up to this one, which is counted.
     pub j: usize,
-    /// What it is: "floor", "wall", "ball", "zeno", "apex", ...
+    /// The edge: "floor", "wall", "ball", "zeno", "apex", ...
     pub edge: &'static str,
-    /// Both sides of it, of each ball that takes part.
+    /// The states before and after, of each ball that takes part.
     pub sides: Vec<Sides>,
 }
 
@@ -152,11 +152,11 @@ pub struct Event {
 pub struct Sides {
     /// The ball, counted from 0.
     pub ball: usize,
-    /// What it was doing.
+    /// The name of the mode before.
     pub from: &'static str,
     /// Just before.
     pub before: Moment,
-    /// What it does then.
+    /// The name of the mode after.
     pub to: &'static str,
     /// Just after.
     pub after: Moment,
@@ -165,13 +165,13 @@ pub struct Sides {
 /// The top of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apex {
-    /// When, in s.
+    /// The time in s.
     pub t: f64,
     /// The height of the lowest point, in m.
     pub height: f64,
 }
 
-/// Why a run ended.
+/// The reason why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum End {
@@ -184,7 +184,7 @@ pub enum End {
     },
     /// Impacts accumulate at `limit` in s, and the model does not say what lies beyond.
     Zeno {
-        /// When.
+        /// The limit of the times of the jumps, in s.
         limit: f64,
     },
     /// The limit on steps was reached.
@@ -219,7 +219,7 @@ impl End {
         matches!(self, Self::Time)
     }
 
-    /// In one word.
+    /// The name of the ending, in one word.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -257,7 +257,7 @@ impl fmt::Display for End {
     }
 }
 
-/// What a run cost, in counts.
+/// The cost of a run, in counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Jumps.
@@ -333,7 +333,7 @@ impl Record {
         self.model
     }
 
-    /// How many balls there are.
+    /// The number of balls.
     #[must_use]
     pub fn balls(&self) -> usize {
         self.run.balls()
@@ -345,13 +345,13 @@ impl Record {
         self.until
     }
 
-    /// Why the run ended.
+    /// The reason why the run ended.
     #[must_use]
     pub const fn end(&self) -> End {
         self.end
     }
 
-    /// From when on everything is at rest, in s, if it is.
+    /// The time from which everything is at rest, in s, if it is.
     #[must_use]
     pub const fn rest(&self) -> Option<f64> {
         self.rest
@@ -369,7 +369,7 @@ impl Record {
         self.inside(ball, t).then(|| self.run.before(ball, t)).flatten()
     }
 
-    /// What a ball is doing at `t` in s, after any jump then: "flight", "rest", "slide", ...
+    /// The name of a ball's mode at `t` in s, after any jump then: "flight", "rest", "slide", ...
     #[must_use]
     pub fn mode(&self, ball: usize, t: f64) -> Option<&'static str> {
         self.inside(ball, t).then(|| self.run.at(ball, t)).flatten().map(|(mode, _)| mode)
@@ -416,13 +416,13 @@ impl Record {
         self.run.hysteresis(contact, count)
     }
 
-    /// Where a crossing may have been missed, in words; empty where none was.
+    /// The places where a crossing may have been missed, in words; empty where none was.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         self.run.doubts()
     }
 
-    /// What the run cost.
+    /// The cost of the run.
     #[must_use]
     pub fn cost(&self) -> Cost {
         self.run.cost()

@@ -128,7 +128,7 @@ pub(super) trait Runner: Send + Sync {
     fn coordinates(&self) -> usize;
 }
 
-/// A model, how its states, modes and jumps are seen in the scene, and where it starts.
+/// A model, its view in the scene, and its start.
 pub(super) struct BoundModel<A: Automaton, R> {
     pub(super) automaton: Arc<A>,
     pub(super) view: Arc<R>,

@@ -1,4 +1,4 @@
-//! How the states, modes and jumps of a model are seen in the scene.
+//! The view of a model in the scene: what its states, modes and jumps mean there.
 
 use nalgebra::Vector3;
 use saltus::step::Stepper;
@@ -30,7 +30,7 @@ pub(super) struct Collision {
     pub(super) speed: f64,
 }
 
-/// How the states, modes and jumps of a model are seen in the scene.
+/// The view of a model in the scene: what its states, modes and jumps mean there.
 pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     /// The stepper to compile the model for: the whole choice, or, where a formula solves every
     /// mode, one that is never asked.

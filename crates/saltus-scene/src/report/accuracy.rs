@@ -114,8 +114,8 @@ impl Row {
 }
 
 impl Accuracy {
-    /// All of it as JSON: every setting tried, the one to take for a `target`, and what each of the
-    /// effects in `toggles` changes; docs/trust/accuracy.md describes it.
+    /// The JSON of the comparison: every setting tried, the one to take for a `target`, and what
+    /// each of the effects in `toggles` changes; docs/trust/accuracy.md describes it.
     ///
     /// ```
     /// use saltus_scene::Scene;
@@ -130,7 +130,7 @@ impl Accuracy {
     /// ```
     ///
     /// # Errors
-    /// None that is known: every number in it has a JSON form.
+    /// None: every number of the comparison has a JSON form.
     pub fn json(&self, toggles: &[Toggle], target: Target) -> Result<String, Error> {
         let recommended = self.cheapest(target).map(|best| {
             let chosen = match best.way {

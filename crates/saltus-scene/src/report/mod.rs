@@ -16,12 +16,12 @@ pub use table::{Table, Values};
 /// The most samples that are taken: a frame each at 1000 frames per second for three hours.
 const MOST_SAMPLES: u32 = 10_000_000;
 
-/// At which times a motion is sampled, from 0 to the end of the run.
+/// The times at which a motion is sampled, from 0 to the end of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
-    /// Every so many seconds.
+    /// A step in s.
     Every(f64),
-    /// At k/rate for k = 0, 1, ..., so many times a second.
+    /// A rate in samples per second: the times k/rate for k = 0, 1, ...
     Rate(f64),
 }
 

@@ -14,23 +14,23 @@ pub struct Table {
     /// The names, with units: `time_s`, `jumps`, `ball` where there are several, `mode`, places,
     /// velocities and spins.
     pub headers: Vec<&'static str>,
-    /// One for each name, all of one length.
+    /// The columns, one for each name, all of one length.
     pub columns: Vec<Values>,
 }
 
 /// The values of one name, from row to row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// In SI units.
+    /// Numbers in SI units.
     Numbers(Vec<f64>),
-    /// Counted from 0.
+    /// Counts from 0.
     Counts(Vec<usize>),
     /// Names of modes.
     Words(Vec<&'static str>),
 }
 
 impl Table {
-    /// How many rows it has.
+    /// The number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {
         match self.columns.first() {
@@ -41,8 +41,8 @@ impl Table {
         }
     }
 
-    /// With commas between, the names first. Numbers are written so that they read back as the same
-    /// numbers.
+    /// The table as CSV, the names first. Each number has the shortest text that reads back as the
+    /// same number.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut csv = self.headers.join(",") + "\n";

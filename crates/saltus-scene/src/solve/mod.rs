@@ -73,7 +73,7 @@ pub fn solve(begin: Option<(&str, &[u8])>, free: &[&str], wishes: &[Wish]) -> Re
         }
     }
     let draft = Draft { file, freedoms, run: long_enough(wishes) };
-    // What is wrong with the scene to begin with is said, not searched around.
+    // An error of the scene to begin with is reported, not searched around.
     let start: Vec<f64> = draft.freedoms.iter().map(|freedom| freedom.start).collect();
     let first = draft.written(&start).map_err(Error::new)?;
     let first = Scene::parse_with(name, first.as_bytes(), draft.run).map_err(Error::new)?;
@@ -110,7 +110,7 @@ impl Solved {
         names.zip(self.found.numbers.iter().copied()).collect()
     }
 
-    /// What each wish came to, in s or m.
+    /// The value that each wish came to, in s or m.
     #[must_use]
     pub fn came(&self) -> Vec<f64> {
         self.wishes.iter().zip(&self.found.off).map(|(wish, off)| wish.asked + off * wish.within).collect()
@@ -122,7 +122,7 @@ impl Solved {
         self.found.meets()
     }
 
-    /// What was found, in lines for a person who counts frames by `clock`.
+    /// The result in lines, for a person who counts frames by `clock`.
     #[must_use]
     pub fn says(&self, clock: Clock) -> Vec<String> {
         let Self { draft, wishes, found, .. } = self;

@@ -5,7 +5,7 @@ use saltus_bounce::units::Quantity;
 use crate::Error;
 use crate::plan::Record;
 
-/// How frames stand for times.
+/// The relation of frames to times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// Frames per second.
@@ -14,21 +14,21 @@ pub struct Clock {
     pub first: i32,
 }
 
-/// What is wished for.
+/// The quantity that a wish is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum What {
-    /// When contact `n` begins, counted from 1.
+    /// The time of contact `n`, counted from 1.
     Touch(usize),
-    /// Where it is, sideways.
+    /// The place of contact `n`, sideways.
     Place(usize),
-    /// How high apex `n` is; 1 is the top before the first contact.
+    /// The height of apex `n`; 1 is the top before the first contact.
     Height(usize),
-    /// When apex `n` is.
+    /// The time of apex `n`.
     Top(usize),
-    /// How long it is from contact `n` to the next.
+    /// The time from contact `n` to the next.
     Hop(usize),
-    /// From when on everything is at rest.
+    /// The time from which everything is at rest.
     Rest,
 }
 
@@ -44,13 +44,13 @@ impl What {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Wish {
-    /// As it was written.
+    /// The text of the wish.
     pub text: String,
-    /// What of a run it is of.
+    /// The quantity.
     pub what: What,
-    /// What is asked for, in s or m.
+    /// The wanted value, in s or m.
     pub asked: f64,
-    /// How far off matters, in s or m.
+    /// The error that is allowed, in s or m.
     pub within: f64,
 }
 

@@ -10,8 +10,8 @@ use crate::{Error, SceneError};
 /// The most runs of one sweep: their table is some 15 GB, and takes one core hours to days.
 const MOST_RUNS: u64 = 100_000_000;
 
-/// What varies, and how: every value with every other, the last variation fastest, or values drawn
-/// at random.
+/// The keys that vary, and the order of their values: every value with every other, the last
+/// variation fastest, or values drawn at random.
 ///
 /// ```
 /// use saltus_scene::vary::Vary;
@@ -21,14 +21,14 @@ const MOST_RUNS: u64 = 100_000_000;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Vary {
-    /// A key and its values each.
+    /// The keys that vary, each with its values.
     pub variations: Vec<Variation>,
-    /// So many runs with values drawn evenly from the ranges, evenly in the logarithm for `log`,
-    /// instead of all.
+    /// The number of runs with values drawn evenly from the ranges, evenly in the logarithm for
+    /// `log`; `None` for every value with every other.
     pub random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
     pub seed: u64,
-    /// Run n takes value n of each instead: rows of a design.
+    /// Whether run n takes value n of each key: the rows of a design.
     pub rows: bool,
 }
 
@@ -61,7 +61,7 @@ impl Vary {
         }
     }
 
-    /// How many runs there are.
+    /// The number of runs.
     ///
     /// # Errors
     /// [`Error`] for a range without a count in a grid, and for more than a hundred million runs.
@@ -135,7 +135,7 @@ impl Vary {
     }
 }
 
-/// What is wrong with a scene, in one line.
+/// The error of a scene, in one line.
 #[must_use]
 pub fn refused(error: &SceneError) -> String {
     let says: Vec<&str> = [Some(error.message()), error.help()].into_iter().flatten().collect();

@@ -11,9 +11,9 @@ use crate::number::{self, number};
 /// A key of the scene, and the values it takes.
 #[derive(Clone, Debug)]
 pub struct Variation {
-    /// Its path in the file.
+    /// The path of the key in the file.
     pub key: String,
-    /// As it was written.
+    /// The text of the variation.
     pub text: String,
     values: Values,
 }
@@ -27,9 +27,9 @@ enum Values {
 /// A value of a run.
 #[derive(Clone, Debug)]
 pub struct Value {
-    /// As the scene file would have it.
+    /// The value as TOML.
     pub toml: String,
-    /// As the table has it: a number, or a word.
+    /// The cell of the value in a table: a number, or a word.
     pub cell: String,
     /// Whether it is a word.
     pub word: bool,
@@ -195,7 +195,7 @@ impl Variation {
         Ok(Self { key: path(key)?, text: key.to_owned(), values: Values::List { list, unit: None } })
     }
 
-    /// How many values it takes; `None` for a range without a count.
+    /// The number of values; `None` for a range without a count.
     #[must_use]
     pub fn count(&self) -> Option<u64> {
         match &self.values {
