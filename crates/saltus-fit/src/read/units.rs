@@ -153,11 +153,10 @@ impl Unit {
             "'" | "′" | "’" => return Self::parse("ft"),
             "second" | "secs" => return Some(Self::SECOND),
             "mph" | "mi/h" => return Some(Self::of(Dimension::Speed, MILE_AN_HOUR)),
-            _ if let Some((_, over)) = JOULES.iter().find(|(name, _)| *name == symbol) => {
-                let scale = Scale::Energy { times: 1.0, over: *over };
-                return Some(Self { dimension: Dimension::Other, scale });
-            }
             _ => {}
+        }
+        if let Some((_, over)) = JOULES.iter().find(|(name, _)| *name == symbol) {
+            return Some(Self { dimension: Dimension::Other, scale: Scale::Energy { times: 1.0, over: *over } });
         }
         for (quantity, dimension) in [
             (Quantity::Length, Dimension::Length),
