@@ -10,12 +10,12 @@ const PARTS: u32 = 4096;
 /// What a bound of an error may be too large by, in m: a millionth of a millimetre is shown as 0.
 const FINE: f64 = 1e-12;
 
-/// How far a curve, or another motion, is from a motion, in m.
+/// The largest distance of a curve, or of another motion, from a motion, in m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Miss {
-    /// In height.
+    /// The largest difference of heights.
     pub height: f64,
-    /// In space.
+    /// The largest distance in space.
     pub place: f64,
 }
 
@@ -78,7 +78,8 @@ pub(crate) fn apart<'a>(ones: impl Iterator<Item = &'a Piece>, others: impl Iter
 }
 
 impl Motion {
-    /// How far another motion of the same balls is from this one, from above, while both last.
+    /// The distance of another motion of the same balls from this one, as an upper bound, while
+    /// both last.
     ///
     /// ```
     /// use saltus_motion::{Motion, Piece, Stretch, Track};
@@ -109,7 +110,7 @@ pub(crate) fn difference(one: &Piece, other: &Piece, [from, to]: [f64; 2]) -> Pi
 }
 
 impl Piece {
-    /// How long it is at most, in height and in space, or what is known to be longer.
+    /// An upper bound of the length, in height and in space, or `known` where that is larger.
     fn most(&self, known: Miss) -> Miss {
         let (span, curvature) = ([0.0, self.span], self.bound(2));
         Miss {

@@ -12,9 +12,9 @@ pub(crate) const COMPARED: u32 = 16;
 /// A place at a time, with the velocities on both sides of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// In s.
+    /// The time in s.
     pub t: f64,
-    /// In m.
+    /// The place in m.
     pub place: Point,
     /// The velocity just before, in m/s.
     pub enter: Point,
@@ -24,7 +24,7 @@ pub struct Key {
     pub contact: bool,
 }
 
-/// What happens between two keys.
+/// The interpolation between two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Between {
@@ -37,12 +37,12 @@ pub enum Between {
     Hold,
 }
 
-/// Keys, and what happens between them.
+/// Keys, and the interpolation between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// In order of time, at least one.
+    /// The keys in order of time, at least one.
     pub keys: Vec<Key>,
-    /// Alike between all.
+    /// The interpolation, the same between all.
     pub between: Between,
 }
 

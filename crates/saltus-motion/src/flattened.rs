@@ -4,8 +4,8 @@ use crate::curve::{Between, Curve, Key};
 use crate::dress::{Dress, FINE};
 use crate::turn::{STRAIGHT, axis, turned, turns};
 
-/// How often the time between two keys is halved at most: an axis that passes across the plane
-/// turns there through half a turn at once, while the ball is seen round.
+/// The most halvings of the time between two keys: an axis that passes across the plane turns there
+/// through half a turn at once, while the outline of the ball is round.
 const HALVINGS: u32 = 8;
 
 /// An ellipse: the angle from up towards x in rad, the length across and along, of a round ball.
@@ -20,10 +20,10 @@ fn matrix([angle, across, along]: Ellipse) -> [f64; 3] {
 impl Dress {
     /// The form as an ellipse in the plane, whose axis stays in it; `None` where it does anyway.
     ///
-    /// A ball that is longer by c along the unit axis a and by b across it is seen as an ellipse,
-    /// whose matrix is b² + (c² - b²) p pᵀ with p what the plane sees of a: as long as
-    /// √(b² + (c² - b²) p²) along p, and b across it. Angle and lengths go straight from key to
-    /// key, as many as keep the ellipse within what a form may be off by.
+    /// A ball that is longer by c along the unit axis a and by b across it has an ellipse as its
+    /// outline, whose matrix is b² + (c² - b²) p pᵀ with p the projection of a: as long as √(b² +
+    /// (c² - b²) p²) along p, and b across it. Angle and lengths go straight from key to key, as
+    /// many as keep the ellipse within what a form may be off by.
     pub(crate) fn flattened(&self) -> Option<Self> {
         if !self.shaped() || self.aim.iter().all(|turn| turn.quaternion[0] == 0.0 && turn.quaternion[2] == 0.0) {
             return None;

@@ -18,9 +18,9 @@ pub(crate) fn norm(a: &Point) -> f64 {
 /// gravity alone, a quadratic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// When it starts, in s.
+    /// The start in s.
     pub start: f64,
-    /// How long it lasts, in s.
+    /// The duration in s.
     pub span: f64,
     /// cₖ in m/sᵏ.
     pub coefficients: Vec<Point>,
@@ -78,7 +78,7 @@ fn shifted(coefficients: &[Point], s: f64) -> Vec<Point> {
     c
 }
 
-/// How a ball meets what it bounces on.
+/// A contact of a ball with a floor, a wall or another ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// The normal, towards the ball, of length 1.
@@ -91,7 +91,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// With a level floor, at `speed` in m/s, in an instant.
+    /// A contact of an instant with a level floor, at `speed` in m/s.
     #[must_use]
     pub const fn level(speed: f64) -> Self {
         Self { normal: UP, speed, pressed: false }
@@ -108,24 +108,24 @@ pub struct Stretch {
     pub contact: Option<Contact>,
     /// Whether the ball is in the air.
     pub flight: bool,
-    /// At least one.
+    /// The pieces, at least one.
     pub pieces: Vec<Piece>,
 }
 
 impl Stretch {
-    /// When it starts, in s.
+    /// The start in s.
     #[must_use]
     pub fn start(&self) -> f64 {
         self.pieces.first().map_or(0.0, |piece| piece.start)
     }
 
-    /// When it ends, in s.
+    /// The end in s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.start + piece.span)
     }
 
-    /// How long it lasts, in s.
+    /// The duration in s.
     #[must_use]
     pub fn span(&self) -> f64 {
         self.end() - self.start()
@@ -193,11 +193,11 @@ fn fall(rate: impl Fn(f64) -> f64, span: f64) -> Option<f64> {
 /// The motion of one ball: where its lowest point is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
-    /// What it is called.
+    /// The name.
     pub name: String,
     /// The radius of the ball in m.
     pub radius: f64,
-    /// In order, each from where the last one ends.
+    /// The stretches in order, each from the end of the one before.
     pub stretches: Vec<Stretch>,
 }
 
@@ -220,12 +220,12 @@ impl Track {
         self.stretches.iter().flat_map(|stretch| &stretch.pieces)
     }
 
-    /// When contacts begin, in s.
+    /// The times at which contacts begin, in s.
     pub fn contacts(&self) -> impl Iterator<Item = f64> + '_ {
         self.stretches.iter().filter(|stretch| stretch.contact.is_some()).map(Stretch::start)
     }
 
-    /// When it ends, in s.
+    /// The end in s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.stretches.last().map_or(0.0, Stretch::end)
@@ -235,9 +235,9 @@ impl Track {
 /// A motion to be shown: one track for each ball, and the outline of what they bounce on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// What it is called.
+    /// The title.
     pub title: String,
-    /// At least one, all from 0 s on.
+    /// The tracks, at least one, all from 0 s on.
     pub tracks: Vec<Track>,
     /// Floors and walls as lines from point to point, (x, up) in m.
     pub ground: Vec<Vec<[f64; 2]>>,
@@ -288,7 +288,7 @@ impl Motion {
         Ok(Self { title: title.to_owned(), tracks, ground, loops: false })
     }
 
-    /// All lengths times a factor; as many seconds.
+    /// This motion with all lengths times a factor, and the same times.
     ///
     /// ```
     /// use saltus_motion::{Motion, Piece, Stretch, Track};
@@ -316,7 +316,7 @@ impl Motion {
         scaled
     }
 
-    /// When it ends, in s.
+    /// The end in s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.tracks.iter().map(Track::end).fold(0.0, f64::max)

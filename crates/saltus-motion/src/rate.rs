@@ -103,7 +103,7 @@ impl FromStr for Rate {
     }
 }
 
-/// What was given is no frame rate, or none that a motion can be shown at.
+/// An error of a frame rate: the text is none, or none that a motion can be shown at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RateError(String);
 
@@ -123,11 +123,11 @@ impl fmt::Display for RateError {
 
 impl std::error::Error for RateError {}
 
-/// How time is counted in frames: the rate, the number of the first frame, and how many frames a
+/// The relation of frames to times: the rate, the number of the first frame, and how many frames a
 /// drawing stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// How many in a second.
+    /// The rate in frames per second.
     pub rate: Rate,
     /// The number of the frame at 0 s.
     pub first: i32,
@@ -136,7 +136,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Counted from 0, a drawing for each.
+    /// Frames counted from 0, with a drawing for each.
     #[must_use]
     pub const fn new(rate: Rate) -> Self {
         Self { rate, first: 0, on_twos: false }

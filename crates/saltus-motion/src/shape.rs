@@ -3,7 +3,7 @@
 use crate::motion::{Contact, Motion, MotionError, Piece, Point, Stretch, Track, UP, dot, norm};
 use crate::rate::Frames;
 
-/// How much a ball is squashed and stretched.
+/// The amounts of squash and stretch of a ball.
 ///
 /// A ball that is 1 + a as long along one axis is 1/√(1 + a) as wide across it, so that its volume
 /// stays. In flight the axis is that of the velocity, and a = `stretch` · (speed/greatest speed)²,
@@ -13,11 +13,11 @@ use crate::rate::Frames;
 /// -`squash` · (speed/fastest impact) · 4u(1 - u), where u goes from 0 to 1 while it is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shape {
-    /// By which part the ball is shorter at its greatest squash: from 0 to 0.9.
+    /// The part by which the ball is shorter at its greatest squash: from 0 to 0.9.
     pub squash: f64,
-    /// By which part it is longer at the greatest speed: from 0 to 2.
+    /// The part by which the ball is longer at the greatest speed: from 0 to 2.
     pub stretch: f64,
-    /// How long a contact is held, in s, as by [`Motion::held`].
+    /// The time for which a contact is held, in s, as by [`Motion::held`].
     pub hold: f64,
 }
 
@@ -42,11 +42,11 @@ impl Shape {
 /// The form of a ball at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// From the point that [`Track::at`] gives to the centre that is shown, in m.
+    /// The vector from the point that [`Track::at`] gives to the centre that is shown, in m.
     pub offset: Point,
     /// The axis of squash or stretch, of length 1.
     pub axis: Point,
-    /// How long it is along the axis, of a round ball; across, it is 1/√ of that.
+    /// The length along the axis, as a part of that of a round ball; across, it is 1/√ of that.
     pub along: f64,
 }
 

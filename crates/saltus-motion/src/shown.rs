@@ -10,21 +10,21 @@ use crate::turn::{MOST, Quaternion, Turn, apart, axis, fastest, turned};
 /// What a bound of lengths may be too large by, as a part of the ball's radius.
 const FINE: f64 = 1e-5;
 
-/// How a picture departs from the motion it shows, and how exact it is.
+/// The departure of a picture from the motion that it shows, and its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// The least length along the axis, of a diameter.
+    /// The least length along the axis, as a part of a diameter.
     pub least: f64,
-    /// The greatest.
+    /// The greatest length along the axis, as a part of a diameter.
     pub most: f64,
-    /// How far a point of the outline is from where a round ball has it, in m, at most.
+    /// The largest distance of a point of the outline from that of a round ball, in m.
     pub moved: f64,
-    /// How far the volume is from that of the ball, as a part of it, at most, between keys too.
+    /// The largest error of the volume, as a part of that of the ball, between keys too.
     pub volume: f64,
-    /// How far the ball gets below the height of its lowest point, or into what it touches, in m,
-    /// at most.
+    /// The largest depth of the ball below the height of its lowest point, or in what it touches,
+    /// in m.
     pub sunk: f64,
-    /// How many keys of orientation had to be added so that none is half a turn from the next.
+    /// The number of keys of orientation that are added so that none is half a turn from the next.
     pub added: usize,
 }
 
@@ -101,7 +101,7 @@ impl<'a> Span<'a> {
         }
     }
 
-    /// How deep the ball is in what it touches, from above, or what is known to be deeper.
+    /// An upper bound of the depth of the ball in what it touches, or `known` where that is larger.
     ///
     /// In the direction n it reaches |D Rᵀ n| from its centre, D its lengths and R its aim: a norm,
     /// which is below its chord and an eighth of h² max |(D Rᵀ n)″|; Rᵀ n turns at an even rate.

@@ -4,14 +4,14 @@
 use crate::motion::{Motion, MotionError, Piece, Point, Stretch, Track};
 use crate::rate::Frames;
 
-/// What stays as it was when contacts move to whole frames.
+/// The quantity that is kept when contacts move to whole frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Snap {
     /// Gravity: every flight lasts the nearest whole number n of frames, so a hop on a level floor
     /// is g n²/(8 fps²) high.
     Gravity,
-    /// Every place the ball goes through: each contact moves to the nearest frame, and each flight
-    /// is as much slower or faster.
+    /// The places that the ball goes through: each contact moves to the nearest frame, and each
+    /// flight is as much slower or faster.
     Heights,
 }
 
@@ -67,8 +67,8 @@ impl Motion {
         Self { tracks: tracks.collect(), ..self.clone() }
     }
 
-    /// How far the tops of flights are from those of another version of the same motion, in m, at
-    /// most.
+    /// The largest difference of the tops of flights from those of another version of the same
+    /// motion, in m.
     #[must_use]
     pub fn tops_differ(&self, other: &Self) -> f64 {
         let pairs = self.tracks.iter().zip(&other.tracks).flat_map(|(a, b)| a.stretches.iter().zip(&b.stretches));

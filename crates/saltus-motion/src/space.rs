@@ -17,10 +17,10 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Every one.
+    /// All units.
     pub const ALL: [Self; 5] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch, Self::Foot];
 
-    /// As it stands behind a number.
+    /// The symbol of the unit.
     #[must_use]
     pub const fn symbol(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ impl Unit {
         }
     }
 
-    /// What it is.
+    /// A sentence about the unit.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Unit {
         }
     }
 
-    /// How long it is, in m.
+    /// The length of the unit, in m.
     ///
     /// ```
     /// use saltus_motion::Unit;
@@ -75,17 +75,17 @@ impl Unit {
 /// The axis that is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Up {
-    /// Then z is towards the viewer: (x, y, up) is written as (x, up, -y).
+    /// The y axis; z is then towards the viewer: (x, y, up) is written as (x, up, -y).
     Y,
-    /// Then y is away from the viewer: (x, y, up) is written as it is.
+    /// The z axis; y is then away from the viewer: (x, y, up) is written as it is.
     Z,
 }
 
 impl Up {
-    /// Both.
+    /// Both axes.
     pub const ALL: [Self; 2] = [Self::Y, Self::Z];
 
-    /// Its letter.
+    /// The letter of the axis.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -94,7 +94,7 @@ impl Up {
         }
     }
 
-    /// Where it is up.
+    /// A sentence about the axis.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

@@ -160,8 +160,8 @@ pub(crate) fn fastest(stretch: &Stretch) -> f64 {
 }
 
 /// The times of keys from `from` to `to`, as few as keep even turns between them within what is
-/// `allowed` in rad, and each less than half a turn; `fastest` in rad/s bounds what cannot be seen
-/// from points.
+/// `allowed` in rad, and each less than half a turn; `fastest` in rad/s bounds the turns that
+/// points do not show.
 pub(crate) fn times(
     [from, to]: [f64; 2],
     fastest: f64,

@@ -9,9 +9,9 @@ use crate::theme::Background;
 /// A disc to scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// Its centre.
+    /// The centre.
     pub at: [f64; 2],
-    /// In the unit of the axes.
+    /// The radius in the unit of the axes.
     pub radius: f64,
     /// Full ink; others are pale.
     pub full: bool,
@@ -201,7 +201,7 @@ impl Chart {
         self
     }
 
-    /// What the picture lies on; nothing without it.
+    /// The picture on a `background`; transparent without one.
     #[must_use]
     pub const fn background(mut self, background: Background) -> Self {
         self.background = background;

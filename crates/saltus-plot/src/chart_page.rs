@@ -93,7 +93,7 @@ fn draw(chart: &Chart, reach: [(f64, f64); 2]) -> Result<String, PlotError> {
         Axis::new(across.0, across.1, across, 12)
     };
     let x = if chart.axes[0].1 == Measure::Count { x.whole() } else { x };
-    // Said only where something stands there.
+    // Only where something stands there.
     let least = chart.least.filter(|least| chart.logarithmic[0] && reach[0].0 <= *least);
     let least = least.map(|least| (least / units[0].size).log10());
     let x = x.thinned(panel, 1.6 * b, |text| width(text, b, false)).at_least(least);

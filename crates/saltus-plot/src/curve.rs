@@ -117,8 +117,8 @@ impl Pen {
         (count, all[1])
     }
 
-    /// Strokes that cannot be told apart: through the ends of how far they reach up, to where they
-    /// end.
+    /// Strokes too near to each other to be drawn apart: through the ends of how far they reach up,
+    /// to where they end.
     fn together(&mut self, first: &Stroke, last: &Stroke, (top, bottom): (f64, f64)) {
         let (start, end) = (self.page(first.start()), self.page(last.end()));
         self.to('M', start);

@@ -1,8 +1,8 @@
-//! What goes into a picture: measurements, residuals.
+//! The data of a picture: measurements and residuals.
 
 use crate::error::{PlotError, finite, magnitude};
 
-/// What kind of moment a measurement belongs to; it decides the shape of its mark.
+/// The kind of moment that a measurement belongs to; it decides the shape of its mark.
 ///
 /// # Example
 ///
@@ -14,7 +14,7 @@ use crate::error::{PlotError, finite, magnitude};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[non_exhaustive]
 pub enum Mark {
-    /// Where the ball was let go: a square.
+    /// The release of the ball: a square.
     Release,
     /// The top of a flight: a disc.
     Apex,
@@ -100,7 +100,8 @@ impl Measured {
     }
 }
 
-/// How far a measurement lies from the model, in its own standard errors: z = (measured − model)/σ.
+/// The distance of a measurement from the model, in its own standard errors: z = (measured −
+/// model)/σ.
 ///
 /// # Example
 ///

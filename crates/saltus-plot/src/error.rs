@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-/// Why a picture could not be drawn: what is wrong, where, and what to do about it.
+/// An error of a picture: what is wrong, where, and what to do about it.
 ///
 /// # Example
 ///
@@ -24,16 +24,16 @@ pub enum PlotError {
     Empty,
     /// A number is NaN, infinite, or so far out (beyond 10³⁰⁰) that it might as well be.
     NotFinite {
-        /// Which number, in words: "the time of measurement 3".
+        /// The number, in words: "the time of measurement 3".
         what: String,
-        /// The number itself.
+        /// The value of the number.
         value: f64,
     },
     /// A number that must not be negative is: a span or an error.
     Negative {
-        /// Which number, in words.
+        /// The number, in words.
         what: String,
-        /// The number itself.
+        /// The value of the number.
         value: f64,
     },
     /// The picture's size is not a number of pixels that can be drawn.
@@ -47,30 +47,30 @@ pub enum PlotError {
     Missing(&'static str),
     /// The state has no such coordinate.
     Coordinate {
-        /// Which was asked for: its name or its place.
+        /// The coordinate asked for: its name or its place.
         asked: String,
-        /// The names of those that there are.
+        /// The names of the coordinates.
         names: Vec<String>,
     },
     /// A sweep has no such result, or one that is no number.
     Column {
-        /// Which was asked for; `None` if one was to be found.
+        /// The result asked for; `None` if one was to be found.
         asked: Option<String>,
-        /// The headings of those that are numbers.
+        /// The headings of the results that are numbers.
         names: Vec<String>,
     },
     /// The part of a run that is to be drawn has no length.
     Window {
-        /// From when to when it is to be.
+        /// The start and the end of the part.
         part: (f64, f64),
-        /// From when to when the run is.
+        /// The start and the end of the run.
         run: (f64, f64),
     },
-    /// More names than there are coordinates.
+    /// There are more names than coordinates.
     Names {
-        /// The first that is left over.
+        /// The first name too many.
         name: String,
-        /// How many coordinates there are.
+        /// The number of coordinates.
         coordinates: usize,
     },
     /// The drawing library could not place an element.

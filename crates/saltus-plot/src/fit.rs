@@ -25,7 +25,7 @@ pub fn motion(report: &Report) -> Option<Result<String, PlotError>> {
     heard(report, &[])
 }
 
-/// The same below the sound that the times were read off, if there is one alone.
+/// The picture of [`motion`] below the sound that the times were read off, if there is one alone.
 ///
 /// # Errors
 /// [`PlotError`] where the picture cannot be drawn.

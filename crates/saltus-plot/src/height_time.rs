@@ -91,8 +91,8 @@ impl HeightTime {
         }
     }
 
-    /// What the picture shows, for those who cannot see it. Without one, a sentence is made from
-    /// the data.
+    /// A description of the picture for those who cannot see it. Without one, a sentence is made
+    /// from the data.
     #[must_use]
     pub fn description(mut self, text: &str) -> Self {
         self.description = Some(text.to_owned());
@@ -194,7 +194,7 @@ impl HeightTime {
         self
     }
 
-    /// What the picture lies on; nothing without it.
+    /// The picture on a `background`; transparent without one.
     #[must_use]
     pub fn background(mut self, background: Background) -> Self {
         self.background = background;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::unit::Unit;
 
-/// What an axis measures; data are given in SI units.
+/// The quantity on an axis; data are given in SI units.
 ///
 /// A unit by name, `"V".into()`, gets a prefix where its numbers would be long, if it is one of the
 /// SI that takes prefixes; `bar`, `1/min` and any other stay as they are.
@@ -19,23 +19,23 @@ use crate::unit::Unit;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Measure {
-    /// In s.
+    /// A time in s.
     Time,
-    /// In m.
+    /// A length in m.
     Length,
-    /// In m/s.
+    /// A speed in m/s.
     Speed,
-    /// In J.
+    /// An energy in J.
     Energy,
-    /// In J/kg.
+    /// An energy per mass in J/kg.
     SpecificEnergy,
-    /// In N.
+    /// A force in N.
     Force,
-    /// How many: whole numbers.
+    /// A count, in whole numbers.
     Count,
     /// A number without a unit.
     Number,
-    /// In the unit of this name, in which data are given.
+    /// A quantity in the unit of this name, in which data are given.
     Unit(Cow<'static, str>),
 }
 

@@ -63,7 +63,7 @@ impl<M, E, S> fmt::Debug for Phase<'_, M, E, S> {
 }
 
 impl<'a, M: Copy + fmt::Debug, E, S: State> Phase<'a, M, E, S> {
-    /// Of a run, the first coordinate across and the second up, by name or place.
+    /// The picture of a run, the first coordinate across and the second up, by name or place.
     #[must_use]
     pub fn of(trajectory: &'a Trajectory<M, E, S>, across: impl Into<Coordinate>, up: impl Into<Coordinate>) -> Self {
         Self {
@@ -113,7 +113,7 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Phase<'a, M, E, S> {
         self
     }
 
-    /// What the picture lies on; nothing without it.
+    /// The picture on a `background`; transparent without one.
     #[must_use]
     pub const fn background(mut self, background: Background) -> Self {
         self.background = background;

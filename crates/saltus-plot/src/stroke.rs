@@ -3,7 +3,7 @@
 use crate::error::{PlotError, finite, magnitude};
 use crate::polynomial::{extent, value};
 
-/// One smooth stretch of a curve: x = Σ aₖ sᵏ and y = Σ bₖ sᵏ for 0 ≤ s ≤ span, in SI units.
+/// A smooth stretch of a curve: x = Σ aₖ sᵏ and y = Σ bₖ sᵏ for 0 ≤ s ≤ span, in SI units.
 ///
 /// No coefficients at all mean zero. A span of zero draws nothing.
 ///
@@ -23,7 +23,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// From the coefficients of x and of y in rising powers.
+    /// The stroke with these coefficients of x and of y in rising powers.
     #[must_use]
     pub fn new(span: f64, x: Vec<f64>, y: Vec<f64>) -> Self {
         Self { span, x, y }
@@ -59,13 +59,13 @@ impl Stroke {
         points.windows(2).map(|pair| Self::between(pair[0], pair[1])).collect()
     }
 
-    /// Where it starts.
+    /// The start.
     #[must_use]
     pub fn start(&self) -> (f64, f64) {
         self.at(0.0)
     }
 
-    /// Where it ends.
+    /// The end.
     #[must_use]
     pub fn end(&self) -> (f64, f64) {
         self.at(self.span)

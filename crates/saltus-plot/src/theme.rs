@@ -9,11 +9,11 @@ pub(crate) const SMALLEST: f64 = 160.0;
 /// Longest side a picture may have, in px.
 pub(crate) const LARGEST: f64 = 20_000.0;
 
-/// Faces with the same metrics on nearly every system, so that what is measured here is what is
-/// seen.
+/// Faces with the same metrics on nearly every system, so that the widths that are computed here
+/// are those of the picture.
 pub(crate) const FAMILY: &str = "'Helvetica Neue',Helvetica,Arial,'Liberation Sans',system-ui,sans-serif";
 
-/// What a picture lies on.
+/// The background of a picture.
 ///
 /// # Example
 ///
@@ -28,7 +28,8 @@ pub(crate) const FAMILY: &str = "'Helvetica Neue',Helvetica,Arial,'Liberation Sa
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Background {
-    /// Nothing: the page shows through, and the colours follow the reader's light or dark scheme.
+    /// No background: the page shows through, and the colours follow the reader's light or dark
+    /// scheme.
     ///
     /// A page that stays white for readers with a dark scheme needs [`White`](Self::White) or
     /// [`Adaptive`](Self::Adaptive): pale ink would vanish on it.

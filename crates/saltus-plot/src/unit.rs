@@ -47,7 +47,7 @@ impl HeightUnit {
         }
     }
 
-    /// How many metres one of it is; of pixels, one.
+    /// The length of the unit in m; of pixels, one.
     #[must_use]
     pub fn metres(self) -> f64 {
         match self {

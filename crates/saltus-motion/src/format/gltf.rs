@@ -83,7 +83,7 @@ impl Buffer {
         json!({ "name": name, "primitives": primitives.collect::<Vec<_>>() })
     }
 
-    /// A ball; one that turns is in two colours, so that it is seen to.
+    /// A ball; one that turns is in two colours, which show its turning.
     fn ball(&mut self, number: usize, ball: &Ball<'_>, turns: bool) -> Value {
         let mut shape = sphere(ball.track.radius);
         let mut materials = vec![self.material("ball", colour(number))];

@@ -61,7 +61,7 @@ pub(super) fn json(export: &Export<'_>, balls: &[Ball<'_>]) -> Result<String, Ex
                 ];
                 let mut shapes = vec![json!({ "ty": "gr", "nm": "ball", "it": parts })];
                 if turns {
-                    // A mark, so that a turning ball is seen to turn.
+                    // A mark, which shows the turning.
                     let line = json!({ "c": false, "v": [[0.0, 0.0], [0.0, -0.8 * r]], "i": [[0, 0], [0, 0]], "o": [[0, 0], [0, 0]] });
                     parts = vec![
                         json!({ "ty": "sh", "ks": still(line) }),

@@ -69,7 +69,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Every one.
+    /// All formats.
     pub const ALL: [Self; 17] = [
         Self::Csv,
         Self::CsvFrames,
@@ -90,7 +90,7 @@ impl Format {
         Self::DotLottie,
     ];
 
-    /// Its name.
+    /// The name of the format.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -114,7 +114,7 @@ impl Format {
         }
     }
 
-    /// What files of it end in, each format in its own.
+    /// The ending of the names of its files, each format with its own.
     #[must_use]
     pub const fn ending(self) -> &'static str {
         match self {
@@ -138,7 +138,7 @@ impl Format {
         }
     }
 
-    /// What it is.
+    /// A sentence about the format.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -189,14 +189,14 @@ impl Format {
 /// A file, and how exact it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
-    /// What is to be written.
+    /// The content of the file.
     pub bytes: Vec<u8>,
-    /// How many keys all balls have together.
+    /// The number of keys of all balls together.
     pub keys: usize,
-    /// How far it is from the motion: from frame to frame too.
+    /// The largest distance from the motion: between keys and frames too.
     pub miss: Miss,
-    /// How the ball's form departs from a round one, and how many keys its turning needs; `None`
-    /// for a round ball that does not turn, and where the file does not have its form.
+    /// The departure of the ball's form from a round one, and the keys that its turning needs;
+    /// `None` for a round ball that does not turn, and where the file does not have its form.
     pub shown: Option<Shown>,
 }
 
@@ -228,10 +228,10 @@ const FINEST: f64 = 1e-12;
 pub struct Export<'a> {
     /// The motion, cut and snapped if it is to be.
     pub motion: &'a Motion,
-    /// How frames are counted.
+    /// The count of frames.
     pub frames: Frames,
-    /// How far keys may be from a flight in which more than gravity acts, in m; other flights are
-    /// exact.
+    /// The largest distance of keys from a flight in which more than gravity acts, in m; other
+    /// flights are exact.
     pub tolerance: f64,
     /// Squash and stretch; [`Shape::default`] is a ball that stays round.
     pub shape: Shape,
@@ -240,7 +240,7 @@ pub struct Export<'a> {
     /// Cubics stay what they are; straight lines from frame to frame get the top as well; of
     /// drawings that stand the one nearest to the top shows it.
     pub apexes: bool,
-    /// The unit and the axis of the file; what is said of the file is in m all the same.
+    /// The unit and the axis of the file; the errors of [`File`] are in m all the same.
     pub space: Space,
 }
 
@@ -372,7 +372,7 @@ impl<'a> Export<'a> {
             )));
         }
         let balls = self.balls(format, format.sampled());
-        // glTF has two animations, and what is said of the file holds for both.
+        // glTF has two animations, and the errors of the file bound both.
         let second = if matches!(format, Format::Glb | Format::Gltf) { self.balls(format, false) } else { Vec::new() };
         let bytes = match format {
             Format::Csv | Format::CsvFrames => table::csv(self, &balls).into_bytes(),
@@ -437,7 +437,7 @@ fn depth(motion: &Motion) -> f64 {
     balls.max(0.25 * (right - left))
 }
 
-/// Why a motion cannot be written, and what to do.
+/// An error of an export: why a motion cannot be written, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportError(String);
 

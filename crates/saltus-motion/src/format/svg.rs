@@ -10,8 +10,8 @@ use crate::curve::Between;
 /// For how long the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
 
-/// Stands for what tells pictures in one page apart until it is known; no text that is shown has a
-/// control character.
+/// A stand-in for the number that makes the names of a picture its own in a page, until that number
+/// has been computed; no text that is shown has a control character.
 const MARK: &str = "\u{1}";
 
 /// The picture, all of whose names begin with a number made of its content: several may stand in
@@ -63,7 +63,7 @@ fn marked(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
             escaped(&ball.track.name)
         );
         if ball.dress.as_ref().is_some_and(|dress| !dress.spin.is_empty()) {
-            // A mark, so that a turning ball is seen to turn.
+            // A mark, which shows the turning.
             let _ = write!(body, "<path class=\"mark\" stroke-width=\"{}\" d=\"M0 0V{}\"/>", 0.3 * r, -0.8 * r);
         }
         let _ = writeln!(body, "{}</g>", "</g>".repeat(channels.len()));

@@ -30,7 +30,8 @@ impl View {
         Self { scale, width: side(left, right), height: side(low, high), left: left - room, top: high + room }
     }
 
-    /// The radius that a ball is drawn with: its own, but three units at least, so that it is seen.
+    /// The radius that a ball is drawn with: its own, but three units at least, so that it is
+    /// visible.
     pub(super) fn radius(&self, radius: f64) -> f64 {
         (radius * self.scale).max(LEAST)
     }

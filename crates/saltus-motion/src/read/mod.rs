@@ -17,14 +17,14 @@ pub const EXTENSIONS: [&str; 7] = ["glb", "usda", "usdz", "json", "lottie", "svg
 /// Heights are compared at so many times, and at every contact.
 const TIMES: u32 = 4000;
 
-/// One motion of a file.
+/// A motion of a file.
 #[derive(Debug)]
 pub struct Reading {
-    /// The animation's or the format's.
+    /// The name of the animation, or of the format.
     pub name: String,
     /// Whether it is made of frames.
     pub sampled: bool,
-    /// One or several.
+    /// The balls, one or several.
     pub balls: Vec<Ball>,
 }
 
@@ -36,14 +36,14 @@ pub struct Ball {
     end: f64,
 }
 
-/// How far the heights of a file are from a motion.
+/// The distance of the heights of a file from a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Off {
     /// The worst distance in m.
     pub worst: f64,
-    /// When it is, in s.
+    /// The time of the worst distance, in s.
     pub at: f64,
-    /// How far a contact is below where it should be, in m at most.
+    /// The largest depth of a contact below its place, in m.
     pub sunk: f64,
 }
 
@@ -51,7 +51,7 @@ pub struct Off {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError(String);
 
-/// What the bytes of a file hold, after its extension, one of [`EXTENSIONS`].
+/// The motions in the bytes of a file, by its extension, one of [`EXTENSIONS`].
 ///
 /// ```
 /// use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Stretch, Track, read::readings};
@@ -87,13 +87,13 @@ pub fn readings(bytes: &[u8], extension: &str) -> Result<Vec<Reading>, ReadError
 }
 
 impl Reading {
-    /// When the last key is, in s.
+    /// The time of the last key, in s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.balls.iter().map(|ball| ball.end).fold(0.0, f64::max)
     }
 
-    /// How far the heights are from those of `motion`, ball by ball.
+    /// The distance of the heights from those of `motion`, ball by ball.
     #[must_use]
     pub fn off(&self, motion: &Motion, frames: Frames) -> Off {
         let mut found = Off::default();

@@ -19,7 +19,7 @@ const MOST_MODES: usize = 12;
 const LETTERS: usize = 16;
 /// Stays nearer to each other than this, in px, are drawn as one.
 const ONE: f64 = 0.3;
-/// A stay is drawn at least as long as this, in px: however short, it is seen.
+/// A stay is drawn at least as long as this, in px: however short, it is visible.
 const LEAST: f64 = 1.0;
 
 /// The rows, before they are drawn.

@@ -80,7 +80,7 @@ impl<M, E, S> fmt::Debug for Panels<'_, M, E, S> {
 }
 
 impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
-    /// All coordinates of a run over all of its time.
+    /// The picture of all coordinates of a run over all of its time.
     #[must_use]
     pub const fn of(trajectory: &'a Trajectory<M, E, S>) -> Self {
         Self {
@@ -157,7 +157,7 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
         self
     }
 
-    /// What the picture lies on; nothing without it.
+    /// The picture on a `background`; transparent without one.
     #[must_use]
     pub const fn background(mut self, background: Background) -> Self {
         self.background = background;

@@ -164,7 +164,7 @@ pub(super) fn phase(record: &Record) -> Result<Chart, PlotError> {
 /// Apex heights above the floor then below the ball, bounce by bounce; a start at rest is bounce 0.
 pub(super) fn ladder(record: &Record) -> Result<Chart, PlotError> {
     let scene = record.scene();
-    /// Apexes below this part of the first are of no bounce that is seen.
+    /// Apexes below this part of the first belong to bounces that the picture does not show.
     const LEAST: f64 = 1e-6;
     let mut chart = Chart::new(&title(scene), ("Bounce", Measure::Count), ("Apex", Measure::Length)).logarithmic();
     let mut count = 0;

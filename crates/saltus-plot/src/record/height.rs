@@ -4,11 +4,11 @@ use crate::{Background, HeightTime, Stroke};
 use saltus_scene::Motion;
 use saltus_scene::plan::{Moment, Record, With};
 
-/// In how many straight pieces ground is drawn at least: one for two dots of a page.
+/// The least number of straight pieces in which ground is drawn: one for two dots of a page.
 const PIECES: f64 = 400.0;
-/// And at most: more than can be told apart.
+/// The greatest number of pieces, beyond which none is visible.
 const MOST: f64 = 4000.0;
-/// In how many pieces a vibration is drawn, each within half a per cent of its amplitude.
+/// The number of pieces of a vibration, each within half a per cent of its amplitude.
 const OF_PERIOD: f64 = 32.0;
 
 pub(super) fn picture(record: &Record) -> HeightTime {

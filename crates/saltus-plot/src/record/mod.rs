@@ -76,13 +76,13 @@ fn rounded(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A number that is given is said as it was; four digits say one chosen of a range.
+/// A coefficient that is given is written as it was, one chosen of a range by four digits.
 fn said(cor: f64) -> String {
     let text = cor.to_string();
     if text.len() > 6 { format!("{cor:.4}") } else { text }
 }
 
-/// What is said under the title.
+/// The line under the title.
 fn caption(record: &Record) -> String {
     let scene = record.scene();
     let mut parts = Vec::new();
