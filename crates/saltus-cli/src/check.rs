@@ -41,7 +41,7 @@ const SINGLE: f64 = 1e-6;
 const KEYS: f64 = 1e-4;
 
 pub(crate) fn run(args: &Check, quiet: bool) -> Result<ExitCode, Error> {
-    // A file that cannot be read is said before a scene is run.
+    // A file that cannot be read is an error before a scene is run.
     let readings = read(&args.file)?;
     let Stage { motion, frames, shape, .. } = args.staging.of(&args.scene, 0, quiet)?;
     let export = Export { tolerance: KEYS, shape, ..Export::new(&motion, frames) };

@@ -1,4 +1,4 @@
-//! What the command says when it cannot go on.
+//! Errors of the command, as text and as data.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 pub(crate) struct Error {
     message: String,
     broken_pipe: bool,
-    /// What a program reads instead of the message, where it is known.
+    /// The error as data, for a program, where it has a kind.
     data: Option<Value>,
 }
 
@@ -22,13 +22,13 @@ impl Error {
         Self { message: message.to_string(), broken_pipe: false, data: None }
     }
 
-    /// One that has its kind, place and advice as data too.
+    /// An error with its kind, place and advice as data too.
     #[allow(clippy::needless_pass_by_value)] // used as a function
     pub(crate) fn data(error: impl fmt::Display + Serialize) -> Self {
         Self { data: serde_json::to_value(&error).ok(), ..Self::new(error) }
     }
 
-    /// Writing to standard output failed; that nobody reads on is no failure.
+    /// An error of standard output; that nobody reads on is none.
     #[allow(clippy::needless_pass_by_value)] // used as a function
     pub(crate) fn stdout(error: io::Error) -> Self {
         Self {
@@ -46,18 +46,18 @@ impl Error {
         Self::new(format!("cannot read '{}': {}", path.display(), plain(error)))
     }
 
-    /// What it says.
+    /// The message.
     pub(crate) fn message(&self) -> &str {
         &self.message
     }
 
-    /// Its kind, place and advice, where they are known.
+    /// The kind, the place and the advice, as far as the error has them.
     pub(crate) fn as_data(&self) -> Value {
         self.data.clone().unwrap_or_else(|| json!({ "kind": "command", "message": self.message }))
     }
 
-    /// Says it on standard error; `json`: as an object on standard output, where the report would
-    /// have been.
+    /// Writes the error to standard error; with `json` as an object to standard output, where the
+    /// report would have been.
     pub(crate) fn report(&self, json: bool) -> ExitCode {
         if self.broken_pipe {
             return ExitCode::SUCCESS;
@@ -73,13 +73,13 @@ impl Error {
     }
 }
 
-/// What the system says, without its number.
+/// The message of the system, without its number.
 fn plain(error: &io::Error) -> String {
     let says = error.to_string();
     says.split(" (os error").next().unwrap_or(&says).to_owned()
 }
 
-/// What the system says of writing, and what to do where that is known.
+/// The message of the system about writing, with advice where there is some.
 pub(crate) fn system(error: &io::Error) -> String {
     let says = plain(error);
     let advice = match error.kind() {

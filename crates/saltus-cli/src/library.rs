@@ -72,8 +72,7 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     let template = Template::parse(&name, &toml, &of_scene).map_err(Error::new)?;
     let maker = Maker { args, vary: &vary, template: &template, digits: (runs - 1).to_string().len() };
 
-    // What is wrong with the first motion is wrong with the library, and is said before anything is
-    // written.
+    // An error in the first motion is one of the library, and ends it before anything is written.
     let first = maker.made(0).map_err(|error| Error::new(format!("motion 0, {}: {error}", vary.says(0))))?;
     if let Some(drawn) = &first.drawn {
         say(quiet, drawn);
@@ -179,7 +178,7 @@ fn check_folder(path: &Path, force: bool) -> Result<(), Error> {
         Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
             Err(Error::new(format!("'{}' is a file: name a folder", path.display())))
         }
-        // What keeps it from being made is said then.
+        // The error comes when it is made.
         Err(_) => Ok(()),
     }
 }

@@ -1,5 +1,4 @@
-//! Scenes as commands take them: read from a file, ended by options, planned, run, and what is said
-//! of them.
+//! Scenes of commands: read from a file, ended by options, planned and run, with their messages.
 
 use std::fs::File;
 use std::io::Read;
@@ -11,7 +10,7 @@ use saltus_scene::{Law, Run, Scene};
 use crate::error::Error;
 use crate::output::{extension, say};
 
-/// The plan of a scene; what cannot be run is said with the file's name.
+/// The plan of a scene; an error bears the file's name.
 pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error> {
     scene.plan().map_err(|error| match path {
         Some(path) if path != Path::new("-") && error.in_text().is_none() => {
@@ -21,7 +20,7 @@ pub(crate) fn planned(scene: &Scene, path: Option<&Path>) -> Result<Plan, Error>
     })
 }
 
-/// Says why a run ended, if that is not what was asked for.
+/// Writes why a run ended, if that is not what was asked for.
 pub(crate) fn ended(record: &Record, quiet: bool) {
     let t = record.until();
     let doubts = record.doubts();
@@ -46,15 +45,15 @@ pub(crate) fn ended(record: &Record, quiet: bool) {
     }
 }
 
-/// What the command line says of the run's end.
+/// The end of a run by the options of the command line.
 pub(crate) fn ending(until: Option<f64>, most_jumps: Option<u32>) -> Run {
     let mut run = Run::default();
     (run.until, run.most_jumps) = (until, most_jumps);
     run
 }
 
-/// The scene of a file or of standard input; what the command line says in `run` goes before what
-/// the scene says.
+/// The scene of a file or of standard input; the options in `run` go before the settings of the
+/// scene.
 pub(crate) fn scene(path: &Path, run: Run) -> Result<Scene, Error> {
     let (name, toml) = read(path)?;
     Scene::parse_with(&name, &toml, run).map_err(|error| match extension(path).as_deref() {
@@ -78,7 +77,7 @@ pub(crate) fn read(path: &Path) -> Result<(String, Vec<u8>), Error> {
     Ok((path.to_string_lossy().into_owned(), toml))
 }
 
-/// A range is said to be one, with its source, where a run takes one number of it.
+/// A note about a range, with its source, where a run takes one number of it.
 pub(crate) fn note(scene: &Scene) -> Option<String> {
     let law = scene.law(0, 0)?;
     let [low, high] = law.range(0.0);

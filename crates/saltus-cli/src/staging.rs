@@ -16,7 +16,7 @@ use crate::scenes::{ended, ending, note, planned, scene};
 /// The parts of its height that a ball may lose, and by which it may be longer.
 const SQUASHES: RangeInclusive<f64> = 0.0..=0.9;
 const STRETCHES: RangeInclusive<f64> = 0.0..=2.0;
-/// By how much either may be made more or less: beyond it nothing is seen, or no ball is left.
+/// The factors of either: beyond them nothing is visible, or no ball is left.
 const FACTORS: RangeInclusive<f64> = 0.001..=1000.0;
 /// For how many frames a contact may be held.
 const FRAMES: RangeInclusive<u32> = 1..=1000;
@@ -76,7 +76,7 @@ impl Staging {
     pub(crate) const VARIED: [&'static str; 9] =
         ["fps", "snap", "on-twos", "squash", "stretch", "exaggerate", "hold", "loop", "mirror"];
 
-    /// Runs the scene of a file, says what has to be said of it, and stages it.
+    /// Runs the scene of a file, writes its messages, and stages it.
     pub(crate) fn of(&self, path: &Path, first: i32, quiet: bool) -> Result<Stage, Error> {
         let scene = scene(path, ending(self.until, None))?;
         if let Some(note) = note(&scene) {
@@ -93,7 +93,7 @@ impl Staging {
         Ok(stage)
     }
 
-    /// How a run is to be shown.
+    /// The settings by which a run is shown.
     pub(crate) fn staging(&self, first: i32) -> saltus_scene::Staging {
         let mut staging = saltus_scene::Staging::new(Frames { rate: self.fps, first, on_twos: self.on_twos });
         staging.snap = self.snap.map(|snap| match snap {
@@ -125,7 +125,7 @@ impl Staging {
     }
 }
 
-/// What had to be supposed of sizes.
+/// A note about radii that the scene does not give.
 pub(crate) fn drawn(stage: &Stage) -> Option<String> {
     let radius = length(stage.drawn?);
     Some(format!("the scene gives no radius: drawn with {radius}; set `radius` under [ball]"))

@@ -36,7 +36,7 @@ fn pictures_of_a_fit() {
     golden(&root().join("docs/use/squash-profile.svg"), &fs::read_to_string(&profile).unwrap());
     let ladder = fs::read_to_string(&ladder).unwrap();
     assert!(ladder.contains("Apex (cm)") && ladder.contains("one COR of 0.496"), "{ladder}");
-    // What there is nothing to draw of is said, and no file is made.
+    // A picture without content is an error, and no file is made.
     let (_folder, one) = table("bounce,height_cm\n0,100\n");
     let none = [
         ("--plot", "the table has no motion to draw"),
@@ -139,7 +139,7 @@ fn heights_that_rise() {
     assert!(!json["warnings"].as_array().unwrap().is_empty());
 }
 
-/// What a file was taken for is said in one line, and nothing is said to a quiet command.
+/// A line names what a file was taken for, unless the command is quiet.
 #[test]
 fn what_was_recognised_is_said() {
     let (_folder, path) = table("height (cm)\n100\n64\n41\n");
@@ -150,7 +150,7 @@ fn what_was_recognised_is_said() {
     assert_eq!(text(&run(&["-q", "fit", &path]).stderr), "");
 }
 
-/// Two files are one experiment; a track of pixels is read once its frame rate is known.
+/// Two files are one experiment; a track of pixels is read with a frame rate.
 #[test]
 fn several_files_and_bare_pixels() {
     let (_a, first) = table("bounce,height_cm\n0,100\n1,64\n2,41\n");

@@ -173,7 +173,7 @@ fn squash_and_stretch_are_never_silent() {
     assert!(refuse("squash.toml", &["--squash", "0.5", "--exaggerate", "4"]).contains("squash it by 0 to 0.9"));
 }
 
-/// A unit and an axis are read off the file: nothing more has to be said to check it.
+/// A unit and an axis are read off the file: no option is needed to check it.
 #[test]
 fn files_in_other_units_read_back() {
     let scene = root().join("examples/scenes/topspin.toml");

@@ -116,7 +116,7 @@ fn nothing_is_lost_and_nothing_is_half_done() {
         arguments.extend(more);
         saltus(&arguments)
     };
-    // What is wrong with the first motion is said before there is a folder.
+    // An error in the first motion comes before there is a folder.
     for (vary, says) in [
         ("restitution=1.2,1.3", "motion 0, restitution = 1.2: "),
         ("resttution=0.5", "did you mean `restitution`?"),

@@ -274,12 +274,12 @@ fn the_command_line_ends_a_scene() {
         assert!(run_quietly(&["simulate", &path, "--most-jumps", "4"]));
         assert!(done(&["explain", &path, "--until", "3s"]).contains("model        ball"));
     }
-    // It ends a run; it mends nothing else, and says of the file what it said before.
+    // The option ends a run; it mends nothing else, and the error of the file stays.
     let (_folder, path) = scene("restitution = 1\nball = { height = 1 }\nrun = { until = -1 }\n");
     assert_eq!(refused(&["simulate", &path, "--until", "3s"]), refused(&["simulate", &path]));
 }
 
-/// What is wrong in a scene is said with its place, and nothing panics.
+/// An error in a scene bears its place, and nothing panics.
 #[test]
 fn bad_scenes() {
     let noise = "\u{1}x".repeat(5_000_000);

@@ -13,14 +13,14 @@ use tempfile::TempDir;
 
 const G: f64 = 9.806_65;
 
-/// Status, standard output and what is said.
+/// Status, standard output and standard error.
 fn solve(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = tool::saltus().arg("solve").args(arguments).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     (output.status.code(), out, err)
 }
 
-/// Must succeed: the scene, and what is said.
+/// The scene and the messages of a command that has to succeed.
 fn solved(arguments: &[&str]) -> (Scene, String) {
     let (status, out, err) = solve(arguments);
     assert_eq!(status, Some(0), "{arguments:?}: {err}");

@@ -27,7 +27,7 @@ impl Place {
         self.command(arguments).output().unwrap()
     }
 
-    /// Must succeed; standard output and what is said.
+    /// The output and the messages of a command that has to succeed.
     fn done(&self, arguments: &[&str]) -> (String, String) {
         let output = self.run(arguments);
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());

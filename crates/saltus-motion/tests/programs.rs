@@ -110,7 +110,7 @@ fn a_squash_out_of_the_plane_is_seen_from_the_side() {
             .flat_map(|channel| channel["eases"].as_array().unwrap());
         of.flat_map(|ease| [ease[2].as_f64().unwrap(), ease[3].as_f64().unwrap()]).collect()
     };
-    // Shorter along y by 0.7 it is wider by √(1/0.7) both ways that are seen, and leans no way.
+    // Shorter along y by 0.7 it is wider by √(1/0.7) both ways in the picture, and leans no way.
     let wide = (1.0_f64 / 0.7).sqrt();
     let (x, y) = (values("scaleX"), values("scaleY"));
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
@@ -318,7 +318,7 @@ fn a_tick_at_every_contact() {
     }
 }
 
-/// What has no form of the ball is said to have neither keys of its turning nor a squash.
+/// A file without the form of the ball has neither keys of its turning nor a squash.
 #[test]
 fn ticks_do_not_turn() {
     let motion = drop(1.0, 0.7, 3, 0.8, [0.0, 40.0, 0.0], 0.05).held(SQUASHED.hold).unwrap();

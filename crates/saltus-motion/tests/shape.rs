@@ -37,7 +37,7 @@ proptest! {
         let file = Export { shape, ..Export::new(&held, frames()) }.file(Format::Glb).unwrap();
         let both = channels(&file.bytes);
         // On its keys a form is exact to single precision; between them cubics are within 0.1 %,
-        // straight lines as far off as said.
+        // straight lines within the error of the file.
         for scale in both.iter().flatten().filter(|c| c.property == Property::Scale) {
             for t in &scale.times {
                 prop_assert!((scale.at(*t).iter().product::<f64>() - 1.0).abs() < 2e-6);

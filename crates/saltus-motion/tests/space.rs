@@ -177,7 +177,7 @@ fn scripts_set_the_unit_of_the_scene() {
     }
 }
 
-/// What is said of a file is in metres whatever its unit; a form has none.
+/// The errors of a file are in metres whatever its unit; a form has none.
 #[test]
 fn what_is_said_stays_in_metres() {
     let motion = planted().held(SQUASHED.hold).unwrap();

@@ -1,4 +1,4 @@
-//! What is seen, not only what is written: the squash picture as pixels.
+//! The squash picture as pixels: what is visible of the text of the SVG.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 

@@ -92,7 +92,7 @@ struct Kicked {
     ramp: f64,
 }
 
-/// Narrow pulses, and a saw that a clock sets back: both limits and every peak are known.
+/// Narrow pulses, and a saw that a clock sets back: both limits and every peak have formulas.
 fn kicked(peaks: &[(f64, f64, f64)], period: f64) -> RunOf<Hybrid<'_, Kicked>> {
     let rate = |t: f64, (at, high, wide): (f64, f64, f64)| {
         let u = (t - at) / wide;
@@ -208,7 +208,7 @@ fn converter(periods: u32) -> RunOf<Hybrid<'static, Kicked>> {
     Simulation::of(&model).tolerance(1e-5).run("on", start, 0.0..f64::from(periods) * period).unwrap()
 }
 
-/// A run of very many jumps is drawn by what is seen of it.
+/// The picture of a run of very many jumps has only what is visible of it.
 #[test]
 fn long_runs_stay_small() {
     for (svg, most) in [

@@ -74,7 +74,7 @@ pub(crate) fn accuracy(
     accuracy.json(&toggles, target).map_err(fail::scene)
 }
 
-/// The scene, in TOML, in which wishes come true; whether they do; and what is said of each.
+/// The scene, in TOML, in which wishes come true; whether they do; and a line about each.
 #[pyfunction]
 #[pyo3(signature = (wishes, free, begin=None, fps=24.0, first_frame=0))]
 pub(crate) fn solve(
@@ -234,7 +234,7 @@ impl Motion {
         py.detach(|| pictures::svg(&self.0, kind)).map_err(fail::saltus)
     }
 
-    /// A file for animators, and what is said of it.
+    /// A file for animators, and the line about its error.
     fn file<'py>(
         &self,
         py: Python<'py>,

@@ -62,8 +62,8 @@ fn bouncing_by_plan(bencher: Bencher) {
     bencher.bench(|| black_box(&plan).run().unwrap());
 }
 
-/// Five smooth balls in a box, without loss: a cloud. That one of them is said to spin makes them a
-/// flock, of the same motion.
+/// Five smooth balls in a box, without loss: a cloud. A spin of one of them makes them a flock, of
+/// the same motion.
 fn balls(spin: &str) -> Scene {
     let ball = |n: u32| {
         let x = 0.16 * f64::from(n) - 0.32;

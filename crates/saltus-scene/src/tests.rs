@@ -1,4 +1,4 @@
-//! What a scene file may say, and what is said to one that may not.
+//! The texts that are scenes, and the errors of those that are not.
 
 use super::plan::Outcome;
 use super::*;
@@ -204,7 +204,8 @@ fn an_impact_that_is_handed_on_has_a_side_of_each_ball() {
     assert!(event.sides.iter().all(|side| side.before.velocity != side.after.velocity));
 }
 
-/// What swings on long after it could be seen is not kept as finely as the rounding of its time.
+/// A motion that swings on below what a picture shows is not kept as finely as the rounding of its
+/// time.
 #[test]
 fn what_lies_on_a_soft_floor_is_kept_in_few_pieces() {
     let toml = "ball = { height = '5 mm', mass = '3 g' }\ncontact = { law = 'kelvin-voigt', stiffness = 3.5e5, damping = 2.6 }\nrun = { until = 4 }\n";

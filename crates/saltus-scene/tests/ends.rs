@@ -12,8 +12,8 @@ fn run(toml: &str) -> Record {
 const BALL: &str = "ball = { radius = '3 cm', mass = '60 g', position = [0, 1], velocity = [2, 1], spin = -30 }\n";
 
 /// A ball that moves sideways ends when nothing happens any more: it lies, slides or rolls on. It
-/// meets what it meets in a run that is told to be ten times as long, and of that a twentieth more
-/// than the last jump is kept.
+/// has the jumps of a run with ten times the end, and a twentieth more than the time of the last
+/// jump is kept.
 #[test]
 fn what_moves_sideways_may_end_by_itself() {
     let scenes = [

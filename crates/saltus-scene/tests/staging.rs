@@ -1,4 +1,4 @@
-//! What is said of a file bounds what its readers measure, for every example scene.
+//! The stated error of a file bounds what its readers measure, for every example scene.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -156,7 +156,7 @@ fn drawn(record: &Record, wanted: &[String]) -> Vec<(&'static str, String)> {
     kinds.filter_map(|kind| Some((kind.name(), pictures::svg(record, kind).ok()?))).collect()
 }
 
-/// A file for animators and what is said of it.
+/// A file for animators and the line about its error.
 pub(crate) fn export(toml: &str, format: &str, fps: &str) -> Answer {
     let found = Format::ALL.into_iter().find(|known| known.name() == format);
     let format = found.ok_or_else(|| failed("export", format!("'{format}' is no format of motion")))?;

@@ -24,7 +24,7 @@ pub(super) fn svg(name: &str, accuracy: &Accuracy, target: Target) -> Result<Str
             .both_logarithmic()
             .at_least(limit.map_or(LEAST, |(most, _)| LEAST.min(0.1 * most)))
             .background(Background::Adaptive);
-    // What lies below the reference's own error cannot be told from it.
+    // Errors below that of the reference have no meaning.
     let doubt = error(accuracy.doubt());
     let point = |trial: &Trial| {
         let outcome = trial.outcome.as_ref().ok()?;

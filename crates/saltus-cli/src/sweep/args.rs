@@ -1,4 +1,4 @@
-//! What can be asked of a sweep.
+//! The options of a sweep.
 
 use std::path::PathBuf;
 

@@ -29,8 +29,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let (name, toml) = read(&args.scene)?;
     let vary = args.vary.vary();
     let end = ending(args.until, args.most_jumps);
-    // What is wrong with the first run is wrong with the sweep, and is said before anything is
-    // written.
+    // An error in the first run is one of the sweep, and ends it before anything is written.
     let sweep = Sweep::new(&name, &toml, &vary, end, format, args.columns.as_deref()).map_err(Error::new)?;
     if let Some(note) = note(sweep.first()) {
         say(quiet, &note);
@@ -90,7 +89,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The threads that runs are made on.
+/// The threads of the runs.
 fn pool(args: &SweepArgs) -> Result<ThreadPool, Error> {
     let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from));
     pool.build().map_err(|error| Error::new(format!("cannot start that many threads: {error}")))
@@ -114,7 +113,7 @@ fn check_plot(args: &SweepArgs, sweep: &Sweep<'_>) -> Result<(), Error> {
     }
 }
 
-/// What the rows of a file depend on.
+/// The identity of a file: all that its rows depend on.
 fn whose(args: &SweepArgs, toml: &[u8], sweep: &Sweep<'_>, vary: &Vary, format: RowFormat) -> Json {
     json!({
         "saltus": env!("CARGO_PKG_VERSION"),

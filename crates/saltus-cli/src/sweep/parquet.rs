@@ -1,4 +1,4 @@
-//! Rows of a sweep as a file of Parquet, which says whose they are.
+//! The rows of a sweep as a file of Parquet, with the identity of the sweep.
 
 use std::fs::File;
 use std::path::Path;
@@ -15,10 +15,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use saltus_scene::sweep::Cells;
 
-/// Under which a file has the plan of its sweep.
+/// The key of the metadata under which a file has the plan of its sweep.
 const KEY: &str = "saltus";
 
-/// Columns as a file that says whose they are.
+/// Columns as a file with the identity of the sweep.
 pub(super) fn written(headers: &[String], columns: &[Cells], plan: &str) -> Result<Vec<u8>> {
     let fields = headers.iter().zip(columns).map(|(header, cells)| field(header, cells));
     let schema = Type::group_type_builder("rows").with_fields(fields.collect::<Result<_>>()?).build()?;
@@ -36,7 +36,7 @@ pub(super) fn written(headers: &[String], columns: &[Cells], plan: &str) -> Resu
     writer.into_inner()
 }
 
-/// What a file says of whose it is, and how many rows it has; nothing where it is torn.
+/// The identity of a file and the number of its rows; nothing where the file is torn.
 pub(super) fn read(path: &Path) -> Option<(String, u64)> {
     let reader = SerializedFileReader::new(File::open(path).ok()?).ok()?;
     let file = reader.metadata().file_metadata();

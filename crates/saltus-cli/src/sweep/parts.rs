@@ -22,13 +22,13 @@ use crate::progress::Progress;
 
 /// Readers of Parquet pass over names that begin so.
 const PLAN: &str = "_sweep.json";
-/// How much work of one core is a part: no more is lost where a sweep is killed.
+/// The work of one core in a part: no more is lost where a sweep is killed.
 const SPELL: Duration = Duration::from_millis(500);
-/// How much of it tells how long a row takes.
+/// The part of that work from which the time of a row is estimated.
 const LOOK: Duration = Duration::from_millis(50);
 /// Multiples of (√5 - 1)/2, less whole numbers, come near every place soon.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Rows of a part at most: a few megabytes.
+/// The most rows of a part: a few megabytes.
 const LONGEST: f64 = 50_000.0;
 
 /// Makes the parts that are missing.
@@ -90,10 +90,10 @@ fn made(sweep: &Sweep<'_>, part: Range<u64>, mut nothing: impl FnMut(u64, &str))
     Ok(columns)
 }
 
-/// A folder of parts, and whose they are.
+/// A folder of parts, and its identity.
 struct Parts<'a> {
     folder: &'a Path,
-    /// What each part says of whose it is.
+    /// The identity that each part bears.
     said: String,
     hash: String,
     runs: u64,

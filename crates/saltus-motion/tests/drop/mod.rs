@@ -1,4 +1,4 @@
-//! A bouncing ball whose every place is known.
+//! A bouncing ball with a formula for every place.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 

@@ -19,7 +19,7 @@ pub(crate) const MOST_PARAMETERS: usize = 64;
 /// How many coordinates a guard or a reset that is called is handed without asking for room.
 const FEW: usize = 16;
 
-/// The state of a model: a list of coordinates known only as a program runs.
+/// The state of a model: a list of coordinates whose length a program sets as it runs.
 pub(crate) trait Vector: Lift + Send + Sync + 'static {
     fn of(values: &[f64]) -> Option<Self>;
 
