@@ -289,9 +289,10 @@ fn heading(family: &str) -> (&'static str, &'static str) {
         "locomotion" => {
             ("Walking, hopping, juggling", "![The gaits of the simplest walker](../program/gallery/walker.svg)")
         }
-        "sensitivity" => {
-            ("Derivatives through jumps", "No differences are taken; see [sensitivities.md](sensitivities.md).")
-        }
+        "sensitivity" => (
+            "Derivatives through jumps",
+            "No differences are taken; see [sensitivities.md](../program/sensitivities.md).",
+        ),
         "chaos" => ("Chaos", "What doubles can follow, and for how long."),
         "classics" => ("Classics", "Orbits, special functions, limits, stiff oscillators, chemistry."),
         "timescale" => ("Time scales", "Very short after very long, and late."),

@@ -77,5 +77,9 @@ pub struct Study;
 pub struct Cookbook;
 
 #[cfg(doctest)]
+#[doc = include_str!("../../docs/trust/numerics.md")]
+pub struct Numerics;
+
+#[cfg(doctest)]
 #[doc = include_str!("../../docs/trust/accuracy.md")]
 pub struct Accuracy;
