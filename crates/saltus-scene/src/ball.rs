@@ -131,7 +131,7 @@ pub(super) struct BallTable {
 }
 
 impl BallTable {
-    /// Tells the space which coordinates the ball has.
+    /// Notes the number of coordinates that the ball needs in the space.
     pub(super) fn look(&self, space: &mut Space) -> Result<(), Fault> {
         space.vector("position", self.position.as_ref())?;
         space.vector("velocity", self.velocity.as_ref())?;

@@ -1,4 +1,4 @@
-//! What only the whole scene can tell: whether the balls have room, and whether the run has an end.
+//! Checks of the whole scene: whether the balls have room, and whether the run has an end.
 
 use std::ops::Range;
 

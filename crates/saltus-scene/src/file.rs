@@ -135,7 +135,7 @@ impl JsonSchema for GravityValue {
 }
 
 impl File {
-    /// What the file says, checked; what `run` says goes before it.
+    /// The scene of the file, checked; the settings in `run` go before those of the file.
     pub(super) fn scene(&self, run: super::Run) -> Result<Scene, Fault> {
         let gravity = match &self.gravity {
             Some(at) if at.get().0 < 0.0 => {

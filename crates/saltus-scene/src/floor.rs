@@ -188,7 +188,7 @@ impl FloorTable {
         self.kind.as_ref().map_or(Kind::Level, |at| *at.get())
     }
 
-    /// Tells the space what the floor says of the number of coordinates.
+    /// Notes the number of coordinates that the floor needs in the space.
     pub(super) fn look(&self, space: &mut Space) -> Result<(), Fault> {
         if let Some(at) = self.axis.as_ref().filter(|axis| *axis.get() == Axis::Y && space.dimensions() < 3) {
             let says = "a scene in a plane has no y: write the vectors of the scene with three components, [x, y, up]";
@@ -210,7 +210,7 @@ impl FloorTable {
         keys.into_iter().flatten().next()
     }
 
-    /// The floor and what it says of restitution; `first` is where the first ball starts.
+    /// The floor and its restitution; `first` is where the first ball starts.
     pub(super) fn read(
         &self,
         space: &Space,

@@ -1,9 +1,9 @@
-//! Scenes as people write them: a TOML file with balls, floors and the effects that are wanted,
-//! read into a [`Scene`].
+//! Scenes of bouncing balls from TOML files: balls, floors and the effects that act, read into a
+//! [`Scene`].
 //!
-//! A scene is data. It does not say how it is to be run; every number in it has been checked, every
-//! law is made. What the keys mean, with units and defaults, is in `docs/use/scenes.md`; [`schema`]
-//! gives it to editors.
+//! A scene is data, without a method to run it; every number in it has been checked, every law is
+//! made. What the keys mean, with units and defaults, is in `docs/use/scenes.md`; [`schema`] gives
+//! it to editors.
 //!
 //! A scene is planned, and run: a [`Record`] is all that happened. From there a few lines lead to a
 //! table, to JSON, to a file for animators, and to a picture; [`Plan::explain`], written with `{}`,

@@ -1,4 +1,5 @@
-//! From bytes to a scene, and from what the TOML reader says to what a person can use.
+//! The way from bytes to a scene, and from errors of the TOML reader to errors in the words of
+//! scenes.
 
 use std::fmt;
 use std::fs;
@@ -75,7 +76,7 @@ impl Scene {
         let path = path.as_ref();
         let file = |error| ReadError::File { path: path.to_owned(), error };
         let mut bytes = Vec::new();
-        // One byte too many is enough to know.
+        // One byte too many is enough to refuse the file.
         let most = Self::LARGEST as u64 + 1;
         fs::File::open(path).and_then(|source| source.take(most).read_to_end(&mut bytes)).map_err(file)?;
         Self::parse(&path.to_string_lossy(), &bytes).map_err(ReadError::Scene)
@@ -137,7 +138,7 @@ pub(super) fn text(bytes: &[u8]) -> Result<&str, Fault> {
     Ok(text)
 }
 
-/// Where and what the TOML reader says.
+/// The place and the message of an error of the TOML reader.
 fn said(error: &toml::de::Error) -> (Range<usize>, String) {
     (error.span().unwrap_or(0..0), error.message().trim().replace('\n', ", "))
 }
@@ -167,7 +168,7 @@ fn quoted(message: &str, after: usize) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).skip(after).collect()
 }
 
-/// What the TOML reader says, as a person would say it.
+/// The error of the TOML reader, in the words of scenes.
 fn translate(text: &str, span: Range<usize>, message: &str) -> Fault {
     let date = text.get(span.clone()).is_some_and(|value| value.starts_with(|c: char| c.is_ascii_digit()))
         && message.starts_with("invalid type: map");
@@ -223,7 +224,7 @@ fn translate(text: &str, span: Range<usize>, message: &str) -> Fault {
     Fault::new(span, message)
 }
 
-/// What the TOML reader says in words of its trade, what we say, and what to do.
+/// Parts of messages of the TOML reader, the message instead, and the advice.
 const WORDS: [(&str, &str, Option<&str>); 9] = [
     ("cannot recurse", TOO_DEEP, Some("take brackets and braces away: a scene has four levels of them")),
     ("recursion limit", TOO_DEEP, Some("take brackets and braces away: a scene has four levels of them")),

@@ -138,7 +138,7 @@ pub(super) struct RestitutionTable {
     yield_speed: Option<At<Measure<Speed>>>,
 }
 
-/// What a scene says of restitution where it does not name the law itself.
+/// The restitution of a scene, or the part of the range of a preset that is to be taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant)] // lives while a file is read
 pub(super) enum Said {
@@ -161,7 +161,7 @@ fn range<T>(at: &At<T>, ends: [f64; 2], pick: f64) -> Result<Law, Fault> {
     Ok(Law::Range { cor, pick })
 }
 
-/// What `restitution = ...` says.
+/// The value of `restitution = ...`.
 pub(super) fn said(at: &At<Short<RestitutionTable>>) -> Result<Said, Fault> {
     match at.get() {
         Short::Number(e) => Ok(Said::Law(Law::Cor(Cor::new(*e).map_err(|error| at.fault(error))?))),
@@ -277,7 +277,7 @@ pub(super) struct FrictionTable {
     gripping: Option<At<Number>>,
 }
 
-/// What `friction = ...` says.
+/// The value of `friction = ...`.
 pub(super) fn friction(at: &At<Short<FrictionTable>>) -> Result<Friction, Fault> {
     match at.get() {
         Short::Number(mu) => Friction::rigid(*mu).map_err(|error| at.fault(error)),

@@ -1,5 +1,5 @@
-//! What is asked of the shape of a floor: whether a ball may start there, which way it pushes, and
-//! what it looks like.
+//! Properties of the shape of a floor: whether a ball may start there, the direction of its push,
+//! and its outline.
 //!
 //! One match for each question, all of them here: who adds a shape answers them, and gives it its
 //! keys in `floor.rs` and its wall in `plan/surroundings.rs`.

@@ -25,8 +25,8 @@ impl Source {
         Self(Some(Arc::new((name.to_owned(), text.to_owned()))))
     }
 
-    /// What `says` says of the item `number`, from 0 and the last without one, of a table or list
-    /// under `key`, shown where it stands.
+    /// The fault `says` of the item `number`, from 0 and the last without one, of a table or list
+    /// under `key`, with its place.
     pub(super) fn fault(&self, key: &str, number: Option<usize>, says: &str) -> Option<SceneError> {
         let (name, text) = self.0.as_deref()?;
         let span = found(text, key, number)?;

@@ -1,5 +1,4 @@
-//! A scene run many times with other values, and each run as a row: what of it a table of many runs
-//! wants.
+//! Many runs of one scene with other values, each as a row of results.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -67,8 +66,8 @@ pub struct Nothing {
 const ROW: usize = 200;
 
 impl<'a> Sweep<'a> {
-    /// A sweep of the scene `toml`, which messages call `name`; what `run` says goes before what
-    /// the scene says. The rows have `columns`, or all that the scene has.
+    /// A sweep of the scene `toml`, whose name in messages is `name`; the settings in `run` go
+    /// before those of the scene. The rows have `columns`, or all that the scene has.
     ///
     /// # Errors
     /// [`Error`] if a key varies twice, a range has no count, or the first run cannot be planned.
@@ -293,7 +292,7 @@ impl Rows {
         (0..self.balls).flat_map(of).collect()
     }
 
-    /// The row of a run, or of one that came to nothing: `end` says how, and `why`.
+    /// The row of a run, with `end` and `why` of one that has no outcome.
     fn row(&self, run: u64, values: &[Value], came: &Result<Outcome, Nothing>) -> Vec<Cell> {
         let mut cells = Vec::with_capacity(self.headers.len());
         cells.push(Cell::Count(run));

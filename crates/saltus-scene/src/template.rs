@@ -55,7 +55,7 @@ impl<'a> Template<'a> {
     }
 
     /// The scene with `values`, one for each key, in the order of the keys; a key without a value
-    /// is as the file says. What `run` says goes before what the file says.
+    /// is as in the file. The settings in `run` go before those of the file.
     ///
     /// # Errors
     /// As [`Scene::parse`]; a message about a value that was set shows that value.

@@ -249,7 +249,7 @@ impl JsonSchema for Number {
     }
 }
 
-/// Text or a number of which only the rest of the file tells the quantity.
+/// A text or a number whose quantity depends on the rest of the file.
 #[derive(Clone, Debug)]
 pub(super) enum Loose {
     Number(f64),

@@ -138,8 +138,8 @@ impl<F: VerticalFlight, R: Restitution> Ball<F, R> {
     /// The speed after an impact that is met with `velocity` upwards, in m/s.
     #[inline]
     fn rebound(&self, velocity: f64) -> f64 {
-        // Rounding may leave a ball on the floor with a velocity a hair above zero: no law is asked
-        // about that.
+        // Rounding may leave a ball on the floor with a velocity just above zero, for which no law
+        // has a value.
         self.restitution.rebound((-velocity).max(0.0)).max(0.0)
     }
 }

@@ -5,8 +5,8 @@ use saltus::{Automaton, Time};
 use super::{Cloud, Swarm, Touch, meet};
 use crate::restitution::Restitution;
 
-/// A cloud in flight: each ball knows its next event, and only those whose next event an impact has
-/// changed look again.
+/// A cloud in flight, with the next event of each ball: an impact makes only those searched again
+/// whose next event it has changed.
 ///
 /// The physics is that of the automaton, impact for impact; an event costs some N looks instead of
 /// N²/2. Take this to drive many balls for long, the automaton to have a trajectory, an observer or
@@ -57,7 +57,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Flight<'_, D, N, R> 
         &self.state
     }
 
-    /// Advances to just after the next event, and says which; or to `until` in s, if there is none
+    /// Advances to just after the next event, and returns it; or to `until` in s, if there is none
     /// before.
     ///
     /// A lossy cloud may have infinitely many events in a finite time: count them.

@@ -1,4 +1,4 @@
-//! What a recorded run says about its contacts.
+//! The contacts of a recorded run: their times, deformations, forces and CORs.
 
 use saltus::{Piece, TrajectoryOf};
 

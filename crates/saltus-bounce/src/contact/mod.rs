@@ -4,8 +4,8 @@
 //! while it is being pressed further: for a level floor at height zero and a ball's lowest point at
 //! y with velocity v, d = -y and u = -v. The force F in N pushes the ball out: m u' = -F (+ m g).
 //!
-//! A rigid impact with its COR is the limit of infinite stiffness: [`ContactLaw::collision`] says
-//! which COR, and how long it really takes.
+//! A rigid impact with its COR is the limit of infinite stiffness: [`ContactLaw::collision`] gives
+//! that COR, and the duration of the contact.
 
 mod hertz;
 mod hunt_crossley;

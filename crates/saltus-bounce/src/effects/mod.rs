@@ -130,8 +130,8 @@ pub trait Effect<const N: usize, S: Spin = ()> {
 
     /// The same once more over [`Jet`](saltus::Jet)s, added to a sum, and whether that is all that
     /// the effect does: flights are then advanced by Taylor series where
-    /// [`Flyer::by_series`](crate::Flyer::by_series) asks. An effect of other effects says all
-    /// where each of them does.
+    /// [`Flyer::by_series`](crate::Flyer::by_series) is set. An effect of other effects is complete
+    /// where each of them is.
     ///
     /// ```
     /// use nalgebra::vector;

@@ -31,8 +31,8 @@ impl<const N: usize> Stances<N> {
 
 /// The state of up to N balls: nine coordinates each, the lowest point, its velocity and the spin.
 ///
-/// It also notes what each ball is doing, since an edge of many balls is asked for its guard with
-/// the state alone; no coordinate tells it.
+/// It also has the stance of each ball, since the guard of an edge between balls depends on the
+/// state alone, and no coordinate shows the stance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flying<const N: usize> {
     balls: [Moving<3, Vector3<f64>>; N],

@@ -350,7 +350,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         if wall { self.walls.margin(face, t, &x.position).abs() / length } else { f64::INFINITY }
     }
 
-    /// Whether it neither leaves nor approaches `face`, as far as bounces that accumulate tell.
+    /// Whether it neither leaves nor approaches `face`, to the accuracy of bounces that accumulate.
     fn stands(&self, face: Face, t: f64, x: &Moving<N, S>) -> bool {
         let (normal, speed) = self.normal(face, t, x);
         (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt()

@@ -155,7 +155,7 @@ impl Staging {
         }
     }
 
-    /// Refuses a scene that asks itself for a longer time than frames can show, before it is run;
+    /// Refuses a scene whose own end is later than frames can show, before it is run;
     /// [`Staging::stage`] refuses it too.
     ///
     /// # Errors

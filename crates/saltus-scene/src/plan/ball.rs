@@ -21,7 +21,7 @@ pub(super) enum Drag {
     Quadratic(f64),
 }
 
-/// What the model needs to know. SI units.
+/// The parameters of the model, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertical {
     /// Downwards, less what buoyancy and added mass leave of it.

@@ -61,8 +61,8 @@ fn bounds(scene: &Scene) -> Result<Bounds, PlanError> {
     Ok(bounds)
 }
 
-/// Whether a cloud says all there is to say: its walls are those of a box, met by one law, and no
-/// ball ever comes to rest.
+/// Whether a cloud is a complete model of the scene: its walls are those of a box, met by one law,
+/// and no ball ever comes to rest.
 pub(super) fn suffices(scene: &Scene) -> bool {
     let elastic = |law: Option<&Law>| law.and_then(Law::constant).is_some_and(|cor| cor.value() == 1.0);
     let laws =

@@ -13,7 +13,7 @@ use saltus_bounce::Compliant;
 use saltus_bounce::compliant::{Moment as Edge, Stage};
 use saltus_bounce::contact::ContactLaw;
 
-/// What the model needs to know. SI units.
+/// The parameters of the model, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pressed {
     pub(super) mass: f64,

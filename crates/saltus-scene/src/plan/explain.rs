@@ -1,5 +1,5 @@
-//! What a plan says of itself: effects in and out, coordinates, how each mode is advanced and why,
-//! edges.
+//! The explanation of a plan: effects in and out, coordinates, the method of each mode and its
+//! reason, edges.
 
 use std::fmt;
 

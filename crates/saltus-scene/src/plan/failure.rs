@@ -78,7 +78,7 @@ impl RunError {
     }
 }
 
-/// What the engine says to who writes a model, in words for who writes a scene.
+/// Messages of the engine, which are for who writes a model, in words for who writes a scene.
 impl From<saltus::Error> for RunError {
     fn from(error: saltus::Error) -> Self {
         use saltus::ErrorKind::{Entry, Flow, Guard, InitialState, Promise, Reset, Series, StepSize};

@@ -37,8 +37,8 @@ pub(super) fn uniform(scene: &Scene) -> bool {
 pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let ball = &scene.balls[0];
     let spin = ball.spin.unwrap_or_default();
-    // One model for each kind of state: which of the effects are named is asked as it runs, and
-    // where none is but gravity, flights are exact.
+    // One model for each kind of state: the effects that the scene names are chosen at run time,
+    // and where there is none but gravity, flights are exact.
     match (scene.dimensions, spins(scene)) {
         (1, _) => smooth::<1, _>(scene, rigid(scene, ball, air(scene)?)?),
         (2, false) => smooth::<2, _>(scene, rigid(scene, ball, air(scene)?)?),

@@ -71,8 +71,7 @@ impl From<Method> for Chosen {
     }
 }
 
-/// For models that a formula solves in every mode: it is never asked for a step, and would have
-/// none.
+/// A stepper for models that a formula solves in every mode: it takes no step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoStepper;
 

@@ -1,7 +1,7 @@
 //! From a scene to something that runs: the cheapest model that leaves nothing of the scene out.
 //!
-//! [`Scene::plan`] chooses it, [`Plan::explain`] says what was chosen and why, [`Plan::run`] runs
-//! it, and whatever the model, a [`Record`] answers for the run.
+//! [`Scene::plan`] chooses it, [`Plan::explain`] gives the choice and its reasons, [`Plan::run`]
+//! runs it, and the result is a [`Record`], whatever the model.
 
 mod ball;
 mod cloud;
@@ -34,14 +34,14 @@ use super::{Ball, Contact, Floor, Law, Motion, Scene, Shape, Stepper};
 use method::Method;
 use runner::{Recording, RunOptions, Runner};
 
-/// After how many jumps a run ends that says nothing of it.
+/// The number of jumps after which a run without a limit of its own ends.
 const MOST_JUMPS: u32 = 10_000;
-/// After how many evaluations of flows and guards a run ends, and how many more it has for each
-/// jump that it may make: some ten seconds for ten thousand jumps. A contact that takes time has
-/// about a thousand.
+/// The number of evaluations of flows and guards after which a run ends, and how many more it has
+/// for each jump that it may make: some ten seconds for ten thousand jumps. A contact that takes
+/// time has about a thousand.
 const EVALUATIONS: u64 = 20_000_000;
 const EVALUATIONS_PER_JUMP: u64 = 2_000;
-/// With how many balls on a line a scene runs, and with how many in the plane or in space.
+/// The most balls on a line, and the most in the plane or in space.
 const MOST_BALLS: usize = 5;
 const MOST_IN_SPACE: usize = 5;
 /// The relative tolerance of steps, unless the scene gives one.
@@ -372,8 +372,8 @@ fn several(scene: &Scene) -> Result<Chosen, PlanError> {
             return Ok((Model::Cloud, cloud::runner(scene)?, None));
         }
     }
-    // On one line they may come to rest upon each other: there the run ends, and says so. What a
-    // floor that moves does to them then is more than their guards resolve.
+    // On one line they may come to rest upon each other: that is the end of the run, by name. What
+    // a floor that moves does to them then is more than their guards resolve.
     let moves = scene.floors.iter().position(|floor| floor.motion.is_some()).filter(|_| scene.dimensions == 1);
     if let Some(owner) = moves {
         let says = "several balls that only move up and down are simulated over floors that stand still: leave `motion` out, or give them a `position` with x";

@@ -94,10 +94,10 @@ pub(super) struct Recording {
     pub(super) rest: Option<f64>,
 }
 
-/// Is asked now and then, between steps and jumps, whether to go on.
+/// A callback between steps and jumps, by which the caller may end the run.
 pub(super) type Ask<'a> = &'a mut dyn FnMut() -> ControlFlow<()>;
 
-/// Ends a run where it is asked to.
+/// An observer that ends a run where its callback does.
 struct Asking<'a> {
     ask: Ask<'a>,
     is_over: bool,
@@ -279,7 +279,7 @@ impl<A: Automaton, R: SceneView<A>> Observer<A> for Resting<'_, R> {
     }
 }
 
-/// A run that is read when it is asked.
+/// A run whose record is made on demand.
 struct BoundRun<A: Automaton, R> {
     automaton: Arc<A>,
     view: Arc<R>,
@@ -359,7 +359,7 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
     fn doubts(&self) -> Vec<String> {
         let said = |doubt: &InspectionOf<A>| {
             let edge = self.view.edge(&self.automaton, doubt.mode, doubt.edge);
-            // What follows a colon says what the edge is.
+            // A colon and an explanation may follow the name of an edge.
             let name = edge.split(':').next().unwrap_or(&edge);
             // Of several balls each is in a mode of its own.
             let mode = if self.view.balls() > 1 {

@@ -33,7 +33,7 @@ pub(super) struct Collision {
 /// The view of a model in the scene: what its states, modes and jumps mean there.
 pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     /// The stepper to compile the model for: the whole choice, or, where a formula solves every
-    /// mode, one that is never asked.
+    /// mode, one that takes no step.
     type Stepper: Stepper + From<Method>;
     fn balls(&self) -> usize {
         1

@@ -111,7 +111,7 @@ fn doing(mode: &str) -> &str {
     }
 }
 
-/// Six decimals where they say something, else powers of ten.
+/// Six decimals where the number has its digits there, else powers of ten.
 fn figure(value: f64) -> String {
     if value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
         format!("{:.6}", value + 0.0)

@@ -17,7 +17,7 @@ use crate::{Error, Run, Scene};
 
 /// What is begun with where no scene is given.
 const DROP: &str = "gravity = \"earth\"\nrestitution = 0.7\n\n[ball]\nheight = \"1 m\"\nvelocity = \"0 m/s\"\n";
-/// How long runs may go on, in s, and in units of the last time that is asked for.
+/// The longest run, in s, and in units of the last time of a wish.
 const LONG: f64 = 1e3;
 const TIMES_AS_LONG: f64 = 20.0;
 /// Jumps that are no contacts, such as apexes, for each that is one.

@@ -80,7 +80,7 @@ impl Problem<'_> {
     fn step(&self, now: &Found, slopes: &DMatrix<f64>, damping: &mut f64) -> Option<Found> {
         let off = DVector::from_column_slice(&now.off);
         let gradient = slopes.tr_mul(&off);
-        // What stands at a limit and wants beyond stays.
+        // A number at a limit whose gradient leads beyond it stays.
         let held = |k: usize| {
             let ([least, most], x) = (self.limits[k], now.numbers[k]);
             (x <= least && gradient[k] > 0.0) || (x >= most && gradient[k] < 0.0)
