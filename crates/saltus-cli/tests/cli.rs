@@ -5,7 +5,6 @@
 mod tool;
 
 use std::fs;
-use std::process::Stdio;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -224,7 +223,7 @@ fn devices_are_written_to_and_not_replaced() {
 fn nobody_reading_on_is_no_failure() {
     let mut child = saltus()
         .args(["simulate", "--drop", "1m", "--cor", "0.99", "--fps", "1000", "--format", "csv"])
-        .stdout(Stdio::piped())
+        .stdout(std::process::Stdio::piped())
         .spawn()
         .unwrap();
     drop(child.stdout.take());

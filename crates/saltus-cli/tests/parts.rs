@@ -7,10 +7,9 @@ mod tool;
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
-use tool::place::{DRAG, DROP, Place};
+use tool::place::{DROP, Place};
 
 const GRID: [&str; 4] = ["--vary", "restitution=0.5:0.9:12", "--vary", "ball.height=1m:9m:10"];
 
@@ -115,7 +114,9 @@ fn of_several_that_begin_a_folder_one_says_how_long_parts_are() {
 #[test]
 fn killed_and_gone_on_with() {
     use std::os::unix::fs::MetadataExt;
-    let place = Place::of(DRAG);
+    use std::time::{Duration, Instant};
+
+    let place = Place::of(tool::place::DRAG);
     place.done("whole", &["--chunk", "2"]);
     let (whole, clock) = (place.files("whole"), Instant::now());
     let inode = |name: &str| fs::metadata(place.path("rows").join(name)).unwrap().ino();

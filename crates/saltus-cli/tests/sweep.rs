@@ -5,9 +5,7 @@
 mod tool;
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output};
 
 use serde_json::Value;
 use tool::place::{DRAG, DROP, Place};
@@ -322,6 +320,9 @@ fn a_torn_row_is_made_again() {
 #[cfg(unix)]
 #[test]
 fn killed_and_gone_on_with() {
+    use std::process::Stdio;
+    use std::time::{Duration, Instant};
+
     let place = Place::of(DRAG);
     let sweep = ["--vary", "restitution=0.5:0.9:60", "--vary", "ball.height=1m:10m:60", "--threads", "2"];
     place.done(&[&sweep[..], &["-o", "whole.csv"]].concat());
@@ -357,7 +358,7 @@ fn a_full_disk_is_a_failure() {
     let place = Place::of(DROP);
     let said = place.refused(&["--vary", "restitution=0.1:0.9:9", "-o", "/dev/full", "--format", "csv"]);
     assert!(said.contains("cannot write '/dev/full'"), "{said}");
-    assert!(!Path::new("/dev/full.sweep").exists());
+    assert!(!std::path::Path::new("/dev/full.sweep").exists());
     let said = place.refused(&["--vary", "restitution=0.1:0.9:9", "-o", "/dev/full", "--resume"]);
     assert!(said.contains("is no file that can be gone on with"), "{said}");
 }
