@@ -117,14 +117,17 @@ fn a_measurement_is_planned() {
     }
 }
 
+/// The first examples of the guide and of the crate's README: table, command, and what is printed.
 #[test]
-fn the_first_example_of_the_guide_is_what_is_printed() {
-    let folder = TempDir::new().unwrap();
-    let guide = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/use/fitting.md")).unwrap();
-    fs::write(folder.path().join("drop.csv"), fenced(&guide, "```csv\n")).unwrap();
-    let command: Vec<&str> = fenced(&guide, "```sh\n").split_whitespace().skip(1).collect();
-    let output = saltus(folder.path(), &command);
-    assert_eq!(text(&output.stdout), fenced(&guide, "```text\n"));
+fn the_first_example_of_a_page_is_what_is_printed() {
+    for page in ["../../docs/use/fitting.md", "README.md"] {
+        let folder = TempDir::new().unwrap();
+        let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap();
+        fs::write(folder.path().join("drop.csv"), fenced(&page, "```csv\n")).unwrap();
+        let command: Vec<&str> = fenced(&page, "```sh\n").split_whitespace().skip(1).collect();
+        let output = saltus(folder.path(), &command);
+        assert_eq!(text(&output.stdout), fenced(&page, "```text\n"));
+    }
 }
 
 #[test]
