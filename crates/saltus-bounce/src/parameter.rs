@@ -1,4 +1,4 @@
-//! Numbers that a law cannot take, refused with a sentence that says what to give.
+//! Errors of parameters outside the domain of a law: what is wrong, and what to give.
 
 use std::fmt;
 

@@ -246,7 +246,7 @@ impl Track {
                 keys.insert(at, Key { contact: begins, ..sample(contact) });
             }
         }
-        // Contacts that rounding alone tells apart are one sample.
+        // Contacts that differ by rounding alone are one sample.
         part(&mut keys, APART * frames.rate.frame());
         Curve { keys, between: if frames.on_twos { Between::Hold } else { Between::Line } }
     }

@@ -3,9 +3,9 @@
 //!
 //! A [`Motion`] is data: for each ball, polynomials in time from contact to contact.
 //! [`Motion::cut`] ends the infinitely many last hops, [`Motion::snapped`] moves contacts to whole
-//! frames, and an [`Export`] writes it as any [`Format`] and says how exact that is. Metres and
-//! seconds throughout, but where a file is asked for in another [`Space`]; places are (x, y, up) of
-//! the ball's lowest point, so that 0 is touch.
+//! frames, and an [`Export`] writes it as any [`Format`], with bounds of its error. Lengths are in
+//! metres and times in seconds, unless a file has another [`Space`]; places are (x, y, up) of the
+//! ball's lowest point, so that 0 is touch.
 //!
 //! ```
 //! use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Space, Stretch, Track};

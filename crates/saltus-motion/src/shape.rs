@@ -78,8 +78,8 @@ fn looks(piece: &Piece) -> impl Iterator<Item = f64> {
 }
 
 impl Motion {
-    /// The greatest deformation of a contact that takes time, of the ball's radius: what its law
-    /// says; 0 where no contact does.
+    /// The greatest deformation of a contact that takes time, by its law, as a part of the ball's
+    /// radius; 0 where every contact is an instant.
     #[must_use]
     pub fn deformation(&self) -> f64 {
         let of = |track: &Track| {

@@ -51,7 +51,7 @@ impl Axis {
         Self { part, ..even }
     }
 
-    /// The same axis with a tick at `least` that says that what stands there is no more.
+    /// This axis with a tick at `least` for all values up to it.
     pub(crate) const fn at_least(mut self, least: Option<f64>) -> Self {
         self.least = least;
         self

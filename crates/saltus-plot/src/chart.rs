@@ -185,8 +185,8 @@ impl Chart {
         self
     }
 
-    /// Draws what is less than `least` across, zero for one, at `least`, whose tick then says so:
-    /// what a logarithmic axis cannot show otherwise.
+    /// Draws values across that are less than `least`, zero for one, at `least`, with a tick for
+    /// them: a logarithmic axis has no other place for them.
     ///
     /// ```
     /// use saltus_plot::{Chart, Measure};

@@ -1,4 +1,4 @@
-//! The unit of length in which plotters places things: it knows whole numbers alone.
+//! The unit of length of plotters, which takes whole numbers alone.
 
 /// Grains per px.
 pub(crate) const GRAIN: f64 = 100.0;

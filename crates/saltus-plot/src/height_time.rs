@@ -1,4 +1,4 @@
-//! Height against time: what is measured, what the model says, and how far apart they are.
+//! Height against time: measurements, model and residuals.
 
 use crate::axis::opened;
 use crate::data::{Mark, Measured, Residual};

@@ -89,7 +89,7 @@ pub(crate) struct Canvas {
     used: BTreeSet<(Ink, bool)>,
 }
 
-/// What a picture says about itself, and what it lies on.
+/// The title, the description and the background of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sheet<'a> {
     pub(crate) title: &'a str,

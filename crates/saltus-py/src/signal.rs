@@ -60,8 +60,8 @@ impl Wanted {
     }
 }
 
-/// Does a piece of work, and meanwhile asks Python: where a signal came, the caller goes on at once
-/// and the work ends where it next asks whether it is wanted.
+/// Does a piece of work on another thread, and checks Python's signals meanwhile: after one the
+/// caller goes on at once, and the work ends at its next check.
 pub(crate) fn patiently<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Wanted) -> T + Send + 'static,

@@ -81,7 +81,7 @@ fn wrong(option: &str, says: impl ToString) -> Value {
     json!({ "kind": "option", "option": option, "message": says.to_string() })
 }
 
-/// What an option says, if it is given.
+/// The value of an option, if it is given.
 fn given(text: &str) -> Option<&str> {
     Some(text.trim()).filter(|text| !text.is_empty())
 }

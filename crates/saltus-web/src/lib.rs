@@ -1,9 +1,9 @@
-//! What the page `saltus.html` computes: one question, one answer, over bytes.
+//! The computations of the page `saltus.html`: one question, one answer, over bytes.
 //!
-//! A message is the length of its JSON (four bytes, the lowest first), the JSON, and bytes that the
-//! JSON tells the lengths of. The page asks for [`room`], writes its question there, calls
-//! [`answer`] for the length of the answer, and reads that at [`place`]. `docs/use/page.md` lists
-//! the questions.
+//! A message is the length of its JSON (four bytes, the lowest first), the JSON, and bytes whose
+//! lengths are in the JSON. The page calls [`room`], writes its question there, calls [`answer`]
+//! for the length of the answer, and reads that at [`place`]. `docs/use/page.md` lists the
+//! questions.
 //!
 //! Three functions need no generated bindings, and so neither a tool to make them nor the script
 //! that comes with them. Nothing is read or written through a pointer on this side.
@@ -25,7 +25,7 @@ fn message() -> MutexGuard<'static, Vec<u8>> {
     MESSAGE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes room for a question of `length` bytes and says where.
+/// Makes room for a question of `length` bytes and returns its address.
 #[allow(unsafe_code)] // an exported name: no other function has it
 #[unsafe(no_mangle)]
 pub extern "C" fn room(length: usize) -> *mut u8 {
@@ -34,7 +34,7 @@ pub extern "C" fn room(length: usize) -> *mut u8 {
     message.as_mut_ptr()
 }
 
-/// Answers the question and says how long the answer is.
+/// Answers the question and returns the length of the answer.
 #[allow(unsafe_code)] // as above
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> usize {

@@ -36,7 +36,7 @@ pub struct QuadraticDragFlight {
     drag: f64,
     /// ω = √(gk).
     rate: f64,
-    /// 1/w² = k/g, by which the square of the speed tells the drag's share in the acceleration.
+    /// 1/w² = k/g, the share of drag in the acceleration per square of the speed.
     share: f64,
     /// 1/(2k).
     length: f64,

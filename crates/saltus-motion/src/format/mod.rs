@@ -1,4 +1,4 @@
-//! The files that are written, and what each says of itself.
+//! The formats of files for animators, each with a sentence about it.
 
 mod blender;
 mod chart;

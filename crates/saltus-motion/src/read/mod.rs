@@ -1,7 +1,7 @@
 //! Exported files read back, as their formats have them, and compared with a motion: with the
 //! feature `read`.
 //!
-//! Nothing here knows how the files are written.
+//! The readers share no code with the writers.
 
 mod formats;
 mod package;
@@ -47,7 +47,7 @@ pub struct Off {
     pub sunk: f64,
 }
 
-/// A file has not what its format asks for, in words.
+/// An error of a file that is not as its format requires.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError(String);
 

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// What a called function raised first, until the run that called it asks.
+/// The first exception of a called function, until the run that called it takes it.
 #[derive(Default)]
 pub(crate) struct Raised(Mutex<Option<PyErr>>);
 
@@ -19,7 +19,7 @@ impl Raised {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// What it says, of one that has been put.
+    /// The message of the exception, if there is one.
     pub(crate) fn says(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(ToString::to_string)
     }
