@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[3]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/program/python.md"])
+@pytest.mark.parametrize("page", ["README.md", "crates/saltus-py/README.md", "docs/program/python.md"])
 def test_the_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys):
     blocks = BLOCK.findall((ROOT / page).read_text())
     assert blocks
