@@ -6,7 +6,7 @@ use std::ops::{ControlFlow, Range};
 use saltus::step::Stepper;
 use saltus::{Automaton, CheckpointOf, Error, JumpOf, Observer, Piece, Simulation, State, Stop, Time};
 
-/// How many pieces of a stepped arc are kept.
+/// The number of pieces of a stepped arc that are kept.
 const PIECES: usize = 64;
 /// The most coefficients of a piece of a stepper here.
 const COEFFICIENTS: usize = 9;

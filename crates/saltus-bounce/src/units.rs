@@ -279,7 +279,7 @@ fn written(value: f64) -> String {
     if value.abs() < PLAIN { value.to_string() } else { format!("{value:e}") }
 }
 
-/// Where the number at the start of `text` ends: an `e` belongs to it only when digits follow.
+/// The end of the number at the start of `text`: an `e` belongs to it only when digits follow.
 fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = 0;

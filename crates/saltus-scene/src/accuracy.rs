@@ -19,9 +19,9 @@ const REFERENCE: f64 = 1e-14;
 const SECOND: f64 = 1e-13;
 /// Frames per second tried.
 const RATES: [f64; 5] = [24.0, 30.0, 60.0, 120.0, 240.0];
-/// How many evaluations a run may take: about a second.
+/// The most evaluations of a run: about a second.
 const MOST_EVALUATIONS: u64 = 10_000_000;
-/// At how many times places and energies are compared.
+/// The number of times at which places and energies are compared.
 const TIMES: u32 = 1000;
 /// Impacts slower than this share of the fastest are not asked for one by one.
 const SLOW: f64 = 1e-3;

@@ -8,7 +8,7 @@ use super::error::{Fault, short};
 use super::scene::Scene;
 use super::{Floor, Shape};
 
-/// How far rounding may let things overlap, relative to the numbers involved.
+/// The overlap that rounding may make, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
 
 pub(super) fn scene(scene: &Scene, place: impl Fn(usize) -> Range<usize>, ends: &Range<usize>) -> Result<(), Fault> {
@@ -48,7 +48,7 @@ fn radius(ball: &Ball) -> f64 {
     ball.radius.unwrap_or(0.0)
 }
 
-/// Why the scene may go on for ever.
+/// The reason why the scene may go on for ever.
 fn endless(scene: &Scene) -> Option<&'static str> {
     let (balls, floors) = (&scene.balls, &scene.floors);
     let holds = |floor: &Floor| !matches!(floor.shape, Shape::Wall { .. });

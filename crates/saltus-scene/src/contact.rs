@@ -114,7 +114,7 @@ impl ElasticTable {
     }
 }
 
-/// What a contact needs of the ball: its mass and its radius.
+/// The mass and the radius of the ball, which a contact needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     pub(super) mass: Option<f64>,

@@ -163,7 +163,7 @@ impl Fault {
     }
 }
 
-/// What quotes a file of long words: its beginning and its end.
+/// A sentence that quotes long words of a file: its beginning and its end.
 fn shortened(says: String) -> String {
     /// The longest sentence that is shown whole, in characters: of ours none is half as long.
     const MOST: usize = 800;
@@ -192,7 +192,7 @@ pub(super) fn legible(text: &str) -> String {
     shown + rest
 }
 
-/// At most six significant digits.
+/// The number with at most six significant digits.
 pub(super) fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

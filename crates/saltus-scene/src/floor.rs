@@ -200,7 +200,7 @@ impl FloorTable {
         space.vector("size", self.size.as_ref())
     }
 
-    /// Where the kind stands, or something else of the floor.
+    /// The place of the kind, or of something else of the floor.
     pub(super) fn place(&self) -> Option<std::ops::Range<usize>> {
         let keys = [
             self.kind.as_ref().map(At::span),

@@ -109,7 +109,7 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-/// What follows the byte-order mark.
+/// The bytes behind the byte-order mark.
 pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(MARK).unwrap_or(bytes)
 }
@@ -163,7 +163,7 @@ pub(super) fn made(text: &str, table: Spanned<DeTable<'_>>, run: Run) -> Result<
 /// A value of at most so many bytes is shown in a message.
 const SHORT: usize = 40;
 
-/// What stands between backticks, after the first so many.
+/// The texts between backticks, after the first so many.
 fn quoted(message: &str, after: usize) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).skip(after).collect()
 }
@@ -246,7 +246,7 @@ const WORDS: [(&str, &str, Option<&str>); 9] = [
 ];
 const TOO_DEEP: &str = "lists and tables are too deep in each other here";
 
-/// What is wrong with a line that is no TOML.
+/// The fault of a line that is no TOML.
 fn syntax(text: &str, span: Range<usize>, message: &str) -> Fault {
     let (message, help) = if message.starts_with("duplicate key") {
         let help = "keep one; several balls or floors stand each under [[ball]] or [[floor]]";

@@ -144,7 +144,7 @@ pub(super) struct RestitutionTable {
 pub(super) enum Said {
     /// This law.
     Law(Law),
-    /// What the materials have, at this part of their range.
+    /// The preset of the materials, at this part of its range.
     Materials(f64),
 }
 

@@ -39,7 +39,7 @@ pub(super) fn keys() -> Vec<String> {
     keys
 }
 
-/// Where a key belongs, in words; the likeliest first.
+/// The places of a key, in words; the likeliest first.
 pub(super) fn homes(key: &str) -> Vec<String> {
     let tables: Vec<String> =
         tables().into_iter().filter(|(_, keys)| keys.contains_key(key)).map(|(name, _)| name).collect();

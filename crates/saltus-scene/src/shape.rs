@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use super::error::short;
 use super::{Ball, Floor, Shape};
 
-/// How far rounding may let things overlap, relative to the numbers involved.
+/// The overlap that rounding may make, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
 /// The greatest number of steps that an outline of stairs shows.
 const MOST_STEPS: u32 = 2000;
@@ -22,7 +22,7 @@ const POINTS: u32 = 400;
 pub(super) type Graph = [f64; 3];
 
 impl Shape {
-    /// What sort of floor it is, in a word.
+    /// The kind of floor, in a word.
     pub(super) const fn word(&self) -> &'static str {
         match self {
             Self::Level { .. } => "floor",
@@ -69,14 +69,14 @@ fn piece(points: &[[f64; 2]], x: f64) -> ([f64; 2], f64) {
     ([x0, z0], (z1 - z0) / (x1 - x0))
 }
 
-/// How many steps down the stairs are at x.
+/// The number of steps down at x.
 fn down(x: f64, from: f64, tread: f64, count: Option<u32>) -> f64 {
     let steps = if x < from { 0.0 } else { ((x - from) / tread).floor() + 1.0 };
     count.map_or(steps, |count| steps.min(f64::from(count)))
 }
 
 impl Floor {
-    /// Why the ball cannot start where it does.
+    /// The reason why the ball cannot start where it does.
     pub(super) fn blocked(&self, ball: &Ball) -> Option<String> {
         let (low, centre, r) = (ball.lowest(), ball.centre(), ball.radius.unwrap_or(0.0));
         let offset = self.motion.as_ref().map_or(0.0, |motion| motion.offset(0.0));

@@ -34,7 +34,7 @@ impl Source {
     }
 }
 
-/// Where an item under a key stands.
+/// The place of an item under a key.
 fn found(text: &str, key: &str, number: Option<usize>) -> Option<Range<usize>> {
     let table = DeTable::parse(text).ok()?;
     let (found, value) = table.get_ref().iter().find(|(found, _)| found.get_ref() == key)?;

@@ -62,7 +62,7 @@ pub struct Nothing {
     pub why: String,
 }
 
-/// How long a row is as a rule, in bytes.
+/// The usual length of a row, in bytes.
 const ROW: usize = 200;
 
 impl<'a> Sweep<'a> {
@@ -242,7 +242,7 @@ impl Rows {
         }
     }
 
-    /// What the row of a run begins with.
+    /// The beginning of the row of a run.
     fn beginning(&self, run: u64) -> String {
         match self.format {
             RowFormat::Csv => format!("{run},"),

@@ -66,7 +66,7 @@ impl<T: Real> At<T> {
         }
     }
 
-    /// What a law makes of the number.
+    /// The value that `law` makes of the number, or the fault at its place.
     pub(super) fn with<U>(&self, law: impl FnOnce(f64) -> Result<U, ParameterError>) -> Result<U, Fault> {
         law(self.real()).map_err(|error| self.fault(error))
     }
@@ -90,7 +90,7 @@ pub(super) trait Real {
     fn real(&self) -> f64;
 }
 
-/// What a [`Measure`] measures.
+/// The quantity of a [`Measure`].
 pub(super) trait Dimension {
     const QUANTITY: Quantity;
 }

@@ -121,7 +121,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Flight<'_, D, N, R> 
 }
 
 impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
-    /// In how many seconds from the state `x` a touch happens.
+    /// The time in s from the state `x` to a touch, if it happens.
     #[inline]
     pub(super) fn meeting(&self, touch: Touch, x: &Swarm<D, N>) -> Option<f64> {
         match touch {

@@ -1,7 +1,7 @@
 //! When two balls in flight meet, and when a ball meets a wall.
 
-/// When two balls whose centres are `r` apart and part at the velocity `v` first come as close as
-/// `reach`; `None` if they do not, or only graze.
+/// The time at which two balls whose centres are `r` apart and part at the velocity `v` first come
+/// as close as `reach`; `None` if they do not, or only graze.
 ///
 /// |r + v s| = R with b = r·v < 0: s = (|r| - R)(|r| + R)/(-b + √(|v|² (R² - p²))), where p = |r × v|/|v| is how closely the centres pass
 /// each other: neither difference cancels but by the coordinates themselves. Balls that overlap by
@@ -29,8 +29,8 @@ pub(crate) fn balls<const D: usize>(r: [f64; D], v: [f64; D], reach: f64) -> Opt
     (pass < span).then(|| gap * (distance + reach) / (((span - pass) * (span + pass)).sqrt() - b))
 }
 
-/// When a gap `c` to a wall that changes at the rate `v` and bends at `a` (m/s²) first falls
-/// through zero.
+/// The time at which a gap `c` to a wall that changes at the rate `v` and bends at `a` (m/s²) first
+/// falls through zero.
 #[inline]
 pub(super) fn wall(c: f64, v: f64, a: f64) -> Option<f64> {
     let c = c.max(0.0);

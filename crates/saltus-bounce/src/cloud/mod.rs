@@ -150,7 +150,7 @@ impl<const D: usize, const N: usize, R: Restitution + Copy> Cloud<D, N, R> {
         balls.map(|((m, v), x)| m * (0.5 * dot(v, v) - dot(&self.gravity, x))).sum()
     }
 
-    /// How far ball j is from ball i, and how fast it parts.
+    /// The place of ball j relative to ball i, and its velocity.
     #[inline]
     fn relative(x: &Swarm<D, N>, i: usize, j: usize) -> ([f64; D], [f64; D]) {
         let r = std::array::from_fn(|k| x.centres[j][k] - x.centres[i][k]);

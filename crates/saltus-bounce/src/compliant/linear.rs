@@ -45,8 +45,8 @@ impl Linear {
         }
     }
 
-    /// When the rate of a solution z of the free equation next changes its sign: tan(ωs)/ω =
-    /// z'/(βz' + ω₀²z).
+    /// The time at which the rate of a solution z of the free equation next changes its sign:
+    /// tan(ωs)/ω = z'/(βz' + ω₀²z).
     fn turn_of(&self, z: f64, rate: f64) -> Option<f64> {
         let upwards = rate > 0.0 || (rate == 0.0 && z < 0.0);
         let adjacent = self.beta * rate + self.square * z;
@@ -56,12 +56,12 @@ impl Linear {
         self.angle(rate.abs(), if upwards { adjacent } else { -adjacent })
     }
 
-    /// When the deformation is next greatest or least.
+    /// The time at which the deformation is next greatest or least.
     pub(super) fn turn(&self, [d, u]: [f64; 2]) -> Option<f64> {
         self.turn_of(d - self.load / self.law.stiffness(d, u), u)
     }
 
-    /// When the contact ends, during restitution.
+    /// The time at which the contact ends, during restitution.
     ///
     /// Its margin, the force or (with tension) the deformation, is the static one plus a solution z
     /// of the free equation. z falls from where it is zero to its least value: the margin is zero

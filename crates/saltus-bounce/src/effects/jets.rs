@@ -31,7 +31,7 @@ impl<'j, const N: usize> JetMotion<'j, N> {
 #[derive(Clone, Copy, Debug)]
 pub struct JetSum<'j, const N: usize> {
     acceleration: [Option<Jet<'j>>; N],
-    /// What is constant, upwards in m/s².
+    /// The constant part, upwards in m/s².
     constant: f64,
     spin: [Option<Jet<'j>>; 3],
 }
@@ -66,7 +66,7 @@ pub(crate) fn times<'j, const M: usize>(of: &[Jet<'j>; M], factor: Jet<'j>) -> [
     product
 }
 
-/// What there is, or zero.
+/// The sum, or zero where there is none.
 #[inline(always)]
 fn total<'j, const M: usize>(sums: &[Option<Jet<'j>>; M]) -> [Jet<'j>; M] {
     let mut total = [Jet::from(0.0); M];

@@ -59,7 +59,7 @@ impl Magnus {
         self.slope
     }
 
-    /// What ω×v is multiplied by, from |ω×v| and v².
+    /// The factor of ω×v, from |ω×v| and v².
     #[inline]
     fn factor(&self, cross: f64, square: f64) -> f64 {
         // Also right where v = 0: there ω×v is zero, and so is the lift.
@@ -67,7 +67,7 @@ impl Magnus {
     }
 }
 
-/// In the plane, with spin positive from the first axis towards the second.
+/// The plane, with spin positive from the first axis towards the second.
 impl Effect<2, f64> for Magnus {
     #[inline]
     fn acceleration(&self, motion: &Motion<2, f64>) -> Vector2<f64> {
@@ -90,7 +90,7 @@ impl Effect<2, f64> for Magnus {
     }
 }
 
-/// In space, with spin by the right-hand rule.
+/// Space, with spin by the right-hand rule.
 impl Effect<3, Vector3<f64>> for Magnus {
     #[inline]
     fn acceleration(&self, motion: &Motion<3, Vector3<f64>>) -> Vector3<f64> {

@@ -119,8 +119,8 @@ pub trait Effect<const N: usize, S: Spin = ()> {
         S::NONE
     }
 
-    /// Where the acceleration has a kink that flights pass through: the number that falls through
-    /// zero there. `None` where it is smooth.
+    /// The number that falls through zero where the acceleration has a kink that flights pass
+    /// through. `None` where it is smooth.
     ///
     /// A stepper keeps its order if a step ends at the kink.
     #[inline]
@@ -128,7 +128,7 @@ pub trait Effect<const N: usize, S: Spin = ()> {
         None
     }
 
-    /// The same once more over [`Jet`](saltus::Jet)s, added to a sum, and whether that is all that
+    /// The acceleration over [`Jet`](saltus::Jet)s, added to a sum, and whether that is all that
     /// the effect does: flights are then advanced by Taylor series where
     /// [`Flyer::by_series`](crate::Flyer::by_series) is set. An effect of other effects is complete
     /// where each of them is.

@@ -26,7 +26,7 @@ pub struct Apex {
 /// The meeting with the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// When it happens, in s from the start.
+    /// The time of the impact, in s from the start.
     pub time: f64,
     /// The speed downwards, in m/s, not negative.
     pub speed: f64,

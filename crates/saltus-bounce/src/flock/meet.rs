@@ -9,11 +9,11 @@ use crate::flyer::{Flyer, Grip, Moving, Stance};
 use crate::restitution::{Cor, Restitution};
 use crate::walls::{Face, Walls};
 
-/// How close two balls are, relative to the scene's size, whose bounces have accumulated.
+/// The distance of two balls, relative to the scene's size, within which bounces have accumulated.
 const NEAR: f64 = 1e-7;
-/// And how slowly they approach, in m/s.
+/// The speed of approach in m/s within which bounces have accumulated.
 const SLOW: f64 = 3e-5;
-/// How strong a pull, in m/s², is more than rounding and steps leave.
+/// The least pull, in m/s², that is more than rounding and the error of steps.
 const PULL: f64 = 1e-9;
 
 type Ball = Moving<3, Vector3<f64>>;
@@ -25,14 +25,15 @@ where
     R: Restitution,
     G: Grip<3, Vector3<f64>>,
 {
-    /// How fast it parts from `face`, and beside what speeds.
+    /// The speed at which it parts from `face`, and the size of the two speeds of which that is the
+    /// difference.
     fn parting(&self, face: Face, t: f64, x: &Ball) -> (f64, f64) {
         let (normal, speed) = self.normal(face, t, x);
         (x.velocity.dot(&normal) - speed, x.velocity.norm() + speed.abs())
     }
 
-    /// What a ball does whose velocity another has changed: it goes on lying where it neither
-    /// leaves nor is pressed in.
+    /// The stance and state of a ball whose velocity another has changed: it goes on lying where it
+    /// neither leaves nor is pressed in.
     pub(super) fn pushed(&self, stance: Stance<3>, t: f64, x: &Ball) -> (Stance<3>, Ball) {
         let cell = stance.cell();
         let faces = (0..self.walls().faces(cell)).filter(|&index| stance.touches(index));
@@ -74,7 +75,7 @@ where
         }
     }
 
-    /// From centre to centre, and by how much the velocity of the second exceeds that of the first.
+    /// The vector from centre to centre, and the velocity of the second relative to the first.
     pub(super) fn apart(&self, i: usize, j: usize, t: f64, x: &Flying<N>) -> (Vector3<f64>, Vector3<f64>) {
         let (a, b) = (self.met(i, t, x), self.met(j, t, x));
         let mut between = b.position - a.position;
@@ -120,21 +121,21 @@ where
         after
     }
 
-    /// How far two balls are from touching, and farther off more than that: (r² - R²) / 2R, with r
-    /// from centre to centre and the sum R of the radii. Negative where they overlap; without a
-    /// kink where the centres would pass each other.
+    /// The gap of two balls, larger than the distance where they are far apart: (r² - R²) / 2R,
+    /// with r from centre to centre and the sum R of the radii. Negative where they overlap;
+    /// without a kink where the centres would pass each other.
     pub(super) fn gap(&self, i: usize, j: usize, t: f64, x: &Flying<N>) -> f64 {
         let (distance, reach) = (self.apart(i, j, t, x).0.norm(), self.reach(i, j));
         (distance - reach) * (0.5 * (distance + reach) / reach)
     }
 
-    /// How fast two balls part.
+    /// The rate of the gap.
     fn rate(&self, i: usize, j: usize, t: f64, x: &Flying<N>) -> f64 {
         let (between, change) = self.apart(i, j, t, x);
         change.dot(&between) / between.norm()
     }
 
-    /// How fast that changes.
+    /// The second derivative of the gap.
     fn bend(&self, i: usize, j: usize, t: f64, x: &Flying<N>) -> f64 {
         let (between, change) = self.apart(i, j, t, x);
         let (distance, rate) = (between.norm(), self.rate(i, j, t, x));
@@ -143,7 +144,7 @@ where
         pull + (change.norm_squared() - rate * rate) / distance
     }
 
-    /// What lies beyond infinitely many impacts: what bounced on a wall lies there; two balls that
+    /// The state beyond infinitely many impacts: what bounced on a wall lies there; two balls that
     /// nothing presses together part.
     pub(super) fn accumulated(&self, t: f64, x: &Flying<N>) -> Option<Flying<N>> {
         let count = self.balls.len();

@@ -85,7 +85,7 @@ pub enum Happens {
     Nothing,
 }
 
-/// What may end a contact, in this order.
+/// The number of edges that may end a contact, in this order.
 const ENDS: usize = 4;
 /// The edge that the clock takes.
 const CHANGE: Meeting = Meeting(usize::MAX);
@@ -171,7 +171,7 @@ where
         event.map_or(Happens::Nothing, |event| Happens::To(ball, event))
     }
 
-    /// How many edges there are: those of contacts only where there is one.
+    /// The number of edges: those of contacts only where there is one.
     fn count(&self, stances: &Stances<N>) -> usize {
         let balls = self.balls.len();
         let flies = (0..balls).all(|ball| matches!(stances.of(ball), Stance::Flight { .. }));

@@ -9,7 +9,7 @@ use crate::effects::{Effect, JetMotion, JetSum};
 use crate::restitution::Restitution;
 use crate::walls::{Face, Walls};
 
-/// How what ends or changes a contact is entered: a contact may be over where it begins.
+/// The entry of edges that end or change a contact: a contact may be over where it begins.
 pub(crate) const OF_CONTACT: Entry = Entry::Fire;
 
 impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G: Grip<N, S>> Flyer<N, S, E, W, R, G> {
@@ -78,8 +78,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
     }
 
-    /// What may end a contact by itself, in a fixed order: leaving, the end of a slip, friction
-    /// that gives way, a slip that finds its direction.
+    /// The events that may end a contact by itself, in a fixed order: leaving, the end of a slip,
+    /// friction that gives way, a slip that finds its direction.
     pub(crate) fn end(&self, stance: Stance<N>, place: usize) -> Option<Event<N>> {
         let is = |event: &Event<N>| match event {
             Event::Leave(_) => place == 0,

@@ -13,11 +13,11 @@ const ENDED: f64 = 1e-6;
 /// A slip that began along the push has a direction of its own from this share of what the push
 /// would have made of it.
 pub(super) const VEERS: f64 = 3e-3;
-/// How far from a second wall, relative to the scene's size, a ball may be whose bounces have
+/// The distance from a second wall, relative to the scene's size, within which bounces have
 /// accumulated at a corner.
 const NEAR: f64 = 1e-9;
 
-/// What acts on a ball in contact.
+/// The forces on a ball in contact.
 pub(super) struct Touch<const N: usize, S> {
     pub(super) normal: SVector<f64, N>,
     /// λ in m/s².
@@ -30,7 +30,7 @@ pub(super) struct Touch<const N: usize, S> {
     pub(super) slip_rate: SVector<f64, N>,
 }
 
-/// In two coordinates the tangent (n₁, -n₀), else zero.
+/// The tangent (n₁, -n₀) in two coordinates, else zero.
 #[inline]
 fn tangent<const N: usize>(n: &SVector<f64, N>) -> SVector<f64, N> {
     let mut tangent = SVector::zeros();
@@ -47,7 +47,7 @@ pub(super) fn none<const N: usize>(slip: &SVector<f64, N>) -> bool {
     slip.iter().all(|&part| part == 0.0)
 }
 
-/// How [`Stance::Slide`] writes down a slip.
+/// The slip in the form of [`Stance::Slide`].
 #[inline]
 fn noted<const N: usize>(slip: &SVector<f64, N>, normal: &SVector<f64, N>) -> SVector<f64, N> {
     if N == 2 {
@@ -87,7 +87,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         Touch { normal, force, free, spin_rate, slip_rate }
     }
 
-    /// How fast the gradient of `face` turns on the way of the ball, across the `normal`.
+    /// The rate at which the gradient of `face` turns on the way of the ball, across the `normal`.
     fn turning(&self, face: Face, t: f64, x: &Moving<N, S>, normal: &SVector<f64, N>) -> SVector<f64, N> {
         // Of vᵀHv + 2v·m + c, a difference in each direction tells Hv + m.
         let size = if x.velocity.norm() > 0.0 { x.velocity.norm() } else { 1.0 };
@@ -208,7 +208,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         behind * (-most / behind.norm())
     }
 
-    /// How far friction is from giving way: μ²λ|λ| - |f|².
+    /// The margin of friction before it gives way: μ²λ|λ| - |f|².
     #[inline]
     pub(super) fn cone(&self, face: Face, touch: &Touch<N, S>) -> f64 {
         let mu = self.grip.on(face).coefficient();
@@ -343,7 +343,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         free.any(|face| self.distance(face, t, x) <= near && self.stands(face, t, x))
     }
 
-    /// How far the ball is from `face`; infinitely, where that is no wall.
+    /// The distance of the ball from `face`; infinite where that is no wall.
     fn distance(&self, face: Face, t: f64, x: &Moving<N, S>) -> f64 {
         let length = self.walls.gradient(face, t, &x.position).norm();
         let wall = length > 0.0 && self.walls.leads(face, t, &x.position).is_none();
@@ -356,7 +356,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         (x.velocity.dot(&normal) - speed).abs() <= NEAR.sqrt()
     }
 
-    /// In contact with the faces of a mask.
+    /// The stance and state of a ball in contact with the faces of a mask.
     fn among(&self, cell: usize, faces: u16, t: f64, mut x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         let nearest = Face { cell, index: faces.trailing_zeros() as usize };
         let of_mask = |index: &usize| faces >> index & 1 == 1;

@@ -126,9 +126,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         &self.effects
     }
 
-    /// How a ball starts that lies on `face` at time `t` and is not to bounce: in contact if it is
-    /// pressed, in flight if not; its position and the velocity across the wall are made those of
-    /// the wall.
+    /// The stance and state of a ball that lies on `face` at time `t` and is not to bounce: in
+    /// contact if it is pressed, in flight if not; its position and the velocity across the wall
+    /// are made those of the wall.
     #[must_use]
     pub fn lying(&self, face: Face, t: f64, x: Moving<N, S>) -> (Stance<N>, Moving<N, S>) {
         self.settled(face, t, x)

@@ -40,7 +40,7 @@ impl<const N: usize> Moving<N> {
 }
 
 impl<const N: usize, S: Spin> Moving<N, S> {
-    /// What an effect sees of it at time `t`.
+    /// The motion for an effect, at time `t`.
     #[inline]
     pub(crate) fn at(&self, t: f64) -> Motion<N, S> {
         Motion { t, position: self.position, velocity: self.velocity, spin: self.spin }
@@ -49,7 +49,7 @@ impl<const N: usize, S: Spin> Moving<N, S> {
 
 /// A spin that is part of a state.
 pub trait Turning: Spin {
-    /// How many coordinates it has.
+    /// The number of coordinates.
     const LEN: usize;
     /// Coordinate `i`, for `i < LEN`.
     fn coordinate(&self, i: usize) -> f64;

@@ -3,12 +3,12 @@
 use super::{Contact, Line, Lying, Row};
 use crate::restitution::Restitution;
 
-/// How many impacts are followed on the way to a limit, for each ball.
+/// The number of impacts that are followed on the way to a limit, for each ball.
 const FOLLOWED: usize = 16;
 
 impl<const N: usize, R: Restitution + Copy> Line<N, R> {
-    /// Which contacts go on colliding from `x` on: the next impacts are followed in a time of their
-    /// own, whose digits do not run out.
+    /// The contacts that go on colliding from `x` on: the next impacts are followed in a time of
+    /// their own, whose digits do not run out.
     pub(super) fn collapsing(&self, lying: Lying, x: &Row<N>) -> [bool; N] {
         let (mut lying, mut x) = (lying, *x);
         let mut closing = [false; N];

@@ -5,7 +5,7 @@ use crate::restitution::Restitution;
 
 /// Speeds that are rounding, as a part of the greatest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// After how many impacts the rest of the speeds is taken to be lost, for each ball.
+/// The number of impacts, for each ball, after which the rest of the speeds is taken to be lost.
 const MOST: usize = 1 << 20;
 
 impl<const N: usize, R: Restitution + Copy> Line<N, R> {
@@ -53,8 +53,8 @@ impl<const N: usize, R: Restitution + Copy> Line<N, R> {
         self.merged(lying, &std::array::from_fn(slow), &x)
     }
 
-    /// How many balls from the floor up would not arrive at it faster than at the `speed` that is
-    /// rounding, if nothing were in their way.
+    /// The number of balls from the floor up that would not arrive at it faster than at the `speed`
+    /// that is rounding, if nothing were in their way.
     fn still(&self, speed: f64, x: &Row<N>) -> usize {
         let fast = |(v, y): (f64, f64)| v * v + 2.0 * self.gravity * y > speed * speed;
         x.velocities.into_iter().zip(x.positions()).position(fast).unwrap_or(N)

@@ -2,7 +2,7 @@
 
 use super::Preset;
 
-/// What a source gives.
+/// The numbers of a source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Evidence {
     /// A height of drop in m and the least and greatest height of the rebound, all of the ball's

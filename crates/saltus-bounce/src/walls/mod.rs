@@ -47,12 +47,12 @@ pub struct Face {
 /// # Ok::<(), saltus_bounce::ParameterError>(())
 /// ```
 pub trait Walls<const N: usize> {
-    /// How many cells space is cut into.
+    /// The number of cells into which space is cut.
     fn cells(&self) -> usize {
         1
     }
 
-    /// How many faces `cell` has; at most [`MOST_FACES`].
+    /// The number of faces of `cell`, at most [`MOST_FACES`].
     fn faces(&self, cell: usize) -> usize {
         let _ = cell;
         1
@@ -104,12 +104,12 @@ pub trait Walls<const N: usize> {
     }
 }
 
-/// How many edges beside the faces a contact may have: leave, stop and veer of
+/// The number of edges beside the faces that a contact may have: leave, stop and veer of
 /// [`Stance::Yield`](crate::Stance::Yield).
 const MOST_ENDS: usize = 3;
 
-/// How many faces a cell may have: with what may end a contact by itself, as many as a mode may
-/// have edges that are collected; a [`Corner`](crate::Stance::Corner) has bits for more.
+/// The most faces of a cell: with what may end a contact by itself, as many as a mode may have
+/// edges that are collected; a [`Corner`](crate::Stance::Corner) has bits for more.
 pub const MOST_FACES: usize = saltus::Edges::<()>::INLINE - MOST_ENDS;
 
 /// The earlier of two times that may be none.

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use super::{Face, Walls};
 use crate::parameter::{ParameterError, finite, not_negative};
 
-/// How a level floor moves: its height in m, velocity in m/s and acceleration in m/s².
+/// The motion of a level floor: its height in m, velocity in m/s and acceleration in m/s².
 trait Motion {
     fn at(&self, t: f64) -> [f64; 3];
     /// h(t) - h(from), without cancellation where that can be had.
@@ -162,7 +162,7 @@ level_floor!(Shaken<H, V, A>, H, V, A);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lift {
-    /// When each stretch begins, and height, velocity and acceleration there.
+    /// The start of each stretch, and height, velocity and acceleration there.
     stretches: Vec<(f64, [f64; 3])>,
 }
 

@@ -101,10 +101,10 @@ impl fmt::Display for Departure {
     }
 }
 
-/// What is shown as no length, in m: a millionth of a millimetre.
+/// The greatest length that is shown as none, in m: a millionth of a millimetre.
 const NOTHING: f64 = 1e-9;
-/// What rounding has added to a number that was to have few digits, as a part of it: 2.1 mm may be
-/// computed as a hair more, and is not 2.11 mm for that.
+/// The rounding of a number with few digits, as a part of it: 2.1 mm may be computed as slightly
+/// more, and is not 2.11 mm for that.
 const HAIR: f64 = 1e-9;
 
 /// A number from above, with so many digits behind the point.

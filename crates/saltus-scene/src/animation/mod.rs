@@ -135,7 +135,7 @@ impl Stage {
     }
 }
 
-/// How deep a ball may be in what it touches without a word, in m: a hundredth of a millimetre.
+/// The depth of a ball in what it touches that needs no mention, in m: a hundredth of a millimetre.
 const SUNK: f64 = 1e-5;
 
 impl Staging {
@@ -216,7 +216,7 @@ impl Staging {
         Ok(Stage { motion, frames, shape, departures, drawn, apexes: self.apexes, space: Space::default() })
     }
 
-    /// What is asked for by squash, stretch and hold, and how it departs from the motion.
+    /// The shape by squash, stretch and hold, and its departures from the motion.
     fn shaped(
         &self,
         motion: &Motion,
@@ -272,7 +272,7 @@ impl Record {
     }
 }
 
-/// How high the flights are that take less than `span` in s, at most.
+/// The greatest height of flights that take less than `span` in s.
 fn hops_below(motion: &Motion, span: f64) -> f64 {
     let flights = motion.tracks.iter().flat_map(|track| &track.stretches);
     let short = flights.filter(|stretch| stretch.flight && stretch.span() < span);
@@ -400,7 +400,7 @@ fn contact<'a>(scene: &Scene, impacts: impl Iterator<Item = &'a Impact>, jump: O
 
 /// Floors and walls in the plane of x and up, as far as the balls get and a little beyond.
 fn outlines(scene: &Scene, [[left, right], [low, high]]: [[f64; 2]; 2]) -> Vec<Vec<[f64; 2]>> {
-    /// How far beyond, as a part of the size of the motion.
+    /// The length beyond, as a part of the size of the motion.
     const BEYOND: f64 = 0.1;
     let more = BEYOND * (right - left).max(high - low);
     let reach = [[left - more, right + more], [low, high + more]];

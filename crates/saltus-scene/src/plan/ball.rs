@@ -13,7 +13,7 @@ use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight}
 use saltus_bounce::restitution::{Cor, Restitution};
 use saltus_bounce::{Ball, Floor, Mode, Phase, SmoothFlight, Turn};
 
-/// How a vertical ball is held back.
+/// The drag on a vertical ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Drag {
     None,
@@ -27,9 +27,9 @@ pub(super) struct Vertical {
     /// Downwards, less what buoyancy and added mass leave of it.
     pub(super) gravity: f64,
     pub(super) drag: Drag,
-    /// Which floor of the scene it is, and how high.
+    /// The number of the floor in the scene, and its height.
     pub(super) floor: (usize, f64),
-    /// Above the floor.
+    /// The height above the floor.
     pub(super) height: f64,
     pub(super) velocity: f64,
 }

@@ -12,10 +12,10 @@ use crate::{Law, Scene, Shape};
 use saltus_bounce::Cloud;
 use saltus_bounce::cloud::{Swarm, Touch};
 
-/// So far away that no ball gets there, and yet its square is a number.
+/// The place of a wall that there is not: no ball gets there, and its square is a finite number.
 const NOWHERE: f64 = 1e150;
 
-/// Where walls are: low and high ends of (x, y, up), and which floor each is of.
+/// The places of walls: low and high ends of (x, y, up), and the floor that each is of.
 struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
@@ -84,7 +84,7 @@ pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     sized!(2 3 4 5)
 }
 
-/// In the plane the balls keep a third coordinate, in which nothing happens.
+/// The runner of N balls; in the plane they keep a third coordinate, in which nothing happens.
 fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let Some(between) = scene.collision else {
         return Err(PlanError::new("[collisions]", "no restitution is given between the balls"));

@@ -18,9 +18,9 @@ use saltus_bounce::contact::ContactLaw;
 pub(super) struct Pressed {
     pub(super) mass: f64,
     pub(super) gravity: f64,
-    /// Which floor of the scene it is, and how high.
+    /// The number of the floor in the scene, and its height.
     pub(super) floor: (usize, f64),
-    /// Above the floor.
+    /// The height above the floor.
     pub(super) height: f64,
     pub(super) velocity: f64,
 }

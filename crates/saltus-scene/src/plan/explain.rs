@@ -35,9 +35,9 @@ pub enum Effect {
     Deformation,
 }
 
-/// What a smooth sphere has in air, Reynolds numbers from 10³ to 10⁵.
+/// The drag coefficient of a smooth sphere in air, Reynolds numbers from 10³ to 10⁵.
 const DRAG_COEFFICIENT: f64 = 0.47;
-/// What is taken to try friction where a scene has none.
+/// The coefficient by which friction is tried where a scene has none.
 const TRIED_FRICTION: f64 = 0.3;
 
 impl Effect {
@@ -129,7 +129,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Why an effect that is `named`, or is not, has to stay so.
+    /// The reason why an effect that is `named`, or is not, has to stay so.
     fn untoggled(&self, effect: Effect, named: bool) -> Option<&'static str> {
         let all = |has: fn(&Ball) -> bool| self.balls.iter().all(has);
         let point = !all(|ball| ball.sphere().is_some());
@@ -325,7 +325,7 @@ impl Explanation {
     }
 }
 
-/// What each coordinate of the state is.
+/// The names of the coordinates of the state.
 fn coordinates(scene: &Scene, model: Model, count: usize) -> Vec<String> {
     let axes: &[&str] = match scene.dimensions {
         1 => &["up"],

@@ -20,7 +20,7 @@ pub struct PlanError {
     place: String,
     number: Option<usize>,
     says: String,
-    /// The same in the text that the scene was read from.
+    /// The error in the text that the scene was read from.
     found: Option<Box<SceneError>>,
 }
 
@@ -33,7 +33,7 @@ impl PlanError {
         Self { number: Some(owner), ..Self::new(&format!("[[floor]] number {}", owner + 1), says) }
     }
 
-    /// The same with its line, where it has one.
+    /// The error with its line, where it has one.
     pub(super) fn found(mut self, source: &Source) -> Self {
         let key = self.place.trim_start_matches('[').split(']').next().unwrap_or_default();
         self.found = source.fault(key, self.number, &self.says).map(Box::new);

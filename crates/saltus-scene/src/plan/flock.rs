@@ -18,7 +18,8 @@ use saltus_bounce::{Event, Flyer, Sphere, Stance};
 
 type Model = Flock<MOST_IN_SPACE, AddedMass<InWind<3, SpinEffects>>, Surroundings<3>, Laws, Grips, Law>;
 
-/// In the plane, and on a vertical line, the balls keep coordinates in which nothing happens.
+/// The runner of several balls; in the plane, and on a vertical line, they keep coordinates in
+/// which nothing happens.
 pub(super) fn runner(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     let count = scene.balls.len();
     if count > MOST_IN_SPACE {

@@ -18,8 +18,8 @@ use saltus_bounce::restitution::Restitution;
 use saltus_bounce::walls::{Face, Walls};
 use saltus_bounce::{Event, Flyer, Grip, Moving, Rolls, Sphere, Stance, Turning};
 
-/// How deep in a wall a ball may start for the rounding of its place, for each metre from the
-/// origin.
+/// The depth in a wall at which a ball may start for the rounding of its place, for each metre from
+/// the origin.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether the scene's ball needs a spin.
@@ -75,7 +75,7 @@ fn air<const N: usize>(scene: &Scene) -> Result<InWind<N, Drags>, PlanError> {
     Ok((gravity, buoyancy, wind(scene, (effects.linear_drag(ball), effects.quadratic_drag(ball)))?))
 }
 
-/// What acts on a ball that spins.
+/// The effects on a ball that spins.
 pub(super) type SpinEffects = (Option<LinearDrag>, Option<QuadraticDrag>, Option<Magnus>, Option<SpinDecay>);
 
 pub(super) fn spinning_air<const N: usize>(scene: &Scene, ball: &Ball) -> Result<InWind<N, SpinEffects>, PlanError> {
@@ -271,7 +271,7 @@ impl Turned for Vector3<f64> {
     }
 }
 
-/// What a stance is called. What only moves up and down has no way to slide: on a floor it rests.
+/// The name of a stance. What only moves up and down has no way to slide: on a floor it rests.
 pub(super) const fn named<const N: usize>(stance: Stance<N>) -> &'static str {
     match stance {
         Stance::Flight { .. } => "flight",
@@ -302,7 +302,7 @@ impl FloorsView {
 }
 
 impl FloorsView {
-    /// What an event of `ball` is in the scene, which takes it at `p` at time `t`.
+    /// The event of the scene that an event of `ball` is, taken at `p` at time `t`.
     pub(super) fn event_of<const N: usize>(
         &self,
         walls: &Surroundings<N>,
@@ -336,7 +336,7 @@ impl FloorsView {
         }
     }
 
-    /// How an edge of a ball is listed.
+    /// The name of an edge of a ball in a list.
     pub(super) fn listed<const N: usize>(&self, walls: &Surroundings<N>, event: Event<N>) -> String {
         match event {
             Event::Meet(face) => self.labels.get(walls.owner(face)).cloned().unwrap_or_default(),
@@ -349,7 +349,7 @@ impl FloorsView {
         }
     }
 
-    /// Why a ball is advanced as it is.
+    /// The reason why a ball is advanced as it is.
     pub(super) const fn because<const N: usize>(stance: Stance<N>, advance: Advance) -> &'static str {
         match (stance, advance) {
             (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",

@@ -12,7 +12,7 @@ use crate::{Law, Scene};
 use saltus_bounce::Line;
 use saltus_bounce::line::{Contact, Lying, Row};
 
-/// How far rounding may leave touching balls apart, relative to the numbers involved.
+/// The gap that rounding may leave between touching balls, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
 
 /// The line that all balls stay on, if they do: upwards in a vertical scene; any other only without

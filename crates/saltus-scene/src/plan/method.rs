@@ -43,7 +43,7 @@ impl fmt::Display for Way {
 pub(super) struct Method(pub(super) Stepper);
 
 impl Method {
-    /// What the scene names, or what its tolerance asks for.
+    /// The method that the scene names, or that is fit for its tolerance.
     pub(super) fn of(named: Option<Stepper>, tolerance: f64) -> Self {
         let named = named.filter(|named| *named != Stepper::Series);
         Self(named.unwrap_or(if tolerance < Auto::TIGHT { Stepper::Dop853 } else { Stepper::Tsit5 }))

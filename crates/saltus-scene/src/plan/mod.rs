@@ -46,7 +46,7 @@ const MOST_BALLS: usize = 5;
 const MOST_IN_SPACE: usize = 5;
 /// The relative tolerance of steps, unless the scene gives one.
 const TOLERANCE: f64 = 1e-9;
-/// And that of contacts that take time: they last for a few steps only.
+/// The relative tolerance of contacts that take time: they last for a few steps only.
 const CONTACT_TOLERANCE: f64 = 1e-12;
 /// The models a scene may be run by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -231,8 +231,8 @@ impl Scene {
         choose(self).map(|chosen| self.planned(chosen)).map_err(|error| error.found(&self.source))
     }
 
-    /// The same scene by a model that steppers can step through, also where the planned one is
-    /// solved by formulas; `None` if there is none.
+    /// The plan of this scene by a model that steppers can step through, also where the planned one
+    /// is solved by formulas; `None` if there is none.
     pub(super) fn steppable(&self) -> Option<Plan> {
         let plan = self.plan().ok()?;
         match plan.explanation.model {
@@ -242,7 +242,8 @@ impl Scene {
         }
     }
 
-    /// The same scene with flights advanced by Taylor series; `None` if none of its modes is.
+    /// The plan of this scene with flights advanced by Taylor series; `None` if none of its modes
+    /// is.
     pub(super) fn expandable(&self) -> Option<Plan> {
         let mut scene = self.clone();
         scene.run.stepper = Some(Stepper::Series);
@@ -396,7 +397,7 @@ fn plain(scene: &Scene) -> bool {
     !(Effect::ALL.into_iter().any(names) || rubs || spins || moves)
 }
 
-/// What a floor is called: its name, or its kind, with its number where there are several.
+/// The label of a floor: its name, or its kind, with its number where there are several.
 fn label(scene: &Scene, owner: usize) -> String {
     let Some(floor) = scene.floors.get(owner) else { return "floor".to_owned() };
     match &floor.name {

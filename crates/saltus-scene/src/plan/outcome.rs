@@ -70,7 +70,7 @@ pub(super) struct OutcomeObserver<'a, A: Automaton, R> {
     last: Option<f64>,
     tops: Option<Tops>,
     apex: Option<Apex>,
-    /// What the last jump led to.
+    /// The time, the mode and the state after the last jump.
     pub(super) left: Option<(f64, A::Mode, A::State)>,
 }
 
@@ -79,12 +79,12 @@ impl<'a, A: Automaton, R: SceneView<A>> OutcomeObserver<'a, A, R> {
         Self { automaton, view, impacts: 0, first: None, last: None, tops: None, apex: None, left: None }
     }
 
-    /// When the last jump was.
+    /// The time of the last jump.
     pub(super) fn last_jump(&self) -> f64 {
         self.left.as_ref().map_or(0.0, |(t, ..)| *t)
     }
 
-    /// With how it ended, at `until` in `state`.
+    /// The outcome of a run that ends at `until` in `state`.
     pub(super) fn outcome(
         self,
         ending: &EndingOf<A>,

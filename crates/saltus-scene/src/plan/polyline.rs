@@ -6,7 +6,7 @@ use saltus_bounce::walls::{Face, Plane, Round, Walls};
 
 use crate::error::short;
 
-/// What the lowest point of the ball meets over one stretch of x.
+/// A stretch of x with one kind of ground for the lowest point of the ball.
 #[derive(Clone, Debug)]
 enum Piece {
     /// Straight sides with inward corners between them, each a radius away from the centre: what is
@@ -26,14 +26,14 @@ enum Piece {
 /// may come to rest between two.
 #[derive(Clone, Debug)]
 pub(super) struct Polyline {
-    /// Where a cell ends and the next begins, rising.
+    /// The ends of the cells, rising.
     edges: Vec<f64>,
     /// One more than edges.
     pieces: Vec<Piece>,
 }
 
 impl Polyline {
-    /// From two points or more, by increasing x.
+    /// The ground through two points or more, by increasing x.
     pub(super) fn new(points: &[[f64; 2]], radius: f64) -> Result<Self, String> {
         let points: Vec<Vector2<f64>> = points.iter().map(|&point| point.into()).collect();
         let normal = |pair: &[Vector2<f64>]| {
@@ -86,7 +86,7 @@ impl Polyline {
         self.edges.partition_point(|&edge| edge <= x)
     }
 
-    /// How many faces of a cell are ground.
+    /// The number of faces of a cell that are ground.
     fn grounds(&self, cell: usize) -> usize {
         match &self.pieces[cell] {
             Piece::Sides(sides) => sides.len(),

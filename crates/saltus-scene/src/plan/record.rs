@@ -458,7 +458,7 @@ impl Tops {
     }
 }
 
-/// Where `rate` falls from above zero to zero or below within `span`.
+/// The time at which `rate` falls from above zero to zero or below within `span`.
 fn fall(rate: impl Fn(f64) -> f64, span: f64) -> f64 {
     let (mut low, mut high) = (0.0, span);
     // A parabola's velocity is a line: its zero is found at once.

@@ -31,19 +31,20 @@ pub(super) struct RunOptions {
     pub(super) stepped: bool,
     /// Frames per second, to run frame by frame.
     pub(super) frames: Option<f64>,
-    /// Where a coordinate is near zero; a thousandth of the tolerance unless given.
+    /// The absolute tolerance, for coordinates near zero; a thousandth of the tolerance unless
+    /// given.
     pub(super) absolute: Option<f64>,
-    /// From when on no floor moves, in s.
+    /// The time from which no floor moves, in s.
     pub(super) still: f64,
 }
 
-/// How much of a motion that ends by itself is kept beyond its end.
+/// The part of a motion that ends by itself that is kept beyond its end.
 const SHOWN_AFTER_REST: f64 = 0.05;
 /// A ball that slides or rolls through air never quite stops: its run ends at so many times the
 /// time of its last jump, which is then taken to be the last of all. The test
 /// `what_moves_sideways_may_end_by_itself` has a second jump at 1.4 times the first.
 const QUIET: f64 = 2.0;
-/// How much of one that is at rest from the start, in s.
+/// The part that is kept of a motion at rest from the start, in s.
 const SHOWN_AT_REST: f64 = 1.0;
 
 /// Until when to show a motion that ends by itself at `last`.
@@ -261,9 +262,9 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
 /// Ends a run as everything has come to rest, or lies, slides and rolls on alone.
 struct Resting<'a, R> {
     view: &'a R,
-    /// From when on no floor moves, in s.
+    /// The time from which no floor moves, in s.
     still: f64,
-    /// When the last jump was, in s.
+    /// The time of the last jump, in s.
     last: f64,
 }
 

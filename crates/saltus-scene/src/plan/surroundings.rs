@@ -9,7 +9,7 @@ use super::polyline::Polyline;
 use crate::{Ball, Floor, Motion, Scene, Shape};
 use saltus_bounce::walls::{Face, Lift, Plane, Stairs, Table, Walls};
 
-/// What may bound where a ball is, in N coordinates.
+/// A wall of a ball, in N coordinates.
 #[derive(Clone, Debug)]
 enum Wall<const N: usize> {
     Plane(Plane<N>),
@@ -18,7 +18,7 @@ enum Wall<const N: usize> {
     Schedule(Schedule),
 }
 
-/// What cuts space into cells along x, a piece of ground below each.
+/// The cells of space along x, with a piece of ground below each.
 #[derive(Clone, Debug)]
 enum Cells {
     Stairs(Stairs),
@@ -85,7 +85,7 @@ pub(super) struct Surroundings<const N: usize> {
     owners: Vec<usize>,
 }
 
-/// What bounds `ball` in `scene`.
+/// The walls of `ball` in `scene`.
 pub(super) fn surroundings<const N: usize>(scene: &Scene, ball: &Ball) -> Result<Surroundings<N>, PlanError> {
     let mut all = Surroundings { walls: Vec::new(), cells: None, cut: 0, owners: Vec::new() };
     for (owner, floor) in scene.floors.iter().enumerate() {
@@ -207,7 +207,8 @@ impl<const N: usize> Surroundings<N> {
     }
 }
 
-/// As many steps as there are, or, where they do not end, as a run can reach: each takes a jump.
+/// The steps of stairs: all of them, or, where they do not end, as many as a run can reach: each
+/// takes a jump.
 fn stairs(
     [top, from, tread, rise]: [f64; 4],
     count: Option<u32>,
@@ -355,7 +356,7 @@ impl<const N: usize> Walls<N> for Schedule {
     fn rate(&self, face: Face, t: f64, p: &SVector<f64, N>) -> f64 {
         self.at(t).rate(face, t, p)
     }
-    /// Of the stretch that holds at `from`: a ride ends where the schedule changes.
+    /// The ride on the stretch that holds at `from`: it ends where the schedule changes.
     fn carried(&self, face: Face, from: f64, t: f64) -> Option<(f64, f64)> {
         Walls::<N>::carried(self.at(from), face, from, t)
     }

@@ -38,9 +38,9 @@ pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     fn balls(&self) -> usize {
         1
     }
-    /// What of a moment is linear in the state.
+    /// The part of a moment that is linear in the state.
     fn linear(&self, x: &A::State, ball: usize) -> Moment;
-    /// And what is added to it.
+    /// The part that is added to it.
     fn origin(&self, ball: usize) -> Moment {
         let _ = ball;
         Moment::ZERO
@@ -57,13 +57,13 @@ pub(super) trait SceneView<A: Automaton>: Send + Sync + 'static {
     fn scene_event(&self, model: &A, jump: &JumpOf<A>, edge: A::Edge) -> SceneEvent;
     /// The modes a run may enter, as far as they differ in how they are advanced.
     fn modes(&self, model: &A) -> Vec<A::Mode>;
-    /// How an edge is listed, as it is in a mode.
+    /// The name of an edge in a list, in a mode.
     fn edge(&self, model: &A, mode: A::Mode, edge: A::Edge) -> String;
-    /// How the edges of a mode are listed.
+    /// The names of the edges of a mode in a list.
     fn edges(&self, model: &A, mode: A::Mode) -> Vec<String> {
         model.edges(mode).iter().map(|edge| self.edge(model, mode, edge)).collect()
     }
-    /// Why a mode is advanced as it is.
+    /// The reason why a mode is advanced as it is.
     fn why(&self, mode: A::Mode, advance: Advance) -> &'static str;
     /// Contacts that take time.
     fn contacts(&self, model: &A, run: &TrajectoryOf<A>) -> Option<Vec<Impact>> {

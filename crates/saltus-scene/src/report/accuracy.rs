@@ -68,7 +68,7 @@ struct Measured {
     seconds: Option<Seconds>,
 }
 
-/// How long a run took by the clock, in s, as reports in JSON have it.
+/// The times of a run by the clock, in s, as reports in JSON have them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Seconds {
@@ -87,7 +87,7 @@ impl From<Timing> for Seconds {
 }
 
 impl From<&Difference> for Errors {
-    /// What breaks off is infinitely far, for which JSON has no number.
+    /// A run that breaks off is infinitely far, for which JSON has no number.
     fn from(difference: &Difference) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         Self {

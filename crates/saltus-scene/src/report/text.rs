@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use crate::plan::{Impact, Record, With};
 
-/// Of many impacts the text lists the first and the last so many.
+/// The numbers of first and of last impacts that the text lists where there are many.
 const LISTED: (usize, usize) = (20, 3);
 
 /// The impacts as a table for people, and how the run ends.
@@ -64,7 +64,7 @@ fn text(record: &Record) -> String {
     text
 }
 
-/// How the run ends, and each ball then.
+/// The end of the run, and each ball then.
 fn ending(record: &Record) -> String {
     let end = record.until();
     let mut text = String::new();
@@ -87,7 +87,7 @@ fn ending(record: &Record) -> String {
     text
 }
 
-/// What meets what.
+/// The two sides of an impact.
 fn what(record: &Record, impact: &Impact) -> String {
     let on = match impact.with {
         With::Ball(other) => record.scene().ball_name(other),

@@ -8,15 +8,15 @@ use crate::number::{self, digits};
 /// A number of the scene that may be changed.
 #[derive(Clone, Debug)]
 pub(super) struct Freedom {
-    /// As it was asked for.
+    /// The name as it was given.
     pub(super) name: String,
     /// Its path in the file.
     path: Vec<String>,
     /// The unit it is written in; empty where it has none.
     pub(super) unit: String,
-    /// What it is in the scene to begin with.
+    /// The value in the scene to begin with.
     pub(super) start: f64,
-    /// What it may be.
+    /// The least value.
     pub(super) least: f64,
     pub(super) most: f64,
 }

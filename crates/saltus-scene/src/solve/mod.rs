@@ -15,7 +15,7 @@ use crate::number::digits;
 use crate::plan::Record;
 use crate::{Error, Run, Scene};
 
-/// What is begun with where no scene is given.
+/// The scene to begin with where none is given.
 const DROP: &str = "gravity = \"earth\"\nrestitution = 0.7\n\n[ball]\nheight = \"1 m\"\nvelocity = \"0 m/s\"\n";
 /// The longest run, in s, and in units of the last time of a wish.
 const LONG: f64 = 1e3;
@@ -236,7 +236,7 @@ fn long_enough(wishes: &[Wish]) -> Run {
     run
 }
 
-/// What a wish came to.
+/// The value that a wish came to, in words.
 fn came(wish: &Wish, value: f64, clock: Clock) -> String {
     let shown = match wish.what {
         What::Place(_) | What::Height(_) => format!("{} m", digits(value, 6)),
@@ -259,7 +259,7 @@ fn came(wish: &Wish, value: f64, clock: Clock) -> String {
     format!("{}: {shown}, {} {unit} {way} than asked", wish.text, digits(missed.abs(), 3))
 }
 
-/// Why nothing that was tried came to all wishes.
+/// The error where no trial came to all wishes.
 fn never(draft: &Draft, wishes: &[Wish]) -> String {
     let alone = wishes.iter().find(|wish| draft.best(&[wish]).is_none());
     match alone {
@@ -272,7 +272,7 @@ fn never(draft: &Draft, wishes: &[Wish]) -> String {
     }
 }
 
-/// Which wishes cannot be met, alone or together.
+/// The error that names the wishes that cannot be met, alone or together.
 fn contradiction(draft: &Draft, wishes: &[Wish], found: &Found) -> String {
     let others = "free another of height, throw, forward, gravity and cor";
     for wish in wishes {

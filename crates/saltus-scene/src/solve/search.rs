@@ -2,17 +2,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// What is to be found: numbers between limits, and how far off they leave each wish.
+/// A problem: numbers between limits, and the errors of the wishes by them.
 pub(super) struct Problem<'a> {
     /// Least and most of each number.
     pub(super) limits: Vec<[f64; 2]>,
-    /// How much each number matters: about its size.
+    /// The scale of each number: about its size.
     pub(super) sizes: Vec<f64>,
-    /// How far off each wish is, in units of what it allows; `None` where it does not come to that.
+    /// The error of each wish, in units of what it allows; `None` where it does not come to that.
     pub(super) off: &'a dyn Fn(&[f64]) -> Option<Vec<f64>>,
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     pub(super) numbers: Vec<f64>,
@@ -30,8 +30,8 @@ impl Found {
     }
 }
 
-/// What counts as met, in units of what a wish allows: a hundred-millionth of a centimetre or of
-/// half a frame.
+/// The error at which a wish counts as met, in units of what it allows: a hundred-millionth of a
+/// centimetre or of half a frame.
 const MET: f64 = 1e-8;
 const MOST_STEPS: usize = 60;
 
@@ -116,7 +116,7 @@ impl Problem<'_> {
         None
     }
 
-    /// How the wishes change with each number, by differences in units of its size.
+    /// The derivatives of the wishes by each number, by differences in units of its size.
     fn slopes(&self, now: &Found) -> Option<DMatrix<f64>> {
         let mut slopes = DMatrix::zeros(now.off.len(), now.numbers.len());
         for k in 0..now.numbers.len() {

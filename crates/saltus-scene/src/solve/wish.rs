@@ -124,7 +124,7 @@ impl Wish {
         Ok(Self { text: text.trim().to_owned(), what, asked, within })
     }
 
-    /// What a run has of it; `None` where it does not come to that.
+    /// The value of the quantity in a run; `None` where it does not come to that.
     pub(super) fn measured(&self, record: &Record) -> Option<f64> {
         let impacts = record.impacts();
         let touch = |n: usize| impacts.iter().filter(|impact| impact.ball == 0).nth(n - 1).map(|impact| impact.t);
@@ -148,7 +148,7 @@ impl Wish {
         }
     }
 
-    /// How many contacts a run must have to show it; `None` if it must go on to its end.
+    /// The number of contacts that a run must have to show it; `None` if it must go on to its end.
     pub(super) const fn contacts(&self) -> Option<usize> {
         match self.what {
             What::Touch(n) | What::Place(n) | What::Height(n) | What::Top(n) => Some(n),

@@ -87,7 +87,7 @@ impl Vary {
         }
     }
 
-    /// How many values each variation has, of a design.
+    /// The number of values of each variation of a design.
     fn length(&self) -> Result<u64, Error> {
         let count = |variation: &Variation| variation.count().unwrap_or(0);
         let length = self.variations.first().map_or(0, count);

@@ -162,7 +162,7 @@ fn parsed(text: &str) -> Option<(f64, Option<&str>)> {
     Some((value, (!unit.is_empty()).then_some(unit)))
 }
 
-/// What one `unit` is in `other`.
+/// The size of `unit`, in units of `other`.
 fn ratio(unit: &str, other: &str) -> Result<f64, String> {
     let both = |quantity: &Quantity| Some(quantity.scale(unit)? / quantity.scale(other)?);
     Quantity::ALL.iter().find_map(both).ok_or_else(|| format!("'{other}' and '{unit}' do not measure the same"))
@@ -281,7 +281,7 @@ impl Draws {
     }
 }
 
-/// By equal steps, to the fifteen digits that the greater end keeps: `0.31`, and not
+/// A value by equal steps, to the fifteen digits that the greater end keeps: `0.31`, and not
 /// `0.30999999999999994`.
 fn even(from: f64, to: f64, share: f64) -> f64 {
     /// Fifteen digits of the smallest double need so many decimals.
@@ -293,7 +293,7 @@ fn even(from: f64, to: f64, share: f64) -> f64 {
     rounded.clamp(from.min(to), from.max(to))
 }
 
-/// By equal factors, to the fifteen digits that a logarithm keeps.
+/// A value by equal factors, to the fifteen digits that a logarithm keeps.
 fn between(from: f64, to: f64, share: f64) -> f64 {
     let value = from * (to / from).powf(share);
     format!("{value:.14e}").parse().unwrap_or(value)
