@@ -7,7 +7,7 @@ use crate::motion::{Motion, Piece, Point, norm};
 pub(crate) const SLACK: f64 = 1.0 / 65_536.0;
 /// Parts of a span after which a bound is taken as it is: a bound that is not sharp still holds.
 const PARTS: u32 = 4096;
-/// What a bound of an error may be too large by, in m: a millionth of a millimetre is shown as 0.
+/// The slack of a bound of an error, in m: a millionth of a millimetre is shown as 0.
 const FINE: f64 = 1e-12;
 
 /// The largest distance of a curve, or of another motion, from a motion, in m.
@@ -20,7 +20,7 @@ pub struct Miss {
 }
 
 impl Miss {
-    /// In another unit, so many of which make one of this.
+    /// The same distances in another unit, of which `factor` make one of this.
     pub(crate) const fn times(self, factor: f64) -> Self {
         Self { height: self.height * factor, place: self.place * factor }
     }
@@ -57,8 +57,8 @@ pub(crate) fn most([a, b]: [f64; 2], curvature: f64, fine: f64, least: f64, f: i
     bound
 }
 
-/// How far two motions are apart, in height and in space, from above: of pieces in order of time,
-/// where both last.
+/// The distance of two motions in height and in space, as an upper bound: of pieces in order of
+/// time, where both last.
 pub(crate) fn apart<'a>(ones: impl Iterator<Item = &'a Piece>, others: impl Iterator<Item = &'a Piece>) -> Miss {
     let (mut ones, mut others) = (ones.peekable(), others.peekable());
     let mut miss = Miss::default();
@@ -129,7 +129,7 @@ impl Piece {
         })
     }
 
-    /// What the size of the derivative of an order does not exceed, in each coordinate.
+    /// An upper bound of the derivative of an order, in each coordinate.
     pub(crate) fn bound(&self, order: usize) -> Point {
         let mut sum = [0.0; 3];
         // Horner's rule on Σ k (k - 1) ⋯ (k - order + 1) |cₖ| spanᵏ⁻ᵒʳᵈᵉʳ.

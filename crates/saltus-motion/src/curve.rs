@@ -6,7 +6,7 @@ use crate::rate::Frames;
 
 /// Keys closer than this share of a frame are one: programs merge them anyhow.
 pub(crate) const APART: f64 = 0.01;
-/// At so many points between two keys a form or a turning is compared with the motion.
+/// The number of points between two keys at which a form or a turning is compared with the motion.
 pub(crate) const COMPARED: u32 = 16;
 
 /// A place at a time, with the velocities on both sides of it.
@@ -78,7 +78,8 @@ impl Curve {
         apart(pieces.iter(), track.pieces().chain([&rest]))
     }
 
-    /// What happens between a key, by index, and the next: in powers of time. The last key stays.
+    /// The interpolation between a key, by index, and the next, in powers of time. The last key
+    /// stays.
     pub(crate) fn piece(&self, n: usize) -> Piece {
         let Some(a) = self.keys.get(n) else { return still([0.0; 3]) };
         let b = self.keys.get(n + 1).unwrap_or(a);
@@ -92,8 +93,8 @@ impl Curve {
 }
 
 impl Curve {
-    /// The same curve with a key at the top of every flight of the track: a drawing that stands is
-    /// of a whole frame, the nearest.
+    /// This curve with a key at the top of every flight of the track: a drawing that stands is of a
+    /// whole frame, the nearest.
     pub(crate) fn topped(mut self, track: &Track, frames: Frames) -> Self {
         let frame = frames.rate.frame();
         for stretch in track.stretches.iter().filter(|stretch| stretch.flight) {
@@ -114,7 +115,7 @@ impl Curve {
         self
     }
 
-    /// Where it is at `t` in s, with its velocities: a key that changes nothing there.
+    /// The place at `t` in s, with its velocities: a key that changes nothing there.
     pub(crate) fn key(&self, t: f64) -> Key {
         let next = self.keys.partition_point(|key| key.t <= t);
         let still = |key: &Key| Key { t, ..*key };
@@ -163,7 +164,7 @@ fn still(place: Point) -> Piece {
     Piece { start: 0.0, span: 0.0, coefficients: vec![place], spin: Vec::new() }
 }
 
-/// What happens between two keys in powers of the time since the first.
+/// The interpolation between two keys in powers of the time since the first.
 fn powers(how: Between, a: &Key, b: &Key) -> Piece {
     let h = b.t - a.t;
     let per = if h > 0.0 { 1.0 / h } else { 0.0 };

@@ -83,7 +83,7 @@ fn still(piece: &Piece, start: f64, drift: Point, turn: f64) -> Piece {
     piece
 }
 
-/// How much faster it has to turn to come around whole times.
+/// The factor of the spin by which it comes around whole times.
 fn whole(hop: &[Stretch]) -> f64 {
     let pieces = hop.iter().flat_map(|stretch| &stretch.pieces);
     let turned: Point = pieces.fold([0.0; 3], |sum, piece| {

@@ -6,13 +6,13 @@ use crate::rate::Frames;
 use crate::shape::{Form, Pose};
 use crate::turn::{Orientation, Quaternion, Turn, aimed, back, fastest, product, times, turns};
 
-/// How exact a form is between keys, as a part of the ball's radius.
+/// The error of a form between keys, as a part of the ball's radius.
 pub(crate) const FINE: f64 = 1e-4;
 /// How far apart two keys stand where an orientation leaps, as a share of a frame. Blender merges
 /// keys that are 0.01 frame apart, and so turns through the leap for a whole frame; the test
 /// `a_leap_of_the_axis_has_keys_that_blender_keeps_apart` holds it.
 const BESIDE: f64 = 0.02;
-/// How exact an orientation is between keys, in rad.
+/// The error of an orientation between keys, in rad.
 const TURNED: f64 = 0.01;
 
 /// The form and the orientation of one ball as keys.
@@ -21,16 +21,16 @@ const TURNED: f64 = 0.01;
 /// `aim`, and moved by `offset` and by the path.
 #[derive(Clone, Debug)]
 pub(crate) struct Dress {
-    /// From the path to the centre that is shown.
+    /// The vector from the path to the centre that is shown.
     pub(crate) offset: Curve,
     /// Across, across and along.
     pub(crate) scale: Curve,
-    /// What takes up to the axis; empty where that is up always.
+    /// The turns that take up to the axis; empty where that is up always.
     pub(crate) aim: Vec<Turn>,
     /// Empty for a ball that does not turn.
     pub(crate) spin: Vec<Turn>,
-    /// The same turning as an angle about y in rad, from up towards x, counted on over whole turns:
-    /// of a path of cubics, for a ball that turns about y alone.
+    /// The turning as an angle about y in rad, from up towards x, counted on over whole turns: of a
+    /// path of cubics, for a ball that turns about y alone.
     pub(crate) about: Option<Curve>,
 }
 

@@ -6,7 +6,7 @@ use crate::curve::{Between, Curve};
 /// and two thirds of the time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ease {
-    /// In s.
+    /// The times of the ends, in s.
     pub(crate) t: [f64; 2],
     pub(crate) value: [f64; 2],
     /// The progress of the two handles; `None` where the value is held.
@@ -48,7 +48,7 @@ pub(crate) fn extremes(curve: &Curve, axis: usize) -> [f64; 2] {
     ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
 }
 
-/// Where the cubic turns back inside (0, 1), in order.
+/// The extremes of the cubic inside (0, 1), in order.
 fn turns([_, v, m, n]: [f64; 4]) -> Vec<f64> {
     let size = v.abs().max(m.abs()).max(n.abs());
     let (a, b) = (3.0 * n, 2.0 * m);

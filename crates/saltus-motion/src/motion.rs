@@ -49,7 +49,7 @@ impl Piece {
         rows.fold([0.0; 3], |sum, (k, c)| std::array::from_fn(|axis| sum[axis] * s + k as f64 * c[axis]))
     }
 
-    /// The same path `factor` times as slowly, from another start.
+    /// This path `factor` times as slowly, from another start.
     pub(crate) fn slowed(&self, factor: f64, start: f64) -> Self {
         let scaled = |(c, k): (&Point, i32)| c.map(|c| c / factor.powi(k));
         let coefficients = self.coefficients.iter().zip(0..).map(scaled).collect();
@@ -176,7 +176,7 @@ impl Stretch {
     }
 }
 
-/// Where `rate` falls through zero within `span`.
+/// The time at which `rate` falls through zero within `span`.
 fn fall(rate: impl Fn(f64) -> f64, span: f64) -> Option<f64> {
     let (a, b) = (rate(0.0), rate(span));
     if a <= 0.0 || b >= 0.0 {
@@ -215,7 +215,7 @@ impl Track {
         self.stretch(t).at(t)
     }
 
-    /// What it is made of, in order.
+    /// The pieces in order.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = &Piece> {
         self.stretches.iter().flat_map(|stretch| &stretch.pieces)
     }

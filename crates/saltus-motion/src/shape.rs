@@ -22,7 +22,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// What is wrong with it, in words.
+    /// The error of a shape, in words.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
             Self { squash, .. } if !(0.0..=0.9).contains(squash) => {
@@ -64,7 +64,7 @@ pub struct Form {
     loops: bool,
 }
 
-/// What a contact that takes time has pressed in, in m.
+/// The deformation of a contact that takes time, in m.
 fn depth(stretch: &Stretch, contact: &Contact, t: f64) -> f64 {
     let (touch, place) = (stretch.at(stretch.start()), stretch.at(t));
     dot(&contact.normal, &std::array::from_fn(|axis| touch[axis] - place[axis]))
@@ -175,14 +175,14 @@ impl Form {
         }
     }
 
-    /// How much of the stretch there is, from 0 at a contact to 1 a drawing away from it.
+    /// The part of the stretch, from 0 at a contact to 1 a drawing away from it.
     fn risen(&self, track: &Track, index: usize, t: f64) -> f64 {
         let [after, before] = self.touches(track, index);
         let away = |touch: Option<f64>| touch.map_or(f64::INFINITY, |touch| (t - touch).abs() / self.ramp);
         away(after).min(away(before)).min(1.0)
     }
 
-    /// When a flight starts and ends in a contact, in s.
+    /// The times at which a flight starts and ends in a contact, in s.
     fn touches(&self, track: &Track, index: usize) -> [Option<f64>; 2] {
         let stretch = &track.stretches[index];
         let before = index.checked_sub(1).and_then(|before| track.stretches.get(before));
@@ -192,7 +192,8 @@ impl Form {
         [starts.then(|| stretch.start()), ends.then(|| stretch.end())]
     }
 
-    /// Where the form of a ball changes smoothly: the ends of spans in s, of a stretch by index.
+    /// The spans in which the form of a ball changes smoothly: their ends in s, of a stretch by
+    /// index.
     pub(crate) fn smooth(&self, track: &Track, index: usize) -> Vec<f64> {
         let stretch = &track.stretches[index];
         let (start, end) = (stretch.start(), stretch.end());
@@ -212,8 +213,8 @@ impl Form {
     }
 }
 
-/// How far an ellipsoid of semi-axes `along` and 1/√`along` reaches in a direction of which `cos`
-/// is the part along the axis.
+/// The reach of an ellipsoid of semi-axes `along` and 1/√`along` in a direction of which `cos` is
+/// the part along the axis.
 pub(crate) fn support(along: f64, cos: f64) -> f64 {
     ((along * cos).powi(2) + (1.0 - cos * cos).max(0.0) / along).sqrt()
 }

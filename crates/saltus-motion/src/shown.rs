@@ -7,7 +7,7 @@ use crate::ease::extremes;
 use crate::motion::{Piece, Point, Stretch, Track, UP, dot, norm};
 use crate::turn::{MOST, Quaternion, Turn, apart, axis, fastest, turned};
 
-/// What a bound of lengths may be too large by, as a part of the ball's radius.
+/// The slack of a bound of lengths, as a part of the ball's radius.
 const FINE: f64 = 1e-5;
 
 /// The departure of a picture from the motion that it shows, and its error.
@@ -32,7 +32,7 @@ impl Shown {
     /// A round ball that does not turn.
     const ROUND: Self = Self { least: 1.0, most: 1.0, moved: 0.0, volume: 0.0, sunk: 0.0, added: 0 };
 
-    /// In another unit of length, so many of which make one of this.
+    /// The same lengths in another unit, of which `factor` make one of this.
     pub(crate) const fn times(self, factor: f64) -> Self {
         Self { moved: self.moved * factor, sunk: self.sunk * factor, ..self }
     }
@@ -49,8 +49,7 @@ impl Shown {
     }
 }
 
-/// What is shown between neighbours among all keys: where and how large the ball is, and how it is
-/// aimed, in powers of time.
+/// A span between neighbours among all keys: place, size and aim of the ball in powers of time.
 struct Span<'a> {
     stretch: &'a Stretch,
     radius: f64,
@@ -58,7 +57,7 @@ struct Span<'a> {
     offset: Piece,
     scale: Piece,
     aim: &'a [Turn],
-    /// How fast the aim turns, in rad/s: evenly.
+    /// The rate at which the aim turns, in rad/s: an even one.
     rate: f64,
 }
 
@@ -141,7 +140,7 @@ impl<'a> Span<'a> {
 }
 
 impl Dress {
-    /// What is shown of a ball whose place is shown by `path`; `flat` in a picture of the plane.
+    /// The departure of a ball whose place is shown by `path`; `flat` in a picture of the plane.
     pub(crate) fn shown(&self, track: &Track, path: &Curve, flat: bool) -> Shown {
         let mut shown = Shown::ROUND;
         let fast = |turn: &&Turn| {

@@ -61,7 +61,7 @@ impl Unit {
         }
     }
 
-    /// How many of it make a metre: of those that are decimal a whole number.
+    /// The number of units in a metre: of those that are decimal a whole number.
     pub(crate) const fn per_metre(self) -> f64 {
         match self {
             Self::Metre => 1.0,

@@ -6,7 +6,7 @@ use crate::motion::{Piece, Point, Stretch, Track, dot, norm};
 /// An orientation (x, y, up, w) of length 1.
 pub(crate) type Quaternion = [f64; 4];
 
-/// As nothing has turned.
+/// The orientation of a ball that has not turned.
 pub(crate) const STRAIGHT: Quaternion = [0.0, 0.0, 0.0, 1.0];
 
 /// Keys are less than this apart, in rad: half a turn would leave the way open.
@@ -18,7 +18,7 @@ const STEPS: u32 = 64;
 /// An orientation at a time; from one to the next by the shortest way, evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
-    /// In s.
+    /// The time in s.
     pub t: f64,
     /// The orientation as a quaternion (x, y, up, w).
     pub quaternion: [f64; 4],
@@ -42,7 +42,7 @@ fn unit<const N: usize>(a: [f64; N]) -> [f64; N] {
     a.map(|a| a / length)
 }
 
-/// By the angle |v| about v.
+/// The turn by the angle |v| about v.
 fn about(v: Point) -> Quaternion {
     let angle = norm(&v);
     let by = if angle > 1e-8 { (0.5 * angle).sin() / angle } else { 0.5 };
@@ -59,7 +59,7 @@ pub(crate) fn aimed([x, y, up]: Point) -> Quaternion {
     [-y / side * half.sin(), x / side * half.sin(), 0.0, half.cos()]
 }
 
-/// Where a turn takes up to.
+/// The axis to which a turn takes up.
 pub(crate) fn axis([x, y, z, w]: Quaternion) -> Point {
     [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)]
 }
@@ -126,8 +126,8 @@ impl<'a> Orientation<'a> {
     }
 }
 
-/// How a ball has turned `s` seconds into a piece: exact where the axis stands, else in steps of
-/// the middle's spin.
+/// The turn of a ball `s` seconds into a piece: exact where the axis stands, else in steps of the
+/// middle's spin.
 fn spun(piece: &Piece, s: f64) -> Quaternion {
     let Some(first) = piece.spin.iter().find(|c| norm(c) > 0.0) else { return STRAIGHT };
     let aside = |c: &Point| {

@@ -12,7 +12,7 @@ pub(crate) const MANY_DECADES: f64 = 5.0;
 
 /// An axis of powers of ten has at least so many numbers: fewer do not show that it is one.
 const FEWEST: usize = 3;
-/// And in how many parts it is divided where 1, 2 and 5 times a power are fewer.
+/// The number of parts into which it is divided where 1, 2 and 5 times a power are fewer.
 const PARTS: f64 = 8.0;
 
 /// An axis in the units it is labelled with.
@@ -25,9 +25,9 @@ pub(crate) struct Axis {
     step: f64,
     /// Whether the values are powers of ten.
     decades: bool,
-    /// Of powers of ten so near to each other that multiples of this stand between them.
+    /// The part of powers of ten so near to each other that multiples of it stand between them.
     part: Option<f64>,
-    /// Where everything stands that is no more than this.
+    /// The value at which all lesser ones stand.
     least: Option<f64>,
 }
 
@@ -57,14 +57,14 @@ impl Axis {
         self
     }
 
-    /// The same axis with ticks at whole numbers only.
+    /// This axis with ticks at whole numbers only.
     pub(crate) const fn whole(mut self) -> Self {
         self.step = self.step.max(1.0);
         self
     }
 
-    /// The same axis with ticks so far apart that their labels, `width` px each, keep `gap` px
-    /// between them on `length` px.
+    /// This axis with ticks so far apart that their labels, `width` px each, keep `gap` px between
+    /// them on `length` px.
     pub(crate) fn thinned(mut self, length: f64, gap: f64, width: impl Fn(&str) -> f64) -> Self {
         for _ in 0..12 {
             let apart = self.step / (self.high - self.low) * length;

@@ -33,7 +33,7 @@ impl Rect {
         Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
-    /// The same size, pushed into `frame`.
+    /// A rectangle of this size, pushed into `frame`.
     fn inside(self, frame: Self) -> Self {
         let by = |low: f64, high: f64, from: f64, to: f64| (from - low).max(0.0) + (to - high).min(0.0);
         let x = by(self.left, self.right, frame.left, frame.right);
@@ -45,7 +45,7 @@ impl Rect {
 /// Words wider than this part of the panel stand in several lines: one line of them finds no place
 /// near its point.
 const WIDEST: f64 = 0.4;
-/// From one line of them to the next, in sizes of type.
+/// The distance of two lines, in sizes of type.
 const LEADING: f64 = 1.25;
 
 /// Words in lines no wider than `most`, but for a word that is.
@@ -101,7 +101,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// Where the next words would cover something: points along every line and limit, and every dot.
+/// The points that words should not cover: along every line and limit, and every dot.
 fn ink(chart: &Chart, place: &Place, frame: Rect) -> Vec<Point> {
     let dots = chart.dots.iter().map(|(_, at)| at).chain(&chart.marks);
     let mut ink: Vec<Point> = dots.map(|&at| place.at(at)).collect();
@@ -120,7 +120,7 @@ fn ink(chart: &Chart, place: &Place, frame: Rect) -> Vec<Point> {
     ink
 }
 
-/// Of the places around a point, inside a frame, the one that covers least; of two the nearer one.
+/// The place around a point, inside a frame, that covers least; of two the nearer one.
 fn freest((x, y): Point, (width, height): (f64, f64), frame: Rect, ink: &[Point], b: f64) -> Rect {
     let mut best: Option<(f64, Rect)> = None;
     for away in [0.9_f64, 1.4, 2.0, 2.8, 3.8, 5.0] {

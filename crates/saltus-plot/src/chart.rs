@@ -46,9 +46,9 @@ pub struct Chart {
     pub(crate) map: Option<Map>,
     pub(crate) ground: Vec<Stroke>,
     pub(crate) to_scale: bool,
-    /// Which axes go by powers of ten, across and up.
+    /// The axes in powers of ten, across and up.
     pub(crate) logarithmic: [bool; 2],
-    /// What is less across is drawn here.
+    /// The place across of all lesser values.
     pub(crate) least: Option<f64>,
     pub(crate) background: Background,
 }

@@ -45,7 +45,7 @@ pub(crate) struct Label {
 }
 
 impl Label {
-    /// From words with a unit in brackets at the end, if there is one.
+    /// The name and the unit in words with a unit in brackets at the end, if there is one.
     pub(crate) fn read(words: &str) -> Self {
         let words = words.trim();
         let parts = words.strip_suffix(')').and_then(|rest| rest.rsplit_once('('));

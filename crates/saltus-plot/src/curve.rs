@@ -31,12 +31,12 @@ impl Affine {
         self.origin + self.scale * (value - self.zero)
     }
 
-    /// The same map for values `size` times as large: from an axis' unit to seconds or metres.
+    /// This map for values `size` times as large: from an axis' unit to seconds or metres.
     pub(crate) fn per_unit(self, size: f64) -> Self {
         Self { origin: self.origin, scale: self.scale / size, zero: self.zero * size }
     }
 
-    /// Where the ends of an interval are, the lesser first.
+    /// The places of the ends of an interval, the lesser first.
     fn of(&self, (low, high): (f64, f64)) -> (f64, f64) {
         let (a, b) = (self.at(low), self.at(high));
         (a.min(b), a.max(b))
@@ -70,7 +70,7 @@ fn apart(a: Point, b: Point) -> f64 {
 
 struct Pen {
     data: String,
-    /// Where the last command ended.
+    /// The end of the last command.
     at: Option<Point>,
     x: Affine,
     y: Affine,
@@ -91,15 +91,15 @@ impl Pen {
         self.at = points.last().copied();
     }
 
-    /// By `command` to a point, unless the pen already stands there.
+    /// A `command` to a point, unless the pen already stands there.
     fn to(&mut self, command: char, point: Point) {
         if !self.at.is_some_and(|at| apart(at, point) <= TOLERANCE) {
             self.push(command, &[point]);
         }
     }
 
-    /// How many leading strokes touch each other and together are no wider than [`NARROW`], one at
-    /// least, and from where to where they reach up the page.
+    /// The number of leading strokes that touch each other and together are no wider than
+    /// [`NARROW`], one at least, and their reach up the page.
     fn narrow(&self, strokes: &[Stroke]) -> (usize, (f64, f64)) {
         let reach = |stroke: &Stroke| {
             let [across, up] = stroke.reach();

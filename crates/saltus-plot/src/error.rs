@@ -129,7 +129,7 @@ impl fmt::Display for PlotError {
 
 impl Error for PlotError {}
 
-/// Beyond this, differences and squares are no longer safe from overflow.
+/// The largest number of which differences and squares are safe from overflow.
 const FARTHEST: f64 = 1e300;
 
 /// `value` if it is finite, else an error naming `what`.

@@ -310,7 +310,7 @@ fn label(report: &Report, motion: &Motion) -> String {
     format!("{whose}{free}{}", course(report, motion))
 }
 
-/// What the fitted motion supposes: of a series possibly drag, and a COR for every impact.
+/// The assumption of the fitted motion: one COR, or that of a series.
 fn course(report: &Report, motion: &Motion) -> String {
     if report.series().is_empty() { format!("one COR of {:.3}", motion.cor) } else { "the fitted motion".to_owned() }
 }
@@ -341,7 +341,7 @@ fn caption(report: &Report) -> String {
     }
 }
 
-/// How badly one motion holds both heights and times, if it does.
+/// The disagreement of heights and times about one motion, if there is one.
 fn disagreement(report: &Report) -> Option<String> {
     let both = report.residuals().iter().any(|r| r.kind == Measure::Height)
         && report.residuals().iter().any(|r| r.kind == Measure::Time);

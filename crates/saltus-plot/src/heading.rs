@@ -12,7 +12,7 @@ use crate::panel::{Area, failed};
 use crate::svg::number;
 use crate::theme::{CAPITAL, Dash, Ink, Type, room, words, wrapped};
 
-/// What a legend entry shows before its words.
+/// The sign of a legend entry, before its words.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Sign {
     Line(Ink, Dash),
@@ -42,7 +42,7 @@ impl Sign {
         }
     }
 
-    /// From the sign to its words.
+    /// The distance from the sign to its words.
     fn lead(self, ty: Type) -> f64 {
         match self {
             Self::Nothing => 0.0,
@@ -51,7 +51,7 @@ impl Sign {
         }
     }
 
-    /// From the words to the next sign.
+    /// The distance from the words to the next sign.
     fn gap(self, ty: Type) -> f64 {
         match self {
             Self::Nothing => 0.4 * ty.base,
@@ -121,7 +121,7 @@ impl Legend {
         self.ty
     }
 
-    /// In px.
+    /// The height in px.
     pub(crate) fn height(&self) -> f64 {
         self.rows as f64 * 1.45 * self.ty.base
     }
@@ -157,13 +157,13 @@ pub(crate) struct Heading {
 }
 
 impl Heading {
-    /// With a title, lines under it, and the signs and words of a legend.
+    /// The heading of a title, lines under it, and the signs and words of a legend.
     pub(crate) fn of(title: &str, captions: &[String], legend: Vec<(Sign, String)>, ty: Type, page: f64) -> Self {
         let all = legend.len();
         Self::divided(title, captions, (legend, all), ty, page)
     }
 
-    /// The same; the first so many signs are of the model, the others of measurements.
+    /// The heading with so many first signs of the model, and the others of measurements.
     pub(crate) fn divided(
         title: &str,
         captions: &[String],
@@ -177,7 +177,7 @@ impl Heading {
         Self { ty, title, captions, legend: Legend::divided(legend, ty, inside) }
     }
 
-    /// From the top of the page to the bottom of the last line, in px.
+    /// The height from the top of the page to the bottom of the last line, in px.
     pub(crate) fn height(&self) -> f64 {
         let b = self.ty.base;
         let mut y = 0.9 * self.ty.margin();

@@ -148,7 +148,7 @@ impl HeightTime {
         self.grounds.is_empty() && !self.floorless
     }
 
-    /// How high the floor is at `t` in s under the motion that is nearest to it.
+    /// The height of the floor at `t` in s under the motion that is nearest to it.
     pub(crate) fn floor(&self, t: f64) -> f64 {
         let at = |strokes: &[Stroke]| {
             let on = |stroke: &&Stroke| stroke.start().0 <= t && t <= stroke.end().0;
@@ -314,7 +314,7 @@ fn plural(mark: Mark, count: usize) -> &'static str {
     }
 }
 
-/// At most four significant digits.
+/// The number with at most four significant digits.
 fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -325,7 +325,7 @@ fn short(value: f64) -> String {
     crate::axis::typeset(text)
 }
 
-/// How far the data reach, in seconds and metres, and the units to show them in.
+/// The reach of the data, in seconds and metres, and the units to show them in.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Bounds {
     pub(crate) time: (f64, f64),

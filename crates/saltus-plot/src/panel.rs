@@ -21,7 +21,7 @@ use crate::theme::{Ink, Type, words};
 pub(crate) type Area = DrawingArea<Canvas, Shift>;
 pub(crate) type Chart<'a> = ChartContext<'a, Canvas, Cartesian2d<Axis, Axis>>;
 
-/// More marks than this, and those that would cover one another are left out.
+/// The most marks of which all are drawn; of more, those that would cover one another are left out.
 const MANY: usize = 1500;
 
 /// plotters' own failures; drawing on text cannot fail.
@@ -29,7 +29,7 @@ pub(crate) fn failed(error: DrawingAreaErrorKind<Infallible>) -> PlotError {
     PlotError::Drawing(error.to_string())
 }
 
-/// What both panels share. Lengths are in grains.
+/// The layout that both panels share. Lengths are in grains.
 #[derive(Debug)]
 pub(crate) struct Frame {
     pub(crate) ty: Type,
@@ -63,7 +63,7 @@ pub(crate) fn mesh(chart: &mut Chart<'_>, ty: Type, time_label: Option<&str>) ->
     mesh.draw().map_err(failed)
 }
 
-/// How a chart maps its axes to px, without plotters' rounding.
+/// The maps of a chart's axes to px, without plotters' rounding.
 pub(crate) fn maps(chart: &Chart<'_>) -> (Affine, Affine) {
     let px = |grain: i32| f64::from(grain) / GRAIN;
     let area = chart.plotting_area();

@@ -13,7 +13,7 @@ use crate::stroke::Stroke;
 use crate::theme::Background;
 use crate::traced::{Leap, Part, Traced, labels};
 
-/// How many arrows at most show which way a run goes.
+/// The most arrows that show the direction of a run.
 const ARROWS: usize = 6;
 /// The way from one arrow to the next, as a part of how far the run reaches.
 const APART: f64 = 0.8;

@@ -2,21 +2,21 @@
 
 use crate::curve::Affine;
 
-/// How the axes of a chart map their data to the page.
+/// The map of a chart's axes to the page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) x: Affine,
     pub(crate) y: Affine,
-    /// Of the units across and up.
+    /// The sizes of the units across and up.
     pub(crate) sizes: [f64; 2],
-    /// Which axes go by powers of ten, across and up.
+    /// The axes in powers of ten, across and up.
     pub(crate) logarithmic: [bool; 2],
-    /// What is less across is drawn here.
+    /// The place across of all lesser values.
     pub(crate) least: Option<f64>,
 }
 
 impl Place {
-    /// In px.
+    /// The place in px.
     pub(crate) fn at(&self, [a, b]: [f64; 2]) -> (f64, f64) {
         let a = self.least.map_or(a, |least| a.max(least));
         let scaled = |k: usize, value: f64| if self.logarithmic[k] { (value / self.sizes[k]).log10() } else { value };

@@ -25,7 +25,7 @@ pub(crate) fn shifted(c: &[f64], shift: f64) -> Vec<f64> {
     c
 }
 
-/// Where the polynomial changes sign in (0, span), in rising order.
+/// The changes of sign of the polynomial in (0, span), in rising order.
 ///
 /// Between two neighbouring turning points it is monotone, so bisection there finds every change of
 /// sign.

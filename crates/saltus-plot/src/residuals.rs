@@ -10,7 +10,7 @@ use crate::marks::Spot;
 use crate::panel::{Area, Frame, apart, failed, maps, mesh};
 use crate::theme::{Ink, Type};
 
-/// How many there are and how scattered: "5 residuals, rms 3.8 σ, 3 beyond ±2 σ".
+/// The number and the scatter of residuals: "5 residuals, rms 3.8 σ, 3 beyond ±2 σ".
 pub(crate) fn summary(residuals: &[Residual]) -> String {
     let count = residuals.len();
     let noun = if count == 1 { "residual" } else { "residuals" };

@@ -53,7 +53,7 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
-/// What neighbouring elements must share to stand in one group.
+/// The attributes that neighbouring elements must share to stand in one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pen {
     ink: Option<Ink>,
@@ -118,7 +118,7 @@ impl Canvas {
         self.path(Pen::new(color, Kind::Fill), data);
     }
 
-    /// The same, so that what lies below shows through.
+    /// An area through which the elements below show.
     pub(crate) fn glaze(&mut self, data: &str, ink: Ink, alpha: f64) {
         self.path(Pen::new(BackendColor { alpha, rgb: ink.light() }, Kind::Fill), data);
     }

@@ -17,8 +17,7 @@ use saltus_scene::vary::Variation;
 
 use crate::{Background, Chart, Map, Measure, PlotError, Stroke};
 
-/// With more values than this of its second key a sweep is drawn as a map, and not as so many
-/// lines.
+/// The most values of its second key with which a sweep is drawn as lines, and not as a map.
 const MOST_LINES: u64 = 6;
 
 /// The results that are drawn unless one is chosen: the first that any run has.
@@ -99,7 +98,7 @@ fn column(sweep: &Sweep<'_>, rows: &[Row], show: Option<&str>) -> Result<usize, 
     })
 }
 
-/// What a heading of the table names, and in what.
+/// The name and the measure of a heading of the table.
 fn measured(heading: &str) -> (String, Measure) {
     let units = [
         ("_rad_per_s", Measure::Unit("rad/s".into())),

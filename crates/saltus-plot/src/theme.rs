@@ -41,10 +41,10 @@ pub enum Background {
     Adaptive,
 }
 
-/// How many motions have a colour of their own.
+/// The number of motions with a colour of their own.
 const SERIES: usize = 5;
 
-/// What a stroke or a word is for. Each ink has a colour on light paper and one on dark.
+/// The use of a stroke or a word. Each ink has a colour on light paper and one on dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Ink {
     /// Titles, numbers, marks of measurements.
@@ -94,8 +94,8 @@ impl Ink {
         }
     }
 
-    /// On light paper. Blue, vermilion, green and purple stay apart for every common kind of colour
-    /// blindness; ochre, which is near vermilion for some, comes last.
+    /// The colour on light paper. Blue, vermilion, green and purple stay apart for every common
+    /// kind of colour blindness; ochre, which is near vermilion for some, comes last.
     pub(crate) fn light(self) -> (u8, u8, u8) {
         match self {
             Self::Text => (0x1b, 0x20, 0x27),
@@ -111,7 +111,7 @@ impl Ink {
         }
     }
 
-    /// On dark paper.
+    /// The colour on dark paper.
     pub(crate) fn dark(self) -> (u8, u8, u8) {
         match self {
             Self::Text => (0xec, 0xef, 0xf3),
@@ -153,7 +153,7 @@ impl Ink {
     }
 }
 
-/// How a line is broken up, so that lines differ in more than colour.
+/// The dashes of a line, so that lines differ in more than colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dash {
     Solid,
@@ -168,8 +168,8 @@ impl Dash {
         [Self::Solid, Self::Dashed, Self::Dotted, Self::Mixed][index % 4]
     }
 
-    /// Of lines that may be steep or have steps, whose own shape dashes would hide: the first five
-    /// are solid, and differ by their inks alone.
+    /// The dashes of lines that may be steep or have steps, whose own shape dashes would hide: the
+    /// first five are solid, and differ by their inks alone.
     pub(crate) fn steep(index: usize) -> Self {
         Self::series(index / SERIES)
     }
@@ -215,7 +215,7 @@ impl Type {
         2.3 * self.hairline()
     }
 
-    /// Of a limit, of a ring around a point.
+    /// The width of a limit, and of a ring around a point.
     pub(crate) fn rule(self) -> f64 {
         1.5 * self.hairline()
     }
@@ -250,7 +250,7 @@ const WIDTHS: [u16; 95] = [
     260, 334, 584,
 ];
 
-/// How wide `text` is at `size`, in px, in a face like Helvetica.
+/// The width of `text` at `size`, in px, in a face like Helvetica.
 pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
     let thousandths: f64 = text.chars().map(advance).sum();
     thousandths / 1000.0 * size * if bold { 1.06 } else { 1.0 }

@@ -10,7 +10,7 @@ use crate::coordinate::Label;
 use crate::error::{PlotError, finite};
 use crate::polynomial::shifted;
 
-/// What follows the last jump of a run that does not end, as a part of what comes before it.
+/// The time shown after the last jump of a run that does not end, as a part of the time before it.
 const AFTER: f64 = 0.15;
 /// A run that goes on beyond this does not end.
 const ENDLESS: f64 = 1e299;
@@ -28,7 +28,7 @@ pub(crate) struct Traced {
 /// The stay in a mode between two jumps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stay {
-    /// Which of the modes.
+    /// The number of the mode.
     pub(crate) mode: usize,
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -121,8 +121,8 @@ impl Traced {
         self.modes = kept.iter().map(|&mode| self.modes[mode].clone()).collect();
     }
 
-    /// Where a coordinate breaks: the time, and the limits before the first and after the last jump
-    /// at that time.
+    /// The breaks of a coordinate: the time, and the limits before the first and after the last
+    /// jump at that time.
     pub(crate) fn breaks(&self, line: usize) -> impl Iterator<Item = (f64, f64, f64)> {
         let instants = self.leaps.chunk_by(|a, b| a.t == b.t);
         instants.filter_map(move |leaps| {
@@ -167,7 +167,7 @@ fn window<M: Copy, E, S: State>(
     }
 }
 
-/// What of a piece lies in the window.
+/// The part of a piece in the window.
 fn part<S: State>(piece: &saltus::Piece<'_, S>, (low, high): (f64, f64), places: &[usize]) -> Option<Part> {
     let (start, scale) = (piece.start().seconds(), piece.scale());
     let end = start + piece.span();

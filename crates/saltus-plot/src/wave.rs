@@ -13,9 +13,9 @@ use crate::theme::{Dash, Ink};
 /// A sound as the lowest and the highest sample of stretches of equal length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Wave {
-    /// When the first stretch begins, s.
+    /// The start of the first stretch, s.
     pub(crate) start: f64,
-    /// How long a stretch is, s.
+    /// The duration of a stretch, s.
     pub(crate) step: f64,
     pub(crate) stretches: Vec<[f32; 2]>,
 }

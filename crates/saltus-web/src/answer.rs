@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// What is answered, and the bytes behind it.
+/// The answer, and the bytes behind it.
 pub(crate) type Answer = Result<(Value, Vec<u8>), Value>;
 
 /// A failure that has a kind and words.

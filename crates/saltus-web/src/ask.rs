@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::answer::{Answer, failed};
 use crate::{fit, scene};
 
-/// What can be asked.
+/// The questions.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "ask", rename_all = "kebab-case", deny_unknown_fields)]
 enum Ask {
@@ -16,7 +16,7 @@ enum Ask {
     Run(scene::Run),
     /// A file for animators.
     Export { toml: String, format: String, fps: String },
-    /// What each effect changes.
+    /// The change that each effect makes.
     Effects { toml: String },
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::answer::{Answer, failed};
 
-/// What may be stated beside the files, as a person writes it: numbers with units.
+/// The statements beside the files, as a person writes them: numbers with units.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Options {

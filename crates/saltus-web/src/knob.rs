@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
-/// What a slider sets of the first ball, or of the scene.
+/// The quantity of the first ball, or of the scene, that a slider sets.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Knob {
@@ -18,9 +18,9 @@ pub(crate) enum Knob {
     Gravity,
     /// The drag coefficient.
     Drag,
-    /// From x towards up, turns a second.
+    /// The spin from x towards up, turns a second.
     Spin,
-    /// Of the floor, upwards along x, degrees.
+    /// The slope of the floor, upwards along x, degrees.
     Slope,
 }
 

@@ -43,7 +43,7 @@ pub extern "C" fn answer() -> usize {
     message.len()
 }
 
-/// Where the answer is.
+/// The address of the answer.
 #[allow(unsafe_code)] // as above
 #[unsafe(no_mangle)]
 pub extern "C" fn place() -> *const u8 {

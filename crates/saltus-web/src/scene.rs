@@ -12,17 +12,17 @@ use serde_json::{Map, Value, json};
 use crate::answer::{Answer, failed};
 use crate::knob::Knob;
 
-/// What messages call the scene.
+/// The name of the scene in messages.
 const NAME: &str = "scene";
-/// How finely a motion is sampled: four samples to each frame of a screen, and no more in all than
-/// a picture has columns.
+/// The samples of a motion in a second: four to each frame of a screen, and no more in all than a
+/// picture has columns.
 const SAMPLES_PER_SECOND: f64 = 240.0;
 const MOST_SAMPLES: u32 = 2000;
-/// How many evaluations of flows and guards a run may take: about a second.
+/// The most evaluations of flows and guards of a run: about a second.
 const MOST_EVALUATIONS: u64 = 5_000_000;
-/// How many impacts are listed.
+/// The most impacts that are listed.
 const LISTED: usize = 200;
-/// How far keys of files may be from the motion, m.
+/// The distance of keys of files from the motion, m.
 const TOLERANCE: f64 = 1e-4;
 
 /// A scene to run.
@@ -41,7 +41,7 @@ pub(crate) struct Run {
     pictures: Vec<String>,
 }
 
-/// What is wrong with a scene: with its place, where it has one.
+/// The error of a scene: with its place, where it has one.
 fn refused(error: &SceneError) -> Value {
     json!({
         "kind": "scene", "message": error.message(), "line": error.line(), "column": error.column(),
@@ -137,7 +137,7 @@ fn impacts(record: &Record) -> Vec<Value> {
     record.impacts().iter().take(LISTED).map(impact).collect()
 }
 
-/// What gravity is elsewhere, and the sliders that the scene has, with their values: those for
+/// The gravity of other bodies, and the sliders that the scene has, with their values: those for
 /// which it is a scene again when its own value is written into it.
 fn knobs(toml: &str, scene: &Scene) -> Value {
     let known = Knob::ALL.into_iter().filter_map(|knob| {
@@ -167,7 +167,8 @@ pub(crate) fn export(toml: &str, format: &str, fps: &str) -> Answer {
     Ok((json!({ "says": stage.says(&file) }), file.bytes))
 }
 
-/// What each effect changes: the scene with it left out or put in, beside the scene as it is.
+/// The change that each effect makes: the scene with it left out or put in, beside the scene as it
+/// is.
 pub(crate) fn effects(toml: &str) -> Answer {
     let scene = parsed(toml)?;
     let plan = planned(&scene)?;

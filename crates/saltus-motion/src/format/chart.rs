@@ -21,7 +21,7 @@ const APART: f64 = 44.0;
 /// A path this much wider than high is shown as one; so is any that is not this much narrower.
 const TRAVELS: f64 = 0.25;
 
-/// What happens at a time.
+/// The event at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Event {
     Contact,
@@ -34,9 +34,9 @@ enum Event {
 struct Mark {
     event: Event,
     t: f64,
-    /// On the picture.
+    /// The place on the picture.
     at: [f64; 2],
-    /// Along the line on the picture, of length 1.
+    /// The direction of the line on the picture, of length 1.
     along: [f64; 2],
 }
 
@@ -119,7 +119,7 @@ pub(super) fn chart(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     )
 }
 
-/// How far the lowest points get, [x, up] from least to greatest.
+/// The reach of the lowest points, [x, up] from least to greatest.
 fn reach(balls: &[Ball<'_>]) -> [[f64; 2]; 2] {
     let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for stretch in balls.iter().flat_map(|ball| &ball.track.stretches) {

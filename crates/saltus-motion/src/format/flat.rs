@@ -8,7 +8,7 @@ use crate::curve::Curve;
 use crate::ease::{Ease, eases};
 use crate::turn::Turn;
 
-/// What a number does; sizes in units of the picture, angles in degrees with the clock.
+/// The effect of a number; sizes in units of the picture, angles in degrees with the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moves {
     X,
@@ -26,8 +26,8 @@ pub(super) struct Channel {
     pub(super) eases: Vec<Ease>,
 }
 
-/// From the outermost inwards: along the path, from there to the centre, squash, spin. The
-/// innermost holds a disc about its origin.
+/// The channels of a ball, from the outermost inwards: along the path, from there to the centre,
+/// squash, spin. The innermost holds a disc about its origin.
 pub(super) fn channels(ball: &Ball<'_>, view: &View) -> Vec<Channel> {
     let shaped = ball.flat.as_ref().or(ball.dress.as_ref()).filter(|dress| dress.shaped());
     let of = |name, moves, curve: &Curve, axis, to: &dyn Fn(f64) -> f64| {

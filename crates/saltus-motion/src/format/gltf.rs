@@ -100,7 +100,7 @@ impl Buffer {
 struct Shape {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
-    /// Of triangles, by colour.
+    /// The indices of triangles, by colour.
     indices: Vec<Vec<u16>>,
 }
 
@@ -224,7 +224,7 @@ impl Channels<'_> {
     }
 }
 
-/// Which nodes the path, the squash and the shape of each ball are.
+/// The numbers of the nodes that are the path, the squash and the shape of each ball.
 fn numbered(ball: usize, balls: usize, nodes: usize) -> Vec<usize> {
     // The paths of all balls come first, then what they carry.
     if nodes == 2 { vec![ball, balls + ball] } else { vec![ball, 2 * balls + ball, balls + ball] }
@@ -318,7 +318,7 @@ pub(super) fn text(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) 
     Ok(serde_json::to_string(&document)? + "\n")
 }
 
-/// The same in one binary file.
+/// The file as one binary.
 pub(super) fn binary(export: &Export<'_>, shown: &[Ball<'_>], exact: &[Ball<'_>]) -> Result<Vec<u8>, ExportError> {
     let (document, bytes) = parts(export, shown, exact);
     let mut text = serde_json::to_vec(&document)?;

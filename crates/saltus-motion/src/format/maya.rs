@@ -111,7 +111,7 @@ cmds.playbackOptions(minTime=DATA["range"][0], maxTime=DATA["range"][1],
                      animationStartTime=DATA["range"][0], animationEndTime=DATA["range"][1])
 "#;
 
-/// What Maya calls a frame rate.
+/// The name of a frame rate in Maya.
 fn unit(export: &Export<'_>) -> Result<&'static str, ExportError> {
     let rate = export.frames.rate;
     Ok(match rate.fraction() {

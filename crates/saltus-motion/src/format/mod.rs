@@ -210,17 +210,18 @@ const fn colour(ball: usize) -> [f64; 3] {
     COLOURS[ball % COLOURS.len()]
 }
 
-/// The same as pictures write it.
+/// The colour of a ball in the form of pictures.
 fn ink(ball: usize) -> String {
     let [r, g, b] = colour(ball).map(|part| (255.0 * part).round());
     format!("rgb({r},{g},{b})")
 }
 
-/// How far keys may be from a motion, in m, unless another distance is asked for: a dot of a
-/// picture that shows 40 cm by 4000 dots.
+/// The distance of keys from a motion, in m, unless another is asked for: a dot of a picture that
+/// shows 40 cm by 4000 dots.
 const TOLERANCE: f64 = 1e-4;
 
-/// How near keys may have to be to a motion, as a part of its size: a thousand roundings of it.
+/// The least distance of keys from a motion that may be asked for, as a part of its size: a
+/// thousand roundings of it.
 const FINEST: f64 = 1e-12;
 
 /// A motion and how it is to be shown.
@@ -244,12 +245,12 @@ pub struct Export<'a> {
     pub space: Space,
 }
 
-/// What is shown of one ball: where it is, and how it looks if that changes.
+/// A ball as it is shown: its place, and its form and turning if they change.
 struct Ball<'a> {
     track: &'a Track,
     path: Curve,
     dress: Option<Dress>,
-    /// What a picture of the plane shows instead, where the form leaves the plane.
+    /// The form in a picture of the plane, where the true one leaves the plane.
     flat: Option<Dress>,
 }
 
@@ -257,18 +258,18 @@ struct Ball<'a> {
 /// turned before, made longer first.
 struct Node<'a> {
     name: String,
-    /// Where it is within the node around it, if it stays there.
+    /// The place within the node around it, if it stays there.
     still: Point,
     place: Option<&'a Curve>,
     turns: &'a [Turn],
-    /// The same as an angle about y in rad, where that is all, in a format that counts turns.
+    /// The turning as an angle about y in rad, where that is all, in a format that counts turns.
     about: Option<&'a Curve>,
     scale: Option<&'a Curve>,
 }
 
 impl Ball<'_> {
-    /// From the outermost to that of the ball itself, whose middle is its origin: the path, squash
-    /// and stretch if there is any, spin.
+    /// The nodes from the outermost to that of the ball itself, whose middle is its origin: the
+    /// path, squash and stretch if there is any, spin.
     fn nodes(&self) -> Vec<Node<'_>> {
         let name = &self.track.name;
         let node = |name: String| Node { name, still: [0.0; 3], place: None, turns: &[], about: None, scale: None };
@@ -288,7 +289,7 @@ impl Ball<'_> {
         nodes
     }
 
-    /// How what is shown departs from the motion; `None` for a round ball that does not turn.
+    /// The departure of what is shown from the motion; `None` for a round ball that does not turn.
     fn shown(&self) -> Option<Shown> {
         let solid = self.dress.as_ref()?.shown(self.track, &self.path, false);
         let Some(flat) = &self.flat else { return Some(solid) };
@@ -399,7 +400,7 @@ impl<'a> Export<'a> {
         Ok(File { bytes, keys, miss, shown: shown.reduce(Shown::or) })
     }
 
-    /// What is shown of each ball: frames, or keys; on twos always frames.
+    /// The balls as they are shown: by frames, or by keys; on twos always by frames.
     fn balls(&self, format: Format, sampled: bool) -> Vec<Ball<'_>> {
         let form =
             (self.shape.squash > 0.0 || self.shape.stretch > 0.0).then(|| self.motion.form(self.shape, self.frames));
@@ -428,7 +429,7 @@ impl<'a> Export<'a> {
     }
 }
 
-/// How far the ground reaches on both sides of the plane of x and up, in m.
+/// The depth of the ground on both sides of the plane of x and up, in m.
 fn depth(motion: &Motion) -> f64 {
     let [[left, right], _] = motion.reach();
     let aside =

@@ -4,7 +4,8 @@ use super::{ExportError, Format};
 use crate::space::{Space, Unit, Up};
 
 impl Format {
-    /// Why its lengths are in metres, or have no unit at all; `None` where they can be in any.
+    /// The reason why its lengths are in metres, or have no unit at all; `None` where they can be
+    /// in any.
     const fn unit_is_own(self) -> Option<&'static str> {
         match self {
             Self::Csv

@@ -7,7 +7,7 @@ use super::view::View;
 use super::{Ball, Export, ink};
 use crate::curve::Between;
 
-/// For how long the last picture stands before it starts again, in s.
+/// The time for which the last picture stands before it starts again, in s.
 const PAUSE: f64 = 1.0;
 
 /// A stand-in for the number that makes the names of a picture its own in a page, until that number

@@ -75,10 +75,10 @@ pub(super) fn splines(export: &Export<'_>, balls: &[Ball<'_>]) -> String {
     })
 }
 
-/// How (x, y, up) lies in the stage.
+/// The map of (x, y, up) into the stage.
 type Lie = fn(Point) -> Point;
 
-/// Of places, and of scales, which have no sign.
+/// The maps of places, and of scales, which have no sign.
 fn lies(export: &Export<'_>) -> [Lie; 2] {
     match export.space.up {
         Some(Up::Z) => [|place| place; 2],

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::{Ball, ReadError, Reading};
 use crate::space::Unit;
 
-/// What a value does after a key.
+/// The course of a value after a key.
 #[derive(Clone, Copy)]
 enum After {
     Line,
@@ -59,7 +59,7 @@ fn between(a: &Key, b: &Key, t: f64) -> f64 {
     }
 }
 
-/// What is missing in a file.
+/// The error of a file that lacks something.
 fn lacks(what: &str) -> ReadError {
     ReadError::new(format!("there is no {what}"))
 }
@@ -183,7 +183,7 @@ pub(super) fn usda(text: &str) -> Result<Vec<Reading>, ReadError> {
     Ok(vec![Reading { name: "USD".to_owned(), sampled, balls }])
 }
 
-/// What follows a text.
+/// The text behind a start.
 fn after<'a>(text: &'a str, start: &str) -> Option<&'a str> {
     text.split_once(start).map(|(_, rest)| rest)
 }

@@ -31,7 +31,7 @@ pub struct Reading {
 /// The height of one ball.
 pub struct Ball {
     height: Box<dyn Fn(f64) -> f64>,
-    /// Of a picture, which has radii and not metres: how many each of its units is.
+    /// The radii in a unit of a picture, which has radii and not metres.
     radii: Option<f64>,
     end: f64,
 }

@@ -7,7 +7,7 @@ use zip::ZipArchive;
 
 use super::ReadError;
 
-/// More than this is not unpacked, in bytes: a million frames of ten balls have half of it.
+/// The most bytes that are unpacked: a million frames of ten balls have half of it.
 const MOST: u64 = 1 << 30;
 
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;

@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::theme::Type;
 
-/// What all panels share. Lengths are in px.
+/// The layout that all panels share. Lengths are in px.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) ty: Type,

@@ -13,7 +13,7 @@ use crate::panel::{Area, band, failed, maps, mesh};
 use crate::theme::{CAPITAL, Ink, Type, room, words};
 use crate::traced::Traced;
 
-/// More modes than this have no lane.
+/// The most modes that have a lane.
 const MOST_MODES: usize = 12;
 /// The longest name that is written out, in letters.
 const LETTERS: usize = 16;
@@ -43,7 +43,7 @@ impl<'a> Lane<'a> {
         0.8 * self.ty.base
     }
 
-    /// With the gap above it, in px.
+    /// The height with the gap above it, in px.
     pub(super) fn height(&self) -> f64 {
         self.gap() + self.row() * self.modes.len() as f64
     }
@@ -93,7 +93,7 @@ impl<'a> Lane<'a> {
     }
 }
 
-/// When the mode is the run's; stays nearer to each other than `near` are one.
+/// The spans in which the mode is the run's; stays nearer to each other than `near` are one.
 fn stays(traced: &Traced, mode: usize, near: f64) -> Vec<(f64, f64)> {
     let mut bars: Vec<(f64, f64)> = Vec::new();
     for stay in traced.stays.iter().filter(|stay| stay.mode == mode) {

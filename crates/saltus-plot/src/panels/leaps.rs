@@ -6,7 +6,7 @@ use crate::svg::number;
 use crate::theme::Type;
 use crate::traced::Traced;
 
-/// More jumps than this are too many for upright lines.
+/// The most jumps that have upright lines.
 const MOST_UPRIGHT: usize = 80;
 /// Jumps nearer to each other than this, in px, have one upright line.
 const ONE: f64 = 3.0;

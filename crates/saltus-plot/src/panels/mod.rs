@@ -16,7 +16,7 @@ use crate::measure::Measure;
 use crate::theme::Background;
 use crate::traced::{Traced, labels};
 
-/// More panels than this are only drawn where they are asked for.
+/// The most panels that are drawn unless they are asked for.
 const MOST_PANELS: usize = 12;
 
 /// A picture of a run: its coordinates against time, in panels that share the axis of time.
@@ -201,7 +201,7 @@ impl<'a, M: Copy + fmt::Debug, E, S: State> Panels<'a, M, E, S> {
     }
 }
 
-/// Which coordinates share a panel: those of one list; of very many those of one unit.
+/// The coordinates that share a panel: those of one list; of very many those of one unit.
 fn grouped(labels: &[Label]) -> Vec<Vec<usize>> {
     let by = |same: fn(&Label, &Label) -> bool| {
         let mut groups: Vec<Vec<usize>> = Vec::new();

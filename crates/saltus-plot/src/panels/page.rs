@@ -31,14 +31,14 @@ const LOWEST: f64 = 116.0;
 /// Lines of a panel beyond so many have no names of their own.
 const NAMES: usize = 8;
 
-/// What a page shows.
+/// The content of a page.
 #[derive(Debug)]
 pub(super) struct Content<'a> {
     pub(super) title: &'a str,
     pub(super) captions: &'a [String],
-    /// Of the coordinates drawn.
+    /// The labels of the coordinates drawn.
     pub(super) labels: &'a [Label],
-    /// Which of them share a panel.
+    /// The groups of coordinates that share a panel.
     pub(super) groups: Vec<Vec<usize>>,
     pub(super) traced: &'a Traced,
     pub(super) time: &'a Measure,
@@ -61,7 +61,7 @@ impl Panel {
     }
 }
 
-/// How a line among so many of a panel is drawn.
+/// The look of a line among so many of a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pen {
     pub(super) ink: Ink,
@@ -120,7 +120,7 @@ pub(super) fn draw(content: &Content<'_>) -> Result<String, PlotError> {
     Ok(svg)
 }
 
-/// What the upright lines are, if there are any.
+/// The meaning of the upright lines, if there are any.
 fn events(traced: &Traced) -> Vec<(Sign, String)> {
     let jump =
         (leaps::few(traced) && traced.leaps.iter().any(|leap| !leap.limit)).then(|| (Sign::Jump, "jump".to_owned()));
@@ -128,7 +128,7 @@ fn events(traced: &Traced) -> Vec<(Sign, String)> {
     jump.into_iter().chain(limit).collect()
 }
 
-/// How far each coordinate reaches.
+/// The reach of each coordinate.
 fn reach(content: &Content<'_>) -> Result<Vec<(f64, f64)>, PlotError> {
     let reach = |(line, label): (usize, &Label)| {
         let mut reach = (f64::INFINITY, f64::NEG_INFINITY);
@@ -173,7 +173,7 @@ fn panel(content: &Content<'_>, lines: &[usize], reach: &[(f64, f64)], (high, pa
     Panel { lines: lines.to_vec(), legend, axis: Axis::new(ends.0, ends.1, ends, most), unit }
 }
 
-/// What stands above a panel: the name of its line, or a sign and a name for each; and the unit.
+/// The words above a panel: the name of its line, or a sign and a name for each; and the unit.
 fn words(labels: &[&Label], unit: &Unit, same: bool, ty: Type) -> Vec<(Sign, String)> {
     let brackets = if unit.label.is_empty() { String::new() } else { format!(" ({})", unit.label) };
     match labels {

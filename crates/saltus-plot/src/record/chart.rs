@@ -79,7 +79,7 @@ fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
 /// Potential energy, kinetic, and that in the spring of a contact that takes time, of all balls,
 /// and their sum; per mass where there is none.
 pub(super) fn energy(record: &Record) -> Chart {
-    /// In how many straight pieces a step of a contact is drawn.
+    /// The number of straight pieces in which a step of a contact is drawn.
     const PIECES: u32 = 8;
     let scene = record.scene();
     let known = scene.balls.iter().all(|ball| ball.mass.is_some());

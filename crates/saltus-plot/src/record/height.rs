@@ -68,9 +68,9 @@ pub(super) fn grounds(record: &Record) -> Vec<Vec<Stroke>> {
 /// Both sides of the edge between two points, where the ground falls or rises there at once, as
 /// from step to step: of a slope half the way is half the height.
 fn edge(at: impl Fn(f64) -> Option<[f64; 2]>, [mut a, mut b]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-    /// What the better half has to keep of the height for there to be an edge.
+    /// The part of the height that the better half has to keep for there to be an edge.
     const KEPT: f64 = 0.9;
-    /// How often the time is halved: to a thousandth of a dot.
+    /// The number of halvings of the time: to a thousandth of a dot.
     const HALVINGS: u32 = 10;
     for _ in 0..HALVINGS {
         let (m, whole) = (at(0.5 * (a[0] + b[0]))?, (b[1] - a[1]).abs());
@@ -85,7 +85,8 @@ fn edge(at: impl Fn(f64) -> Option<[f64; 2]>, [mut a, mut b]: [[f64; 2]; 2]) -> 
 
 /// Straight strokes through points, one for all that lie on one line.
 fn joined(points: &[[f64; 2]]) -> Vec<Stroke> {
-    /// How far a point may be from a line, as a part of what heights differ by.
+    /// The distance of a point from a line, as a part of the range of heights, up to which it lies
+    /// on it.
     const NEAR: f64 = 1e-9;
     let heights = points.iter().map(|point| point[1]);
     let near = NEAR * (heights.clone().fold(f64::NEG_INFINITY, f64::max) - heights.fold(f64::INFINITY, f64::min));

@@ -65,7 +65,7 @@ fn article(name: &str) -> String {
     format!("{} {name}", if vowel { "An" } else { "A" })
 }
 
-/// At most four significant digits.
+/// The number with at most four significant digits.
 fn rounded(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

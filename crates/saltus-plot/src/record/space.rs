@@ -6,10 +6,10 @@ use saltus_scene::{Floor, Shape};
 
 use super::title;
 
-/// How many frames a picture of equal times has, at most.
+/// The most frames of a picture of equal times.
 const FRAMES: u32 = 40;
 
-/// How far the balls get, sideways along any of `axes` and up, with their radii.
+/// The reach of the balls, sideways along any of `axes` and up, with their radii.
 fn reach(record: &Record, axes: &[usize]) -> [[f64; 2]; 2] {
     let scene = record.scene();
     let mut reach = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
