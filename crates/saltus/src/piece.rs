@@ -10,7 +10,12 @@ pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
     match coefficients {
         [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
         _ if coefficients.len() > LONG => coefficients[0].with(|i| value_and_slope(coefficients, |c| c.get(i), s).0),
-        _ => coefficients[0].with(|i| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c.get(i))),
+        _ => {
+            // Power by power, side by side: no coordinate waits for itself.
+            let last = coefficients.len() - 1;
+            let powers = coefficients[..last].iter().rev();
+            powers.fold(coefficients[last], |sum, c| c.with(|i| sum.get(i) * s + c.get(i)))
+        }
     }
 }
 

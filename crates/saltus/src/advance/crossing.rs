@@ -2,25 +2,24 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
-use crate::certainty::{FAR, FEW, ROUGHLY, SURELY, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, SURELY};
 use crate::cross::{
-    Crossing, FirstFall, Powers, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_arc, settle,
+    Crossing, FirstFall, Powers, SAMPLES, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step,
+    settle, stay_clear,
 };
 use crate::error::Error;
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
-use crate::poly::{Bernstein, MAX_DEGREE, SUMMED};
+use crate::poly::Bernstein;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::Advance;
+use super::affine::Along;
 use super::near::Near;
-
-/// The exponent of the largest coordinate of a state that a guard's constant, of an exponent far
-/// below it, costs no digits: half of what numbers have, so that the guard is one.
-const LARGER: i64 = 511;
+use super::shared::{Shared, Step};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The earliest crossing within a range of a dense output; an observer is told how guards were
@@ -36,6 +35,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
         let mut undefined: Option<(f64, A::Edge)> = None;
+        let (zero, mut shared) = (step.c[0].with(|_| 0.0), Shared::new());
         let Step { now, c, scale } = step;
         let Range { limit, first, roughly } = range;
         for edge in self.automaton.edges(mode).iter() {
@@ -55,7 +55,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let affine = self.automaton.about(edge).affine;
-            let along = if affine { self.along(edge, step, limit / scale, start, level, &mut powers) } else { None };
+            let along = if affine {
+                self.along(edge, step, limit / scale, (start, level), (&zero, &mut shared), &mut powers)
+            } else {
+                None
+            };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
             let mut near = None;
             let searched = match by_powers {
@@ -66,13 +70,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     near = (c.len() > LONG).then(|| Near::around(c, scale, s));
                     self.falls_by_powers(edge, step, &near, s, level)
                 }
-                FirstFall::Unclear => match self.falls_by_values(edge, step, limit, (start, level), along.as_ref()) {
-                    Ok(searched) => searched,
-                    Err(Undefined(s)) => {
-                        undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
-                        continue;
+                FirstFall::Unclear => {
+                    let searched = match along.as_ref().and_then(Along::bernstein) {
+                        Some(p) => self.falls_by_polynomial(edge, step, limit, (start, level), &p),
+                        None => match self.unclear(edge, step, limit, (start, level), &mut shared) {
+                            Some(values) => self.falls_by_values(edge, step, limit, (start, level), &values),
+                            None => Ok(Searched::solved(None)),
+                        },
+                    };
+                    match searched {
+                        Ok(searched) => searched,
+                        Err(Undefined(s)) => {
+                            undefined = undefined.filter(|&(first, _)| first <= s).or(Some((s, edge)));
+                            continue;
+                        }
                     }
-                },
+                }
             };
             let Searched { fall, mut evidence, turn } = searched;
             let derivatives = by_powers.derivatives(limit);
@@ -124,70 +137,73 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         unlevelled(searched, level, &mut guard)
     }
 
-    /// Where the guard of `edge` falls on a step, by its values, or by the sign of its powers in
-    /// the Bernstein basis.
-    #[inline(never)] // of promised guards few need it: what is always done stays short
+    /// Where the guard of `edge` falls on a step, by the sign of its powers in the Bernstein basis.
+    #[inline(never)] // few need it: what is always done stays short
+    fn falls_by_polynomial(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'_, A::State>,
+        limit: f64,
+        (start, level): (Start, f64),
+        (p, margin, bend): &(Bernstein, f64, f64),
+    ) -> Result<Searched, Undefined> {
+        let search =
+            |above: &mut dyn FnMut(f64) -> f64| first_fall_of_polynomial(p, *margin, *bend, above, limit, start);
+        self.searched(edge, step, level, search)
+    }
+
+    /// The same by its `values` and further ones.
+    #[inline(never)] // few need it
     fn falls_by_values(
         &mut self,
         edge: A::Edge,
-        Step { now, c, scale }: Step<'_, A::State>,
+        step: Step<'_, A::State>,
         limit: f64,
         (start, level): (Start, f64),
-        along: Option<&Along<'_>>,
+        values: &[f64; SAMPLES],
     ) -> Result<Searched, Undefined> {
-        let p = along.and_then(Along::bernstein);
-        let (value, bend) = if p.is_none() {
-            self.memory.stats.guards += 1;
-            let value = self.guard(edge, now.seconds(), &c[0]) - level;
-            // How far it bends tells what it is rough by near a zero at the start alone.
-            let at_zero = start == Start::Spent || value == 0.0;
-            (value, if at_zero { self.bend(edge, now, c) } else { 0.0 })
-        } else {
-            (0.0, 0.0)
-        };
+        // How far it bends tells what it is rough by near a zero at the start alone.
+        let at_zero = start == Start::Spent || values[0] == 0.0;
+        let bend = if at_zero { self.bend(edge, step.now, step.c) } else { 0.0 };
+        let tick = resolution(step.now.seconds().abs() + limit);
+        let search = |above: &mut dyn FnMut(f64) -> f64| first_fall_on_step(above, values, limit, start, bend, tick);
+        self.searched(edge, step, level, search)
+    }
+
+    /// The first samples of the guard of `edge` less its `level`, unless they show at a glance that
+    /// it does not fall: they are taken where those of the other guards are.
+    #[inline(never)] // of promised guards none need it
+    fn unclear<'c>(
+        &mut self,
+        edge: A::Edge,
+        step: Step<'c, A::State>,
+        limit: f64,
+        (start, level): (Start, f64),
+        shared: &mut Shared<'c, A::State>,
+    ) -> Option<[f64; SAMPLES]> {
+        self.memory.stats.guards += SAMPLES as u64;
+        let automaton = self.automaton;
+        let values = shared.values(step, limit, self.smooth, |t, x| automaton.guard(edge, t, x) - level);
+        (start == Start::Spent || !stay_clear(&values)).then_some(values)
+    }
+
+    /// What a `search` finds of the guard of `edge` less its `level` on a step, of the guard
+    /// itself.
+    #[inline]
+    fn searched(
+        &mut self,
+        edge: A::Edge,
+        Step { now, c, scale }: Step<'_, A::State>,
+        level: f64,
+        search: impl FnOnce(&mut dyn FnMut(f64) -> f64) -> Result<Searched, Undefined>,
+    ) -> Result<Searched, Undefined> {
         let (automaton, smooth, count) = (self.automaton, self.smooth, &mut self.memory.stats.guards);
         let mut guard = |s: f64| {
             *count += 1;
             automaton.guard(edge, smooth.within(now.after(s).seconds()), &horner(c, s / scale))
         };
-        let mut above = |s: f64| guard(s) - level;
-        let searched = match &p {
-            Some((p, margin, bend)) => first_fall_of_polynomial(p, *margin, *bend, &mut above, limit, start)?,
-            None => {
-                let tick = resolution(now.seconds().abs() + limit);
-                first_fall_on_arc(&mut above, value, limit, start, bend, tick)?
-            }
-        };
+        let searched = search(&mut |s: f64| guard(s) - level)?;
         Ok(unlevelled(searched, level, &mut guard))
-    }
-
-    /// An affine guard less its `level` along a polynomial over `0..=stretch` times its scale, g(Σ
-    /// cₖ θᵏ) = g(c₀) + Σ (g(cₖ) - g(0)) θᵏ, and its rounding.
-    #[inline]
-    fn along<'p>(
-        &mut self,
-        edge: A::Edge,
-        Step { now, c, .. }: Step<'_, A::State>,
-        stretch: f64,
-        start: Start,
-        level: f64,
-        powers: &'p mut Powers,
-    ) -> Option<Along<'p>> {
-        if c.len() > MAX_DEGREE + 1 {
-            return None;
-        }
-        let t = now.seconds();
-        self.memory.stats.guards += c.len() as u64 + 1;
-        let guard = |x: &A::State| self.automaton.guard(edge, t, x);
-        let (constant, g) = (guard(&c[0].with(|_| 0.0)), guard(&c[0]));
-        powers.fill(g - level, &c[1..], |c| less_constant(guard, constant, c), stretch);
-        let count = &mut self.memory.stats.guards;
-        if let (Start::Spent, Some(slope)) = (start, c.get(1))
-            && only_touched(powers.coefficients(), &guard, constant, slope, count)
-        {
-            powers.drop_slope();
-        }
-        Some(Along { powers, start: g, constant })
     }
 
     /// How an arc's last piece ends at a crossing, where the state a time `s` after `now` is
@@ -274,76 +290,6 @@ pub(super) struct Range {
     pub(super) roughly: bool,
 }
 
-/// Whether a guard of the value `start` stays above zero when it changes by `most`,
-/// with room for the digits that its `constant` costs.
-#[inline]
-pub(super) fn exceeds(start: f64, most: f64, constant: f64) -> bool {
-    let rounding = SURELY * f64::EPSILON * (constant.abs() + start.abs() + most);
-    start > most + rounding && rounding < f64::INFINITY
-}
-
-/// What an affine guard of this `constant` adds to it for the state `x`: taken of a state a power
-/// of two larger, so that the constant does not cost it digits.
-#[inline]
-pub(super) fn less_constant<S: State>(guard: impl Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
-    if constant == 0.0 { guard(x) } else { less(&guard, constant, x) }
-}
-
-fn less<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
-    let size = (0..x.len()).fold(0.0, |size: f64, i| size.max(x.get(i).abs()));
-    if size == 0.0 {
-        return 0.0;
-    }
-    // A guard that is large itself may have no number there, or a constant beside which this is
-    // nothing.
-    for exponent in [LARGER, LARGER / 4] {
-        let by = power_of_two(exponent - exponent_of(size));
-        let far = guard(&x.with(|i| by * x.get(i))) - constant;
-        if far.abs() >= constant.abs() && far.is_finite() {
-            return far / by;
-        }
-        if far.is_finite() {
-            break;
-        }
-    }
-    guard(x) - constant
-}
-
-/// The e of a number from 2ᵉ up to twice that.
-#[inline]
-fn exponent_of(x: f64) -> i64 {
-    (x.to_bits() >> 52 & 0x7ff).cast_signed() - 1023
-}
-
-/// 2ᵉ, as far as there is such a number.
-#[inline]
-fn power_of_two(e: i64) -> f64 {
-    f64::from_bits((e.clamp(-1022, 1023) + 1023).cast_unsigned() << 52)
-}
-
-/// Whether an affine guard of these `powers` that seems to fall from its root only touched zero
-/// there: it bends down, and its slope, that of the state `x`, is no more than rounding.
-#[inline]
-pub(super) fn only_touched<S: State>(
-    powers: &[f64],
-    guard: &dyn Fn(&S) -> f64,
-    constant: f64,
-    x: &S,
-    count: &mut u64,
-) -> bool {
-    matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, x, count)
-}
-
-/// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the
-/// rounding of what each coordinate adds.
-#[cold]
-pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S, count: &mut u64) -> bool {
-    *count += x.len() as u64 + 1;
-    let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
-    let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
-    less_constant(guard, constant, x).abs() <= SUMMED * f64::EPSILON * parts
-}
-
 /// What was found of a guard less its `level` at the start, of the `guard` itself.
 #[inline]
 pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
@@ -355,27 +301,6 @@ pub(super) fn unlevelled(searched: Searched, level: f64, guard: &mut dyn FnMut(f
 fn off_level(searched: Searched, guard: &mut dyn FnMut(f64) -> f64) -> Searched {
     let later = searched.fall.filter(|fall| fall.inside > 0.0);
     Searched { fall: later.and_then(|fall| settle(guard, fall.root)).or(searched.fall), ..searched }
-}
-
-/// A step's start, dense output and size.
-#[derive(Clone, Copy)]
-pub(super) struct Step<'c, S> {
-    pub(super) now: Time,
-    pub(super) c: &'c [S],
-    pub(super) scale: f64,
-}
-
-impl<S: State> Step<'_, S> {
-    /// The time `s` after its start.
-    pub(super) fn time(&self, s: f64) -> f64 {
-        self.now.after(s).seconds()
-    }
-
-    /// The state then.
-    #[inline(never)] // where guards are searched it is summed up in place
-    pub(super) fn at(&self, s: f64) -> S {
-        horner(self.c, s / self.scale)
-    }
 }
 
 /// The first crossing on a step.
@@ -438,44 +363,6 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
         }
     }
     (*inner, guard(inner))
-}
-
-/// An affine guard along a step in powers of time.
-struct Along<'p> {
-    powers: &'p Powers,
-    /// The guard at the start, and its constant.
-    start: f64,
-    constant: f64,
-}
-
-impl Along<'_> {
-    /// How far its value at the start may be off.
-    fn rounding(&self) -> f64 {
-        FEW * f64::EPSILON * (self.constant.abs() + self.start.abs())
-    }
-
-    /// Where it first falls, as far as its powers show it at once.
-    fn first_fall(&self, start: Start) -> FirstFall {
-        let powers = self.powers;
-        // What rounding has left of the guard at a wall is above zero all the same if nothing moves
-        // by as much.
-        if start != Start::Spent && exceeds(self.start, powers.change(), self.constant) {
-            return FirstFall::Nowhere;
-        }
-        let margin = powers.rounding();
-        // From a wall, be it spent or not, only the change counts.
-        if start == Start::Spent || powers.coefficients()[0].abs() <= self.rounding() + margin {
-            powers.first_fall(1, TINY * powers.bend() + margin)
-        } else {
-            powers.first_fall(0, self.rounding() + margin)
-        }
-    }
-
-    /// The same in the Bernstein basis, how far it may be off, and how far it bends.
-    fn bernstein(&self) -> Option<(Bernstein, f64, f64)> {
-        let p = Bernstein::from_powers(self.powers.coefficients())?;
-        Some((p, self.rounding() + p.rounding(), self.powers.bend()))
-    }
 }
 
 /// Keeps the earlier of the crossing `found` on a step and a `further` one; of two that time cannot

@@ -14,7 +14,7 @@ use crate::step::Stepper;
 use crate::time::Time;
 
 use super::Advance;
-use super::crossing::Step;
+use super::shared::Step;
 
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 /// Held by `retaken::falls_a_hair_apart_are_taken_once_each`.

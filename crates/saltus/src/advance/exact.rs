@@ -15,7 +15,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{LAST, Span, Time, resolution};
 
-use super::crossing::{Close, less_constant, only_touched, unlevelled};
+use super::affine::{less_constant, only_touched};
+use super::crossing::{Close, unlevelled};
 use super::solved::First;
 use super::{Advance, ArcEnd};
 
@@ -121,7 +122,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let tick = resolution(now.seconds().abs() + to);
             let mut above = |s| guard(from + s) - level;
             let value = above(0.0);
-            let searched = first_fall_on_arc(&mut above, value, to - from, start, 0.0, tick)
+            let searched = first_fall_on_arc(&mut above, value, to - from, start, tick)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));

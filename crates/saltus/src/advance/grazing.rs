@@ -8,8 +8,9 @@ use crate::state::State;
 use crate::step::Stepper;
 
 use super::Advance;
-use super::crossing::{Range, Step};
+use super::crossing::Range;
 use super::memory::Kept;
+use super::shared::Step;
 
 /// Halvings, by the golden section, of the stretch on which a guard turns: its least value is then
 /// below what the tolerance allows off by the square of 0.618⁴⁰.

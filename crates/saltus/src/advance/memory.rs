@@ -172,8 +172,8 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         let (largest, slope) = (self.largest.filter(alike), self.slope.take().filter(alike));
         self.largest = Some(x.with(|i| {
             let here = x.get(i).abs();
-            let before = largest.map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
-            let way = slope.map_or(0.0, |slope| (slope.get(i) * duration).abs());
+            let before = largest.as_ref().map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
+            let way = slope.as_ref().map_or(0.0, |slope| (slope.get(i) * duration).abs());
             larger(larger(here, before), way)
         }));
     }

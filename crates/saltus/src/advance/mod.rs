@@ -1,6 +1,7 @@
 //! One arc: from the state just after a jump to the first crossing, by the exact solution or by
 //! steps.
 
+mod affine;
 mod closed;
 mod crossing;
 mod enter;
@@ -11,6 +12,7 @@ mod near;
 mod noise;
 mod promises;
 mod series;
+mod shared;
 mod smooth;
 mod solved;
 mod stepped;

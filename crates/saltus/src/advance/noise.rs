@@ -8,8 +8,9 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
-use super::crossing::{Step, is_rounding, less_constant};
+use super::affine::{is_rounding, less_constant};
 use super::enter::weight;
+use super::shared::Step;
 use super::{Advance, Spent, Wall};
 
 /// Of how many values a guard's scatter is seen: among so few, a typical one and a large one.
@@ -39,7 +40,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The same of coordinate `i`.
     #[inline]
     pub(super) fn size(&self, x: &A::State, i: usize) -> f64 {
-        match (x.get(i).abs(), self.memory.largest.filter(|largest| largest.len() == x.len())) {
+        match (x.get(i).abs(), self.memory.largest.as_ref().filter(|largest| largest.len() == x.len())) {
             (0.0, _) => 0.0,
             (here, largest) => largest.map_or(here, |largest| here.max(largest.get(i))),
         }

@@ -60,11 +60,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     fn hold(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
+        let [x, y] = ends;
+        let [a, b] = PARTS;
+        let (zero, sum) = (y.with(|_| 0.0), y.with(|i| a * x.get(i) + b * y.get(i)));
         for edge in self.automaton.edges(mode).iter() {
             if !self.automaton.about(edge).affine {
                 continue;
             }
-            if let Some(flaw) = self.broken(edge, times, ends) {
+            if let Some(flaw) = self.broken(edge, times, ends, (&zero, &sum)) {
                 let place = Place::new(times[0], mode, Some(edge), ends[0]);
                 return Err(Error::new(ErrorKind::Promise, place).noting(Some(flaw.to_owned())));
             }
@@ -72,18 +75,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(())
     }
 
-    /// Why the guard is not a·x + b, if it is not at combinations of two states and at two times.
-    fn broken(&mut self, edge: A::Edge, times: [f64; 2], [x, y]: [&A::State; 2]) -> Option<&'static str> {
+    /// Why the guard is not a·x + b, if it is not at two states, at the state `zero` and at the
+    /// `sum` of parts of the two, and at two times.
+    fn broken(
+        &mut self,
+        edge: A::Edge,
+        [before, time]: [f64; 2],
+        [x, y]: [&A::State; 2],
+        (zero, sum): (&A::State, &A::State),
+    ) -> Option<&'static str> {
         let g = |time: f64, x: &A::State| self.guard(edge, time, x);
-        let [before, time] = times;
-        let zero = g(time, &y.with(|_| 0.0));
+        let zero = g(time, zero);
         let [here, there] = [x, y].map(|x| g(time, x));
         if (g(before, x) - here).abs() > 0.0 {
             return Some("changes with time while the state stands still");
         }
         let [a, b] = PARTS;
-        let sum = zero + a * (here - zero) + b * (there - zero);
-        let off = g(time, &y.with(|i| a * x.get(i) + b * y.get(i))) - sum;
+        let off = g(time, sum) - (zero + a * (here - zero) + b * (there - zero));
         // More than the digits that guards lose to cancellation, less than what bends.
         if off.abs() <= TINY * (zero.abs() + here.abs() + there.abs()) {
             return None;

@@ -16,9 +16,10 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Span, Time, resolution};
 
-use super::crossing::{OnStep, Range, Step};
+use super::crossing::{OnStep, Range};
 use super::exact::natural;
 use super::near::Near;
+use super::shared::Step;
 use super::smooth::Arrival;
 use super::stepped::{SHORTEST, evened, wrong_dimension};
 use super::{Advance, ArcEnd};

@@ -18,9 +18,11 @@ use crate::state::State;
 use crate::step::{Stepper, Trial};
 use crate::time::{Span, Time, resolution};
 
-use super::crossing::{OnStep, Range, Step, exceeds};
+use super::affine::exceeds;
+use super::crossing::{OnStep, Range};
 use super::grazing::is_alike;
 use super::memory::Kept;
+use super::shared::Step;
 use super::smooth::Arrival;
 use super::{Advance, ArcEnd};
 

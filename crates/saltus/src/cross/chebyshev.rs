@@ -14,7 +14,26 @@ pub(crate) const NODES: [f64; 9] = [
     1.0,
 ];
 
-/// Row k: what each node adds to the coefficient of `T_k`.
+/// Where a guard is compared with its interpolant: away from the nodes, and at no fraction that a
+/// guard is likely to have a period of.
+pub(crate) const CHECKS: [f64; 2] = [-0.557_350_921, 0.271_828_183];
+
+/// How many samples are taken of an interval: at the Chebyshev points and at two checks.
+pub(crate) const SAMPLES: usize = NODES.len() + CHECKS.len();
+
+/// The times of the samples on `[a, b]`: the Chebyshev points from `a` up to `b`, then the checks.
+#[inline]
+pub(crate) fn sample_times(a: f64, b: f64) -> [f64; SAMPLES] {
+    let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
+    let mut times = [a; SAMPLES];
+    for (time, node) in times[1..].iter_mut().zip(NODES[1..].iter().chain(&CHECKS)) {
+        *time = centre + radius * node;
+    }
+    times[NODES.len() - 1] = b;
+    times
+}
+
+/// Row j: what node j adds to the coefficient of each `T_k`.
 const WEIGHTS: [[f64; 9]; 9] = weights();
 
 const fn weights() -> [[f64; 9]; 9] {
@@ -29,7 +48,7 @@ const fn weights() -> [[f64; 9]; 9] {
             let fold = if turn > 8 { 16 - turn } else { turn };
             let whole = if k == 0 || k == 8 { 8.0 } else { 4.0 };
             let end = if j == 0 || j == 8 { 0.5 } else { 1.0 };
-            rows[k][j] = end * NODES[8 - fold] / whole;
+            rows[j][k] = end * NODES[8 - fold] / whole;
             j += 1;
         }
         k += 1;
@@ -39,7 +58,19 @@ const fn weights() -> [[f64; 9]; 9] {
 
 /// The coefficients of `T_0` to `T_8` of the interpolant.
 pub(crate) fn series(values: &[f64; 9]) -> [f64; 9] {
-    WEIGHTS.map(|row| row.iter().zip(values).map(|(weight, value)| weight * value).sum())
+    combined(values, &WEIGHTS)
+}
+
+/// The sum of rows, each times its factor: side by side, so that no sum waits for itself.
+#[inline]
+fn combined(factors: &[f64; 9], rows: &[[f64; 9]; 9]) -> [f64; 9] {
+    let mut sums = [0.0; 9];
+    for (factor, row) in factors.iter().zip(rows) {
+        for (sum, part) in sums.iter_mut().zip(row) {
+            *sum += factor * part;
+        }
+    }
+    sums
 }
 
 /// Clenshaw's sum of the series at `x`.
@@ -54,7 +85,7 @@ pub(crate) fn sum(series: &[f64; 9], x: f64) -> f64 {
 /// The Bernstein coefficients of degree eight on the interval.
 pub(crate) fn bernstein(series: &[f64; 9]) -> [f64; 9] {
     const TABLE: [[f64; 9]; 9] = table();
-    std::array::from_fn(|i| (0..9).map(|k| series[k] * TABLE[k][i]).sum())
+    combined(series, &TABLE)
 }
 
 /// The coefficients of 1, u, … u⁸ of the interpolant, u = (x + 1)/2 in `0..=1`.

@@ -14,10 +14,13 @@ mod search;
 
 use crate::poly::{Bernstein, Shape};
 
+pub(crate) use chebyshev::{SAMPLES, sample_times};
 pub use evidence::{Doubt, Evidence};
 pub(crate) use powers::{Fall, FirstFall, Powers};
 pub(crate) use probe::AT_START;
 use probe::Search;
+use proxy::Samples;
+pub(crate) use proxy::stay_clear;
 pub(crate) use refine::{neighbours, settle};
 
 /// A fall through zero between two neighbouring times: the guard is not negative at `inside` and
@@ -120,16 +123,34 @@ pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) ->
 }
 
 /// The same for a guard of this `value` at the start of a stretch of an arc, where times are `tick`
-/// apart; on the dense output of a step it bends by `bend`.
+/// apart.
 pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
     value: f64,
     span: f64,
     start: Start,
+    tick: f64,
+) -> Result<Searched, Undefined> {
+    Search::new(guard, span, 0.0, tick).at_start(value).first_fall(start, None)
+}
+
+/// The same for a guard of these `values` at the [`sample_times`] of a step, on whose dense output
+/// it bends by `bend`.
+pub(crate) fn first_fall_on_step(
+    guard: &mut dyn FnMut(f64) -> f64,
+    values: &[f64; SAMPLES],
+    span: f64,
+    start: Start,
     bend: f64,
     tick: f64,
 ) -> Result<Searched, Undefined> {
-    Search::new(guard, span, bend, tick).at_start(value).first_fall(start, None)
+    if start != Start::Spent {
+        let samples = Samples::of(values, 0.0, span);
+        if samples.stay_above() {
+            return Ok(Searched { turn: samples.turn(span), ..Searched::solved(None) });
+        }
+    }
+    Search::new(guard, span, bend, tick).sampled_at(values).first_fall(start, None)
 }
 
 /// The same for a guard on a step that is the polynomial `p(s / span)` to within

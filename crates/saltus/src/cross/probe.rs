@@ -2,6 +2,7 @@
 
 use crate::certainty::{FAR, NOTHING, TINY};
 
+use super::chebyshev::{SAMPLES, sample_times};
 use super::departure::Departure;
 use super::{Evidence, Undefined};
 
@@ -26,6 +27,8 @@ pub(super) struct Search<'a> {
     pub(super) spent: bool,
     /// The guard's value at the start, once it was asked.
     pub(super) start: Option<f64>,
+    /// Its values at the sample times of the whole interval, if it was asked there.
+    pub(super) samples: Option<&'a [f64; SAMPLES]>,
     /// That at a spent start.
     pub(super) base: f64,
     /// How the guard leaves a spent root at the start, as far as its samples have shown.
@@ -104,6 +107,7 @@ impl<'a> Search<'a> {
             tick,
             spent: false,
             start: None,
+            samples: None,
             base: 0.0,
             departure: None,
             // A dense output starts with the exact slope, but its higher powers carry the error of
@@ -124,6 +128,11 @@ impl<'a> Search<'a> {
         Self { start: Some(value), largest: value.abs(), ..self }
     }
 
+    /// The same, where the guard has these `values` at the sample times of the interval.
+    pub(super) fn sampled_at(self, values: &'a [f64; SAMPLES]) -> Self {
+        Self { samples: Some(values), ..self.at_start(values[0]) }
+    }
+
     /// The guard at the start.
     pub(super) fn start(&mut self) -> Result<f64, Undefined> {
         let value = match self.start {
@@ -142,16 +151,21 @@ impl<'a> Search<'a> {
         if value.is_nan() { Err(Undefined(s)) } else { Ok(value) }
     }
 
-    /// The guard at some times in a row.
+    /// The guard at its sample times on `[a, b]`, of which the first is `a`.
     #[inline]
-    pub(super) fn values(&mut self, values: &mut [f64], time: impl Fn(usize) -> f64) -> Result<(), Undefined> {
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = (self.guard)(time(k));
+    pub(super) fn values(&mut self, a: f64, b: f64) -> Result<[f64; SAMPLES], Undefined> {
+        let mut values = sample_times(a, b);
+        if let Some(samples) = self.samples.filter(|_| a == 0.0 && b == self.span) {
+            values = *samples;
+        } else {
+            let first = if a == 0.0 { Some(self.start()?) } else { None };
+            values[0] = first.unwrap_or_else(|| (self.guard)(a));
+            values[1..].iter_mut().for_each(|value| *value = (self.guard)(*value));
         }
-        self.evaluations += values.len() as u32;
+        self.evaluations += SAMPLES as u32;
         self.largest = values.iter().fold(self.largest, |largest, value| largest.max(value.abs()));
         let undefined = values.iter().position(|value| value.is_nan());
-        undefined.map_or(Ok(()), |k| Err(Undefined(time(k))))
+        undefined.map_or(Ok(values), |k| Err(Undefined(sample_times(a, b)[k])))
     }
 
     pub(super) fn weaken(&mut self, evidence: Evidence) {

@@ -3,34 +3,35 @@
 
 use crate::poly::{Bernstein, SUMMED};
 
+use super::chebyshev::{CHECKS, SAMPLES};
 use super::probe::Search;
 use super::{Undefined, chebyshev};
 
+/// How many times as far as samples differ from the first the guard is above zero, for
+/// [`stay_clear`].
+///
+/// Of samples within r of their middle m, 2 c₀² + Σ cₖ² + 2 c₈² ≤ 2 r² holds for the interpolant of
+/// the differences: the first coefficient is m - r at least, the others sum up to √15 r in size at
+/// most, and at the checks the guard is within 5 r of it, so that m > (5 + √15 + 5 `UNCHECKED`) r
+/// is enough; a tenth more is for rounding. Held by `clear_samples_stay_above`.
+const CLEAR: f64 = 1.1 * (9.0 + 5.0 * UNCHECKED);
+
+/// Whether samples show at a glance that the guard is above zero on the whole interval: they hardly
+/// differ. [`Samples::stay_above`] then holds.
+#[inline]
+pub(crate) fn stay_clear(values: &[f64; SAMPLES]) -> bool {
+    let most = values[0] / CLEAR;
+    // All of them, side by side: what is no number is not near.
+    values.iter().fold(true, |clear, value| clear & ((value - values[0]).abs() <= most))
+}
+
 impl Search<'_> {
-    /// The guard at the Chebyshev points of `[a, b]` and at two checks between them.
+    /// The guard at the sample times of `[a, b]`.
     pub(super) fn sampled(&mut self, a: f64, b: f64) -> Result<Samples, Undefined> {
-        let (centre, radius) = (0.5 * (a + b), 0.5 * (b - a));
-        let mut values = [0.0; 9];
-        values[0] = if a == 0.0 { self.start()? } else { self.value(a)? };
-        self.values(&mut values[1..8], |k| centre + radius * chebyshev::NODES[k + 1])?;
-        values[8] = self.value(b)?;
-        let series = chebyshev::series(&values);
-        let mut checks = [0.0; 2];
-        self.values(&mut checks, |k| centre + radius * CHECKS[k])?;
-        let far = |k: usize| (checks[k] - chebyshev::sum(&series, CHECKS[k])).abs();
-        let off = far(0).max(far(1));
-        let off = (series[7].abs() + series[8].abs()).max(off);
-        let varies = series[1..].iter().map(|c| c.abs()).sum();
-        // The nodes themselves are rounded, and the state at them likewise.
-        let least = values.into_iter().fold(f64::INFINITY, f64::min);
-        let spacing = (b.next_up() - b) / (b - a);
-        Ok(Samples { series, varies, off, spacing, start: values[0], end: values[8], least, values })
+        Ok(Samples::of(&self.values(a, b)?, a, b))
     }
 }
 
-/// Where a guard is compared with its interpolant: away from the nodes, and at no fraction that a
-/// guard is likely to have a period of.
-const CHECKS: [f64; 2] = [-0.557_350_921, 0.271_828_183];
 /// Elsewhere a guard may be so many times as far from its interpolant.
 /// Held by `cross::tests::a_floor_that_lets_go`.
 const UNCHECKED: f64 = 8.0;
@@ -54,9 +55,22 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Between which places in -1..=1 the interpolant turns up from its least value, unless that is
-    /// at an end or clear of zero: above a half of what the interpolant varies by.
-    pub(super) fn turn(&self) -> Option<[f64; 2]> {
+    /// Of values at the sample times of `[a, b]`.
+    pub(super) fn of(values: &[f64; SAMPLES], a: f64, b: f64) -> Self {
+        let (nodes, checks) = values.split_first_chunk().unwrap_or((&[0.0; 9], &[]));
+        let series = chebyshev::series(nodes);
+        let far = checks.iter().zip(CHECKS).map(|(check, at)| (check - chebyshev::sum(&series, at)).abs());
+        let off = far.fold(series[7].abs() + series[8].abs(), f64::max);
+        let varies = series[1..].iter().map(|c| c.abs()).sum();
+        // The nodes themselves are rounded, and the state at them likewise.
+        let spacing = (b.next_up() - b) / (b - a);
+        let least = nodes.iter().fold(f64::INFINITY, |least, &value| least.min(value));
+        Self { series, varies, off, spacing, start: nodes[0], end: nodes[8], least, values: *nodes }
+    }
+
+    /// Between which times in 0..=b, the interval, the interpolant turns up from its least value,
+    /// unless that is at an end or clear of zero: above a half of what the interpolant varies by.
+    pub(super) fn turn(&self, b: f64) -> Option<[f64; 2]> {
         if self.series[0] > 2.0 * self.varies {
             return None;
         }
@@ -71,7 +85,8 @@ impl Samples {
             8 => slope(1.0) > 0.0,
             _ => true,
         };
-        turns.then(|| [chebyshev::NODES[lowest.max(1) - 1], chebyshev::NODES[(lowest + 1).min(8)]])
+        let time = |node: usize| 0.5 * b * (1.0 + chebyshev::NODES[node]);
+        turns.then(|| [time(lowest.max(1) - 1), time((lowest + 1).min(8))])
     }
 
     /// Whether the guard is positive on the whole interval for the size of the series alone
@@ -105,4 +120,32 @@ pub(super) struct Proxy {
     pub(super) end: f64,
     /// Its least sample.
     pub(super) least: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_hardly_differs_is_clear_and_what_is_no_number_is_not() {
+        let mut values: [f64; SAMPLES] = std::array::from_fn(|k| 2.0 + 0.02 * (k as f64).sin());
+        assert!(stay_clear(&values) && !stay_clear(&values.map(|value| -value)));
+        for k in 0..SAMPLES {
+            let before = std::mem::replace(&mut values[k], f64::NAN);
+            assert!(!stay_clear(&values), "{k}");
+            values[k] = before;
+        }
+    }
+
+    proptest! {
+        /// Samples that differ by as much as they may, most of them at one of the ends.
+        #[test]
+        fn clear_samples_stay_above(ends in prop::array::uniform11(prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0_f64]), scale in -300..300_i32) {
+            let first = 10.0_f64.powi(scale);
+            let all: [f64; SAMPLES] = std::array::from_fn(|k| if k == 0 { first } else { first + 0.999 / CLEAR * first * ends[k] });
+            prop_assert!(stay_clear(&all));
+            prop_assert!(Samples::of(&all, 0.0, 1.0).stay_above());
+        }
+    }
 }

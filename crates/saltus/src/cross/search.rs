@@ -167,7 +167,7 @@ impl Search<'_> {
         }
         let Ok(samples) = self.sampled(a, b) else { return Seen::Undefined };
         if depth == DEEPEST && a == 0.0 {
-            self.turn = samples.turn().map(|x| x.map(|x| 0.5 * b * (1.0 + x)));
+            self.turn = samples.turn(b);
         }
         if side == Side::Inside && samples.stay_above() { Seen::Above } else { Seen::As(samples.proxy()) }
     }
