@@ -73,7 +73,7 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
 pub(crate) const TELLING: usize = 1000;
 
 /// Frame rates of cameras, 1/s; colour television's are a thousandth slower.
-const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
+pub(crate) const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
 
 /// The standard deviation of the rounding that these numbers share: to a decimal, or to frames of a
 /// camera. A scatter that happens to be smaller claims too much.

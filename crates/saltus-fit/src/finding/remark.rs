@@ -86,7 +86,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// So many lines are named.
+    /// Of lines, readings and sounds so many are named: as many as one glance counts.
     pub(crate) const NAMED: usize = 5;
 
     pub(crate) fn of(all: &[u64]) -> Self {
@@ -458,4 +458,15 @@ pub enum Warning {
         /// How many more.
         heights: usize,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_are_named_as_one_glance_counts() {
+        let lines = Lines::of(&[2, 3, 5, 7, 11, 13, 17]);
+        assert_eq!((lines.first, lines.count), (vec![2, 3, 5, 7, 11], 7));
+    }
 }

@@ -111,8 +111,6 @@ impl Table {
 /// The COR of a ball that touches the floor for the n-th time after `times` the time of its fall,
 /// and what one such time more adds to it.
 fn arrival(times: f64, contact: usize) -> (f64, f64) {
-    /// A bisection of [0, 2] leaves nothing of a double after so many halvings.
-    const HALVINGS: usize = 54;
     // No one counts further, and a sum of more flights is that until rest.
     let flights = contact.min(100);
     let sum = |e: f64| {
@@ -122,8 +120,12 @@ fn arrival(times: f64, contact: usize) -> (f64, f64) {
         })
     };
     let (mut low, mut high) = (0.0, 2.0);
-    for _ in 0..HALVINGS {
+    // Until no number lies between.
+    loop {
         let middle = f64::midpoint(low, high);
+        if middle <= low || middle >= high {
+            break;
+        }
         if sum(middle).0 < times { low = middle } else { high = middle }
     }
     (low, 1.0 / sum(low).1)

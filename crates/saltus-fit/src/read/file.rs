@@ -36,7 +36,7 @@ pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<T
             TableError::new(name, "this file is no sound: there is nothing to listen to").help("leave out --listen")
         );
     }
-    if let Some(parts) = json::parts(bytes) {
+    if let Some(parts) = json::parts(bytes).filter(|_| foreign::of_records(name, bytes)) {
         return sheets(name, parts, options).map(|table| Table { name: name.to_owned(), ..table });
     }
     if let Some(error) = foreign::refused(name, bytes) {

@@ -4,8 +4,8 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use super::grid::MANY;
-use super::workbook::{Content, Part, TABLES};
+use super::limits::MANY;
+use super::workbook::{Content, Part};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to
@@ -47,7 +47,7 @@ const KINDS: [(&[&str], &str, &str); 14] = [
         "write its numbers as a table, a name above each column, and save it as CSV",
     ),
     (&["sql"], "SQL", "export the rows as CSV, such as by SELECT into a file; give that file"),
-    (&["xml"], "XML", "export the table as CSV; give that file"),
+    (&["xml"], "XML without records of numbers", "export the table as CSV; give that file"),
     (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];
 
@@ -61,11 +61,31 @@ const BEGINNINGS: [(&[u8], &str); 6] = [
     (b"fLaC", "flac"),
 ];
 
+/// Whether a file holds records as members of values, or of elements, and is no page of the web and
+/// no other program's own.
+pub(super) fn of_records(name: &str, bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(BEGIN)]);
+    !text.trim_start().starts_with('<') || matches!(&*kind(name, bytes), "xml" | "txt" | "") && !is_page(&text)
+}
+
+/// So many bytes at the beginning of a file tell what it is.
+const BEGIN: usize = 4000;
+
 /// The error for a file of another program's own kind.
 pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
+    let kind = kind(name, bytes);
+    let (_, what, help) = KINDS.iter().find(|(endings, _, _)| endings.contains(&&*kind))?;
+    // A table that only has the name of something else is a table.
+    let table = bytes.starts_with(b"PK") && !matches!(&*kind, "docx" | "odt" | "ods" | "xlsb" | "numbers");
+    (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
+}
+
+/// The ending that files of this kind have, whatever it is called; that of its name where what it
+/// holds does not tell.
+fn kind(name: &str, bytes: &[u8]) -> String {
     let ending = name.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_lowercase());
     let begins = |mark: &[u8]| bytes.starts_with(mark);
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(2000)]);
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(BEGIN)]);
     let found = BEGINNINGS.iter().find(|(mark, _)| begins(mark)).map(|(_, kind)| *kind);
     let kind = match found {
         Some(kind) => kind,
@@ -84,10 +104,13 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
         None if text.contains("<MBL>") || text.contains("LoggerPro") => "cmbl",
         None => ending.as_str(),
     };
-    let (_, what, help) = KINDS.iter().find(|(endings, _, _)| endings.contains(&kind))?;
-    // A table that only has the name of something else is a table.
-    let table = bytes.starts_with(b"PK") && !matches!(kind, "docx" | "odt" | "ods" | "xlsb" | "numbers");
-    (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
+    kind.to_owned()
+}
+
+/// Whether a text begins as a page of the web that may hold tables.
+fn is_page(text: &str) -> bool {
+    let head = text.trim_start().to_lowercase();
+    head.starts_with('<') && (head.contains("<table") || head.contains("<html"))
 }
 
 /// A text of a forum, whose tags stand in square brackets, `[tr][td]`, as a page of the web; `None`
@@ -106,8 +129,7 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
     if let Some(page) = forum(text) {
         return html(&page);
     }
-    let head: String = text.trim_start().chars().take(4000).collect::<String>().to_lowercase();
-    if !head.starts_with('<') || !(head.contains("<table") || head.contains("<html")) {
+    if !is_page(&text.trim_start().chars().take(BEGIN).collect::<String>()) {
         return None;
     }
     let mut reader = Reader::from_str(text);
@@ -124,7 +146,7 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
             Ok(Event::Empty(tag)) if tag.local_name().as_ref().eq_ignore_ascii_case("br") => page.text(" "),
             Ok(Event::End(tag)) => page.end(&tag.local_name().as_ref().to_ascii_lowercase()),
             Ok(Event::Text(words)) => page.text(words.as_ref()),
-            Ok(Event::GeneralRef(name)) => page.text(&named(name.as_ref())),
+            Ok(Event::GeneralRef(name)) => page.text(&entity(name.as_ref())),
             Ok(Event::Eof) => break,
             Ok(_) => {}
             // What is no markup may stand in a script; the tables before it are whole.
@@ -144,7 +166,7 @@ fn span(tag: &quick_xml::events::BytesStart<'_>, of: &str) -> usize {
 }
 
 /// The character that a name stands for.
-fn named(name: &str) -> String {
+pub(super) fn entity(name: &str) -> String {
     let code = name.strip_prefix('#').and_then(|n| match n.strip_prefix(['x', 'X']) {
         Some(hex) => u32::from_str_radix(hex, 16).ok(),
         None => n.parse().ok(),
@@ -212,7 +234,7 @@ impl Page {
             "tr" => self.close_row(),
             "table" => {
                 self.close_row();
-                if let Some(text) = self.table.take().filter(|_| self.parts.len() < TABLES) {
+                if let Some(text) = self.table.take().filter(|_| self.parts.len() < MANY) {
                     let name = format!("table {}", self.parts.len() + 1);
                     self.parts.push(Part { name, hidden: false, content: Content::Cells(text) });
                 }

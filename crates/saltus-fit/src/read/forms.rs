@@ -23,7 +23,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
-    let forms = [latex, wiki, blocks::table, blocks::records, listed, headed, patterned];
+    let forms = [latex, wiki, blocks::led, blocks::table, blocks::records, listed, headed, patterned];
     forms.iter().find_map(|form| form(text))
 }
 

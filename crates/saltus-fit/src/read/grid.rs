@@ -8,14 +8,8 @@ use saltus_bounce::units::Quantity;
 use super::Metadata;
 use super::cell::{self, Cell};
 use super::clause;
+use super::limits::CELLS;
 use crate::error::{Place, TableError};
-
-/// A table of more cells is refused: at sixteen bytes each, and with their text, they would fill a
-/// hundred megabytes.
-pub(super) const CELLS: usize = 1 << 22;
-/// Nobody hands in so many columns, sheets or files of an archive, nor a reading of so many
-/// characters.
-pub(super) const MANY: usize = 1000;
 
 /// A text of cells.
 pub(super) struct Grid<'a> {

@@ -6,11 +6,9 @@ use std::path::Path;
 use super::aside::{LeftAside, Part, Why};
 use super::{Event, ReadOptions, Reading, Table, Trial, check};
 use crate::error::TableError;
-use crate::finding::{Doubt, Note};
+use crate::finding::{Doubt, Lines, Note};
 use crate::sound::{SURE, Sound, Unused, is_wav};
 
-/// Of sounds left aside for one reason so many are named.
-const NAMED: usize = 6;
 /// A recording of which more than this part is as loud as can be is overdriven.
 const CLIPPED: f64 = 0.001;
 
@@ -91,7 +89,7 @@ fn table(sound: Sound, options: &ReadOptions) -> Table {
 fn aside(unused: &[(f64, Unused)]) -> Vec<LeftAside> {
     let of = |kind: Unused| {
         let times: Vec<f64> = unused.iter().filter(|(_, why)| *why == kind).map(|(time, _)| *time).collect();
-        let named: Vec<String> = times.iter().take(NAMED).map(|time| format!("{time:.3} s")).collect();
+        let named: Vec<String> = times.iter().take(Lines::NAMED).map(|time| format!("{time:.3} s")).collect();
         let more = times.len() - named.len();
         let name = if more > 0 { format!("{} and {more} more", named.join(", ")) } else { named.join(", ") };
         let why = match kind {

@@ -1,17 +1,16 @@
-//! Records in JSON as tables: a list of objects is a row each, a list a member is a column each.
+//! Records in JSON, and in XML, as tables: a list of objects is a row each, a list a member is a
+//! column each.
 
+mod tagged;
 mod united;
 
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
-use super::grid::MANY;
 use super::heading::{Heading, Meaning};
-use super::workbook::{Content, Part, TABLES};
-
-/// A longer text is none of records; a value of it takes some ten times its length, bytes.
-const LONGEST: usize = 16 << 20;
+use super::limits::{self, CELLS, MANY};
+use super::workbook::{Content, Part};
 
 /// A value, its members in the order in which they stand.
 enum Node {
@@ -139,20 +138,26 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// The tables of a text in JSON, or of records a line each; `None` if it holds none.
+/// The tables of a text in JSON, of records a line each, or in XML; `None` if it holds none, or is
+/// so long that its values, of some eight times its length, would take more than a file may hold.
 pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
     let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}').trim_start();
-    if !text.starts_with(['{', '[']) || text.len() > LONGEST {
+    if !text.starts_with(['{', '[', '<']) || 8 * text.len() > limits::bytes() {
         return None;
     }
-    let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
-    let values: Result<Vec<Node>, _> = values.collect();
-    let mut values = values.ok().or_else(|| printed(text))?;
-    let whole = numbered("", if values.len() == 1 { values.pop()? } else { Node::List(values) });
+    let whole = if text.starts_with('<') { tagged::tagged(text)? } else { valued(text)? };
     let whole = united::united(whole);
     let mut found = Vec::new();
     tables("", &whole, "", &mut found);
     (!found.is_empty()).then_some(found)
+}
+
+/// The value of a text in JSON, or those of its lines.
+fn valued(text: &str) -> Option<Node> {
+    let values = serde_json::Deserializer::from_str(text).into_iter::<Node>();
+    let values: Result<Vec<Node>, _> = values.collect();
+    let mut values = values.ok().or_else(|| printed(text))?;
+    Some(numbered("", if values.len() == 1 { values.pop()? } else { Node::List(values) }))
 }
 
 /// Values as Python prints them, in single quotes.
@@ -165,7 +170,7 @@ fn printed(text: &str) -> Option<Vec<Node>> {
 
 /// Gathers the tables in a value called `name`; `above` are lines that what encloses it states.
 fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
-    if found.len() >= TABLES {
+    if found.len() >= MANY {
         return;
     }
     let mut push = |rows: Option<String>| {
@@ -244,8 +249,7 @@ fn named_rows(node: &Node) -> Option<String> {
     Some(lines.map(|row| row.join("\t") + "\n").collect())
 }
 
-/// Records as rows below all of their names; `None` where these are too many, or hardly any record
-/// has most of them.
+/// Records as rows below all of their names; `None` where these are too many.
 fn rows(records: &[&[(String, Node)]]) -> Option<String> {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in records.iter().flat_map(|record| record.iter()) {
@@ -253,8 +257,7 @@ fn rows(records: &[&[(String, Node)]]) -> Option<String> {
             names.push(name);
         }
     }
-    let filled = records.iter().map(|record| record.len()).sum();
-    let mut text = begun(&names, records.len(), filled)?;
+    let mut text = begun(&names, records.len())?;
     for record in records {
         let own = |n: usize, name: &str| {
             let same = |(own, _): &&(String, Node)| own == name;
@@ -267,20 +270,17 @@ fn rows(records: &[&[(String, Node)]]) -> Option<String> {
     Some(text)
 }
 
-/// The line of names, where rows are worth writing: a table has no fewer than one cell in so many
-/// filled.
-fn begun(names: &[&str], rows: usize, filled: usize) -> Option<String> {
-    const SPARSE: usize = 20;
-    let fits = names.len() <= MANY && rows.saturating_mul(names.len()) <= filled.saturating_mul(SPARSE);
+/// The line of names, where rows are worth writing: a table of no more cells than are read.
+fn begun(names: &[&str], rows: usize) -> Option<String> {
+    let fits = names.len() <= MANY && rows.saturating_mul(names.len()) <= CELLS;
     fits.then(|| names.join("\t") + "\n")
 }
 
-/// Lists as columns below their names; `None` where they are too many, or one is far longer than
-/// the others.
+/// Lists as columns below their names; `None` where they are too many.
 fn side_by_side(columns: &[(&str, Vec<&str>)]) -> Option<String> {
     let longest = columns.iter().map(|(_, cells)| cells.len()).max().unwrap_or(0);
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    let mut text = begun(&names, longest, columns.iter().map(|(_, cells)| cells.len()).sum())?;
+    let mut text = begun(&names, longest)?;
     for row in 0..longest {
         let cells = columns.iter().map(|(_, cells)| cells.get(row).copied().unwrap_or_default());
         text.push_str(&cells.collect::<Vec<_>>().join("\t"));

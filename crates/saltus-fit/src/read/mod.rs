@@ -16,6 +16,7 @@ mod heard;
 mod json;
 mod judged;
 mod layout;
+mod limits;
 mod named;
 mod old_workbook;
 mod options;
@@ -38,6 +39,7 @@ mod vocabulary;
 mod words;
 mod workbook;
 mod wrapped;
+mod written;
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -175,9 +177,6 @@ pub struct Table {
     /// The sounds that were listened to.
     pub(crate) sounds: Vec<Sound>,
 }
-
-/// A file larger than this holds no table of bounces, bytes.
-const LARGEST: u64 = 1 << 30;
 
 /// What the table's comments and options state, in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -439,7 +438,7 @@ fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, TableError> {
         return Err(TableError::new(shown, "this is a directory").help("name files in it, such as tables in CSV"));
     }
     let mut bytes = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
+    let read = std::fs::File::open(path).and_then(|file| file.take(limits::bytes() as u64 + 1).read_to_end(&mut bytes));
     read.map_err(|error| {
         let (message, help) = match error.kind() {
             std::io::ErrorKind::NotFound => ("there is no such file".to_owned(), "check the name and the folder"),
@@ -447,8 +446,9 @@ fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, TableError> {
         };
         TableError::new(shown, message).help(help)
     })?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(TableError::new(shown, "the file is larger than a gigabyte").help("give the table by itself"));
+    if bytes.len() > limits::bytes() {
+        let what = format!("the file is larger than {} MB", limits::bytes() >> 20);
+        return Err(TableError::new(shown, what).help("give the table by itself, or thin it out"));
     }
     Ok(bytes)
 }

@@ -3,7 +3,7 @@
 //!
 //! The container is that of \[MS-CFB\], the records in it are those of \[MS-XLS\].
 
-use super::grid::{CELLS, MANY};
+use super::limits::{CELLS, MANY};
 
 /// What an old sheet has at most.
 const ROWS: u32 = 1 << 16;

@@ -2,7 +2,7 @@
 
 use super::aside::LeftAside;
 use super::heading::Heading;
-use super::rows::ROUNDED;
+use super::written::{rounds_to, step};
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Note, Parts, Remark, Warning};
@@ -64,15 +64,18 @@ fn drop(trial: &Trial) -> Option<(f64, f64)> {
 }
 
 /// Whether each trial is the mean of the drops, in the order of their heights, that are from where
-/// it is.
+/// it is, all as they are rounded.
 fn means(trials: &[Trial], drops: &[(f64, f64)]) -> bool {
+    let own = || trials.iter().filter_map(drop);
+    let [of_heights, of_rebounds] = [step(own().map(|drop| drop.0)), step(own().map(|drop| drop.1))];
     let mean = |(height, rebound): (f64, f64)| {
-        let from = drops.partition_point(|drop| drop.0 < height * (1.0 - ROUNDED));
-        let to = drops.partition_point(|drop| drop.0 <= height * (1.0 + ROUNDED));
+        let same = |drop: &(f64, f64)| rounds_to(drop.0, height, of_heights);
+        let from = drops.partition_point(|drop| drop.0 < height && !same(drop));
+        let to = drops.partition_point(|drop| drop.0 <= height || same(drop));
         let same = &drops[from..to];
         #[allow(clippy::cast_precision_loss)] // drops of a workbook
         let mean = same.iter().map(|drop| drop.1).sum::<f64>() / same.len() as f64;
-        same.len() > 1 && (rebound - mean).abs() <= ROUNDED * mean
+        same.len() > 1 && rounds_to(mean, rebound, of_rebounds)
     };
     trials.len() > 1 && trials.iter().all(|trial| drop(trial).is_some_and(mean))
 }

@@ -12,6 +12,7 @@ use super::named::{OFF, bounce, names_floor};
 use super::region::Region;
 use super::vocabulary::Atom;
 use super::words::joined;
+use super::written::{rounds_to, step};
 use crate::error::TableError;
 
 /// A row of readings.
@@ -158,24 +159,23 @@ fn is_floor(heading: &Heading) -> bool {
     matches!(heading.meaning, Meaning::Setting) && names_floor(&heading.text)
 }
 
-/// Means are rounded to three digits or more.
-pub(super) const ROUNDED: f64 = 0.005;
-
-/// A row without a name below rows with one, whose numbers are the means of those above.
+/// A row without a name below rows with one, whose numbers are the means of those above, rounded to
+/// the last digit of their column.
 fn sums(region: &Region<'_>, columns: &Columns, row: usize, above: &[Row]) -> bool {
     let key = columns.columns.iter().position(|c| matches!(c.kind, Kind::Trial | Kind::Number { .. } | Kind::Label));
     let Some(key) = key.filter(|&key| region.cell(row, key).is_empty()) else { return false };
     if above.len() < 2 || above.iter().any(|r| region.cell(r.at, key).is_empty()) {
         return false;
     }
-    let mean = |column: usize| {
+    let is_mean = |column: usize| {
+        let own = region.view.number(row, column)?;
         let all: Vec<f64> = above.iter().filter_map(|r| region.view.number(r.at, column)).collect();
         #[allow(clippy::cast_precision_loss)] // rows of a table
-        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+        let mean = Some(all.iter().sum::<f64>() / all.len() as f64).filter(|_| !all.is_empty())?;
+        Some(rounds_to(mean, own, step(all.into_iter().chain([own]))))
     };
-    let pairs: Vec<(f64, f64)> =
-        columns.values().filter_map(|(n, _, _)| Some((region.view.number(row, n)?, mean(n)?))).collect();
-    !pairs.is_empty() && pairs.iter().all(|(a, b)| (a - b).abs() <= ROUNDED * b.abs())
+    let mut found = columns.values().filter_map(|(n, _, _)| is_mean(n)).peekable();
+    found.peek().is_some() && found.all(|mean| mean)
 }
 
 fn named(

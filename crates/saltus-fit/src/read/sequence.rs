@@ -31,3 +31,18 @@ fn leap<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let rises = |pair: &[Option<f64>]| matches!(pair, [Some(a), Some(b)] if b - a > SAMPLES);
     numbers.len() > 1 && numbers.windows(2).all(rises)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contacts 40 ms apart are at samples that rise by 320 and more; samples that are things are
+    /// counted by ones, or by tens.
+    #[test]
+    fn samples_of_a_sound_rise_by_more_than_things_are_counted_by() {
+        let heading = Heading::parse("Sample");
+        let of = |cells: &[&str]| of_samples(&heading, cells.iter().copied());
+        assert!(of(&["4000", "4400", "4720"]) && of(&["4000", "8820", "12000"]));
+        assert!(!of(&["1", "2", "3"]) && !of(&["20", "40", "60"]) && !of(&["4000", "3000"]));
+    }
+}

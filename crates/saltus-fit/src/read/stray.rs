@@ -8,7 +8,7 @@ use super::columns::Columns;
 use super::heading::What;
 use super::region::Region;
 use super::{Event, Trial};
-use crate::finding::{Remark, Warning};
+use crate::finding::{Lines, Remark, Warning};
 use crate::statistics::median;
 
 /// What mixed units differ by, cm and m, mm and m, and mm and cm; and a decimal point that has
@@ -22,8 +22,6 @@ const ALIKE: f64 = 3.0;
 const RISE: f64 = 1.1;
 /// Lower heights are mostly reading error, whose falls mean nothing, m.
 const LOW: f64 = 0.01;
-/// So many are named.
-const NAMED: usize = 5;
 
 /// A reading that fits the others once it is multiplied.
 struct Stray {
@@ -36,7 +34,7 @@ struct Stray {
 /// beside the others of their trial.
 pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], warnings: &mut Vec<Remark<Warning>>) {
     let found = strays(trials);
-    for stray in found.iter().take(NAMED) {
+    for stray in found.iter().take(Lines::NAMED) {
         let reading = &trials[stray.trial].readings[stray.reading];
         let holds = |row: usize, column: usize| match region.view.read(row, column) {
             Cell::Number(m) => m
@@ -59,8 +57,8 @@ pub(super) fn warn(region: &Region<'_>, columns: &Columns, trials: &[Trial], war
         let (at, instead) = (region.view.error(row, column, "").spot(), written(number * stray.factor));
         warnings.push(Warning::Stray { at, reading, factor: stray.factor, instead }.into());
     }
-    if found.len() > NAMED {
-        warnings.push(Warning::MoreStrays { heights: found.len() - NAMED }.into());
+    if found.len() > Lines::NAMED {
+        warnings.push(Warning::MoreStrays { heights: found.len() - Lines::NAMED }.into());
     }
 }
 

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::cell::{self, Cell};
 use super::forms;
 use super::heading::Heading;
+use super::limits::MANY;
 use super::wrapped;
 use crate::error::TableError;
 
@@ -14,9 +15,6 @@ pub(super) struct Text<'a> {
     pub(super) text: Cow<'a, str>,
     pub(super) encoding: Option<&'static str>,
 }
-
-/// Nobody types more than this by hand, bytes: a longer text is of cells side by side.
-const TYPED: usize = 1 << 20;
 
 /// The bytes as text, or the reason why they are none.
 pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableError> {
@@ -34,13 +32,12 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
         None => text,
     };
-    let typed = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| {
-        let found = if text.len() <= TYPED { form(&text) } else { None };
-        found.map_or(text, Cow::Owned)
-    };
-    let forms =
-        [wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped, forms::bulleted, forms::table];
-    let text = forms.into_iter().fold(text, typed);
+    let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
+    let around = [wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped];
+    let text = around.into_iter().fold(text, taken);
+    // What is typed by hand has no more lines than these; a longer text is of cells side by side.
+    let typed = text.lines().nth(MANY).is_none();
+    let text = if typed { [forms::bulleted, forms::table].into_iter().fold(text, taken) } else { text };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
 }

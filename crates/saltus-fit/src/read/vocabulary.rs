@@ -193,11 +193,13 @@ pub(super) fn footnotes() -> impl Iterator<Item = char> {
 }
 
 /// The word that is spelt most like `word`, if any is alike enough to be meant: one edit in three
-/// letters.
+/// letters. What is longer or shorter by more than that is no further compared.
 pub(super) fn nearest(word: &str) -> Option<&'static str> {
-    let most = word.chars().count().min(LONGEST) / 3;
+    let length = word.chars().count();
+    let most = length / 3;
     let says = |(_, atoms): &(&str, &[Atom])| atoms.iter().any(|atom| *atom != Atom::Filler);
-    let known = words().filter(says).map(|(known, _)| (distance(word, known), known));
+    let near = words().filter(says).filter(|(known, _)| known.chars().count().abs_diff(length) <= most);
+    let known = near.map(|(known, _)| (distance(word, known), known));
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
 
@@ -279,14 +281,11 @@ fn slip(a: &str, b: &str) -> bool {
     }
 }
 
-/// No word is longer, in letters; longer ones are compared by their beginning.
-const LONGEST: usize = 32;
-
 /// The number of single-character edits between two words (Levenshtein's distance).
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().take(LONGEST).enumerate() {
+    for (i, x) in a.chars().enumerate() {
         let mut diagonal = row[0];
         row[0] = i + 1;
         for (j, &y) in b.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::limits::MANY;
 use super::phrases::Phrase;
 use super::vocabulary::{Atom, first_word, folded, meanings, unparted};
 
@@ -25,9 +26,6 @@ impl Word {
         matches!(self.kind, Kind::Known(atoms) if atoms.contains(&atom))
     }
 }
-
-/// Nobody counts further.
-const COUNTED: usize = 1_000_000;
 
 /// The words of a heading, letters and digits apart.
 pub(super) fn split(text: &str) -> Vec<Word> {
@@ -67,11 +65,11 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             // `n-th`, `n-ten`: the end of a letter that counts.
             continue;
         } else if let Ok(n) = folded.parse::<usize>() {
-            if n <= COUNTED { Kind::Number(n) } else { Kind::Unknown }
+            if n <= MANY { Kind::Number(n) } else { Kind::Unknown }
         } else if folded.chars().count() == 1 {
             Kind::Letter
         } else if let Some((letters, digits)) = joined(&folded) {
-            let n = digits.parse().ok().filter(|n| *n <= COUNTED);
+            let n = digits.parse().ok().filter(|n| *n <= MANY);
             match (meanings(letters), n) {
                 (Some(atoms), Some(n)) => {
                     let at = piece.find(|c: char| c.is_ascii_digit()).unwrap_or(piece.len());
@@ -313,7 +311,7 @@ fn counts(word: &Word) -> bool {
 pub(super) fn ordinal(word: &str) -> Option<usize> {
     let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
     let (digits, end) = word.split_at(at);
-    Phrase::Ending.is(end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= COUNTED)
+    Phrase::Ending.is(end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= MANY)
 }
 
 /// The numbers and names in a heading, each with what it counts.

@@ -11,16 +11,9 @@ use std::panic::{UnwindSafe, catch_unwind};
 use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError};
 use zip::ZipArchive;
 
-use super::grid::MANY;
+use super::limits::{self, MANY};
 use super::old_workbook;
 use crate::error::TableError;
-
-/// What a workbook or an archive may hold when unpacked, in bytes.
-const UNPACKED: u64 = 128 << 20;
-/// What the cells of a workbook may hold as text, in bytes.
-const TEXT: usize = 64 << 20;
-/// Tables of a page of the web, or of a text of JSON, that are read.
-pub(super) const TABLES: usize = 100;
 
 /// How much of another reader's message is shown, in characters.
 const SHOWN: usize = 200;
@@ -75,7 +68,7 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
         return Err(TableError::new(name, "workbooks of this kind are not read").help("save it as .xlsx or as CSV"));
     }
     let mut parts = Vec::new();
-    let mut left = UNPACKED;
+    let mut left = limits::bytes() as u64;
     for entry in names.iter().filter(|n| is_table(n)) {
         let mut content = Vec::new();
         let file = zip.by_name(entry).map_err(|e| broken(name, "archive", &e.to_string()))?;
@@ -102,12 +95,12 @@ fn is_table(entry: &str) -> bool {
 }
 
 fn too_large() -> String {
-    format!("it unpacks to more than {} MB", UNPACKED >> 20)
+    format!("it unpacks to more than {} MB", limits::bytes() >> 20)
 }
 
 /// Unpacks everything into nothing, so that no claim about sizes has to be believed.
 fn measure(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Result<(), String> {
-    let mut left = UNPACKED;
+    let mut left = limits::bytes() as u64;
     for index in 0..zip.len() {
         let entry = zip.by_index(index).map_err(|e| e.to_string())?;
         let size = copy(&mut entry.take(left + 1), &mut sink()).map_err(|e| e.to_string())?;
@@ -119,7 +112,7 @@ fn measure(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Result<(), String> {
 fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     let mut parts = Vec::new();
-    let mut left = TEXT;
+    let mut left = limits::bytes();
     for (name, hidden) in shown_or_not(workbook.sheets_metadata()) {
         let mut cells = match workbook.worksheet_cells_reader(&name) {
             Ok(cells) => cells,
@@ -145,7 +138,7 @@ fn xls(bytes: &[u8]) -> Result<Vec<Part>, String> {
     old_workbook::check(bytes)?;
     let mut workbook = Xls::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     let mut parts = Vec::new();
-    let mut left = TEXT;
+    let mut left = limits::bytes();
     for (name, hidden) in shown_or_not(workbook.sheets_metadata()) {
         let Ok(range) = workbook.worksheet_range(&name) else { continue };
         let (top, first) = range.start().unwrap_or((0, 0));
@@ -204,7 +197,7 @@ impl Rows {
         self.left = self
             .left
             .checked_sub(down + right + value.len())
-            .ok_or_else(|| format!("its cells hold more than {} MB", TEXT >> 20))?;
+            .ok_or_else(|| format!("its cells hold more than {} MB", limits::bytes() >> 20))?;
         self.text.extend(std::iter::repeat_n('\n', down));
         self.text.extend(std::iter::repeat_n('\t', right));
         self.text.push_str(&value);

@@ -12,6 +12,7 @@ use std::ops::Range;
 use saltus_bounce::units::Quantity;
 
 use crate::error::TableError;
+use crate::finding::Lines;
 pub(crate) use chain::SURE;
 use chain::{Chain, LIKELY, chains};
 use onset::{Ear, Onset};
@@ -256,17 +257,15 @@ fn is_believed(onsets: &[Onset], chain: &Chain) -> bool {
 
 /// What is heard where no ball bounces.
 fn nothing(name: &str, onsets: &[Onset], part: &Range<f64>) -> TableError {
-    /// So many sounds are named.
-    const NAMED: usize = 5;
     let mut loudest: Vec<&Onset> = onsets.iter().collect();
     loudest.sort_by(|a, b| b.power.total_cmp(&a.power));
-    loudest.truncate(NAMED);
+    loudest.truncate(Lines::NAMED);
     loudest.sort_by(|a, b| a.time.total_cmp(&b.time));
     let times: Vec<String> = loudest.iter().map(|onset| format!("{:.2} s", onset.time)).collect();
     let heard = match (onsets.len(), times.join(", ")) {
         (0, _) => "nothing stands out from the noise".to_owned(),
         (1, times) => format!("one sound stands out from the noise, at {times}"),
-        (count, times) if count <= NAMED => format!("{count} sounds stand out from the noise, at {times}"),
+        (count, times) if count <= Lines::NAMED => format!("{count} sounds stand out from the noise, at {times}"),
         (count, times) => format!("{count} sounds stand out from the noise, the loudest at {times}"),
     };
     let long = part.end - part.start;

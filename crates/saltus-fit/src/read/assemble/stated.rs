@@ -13,12 +13,9 @@ use crate::read::heading::What;
 use crate::read::layout::Track;
 use crate::read::region::Region;
 use crate::read::rows::Rows;
+use crate::read::sequence::LEVEL;
 use crate::read::units::Scale;
 use crate::read::{Table, Trial};
-
-/// A first height down to this part of the stated one is the release itself: no ball rebounds so
-/// high.
-const RELEASE: f64 = 0.99;
 
 /// Gives each trial the CORs that a column of the table works out beside its readings.
 pub(super) fn cors(region: &Region<'_>, columns: &Columns, rows: &Rows, trials: &mut [Trial]) {
@@ -97,7 +94,8 @@ impl Builder<'_> {
             let column = track.height.or(track.nth.first().copied());
             let column = column.filter(|n| self.columns.columns[*n].holds(What::Height));
             let first = rows.rows.iter().find_map(|row| self.height(row.at, column?).transpose()).transpose()?;
-            if first.is_none_or(|(height, _)| height < RELEASE * drop) {
+            // A first height that is level with the stated one is the release itself.
+            if first.is_none_or(|(height, _)| height < LEVEL * drop) {
                 (track.drop, taken) = (Some(drop), true);
             }
         }

@@ -12,14 +12,12 @@ use crate::read::heading::{Role, What};
 use crate::read::region::Region;
 use crate::read::units::Unit;
 use crate::read::vocabulary::Atom;
-
-/// Frames a second where nobody states them and no COR needs them: the fewest that cameras film,
-/// since by the time of a flight its height is bounded, and the air that it allows for.
-const SLOWEST: f64 = 24.0;
+use crate::statistics::RATES;
 
 impl Columns {
     /// The rate of frames that stands in for one that is not stated: where heights have no scale,
-    /// neither has their clock, and a COR is a ratio of either.
+    /// neither has their clock, and a COR is a ratio of either. It is the fewest that cameras film,
+    /// for the time of a flight bounds its height, and the air that it allows for.
     pub(in crate::read) fn any_rate(&self, region: &Region<'_>, options: &ReadOptions) -> Option<f64> {
         let frames = self.one(&Kind::Frame).filter(|&n| !self.columns[n].heading.has(Atom::Sample))?;
         let timed = self.values().any(|(_, _, v)| matches!(v.what, What::Time | What::Interval | What::Total));
@@ -33,7 +31,7 @@ impl Columns {
             moves(Ordering::Less) && moves(Ordering::Greater)
         };
         let open = !timed && !scaled && read().any(|(n, _, _)| turns(n));
-        (open && read().all(|(n, _, v)| v.position && bare(n))).then_some(SLOWEST)
+        (open && read().all(|(n, _, v)| v.position && bare(n))).then_some(RATES[0])
     }
 
     /// A count of frames is a time, if nothing else is and the frame rate is known; `any` where one

@@ -12,17 +12,17 @@ use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
 use crate::statistics::median;
 
-/// Parts of the height of release fall by about the first of them from bounce to bounce, where
-/// those of the height before stay: so much of it is left to a COR that changes.
-const ABOUT: f64 = 0.15;
-
-/// Whether numbers are parts of the first height, by how they fall from the whole.
+/// Whether numbers are parts of the first height, by how they fall from the whole: each is about as
+/// large a part of the one before as the first is of the whole, where parts of the height before
+/// stay. So its part is nearer to that of the first than to all, or to the square of it.
 fn of_the_first(numbers: &[f64], whole: f64) -> bool {
     // A first number that is all of it is the release itself.
     let released = numbers.first() == Some(&whole);
     let Some(first) = numbers.iter().find(|number| **number < whole).map(|number| number / whole) else { return false };
-    let falls =
-        |pair: &[f64]| pair[1] < LEVEL * pair[0] && (released || (pair[1] / pair[0] / first - 1.0).abs() < ABOUT);
+    let falls = |pair: &[f64]| {
+        let squared = (pair[1] / pair[0]).powi(2);
+        pair[1] < LEVEL * pair[0] && (released || squared < first && squared > first.powi(3))
+    };
     numbers.len() > 1 && numbers.windows(2).all(falls)
 }
 
@@ -118,4 +118,27 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
     let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
     below && ratios(&later).is_some_and(|later| later > LEVEL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parts of the release are powers of one number, to within what a COR changes by; those of the
+    /// height before stay, or fall as slowly as a COR does.
+    #[test]
+    fn powers_of_one_number_are_parts_of_the_first_height() {
+        for e in [0.5, 0.64, 0.75] {
+            for by in [0.97f64, 1.0, 1.03] {
+                let nth = |n: i32| e * by.powi(n - 1);
+                let first: Vec<f64> = (1..6).map(|n| (1..=n).map(nth).product()).collect();
+                let before: Vec<f64> = (1..6).map(|n| e * 0.94f64.powi(n - 1)).collect();
+                assert!(of_the_first(&first, 1.0), "{first:?}");
+                assert!(!of_the_first(&before, 1.0), "{before:?}");
+            }
+        }
+        assert!(of_the_first(&[100.0, 80.0, 40.0], 100.0) && !of_the_first(&[64.0], 100.0));
+        // Level numbers are of drops that repeat each other.
+        assert!(!of_the_first(&[100.0, 97.0, 96.0], 100.0));
+    }
 }

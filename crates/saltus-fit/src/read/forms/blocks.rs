@@ -68,6 +68,23 @@ fn parted(text: &str, mark: char) -> Option<(usize, Vec<Block<'_>>)> {
     (blocks.len() > 1 && alike).then(|| (blocks[0].line, blocks))
 }
 
+/// Lines in which dots lead from one cell to the next, `1 m ..... 0.64 m`, with a tab in their
+/// place; `None` unless most are such lines. A line stays a line.
+pub(super) fn led(text: &str) -> Option<String> {
+    let cells = |line: &str| -> Vec<String> {
+        let dots = line.replace('…', "...");
+        let cells = dots.split("...").map(|cell| cell.trim_start_matches('.').trim().to_owned());
+        cells.filter(|cell| !cell.is_empty()).collect()
+    };
+    let leads = |line: &&str| cells(line).len() > 1;
+    let filled = || text.lines().filter(|line| !line.trim().is_empty());
+    let found = filled().filter(leads).count();
+    if found < 2 || 2 * found < filled().count() || text.contains(['\t', '|', ';']) {
+        return None;
+    }
+    Some(text.lines().map(|line| cells(line).join("\t")).collect::<Vec<_>>().join("\n") + "\n")
+}
+
 /// Numbers behind dashes below a name, `bounces:`, `- 64`, `- 41`, as a list behind it; `None` if
 /// there are none. A line stays a line.
 pub(in crate::read) fn bulleted(text: &str) -> Option<String> {

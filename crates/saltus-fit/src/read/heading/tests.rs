@@ -134,3 +134,13 @@ fn keys_trials_and_balls() {
     assert!(misspelt.understood() && misspelt.misspelt == [("hieght".to_owned(), "height")]);
     assert_eq!(Heading::parse("height (± 0.5 cm)").spread, Some(0.5));
 }
+
+/// A whole number behind a word of trials counts them, up to twenty; a larger one is a height.
+#[test]
+fn drops_are_counted_and_heights_are_not() {
+    let height = |text: &str| release(text).map(|(drop, _)| drop.metres());
+    assert_eq!(height("Drop 150 cm"), Some(1.5));
+    assert_eq!(height("Drop 30 cm"), Some(0.3));
+    assert_eq!((height("Drop 12 cm"), height("Drop 3 m")), (None, None));
+    assert_eq!(height("Drop 2.5 m"), Some(2.5));
+}
