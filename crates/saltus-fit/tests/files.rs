@@ -345,3 +345,61 @@ fn wrong_units_and_frame_rates_are_suspected() {
     warned(format!("time_s,y_m\n{slow}").as_bytes(), &plain(), told);
     assert!(saltus_fit::Fit::new().run(&read(text.as_bytes(), &plain().fps(120.0))).unwrap().warnings().is_empty());
 }
+
+/// A workbook of `OpenDocument`: rows of cells, numbers as numbers, the rest as text.
+fn open_workbook(rows: &str) -> Vec<u8> {
+    let cell = |cell: &str| match cell.parse::<f64>() {
+        Ok(number) => format!(
+            "<table:table-cell office:value-type=\"float\" office:value=\"{number}\"><text:p>{number:.0}</text:p></table:table-cell>"
+        ),
+        Err(_) if cell.is_empty() => "<table:table-cell table:number-columns-repeated=\"1\"/>".to_owned(),
+        Err(_) => format!(
+            "<table:table-cell office:value-type=\"string\"><office:annotation><text:p>a remark</text:p></office:annotation><text:p>{cell}</text:p></table:table-cell>"
+        ),
+    };
+    let row =
+        |line: &str| format!("<table:table-row>{}</table:table-row>", line.split(',').map(cell).collect::<String>());
+    let rows = rows.lines().map(row).collect::<String>();
+    content(&format!(
+        "<table:table table:name=\"Drops\">{rows}<table:table-row table:number-rows-repeated=\"1048000\"><table:table-cell table:number-columns-repeated=\"16000\"/></table:table-row></table:table>"
+    ))
+}
+
+fn content(tables: &str) -> Vec<u8> {
+    let hidden = "<style:style style:name=\"h\"><style:table-properties table:display=\"false\"/></style:style>";
+    zip(&[("content.xml", &format!("<office:document-content>{hidden}{tables}</office:document-content>"))])
+}
+
+fn of(bytes: &[u8]) -> Result<Table, TableError> {
+    Table::parse("drops.ods", bytes, &ReadOptions::default())
+}
+
+#[test]
+fn open_workbooks_are_read() {
+    let rows = "drop height (cm),,rebound height (cm)\n200,,128.4\n150,,95.6\n100,,64.1\n";
+    let heights = |table: &Table| -> Vec<Option<f64>> {
+        table.trials().iter().flat_map(|t| t.readings()).map(|r| r.height).collect()
+    };
+    let plain = read(rows.as_bytes(), &plain());
+    assert_eq!(heights(&of(&open_workbook(rows)).unwrap()), heights(&plain));
+    let hidden = "<table:table table:name=\"x\" table:style-name=\"h\"><table:table-row><table:table-cell office:value-type=\"string\"><text:p>height (cm)</text:p></table:table-cell></table:table-row><table:table-row><table:table-cell office:value-type=\"float\" office:value=\"3\"/></table:table-row></table:table>";
+    assert!(of(&content(hidden)).is_err());
+}
+
+/// What a few bytes claim to repeat takes neither the memory nor the time that it would.
+#[test]
+fn what_an_open_workbook_repeats_is_bounded() {
+    let start = std::time::Instant::now();
+    for (rows, columns, text) in
+        [(1, 16_000_000, "1"), (4_000_000_000_u32, 1, "1"), (4_000_000_000, 4_000_000_000_u32, "word")]
+    {
+        let cell = format!(
+            "<table:table-cell table:number-columns-repeated=\"{columns}\" office:value-type=\"string\"><text:p>{text}</text:p></table:table-cell>"
+        );
+        let table = format!(
+            "<table:table table:name=\"x\"><table:table-row table:number-rows-repeated=\"{rows}\">{cell}</table:table-row></table:table>"
+        );
+        assert!(of(&content(&table)).is_err(), "{rows} {columns}");
+    }
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}

@@ -186,6 +186,8 @@ fn every_remark_comes_back() {
         Note::Floor { reading: "812".to_owned(), down: true },
         Note::FallingTimes,
         Note::RisingTimes { column: column() },
+        Note::Thousands { cell: "1.250".to_owned() },
+        Note::Start { name: "partenza".to_owned() },
         Note::Losses { column: column() },
         Note::Repeats { columns: columns() },
         Note::Namesakes { column: column() },
@@ -234,5 +236,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (39, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (41, 6, 7));
 }

@@ -27,6 +27,7 @@ fn files() -> Vec<PathBuf> {
                 "read/vocabulary.rs",
                 "read/limits.rs",
                 "read/check.rs",
+                "read/grid/grouped.rs",
                 "read/sequence.rs",
                 "read/heading/inside.rs",
                 "read/programs.rs",

@@ -21,6 +21,14 @@ pub enum Doubt {
         /// Its number.
         line: u64,
     },
+    /// Heights are said to be of another point of the ball than its lowest, and by how much they are
+    /// too high is not stated.
+    End {
+        /// What says so.
+        text: String,
+        /// Its line.
+        line: u64,
+    },
     /// Nothing in the table says that something bounces, and the readings may be of anything.
     Unsaid {
         /// A column of the readings.

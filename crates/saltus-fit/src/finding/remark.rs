@@ -255,6 +255,16 @@ pub enum Note {
         /// The column.
         column: String,
     },
+    /// Marks that part thousands, and are no decimal ones.
+    Thousands {
+        /// A number with such a mark.
+        cell: String,
+    },
+    /// A word before the first of the bounces that are counted stands for the release.
+    Start {
+        /// The word.
+        name: String,
+    },
     /// Losses add up from bounce to bounce.
     Losses {
         /// The column.

@@ -77,6 +77,8 @@ pub enum Why {
     Still,
     /// The table says itself that it does not count.
     Void,
+    /// It counts frames, and how many were filmed in a second is not stated.
+    NoRate,
     /// Its time is that of the event before it: the clock does not tell them apart.
     Unresolved,
     /// The event was not heard: the time is zero.

@@ -6,6 +6,7 @@ use saltus_bounce::units::Quantity;
 use super::aside::{LeftAside, Part as Kind, Why};
 use super::clause;
 use super::columns::Columns;
+use super::datum::Datum;
 use super::foreign;
 use super::grid::{Grid, View};
 use super::heading::{Heading, What};
@@ -16,7 +17,8 @@ use super::region::{self, Region};
 use super::rows::sifted;
 use super::text::{self, text};
 use super::title::{self, Stated};
-use super::vocabulary::{Atom, ROWS};
+use super::vocabulary::{Atom, ROWS, folded, misspelt};
+use super::words::{Word, split};
 use super::workbook::{self, Content, Part};
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
@@ -82,6 +84,7 @@ fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
         found => found,
     };
     let mut table = found?;
+    table.notes.extend(grid.grouped.clone().map(|cell| Note::Thousands { cell }.into()));
     if let Some(program) = program {
         table.notes.insert(0, Note::Recognised { program }.into());
     }
@@ -96,7 +99,13 @@ fn joined_up<'a>(
     options: &ReadOptions,
     mut metadata: Metadata,
 ) -> Result<Table, TableError> {
-    let titles: Vec<Stated> = regions.iter().map(title::stated).collect();
+    let mut titles: Vec<Stated> = regions.iter().map(title::stated).collect();
+    // Of tables of the same names the first may state what holds for all.
+    for n in 1..regions.len() {
+        if regions[n].header == regions[0].header {
+            titles[n] = std::mem::take(&mut titles[n]).below(&titles[0]);
+        }
+    }
     // A film is of one rate; above each table its own height of release may stand.
     let mut stated = Vec::new();
     if metadata.frame_rate.is_none()
@@ -117,12 +126,18 @@ fn joined_up<'a>(
         };
         region.units = (region.units.0.or(title.units.0), region.units.1.or(title.units.1));
         region.drop = title.drop.as_ref().map(|(drop, _)| drop.clone());
+        // Whoever states the zero or the height of release answers it.
+        let answered = options.zero.or(options.drop).is_some();
+        let datum = title.datum.clone().filter(|_| options.zero.is_none()).map(|datum| datum.beside(own.drop));
+        region.zero = datum.as_ref().and_then(Datum::zero);
         match one(region, options, own) {
             Ok(mut table) => {
                 titled(region, &mut table);
-                // Whoever states the zero or the height of release answers it.
-                let answered = options.zero.or(options.drop).is_some();
-                let length = title.length.clone().filter(|_| !answered);
+                // A recording tells where its floor is, and times need none.
+                let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
+                let placed = table.trials.iter().any(|t| t.readings.iter().any(placed));
+                table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
+                let length = title.length.clone().filter(|_| !answered && placed);
                 table.doubts.extend(length.map(|(text, line)| Doubt::Length { text, line }));
                 parts.push((region.label.clone(), table));
             }
@@ -234,10 +249,17 @@ fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
 /// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
 /// of.
 fn titled(region: &Region<'_>, table: &mut Table) {
-    // The rate of a recording is none of what it shows, and the COR is what all is measured for.
+    // The rate of a recording is none of what it shows; and what only looks like a word that was
+    // worked out, `different` for `differenz`, is none in a sentence.
     let turns = |text: &str| {
         let heading = Heading::parse(text);
-        heading.turns() && !(heading.has(Atom::Cor) && heading.turned_by().iter().all(|atom| *atom == Atom::Derived))
+        let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom));
+        let slip = |atom: Atom| {
+            let meant = |word: &Word| misspelt(&folded(&word.text)).is_some_and(|(_, atoms)| atoms.contains(&atom));
+            matches!(atom, Atom::Predicted | Atom::Goal) && split(text).iter().any(meant)
+        };
+        let unread = |atom: &Atom| exact(*atom) || slip(*atom);
+        heading.turns_readings() && heading.turned_by().iter().any(unread)
     };
     let turned = |text: &str| match clause::frame_rate(text) {
         Some(_) => turns(&text.replace("rate", "")),
@@ -313,7 +335,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             Some(sheet) if label.eq_ignore_ascii_case(sheet.trim()) || stem(&label) == sheet.trim() => None,
             Some(_) => Some(Why::NotChosen),
             None if part.hidden => Some(Why::Hidden),
-            None if Heading::parse(&label).turns() => Some(Why::Predicted),
+            None if Heading::parse(&label).turns_readings() => Some(Why::Predicted),
             None if all && stem(&label) != "All" => Some(Why::Elsewhere),
             None => None,
         };

@@ -48,7 +48,7 @@ const KINDS: [(&[&str], &str, &str); 14] = [
     ),
     (&["sql"], "SQL", "export the rows as CSV, such as by SELECT into a file; give that file"),
     (&["xml"], "XML without records of numbers", "export the table as CSV; give that file"),
-    (&["ods", "xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
+    (&["xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];
 
 /// The beginnings of such files, where the ending does not tell.
@@ -76,7 +76,7 @@ pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
     let kind = kind(name, bytes);
     let (_, what, help) = KINDS.iter().find(|(endings, _, _)| endings.contains(&&*kind))?;
     // A table that only has the name of something else is a table.
-    let table = bytes.starts_with(b"PK") && !matches!(&*kind, "docx" | "odt" | "ods" | "xlsb" | "numbers");
+    let table = bytes.starts_with(b"PK") && !matches!(&*kind, "docx" | "odt" | "xlsb" | "numbers");
     (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
 }
 

@@ -3,10 +3,12 @@
 //! and a line stays a line.
 
 mod blocks;
+mod noted;
+mod sentences;
 mod values;
 
 pub(super) use blocks::bulleted;
-use values::{LIST, listed_numbers, listed_values, named_list};
+use values::{LIST, length, listed_numbers, listed_values, named_list};
 
 use super::cell::{self, Cell};
 use super::clause;
@@ -23,7 +25,18 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
-    let forms = [latex, wiki, blocks::led, blocks::table, blocks::records, listed, headed, patterned];
+    let forms = [
+        latex,
+        wiki,
+        blocks::led,
+        blocks::table,
+        blocks::records,
+        noted::noted,
+        listed,
+        headed,
+        patterned,
+        sentences::table,
+    ];
     forms.iter().find_map(|form| form(text))
 }
 
@@ -139,14 +152,6 @@ fn of_others(line: &str) -> bool {
     let other = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension == Dimension::Other));
     let (found, _) = parts(line);
     !found.is_empty() && found.iter().all(other) && !line.contains(['\t', '|', ';', '=', ':'])
-}
-
-/// The length that a text is and nothing else, m.
-fn length(text: &str) -> Option<f64> {
-    match cell::read(text, false) {
-        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
-        _ => None,
-    }
 }
 
 /// Whether heights fall as those of bounces do, one after the other.

@@ -1,5 +1,6 @@
 //! From text to cells: delimiter, comments, and the place of every cell for messages.
 
+mod grouped;
 mod unfold;
 
 use csv::{ReaderBuilder, StringRecord};
@@ -27,6 +28,8 @@ pub(super) struct Grid<'a> {
     origin: Vec<usize>,
     /// Commas within cells are decimal ones, though commas part the cells.
     decimal: bool,
+    /// A number whose mark parts thousands, as it was written.
+    pub(super) grouped: Option<String>,
 }
 
 /// A row: its first cell, where it starts in the text, its line.
@@ -47,8 +50,9 @@ impl<'a> Grid<'a> {
         }
         let delimiter = if tab.is_some() { b'\t' } else { delimiter(lines.take(40)) };
         let (cells, ends, rows, origin) = (String::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false };
+        let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false, grouped: None };
         grid.fill()?;
+        grid.ungroup();
         grid.decimal = grid.comma() && grid.decimal_commas();
         grid.united();
         grid.unfold();

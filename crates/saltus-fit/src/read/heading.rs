@@ -337,6 +337,11 @@ impl Heading {
         !self.turned_by().is_empty()
     }
 
+    /// Whether it says that what stands below it was not read; the COR is what all is measured for.
+    pub(super) fn turns_readings(&self) -> bool {
+        self.turns() && !(self.has(Atom::Cor) && self.turned_by().iter().all(|atom| *atom == Atom::Derived))
+    }
+
     /// Whether the text names a statistic of the rows around it: `Mean`, `Std dev`, `COR`.
     pub(super) fn sums_up(&self) -> bool {
         use Atom::{Derived, Error, Goal, Lost, Max, Mean, Median, Min, Predicted, Total};
@@ -396,7 +401,7 @@ impl Heading {
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
             } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
-            } else if !(argument && matches!(inside, "t" | "x") || of_units(inside)) {
+            } else if !(argument && matches!(inside, "t" | "x") || of_units(inside) || asks_for_unit(inside)) {
                 // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
                 left.push_str(match inside {
                     "h" | "H" if !left.trim().is_empty() => "height",
@@ -464,6 +469,12 @@ fn of_units(text: &str) -> bool {
     let first = found.next().flatten();
     let mut rest = found.peekable();
     first.is_some() && rest.peek().is_some() && rest.all(|dimension| dimension == first)
+}
+
+/// Whether a text asks for units behind the numbers, `with unit!`.
+fn asks_for_unit(text: &str) -> bool {
+    let words = split(text);
+    words.iter().any(|word| word.is(Atom::Measure)) && words.iter().all(|w| w.is(Atom::Measure) || w.is(Atom::Filler))
 }
 
 /// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.

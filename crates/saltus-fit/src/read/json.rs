@@ -196,8 +196,11 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     if !columns.is_empty() {
         push(side_by_side(&columns).map(|rows| format!("{stated}{rows}")));
     }
-    for (name, member) in node.members().iter().filter(|(_, node)| node.cells().is_none()) {
-        tables(name, member, &format!("{above}{stated}"), found);
+    let inner = || node.members().iter().filter(|(_, node)| node.cells().is_none() && node.cell().is_none());
+    // The only table within a value is called as that is.
+    let only = !name.is_empty() && columns.is_empty() && inner().count() == 1;
+    for (own, member) in inner() {
+        tables(if only { name } else { own }, member, &format!("{above}{stated}"), found);
     }
     // Lists of the same names are trials, or are called by their first words.
     let Node::List(list) = node else { return };

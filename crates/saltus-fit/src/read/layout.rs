@@ -108,7 +108,10 @@ pub(super) fn tracks(columns: &Columns) -> Vec<Track> {
         let (trial, group) = match column.value() {
             Some(value) if value.role == Role::Error => continue,
             Some(value) => (value.trial.clone(), value.group.clone()),
-            None if column.kind == Kind::Share => (column.heading.trial(), String::new()),
+            None if column.kind == Kind::Share => {
+                let group = column.heading.value().map(|value| value.group.clone());
+                (column.heading.trial(), group.unwrap_or_default())
+            }
             None => (String::new(), String::new()),
         };
         if trial.is_empty() && group.is_empty() {

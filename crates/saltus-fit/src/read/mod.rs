@@ -6,6 +6,7 @@ mod cell;
 mod check;
 mod clause;
 mod columns;
+mod datum;
 mod drops;
 mod file;
 mod foreign;
@@ -19,6 +20,7 @@ mod layout;
 mod limits;
 mod named;
 mod old_workbook;
+mod open_workbook;
 mod options;
 mod order;
 mod phrases;
@@ -303,7 +305,7 @@ impl Table {
     ///
     /// Understood are text (CSV with commas, semicolons or tabs; what Tracker, `ImageJ`, Vernier's
     /// and phyphox' programs export; bare numbers, if the options say what they are), workbooks
-    /// (`.xlsx`, `.xls`), zip archives of CSV, and sounds (`.wav`, see [`Sound`]).
+    /// (`.xlsx`, `.xls`, `.ods`), zip archives of CSV, and sounds (`.wav`, see [`Sound`]).
     /// `docs/use/fitting.md` shows every layout.
     ///
     /// The reader of workbooks may panic over a damaged one. That becomes an error like any other,

@@ -60,6 +60,8 @@ pub(super) fn bounce(cell: &str) -> Option<usize> {
 }
 
 fn numbered(cell: &str) -> Option<usize> {
+    // A sign that puts it in a place of an order, `1°`, and no angle.
+    let cell = cell.strip_suffix(['°', 'º', 'ª']).unwrap_or(cell);
     if let Cell::Number(measured) = cell::read(cell, false) {
         let n = measured.value;
         // In range and whole: the cast is exact.

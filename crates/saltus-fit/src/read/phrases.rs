@@ -50,10 +50,22 @@ pub(super) enum Phrase {
     Since,
     /// Where something is under an instrument.
     Below,
+    /// A place on a scale follows.
+    At,
+    /// The size of a ball, across,
+    Diameter,
+    /// or half across.
+    Radius,
+    /// The upper end of a ball.
+    Top,
+    /// The point between its ends.
+    Middle,
+    /// A ball came up again.
+    Rose,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 21] = [
+    const ALL: [(&'static str, Self); 27] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -75,6 +87,12 @@ impl Phrase {
         ("readings", Self::Readings),
         ("since", Self::Since),
         ("below", Self::Below),
+        ("at", Self::At),
+        ("diameter", Self::Diameter),
+        ("radius", Self::Radius),
+        ("top", Self::Top),
+        ("middle", Self::Middle),
+        ("rose", Self::Rose),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
+use super::datum::Zero;
 use super::grid::{View, shown};
 use super::heading::{DropHeight, Heading};
 use super::units::{Dimension, Unit};
@@ -29,6 +30,8 @@ pub(super) struct Region<'a> {
     pub(super) units: (Option<Unit>, Option<Unit>),
     /// The height of release that stands above.
     pub(super) drop: Option<DropHeight>,
+    /// What the scale of heights reads at the floor, as a line states.
+    pub(super) zero: Option<Zero>,
     /// Rows are frames, and no column counts them.
     pub(super) frames: bool,
     /// How long a frame lasts, s.
@@ -52,6 +55,7 @@ impl<'a> Region<'a> {
             rows,
             units,
             drop: None,
+            zero: None,
             frames: false,
             frame: None,
             chosen: false,

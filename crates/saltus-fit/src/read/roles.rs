@@ -206,7 +206,7 @@ impl Columns {
         }
         let mean = self.columns.iter().any(|c| c.heading.has(Atom::Mean) && c.kind == Kind::Aside);
         let averaged = mean && (drop.is_some() || released);
-        if !rows && !averaged && !level(region, drop, &nth, mean) {
+        if !rows && !averaged && !level(region, drop, &nth, mean || released) {
             return;
         }
         let names: Vec<String> = nth.iter().map(|&n| self.columns[n].heading.text.clone()).collect();
@@ -218,8 +218,9 @@ impl Columns {
         self.notes.push(Note::Repeats { columns: names });
     }
 
-    /// Columns of one name beside a height of release, nearly as high as one another: trials.
-    pub(super) fn namesakes(&mut self, region: &Region<'_>) {
+    /// Columns of one name, nearly as high as one another, beside a height of release or below one that
+    /// is stated: trials.
+    pub(super) fn namesakes(&mut self, region: &Region<'_>, released: bool) {
         let row =
             |v: &Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading && v.trial.is_empty();
         let Some((_, name)) = self.values().find(|(_, _, v)| row(v)).map(|(n, c, _)| (n, c.heading.text.clone()))
@@ -229,7 +230,7 @@ impl Columns {
         let same: Vec<usize> =
             self.values().filter(|(_, c, v)| row(v) && c.heading.text == name).map(|(n, _, _)| n).collect();
         let drop = self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading).map(|(n, _, _)| n);
-        if same.len() < 2 || drop.is_none() || !level(region, drop, &same, false) {
+        if same.len() < 2 || !level(region, drop, &same, released) {
             return;
         }
         for (count, &index) in same.iter().enumerate() {

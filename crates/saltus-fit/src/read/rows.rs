@@ -6,7 +6,7 @@ use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
 use super::columns::{Columns, Kind};
 use super::grid::shown;
-use super::heading::{Heading, Meaning};
+use super::heading::{Heading, Meaning, Role, Value, What};
 use super::judged;
 use super::named::{OFF, bounce, names_floor};
 use super::region::Region;
@@ -36,6 +36,8 @@ pub(super) struct Rows {
     pub(super) floor: Option<(usize, usize)>,
     /// Numbers of bounces were rounded to whole ones.
     pub(super) rounded: bool,
+    /// A word that stands for the release before bounces that are counted.
+    pub(super) start: Option<String>,
 }
 
 /// Sorts the rows of a table out.
@@ -47,6 +49,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
     let key = columns.number().map(|(n, _)| n).or(columns.one(&Kind::Label));
     let diagram = columns.number().map_or_else(HashMap::new, |(key, _)| off_a_diagram(region, key));
     let lettered = columns.number().map_or_else(HashMap::new, |(key, _)| lettered(region, key));
+    let begun = columns.number().map_or_else(HashMap::new, |(key, _)| begun(region, columns, key));
     let void = judged::void(region, columns);
     let told_apart = told_apart(region, columns);
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
@@ -116,8 +119,9 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Statistic, Part::Row));
             continue;
         }
-        let read = named(region, columns, row, key, [&diagram, &lettered])?;
+        let read = named(region, columns, row, key, [&diagram, &lettered, &begun])?;
         found.rounded |= diagram.contains_key(&row);
+        found.start = found.start.or(begun.get(&row).and(key).map(|key| shown(region.cell(row, key))));
         found.rows.push(read);
     }
     Ok(found)
@@ -183,7 +187,7 @@ fn named(
     columns: &Columns,
     row: usize,
     key: Option<usize>,
-    counted: [&HashMap<usize, usize>; 2],
+    counted: [&HashMap<usize, usize>; 3],
 ) -> Result<Row, TableError> {
     let mut found = Row { at: row, bounce: None, name: String::new(), group: String::new() };
     let Some(key) = key else { return Ok(found) };
@@ -224,6 +228,33 @@ fn lettered(region: &Region<'_>, key: usize) -> HashMap<usize, usize> {
         |all: &Vec<(&str, usize)>| all.windows(2).all(|pair| pair[0].0 == pair[1].0 && pair[0].1 + 1 == pair[1].1);
     let all = all.filter(one).into_iter().flatten();
     region.rows.iter().copied().zip(all.map(|(_, number)| number)).collect()
+}
+
+/// The rows of releases in a count of bounces that has one word in their place, `start`, `1`, `2`:
+/// whatever it says, it stands before the first bounce, and its height is above that.
+fn begun(region: &Region<'_>, columns: &Columns, key: usize) -> HashMap<usize, usize> {
+    let cell = |row: usize| region.cell(row, key);
+    let read = |v: &Value| v.role == Role::Reading && matches!(v.what, What::Height | What::Unsaid);
+    let number = |row: usize, n: usize| region.view.number(row, n);
+    let heights = || columns.values().filter(|(_, _, v)| read(v)).map(|(n, _, _)| n);
+    // Remarks below hold no reading.
+    let rows = region.rows.iter().copied().filter(|&row| heights().any(|n| number(row, n).is_some()));
+    let rows: Vec<usize> = rows.collect();
+    let word = rows.first().map_or("", |&row| cell(row));
+    let named = rows.first().is_some_and(|&row| region.view.read(row, key) == Cell::Words) && bounce(word).is_none();
+    let starts = |row: usize| cell(row) == word;
+    let follows = |pair: &[usize]| match (starts(pair[0]), starts(pair[1])) {
+        (true, next) => !next && bounce(cell(pair[1])) == Some(1),
+        (false, true) => true,
+        (false, false) => bounce(cell(pair[0])).is_some_and(|n| bounce(cell(pair[1])) == Some(n + 1)),
+    };
+    let falls = |pair: &[usize]| {
+        let mut pairs = heights().filter_map(|n| number(pair[0], n).zip(number(pair[1], n))).peekable();
+        pairs.peek().is_some() && pairs.all(|(before, after)| after < before)
+    };
+    let begun = |pair: &[usize]| !starts(pair[0]) || falls(pair);
+    let counted = named && rows.len() > 2 && rows.windows(2).all(|pair| follows(pair) && begun(pair));
+    rows.into_iter().filter(|&row| counted && starts(row)).map(|row| (row, 0)).collect()
 }
 
 /// The numbers of bounces that were read off a diagram, row by row: near whole numbers, each near

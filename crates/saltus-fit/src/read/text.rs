@@ -7,6 +7,7 @@ use super::cell::{self, Cell};
 use super::forms;
 use super::heading::Heading;
 use super::limits::MANY;
+use super::units::Unit;
 use super::wrapped;
 use crate::error::TableError;
 
@@ -33,7 +34,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         None => text,
     };
     let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
-    let around = [wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped];
+    let around = [wrapped::pictured, wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped];
     let text = around.into_iter().fold(text, taken);
     // What is typed by hand has no more lines than these; a longer text is of cells side by side.
     let typed = text.lines().nth(MANY).is_none();
@@ -111,16 +112,30 @@ fn aligned(text: &str) -> Option<String> {
         && 2 * rows().count() >= lines().count()
         && lines().any(spaced);
     let width = if of_numbers { width } else { of_cells(text, lines())? };
-    // A name may hold single spaces, unless there are as many words as columns.
-    let words = |line: &str| of_numbers && line.split_whitespace().count() == width;
-    let cells = |line: &str| cells(line, if words(line) { 1 } else { 2 });
-    let full = |line: &&str| cells(line).len() == width;
-    let columns = columns(lines().filter(full).map(cells));
+    // A name may hold single spaces, unless there are as many words as columns; what stands above
+    // the names is a title.
+    let counted = |line: &str| line.split_whitespace().count() == width;
+    let named = |line: &str| counted(line) && !line.contains(|c: char| c.is_ascii_digit() || matches!(c, '(' | '['));
+    let titled = |line: &str, next: Option<&str>| {
+        let names = |next: &str| named(next) && next.split_whitespace().any(|word| Unit::parse(word).is_none());
+        named(line) && next.is_some_and(names)
+    };
+    let cells = |line: &str, next: Option<&str>| {
+        let words = of_numbers && counted(line) && !titled(line, next);
+        cells(line, if words { 1 } else { 2 })
+    };
+    let below = lines().skip(1).map(Some).chain([None]);
+    let filled = || lines().zip(below.clone()).map(|(line, next)| cells(line, next));
+    let columns = columns(filled().filter(|cells| cells.len() == width));
     let mut found = String::with_capacity(text.len());
+    let mut nexts = lines().peekable();
     for line in text.split_inclusive('\n') {
         let (inner, end) = line.split_at(line.trim_end().len());
         if !drawn(line) {
-            let (own, at) = in_columns(inner, cells(inner), &columns, of_numbers);
+            nexts.next_if(|next| next.trim_end() == inner);
+            let (next, own) = (nexts.peek().copied(), cells(inner, nexts.peek().copied()));
+            let title = own.len() == 1 && titled(inner, next);
+            let (own, at) = if title { (own, vec![0]) } else { in_columns(inner, own, &columns, of_numbers) };
             tabbed(&mut found, inner, &own, &at);
         }
         found.push_str(end);

@@ -3,8 +3,9 @@
 
 use super::cell::Cell;
 use super::clause::{clauses, drop, error, frame_rate, names_rate, of_clauses, states_length};
+use super::datum::{self, Datum};
 use super::grid::shown;
-use super::heading::{DropHeight, Heading};
+use super::heading::{DropHeight, Heading, What};
 use super::region::Region;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{ROWS, folded};
@@ -22,6 +23,8 @@ pub(super) struct Stated {
     pub(super) units: (Option<Unit>, Option<Unit>),
     /// The standard errors of heights, m, and of times, s.
     pub(super) sigma: (Option<f64>, Option<f64>),
+    /// What the scale reads at the floor.
+    pub(super) datum: Option<Datum>,
     /// A line that speaks of heights, states a length, and is not used; and its number.
     pub(super) length: Option<(String, u64)>,
 }
@@ -42,13 +45,23 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
     let below = region.rows.iter().rev().take(ROWS).copied().filter(alone);
-    for row in above.chain(below) {
-        let line = region.view.line(row, 0);
-        let cells: Vec<&str> = region.view.cells(row).filter(|cell| !cell.is_empty()).collect();
-        // Emphasis is no word: `dropped from **1 m**`.
-        let text = cells.join(" ").replace('*', "");
+    let cells = |row: usize| region.view.cells(row).filter(|cell| !cell.is_empty());
+    // Emphasis is no word: `dropped from **1 m**`.
+    let text = |row: usize| cells(row).collect::<Vec<_>>().join(" ").replace('*', "");
+    let rows: Vec<usize> = above.chain(below).collect();
+    let said: Vec<(u64, String)> = rows.iter().map(|&row| (region.view.line(row, 0), text(row))).collect();
+    let header = region.view.line(region.header_row, 0);
+    // The name of one of several columns of heights is of these alone.
+    let high = |name: &&String| Heading::parse(name).value().is_some_and(|value| value.what == What::Height);
+    let of = if region.header.iter().filter(high).count() > 1 { "drop height" } else { "height" };
+    let names: Vec<(u64, String)> = region.header.iter().map(|name| (header, format!("{of} {name}"))).collect();
+    let own = said.iter().chain(&names).map(|(line, text)| (*line, text.as_str()));
+    found.datum = datum::stated(&region.view.grid.comments().take(ROWS).chain(own).collect::<Vec<_>>());
+    for (row, (line, text)) in rows.into_iter().zip(said) {
+        let cells: Vec<&str> = cells(row).collect();
         let (fps, height, sigma) = (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text));
-        if fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
+        let zero = matches!(&found.datum, Some(Datum::Zero(zero)) if zero.line == line);
+        if !zero && fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
             found.length = found.length.or(Some((shown(&text), line)));
         }
         found.fps = found.fps.or(fps.map(|fps| (fps, line)));
@@ -66,6 +79,17 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
 }
 
 impl Stated {
+    /// With what a title above that of another table states, where its own does not.
+    pub(super) fn below(self, first: &Self) -> Self {
+        Self {
+            drop: self.drop.or_else(|| first.drop.clone()),
+            units: (self.units.0.or(first.units.0), self.units.1.or(first.units.1)),
+            sigma: (self.sigma.0.or(first.sigma.0), self.sigma.1.or(first.sigma.1)),
+            datum: self.datum.or_else(|| first.datum.clone()),
+            ..self
+        }
+    }
+
     /// Takes a unit in that is of all readings of its dimension, unless another one was stated.
     fn of_all(&mut self, unit: Unit) {
         let place = match unit.dimension {

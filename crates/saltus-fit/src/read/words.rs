@@ -264,7 +264,8 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     // Names, `Anna / Tom`, are no ratio.
     let known = |word: Option<&str>| {
         let word = folded(word.unwrap_or_default());
-        word.chars().count() < 3 || word.contains(|c: char| c.is_ascii_digit()) || meanings(&word).is_some()
+        let sign = word.starts_with(char::is_alphabetic) && word.contains(|c: char| c.is_ascii_digit());
+        word.chars().count() < 3 || sign || meanings(&word).is_some()
     };
     let end = |c: char| !c.is_alphanumeric();
     let ratio = |pair: &[&str]| {

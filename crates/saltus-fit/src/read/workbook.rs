@@ -1,4 +1,4 @@
-//! Files of several tables: workbooks (`.xlsx`, `.xls`) and zip archives of CSV, each as text, one
+//! Files of several tables: workbooks (`.xlsx`, `.xls`, `.ods`) and zip archives of CSV, each as text, one
 //! line a row.
 //!
 //! A few kilobytes of a hostile archive can stand for gigabytes. Every entry of an archive is
@@ -12,7 +12,7 @@ use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError}
 use zip::ZipArchive;
 
 use super::limits::{self, MANY};
-use super::old_workbook;
+use super::{old_workbook, open_workbook};
 use crate::error::TableError;
 
 /// How much of another reader's message is shown, in characters.
@@ -64,6 +64,13 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
         measure(&mut zip).map_err(|problem| broken(name, "workbook", &problem))?;
         return caught(|| xlsx(bytes)).map_err(|problem| broken(name, "workbook", &problem));
     }
+    if has("content.xml") {
+        let sheets = unpacked(&mut zip, "content.xml").and_then(|content| open_workbook::sheets(&content));
+        let sheets = sheets.map_err(|problem| broken(name, "workbook", &problem))?;
+        if !sheets.is_empty() {
+            return Ok(sheets);
+        }
+    }
     if has("content.xml") || has("xl/workbook.bin") {
         return Err(TableError::new(name, "workbooks of this kind are not read").help("save it as .xlsx or as CSV"));
     }
@@ -82,6 +89,17 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
             .help("unpack it and give the table itself"));
     }
     Ok(parts)
+}
+
+/// The text of an entry of an archive.
+fn unpacked(zip: &mut ZipArchive<Cursor<&[u8]>>, entry: &str) -> Result<String, String> {
+    let mut content = Vec::new();
+    let file = zip.by_name(entry).map_err(|e| e.to_string())?;
+    let size = file.take(limits::bytes() as u64 + 1).read_to_end(&mut content).map_err(|e| e.to_string())?;
+    if size > limits::bytes() {
+        return Err(too_large());
+    }
+    String::from_utf8(content).map_err(|e| e.to_string())
 }
 
 /// Neither what macOS adds to every archive, nor phyphox' files on the telephone itself.
@@ -174,19 +192,24 @@ fn shown(value: &Data) -> String {
 }
 
 /// Cells, in ascending order, as lines of cells separated by tabs.
-struct Rows {
-    text: String,
+pub(super) struct Rows {
+    pub(super) text: String,
     /// Where the next cell would be put.
     at: (u32, u32),
-    left: usize,
+    pub(super) left: usize,
+}
+
+/// What the cells of a workbook hold is more than is read.
+pub(super) fn too_much() -> String {
+    format!("its cells hold more than {} MB", limits::bytes() >> 20)
 }
 
 impl Rows {
-    fn new(left: usize) -> Self {
+    pub(super) fn new(left: usize) -> Self {
         Self { text: String::new(), at: (0, 0), left }
     }
 
-    fn put(&mut self, (row, column): (u32, u32), value: &str) -> Result<(), String> {
+    pub(super) fn put(&mut self, (row, column): (u32, u32), value: &str) -> Result<(), String> {
         if (row, column) < self.at {
             return Err("its cells are not in order".to_owned());
         }
@@ -194,10 +217,7 @@ impl Rows {
         let right = if down > 0 { column } else { column - self.at.1 } as usize;
         let value: String =
             value.chars().take(MANY).map(|c| if c.is_control() || c == '"' { ' ' } else { c }).collect();
-        self.left = self
-            .left
-            .checked_sub(down + right + value.len())
-            .ok_or_else(|| format!("its cells hold more than {} MB", limits::bytes() >> 20))?;
+        self.left = self.left.checked_sub(down + right + value.len()).ok_or_else(too_much)?;
         self.text.extend(std::iter::repeat_n('\n', down));
         self.text.extend(std::iter::repeat_n('\t', right));
         self.text.push_str(&value);

@@ -41,6 +41,12 @@ pub(super) fn commented(text: &str) -> Option<String> {
     text.lines().any(remark).then(|| text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
+/// A text without the pictures that telephones set beside words; `None` if there are none.
+pub(super) fn pictured(text: &str) -> Option<String> {
+    let picture = |c: char| matches!(c, '\u{1f000}'..='\u{1faff}' | '\u{fe0f}');
+    text.contains(picture).then(|| text.replace(picture, ""))
+}
+
 /// A table without the letters above its columns and the numbers before its rows, as they are
 /// copied with it from a spreadsheet; `None` where there are none.
 pub(super) fn lettered(text: &str) -> Option<String> {
@@ -66,18 +72,13 @@ pub(super) fn lettered(text: &str) -> Option<String> {
 /// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
 pub(super) fn unstamped(text: &str) -> Option<String> {
     let filled = || text.lines().filter(|line| !line.trim().is_empty());
+    if let Some(times) = hits(text) {
+        return Some(times);
+    }
     let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
     // Before the first of them a device may tell what it is.
     if stamps.len() < 2 || 2 * stamps.len() < filled().count() {
         return None;
-    }
-    let event = counted_out(stamps[0].said);
-    let heading = format!("time of {event}");
-    let exact = |stamp: &Stamped<'_>| stamp.time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
-    let alike = |stamp: &Stamped<'_>| exact(stamp) && counted_out(stamp.said) == event;
-    if stamps.len() == filled().count() && stamps.iter().all(alike) && of_contacts(&Heading::parse(&heading)) {
-        let times = text.lines().map(|line| stamped(line).map_or("", |stamp| stamp.time));
-        return Some(format!("{heading}\r{}\n", times.collect::<Vec<_>>().join("\n")));
     }
     // A message may go on in the next line; between those of a device a line tells something.
     let chat = stamps[0].chat;
@@ -88,6 +89,42 @@ pub(super) fn unstamped(text: &str) -> Option<String> {
         None => format!("#{line}"),
     };
     Some(text.lines().map(said).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// The times of lines that say nothing but that the ball hit the floor, below their name; lines
+/// above the first of them are remarks. `None` where a line says something else.
+fn hits(text: &str) -> Option<String> {
+    let first = text.lines().position(|line| timed(line).is_some())?;
+    let event = counted_out(text.lines().nth(first).and_then(timed)?.1);
+    let exact = |time: &str| time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+    let hit = |line| timed(line).filter(|(time, said)| exact(time) && counted_out(said) == event);
+    let mut below = text.lines().skip(first).filter(|line| !line.trim().is_empty());
+    let heading = format!("time of {event}");
+    if below.clone().count() < 2 || !of_contacts(&Heading::parse(&heading)) || !below.all(|line| hit(line).is_some()) {
+        return None;
+    }
+    let spelt = |(n, line)| match hit(line) {
+        Some((time, _)) if n == first => format!("{heading}\r{time}"),
+        Some((time, _)) => time.to_owned(),
+        None if line.trim().is_empty() => String::new(),
+        None => format!("#{line}"),
+    };
+    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// The time that a line begins with, and what it says.
+fn timed(line: &str) -> Option<(&str, &str)> {
+    stamped(line).map(|stamp| (stamp.time, stamp.said)).or_else(|| clocked(line))
+}
+
+/// A time of day, or of a stopwatch, and the words that blanks or a mark part from it.
+fn clocked(line: &str) -> Option<(&str, &str)> {
+    let bare = line.trim();
+    let end = bare.find(|c: char| !(c.is_ascii_digit() || matches!(c, ':' | '.' | ',')))?;
+    let end = bare[..end].trim_end_matches([',', '.', ':']).len();
+    cell::clock(&bare[..end])?;
+    let said = bare[end..].trim_start_matches([' ', '\t', ';', ',', '-', ':']);
+    (said.len() < bare[end..].len() && said.starts_with(char::is_alphabetic)).then(|| (&bare[..end], said))
 }
 
 /// A line with the time before it.

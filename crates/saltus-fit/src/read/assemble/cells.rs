@@ -3,15 +3,11 @@
 use super::{Builder, Found, GRAVITY};
 use crate::error::TableError;
 use crate::read::aside::{LeftAside, Part, Why};
-use crate::read::cell::{Cell, Fault, clock, read};
+use crate::read::cell::{Cell, Fault, clock};
 use crate::read::columns::Kind;
 use crate::read::grid::shown;
 use crate::read::heading::{At, What};
 use crate::read::units::{Dimension, Scale, Unit};
-
-/// Readings of one column that have no comma, where the others have one before three digits.
-const HUNDRED: f64 = 100.0;
-const THOUSAND: f64 = 1000.0;
 
 impl Builder<'_> {
     pub(super) fn line(&self, row: usize, column: usize) -> u64 {
@@ -42,10 +38,6 @@ impl Builder<'_> {
                 };
                 return wrong(format!("'{text}' is not a number"), help);
             }
-            Cell::Wrong(Fault::Comma) if self.parts_thousands(column) => match read(&cell.replace(',', ""), false) {
-                Cell::Number(measured) => measured,
-                _ => return wrong(format!("'{text}' is not a number"), faulty(Fault::Thousands).1),
-            },
             Cell::Wrong(fault) => {
                 let (what, help) = faulty(fault);
                 return wrong(format!("'{text}' {what}"), help);
@@ -99,17 +91,6 @@ impl Builder<'_> {
                 return wrong(format!("'{text}' has no unit"), "write it behind the number, or in the header");
             }
         })
-    }
-
-    /// Whether the commas of a column part thousands: numbers below a thousand stand beside them,
-    /// and no comma is a decimal one.
-    fn parts_thousands(&self, column: usize) -> bool {
-        let number = |row: &usize| match self.region.view.read(*row, column) {
-            Cell::Number(measured) => Some((measured.value, self.region.view.cell(*row, column).contains(','))),
-            _ => None,
-        };
-        let mut below = self.region.rows.iter().filter_map(number).peekable();
-        below.peek().is_some() && below.all(|(value, decimal)| !decimal && (HUNDRED..THOUSAND).contains(&value))
     }
 
     /// A range has its middle for a reading, and half its width for an error.

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use super::aside::{LeftAside, Part, Why};
 use super::columns::{Columns, Kind};
 use super::grid::shown;
-use super::heading::{At, What};
+use super::heading::{At, Role, What};
 use super::layout::{Layout, Track, layout, tracks};
 use super::order::{in_order, renumbered, rise, summed};
 use super::region::Region;
@@ -17,6 +17,7 @@ use super::rows::{Row, Rows};
 use super::samples;
 use super::stray;
 use super::units::{Scale, Unit};
+use super::vocabulary::Atom;
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Doubt, Lines, Note, Remark, Repair, Shape};
@@ -46,6 +47,8 @@ struct Builder<'a> {
     flights: Vec<usize>,
     /// The times of rows are those of the tops beside them.
     tops: bool,
+    /// The height of a row is the one that was reached after as many bounces as it counts.
+    after: bool,
 }
 
 /// A reading of a cell: its number in SI units, and its error.
@@ -79,6 +82,7 @@ pub(super) fn table(
         table.notes.push(Note::Filtered { kept: rows.rows.len(), left_out: skipped }.into());
     }
     table.rows = rows.rows.len();
+    table.notes.extend(rows.start.take().map(|name| Note::Start { name }.into()));
     if rows.rounded {
         table.repairs.push(Repair::RoundedNumbers.into());
     }
@@ -97,12 +101,14 @@ pub(super) fn table(
         missing: Vec::new(),
         aside: rows.aside.clone(),
         flights: Vec::new(),
+        after: false,
     };
     if builder.dropped(&rows, &mut tracks, metadata.drop)? {
         table.notes.push(Note::Dropped { height_m: metadata.drop.unwrap_or_default() }.into());
     }
     builder.layout = layout(region, builder.columns, &rows, &tracks)?;
     unscaled(region, builder.columns, builder.layout, options, &mut table.metadata)?;
+    builder.after = builder.layout == Layout::Pairs && after(region, builder.columns, &rows)?;
     builder.keyed(&rows, tracks.len());
     if builder.layout == Layout::Pairs {
         builder.trials.reserve_exact(rows.rows.len());
@@ -144,20 +150,60 @@ fn same(cell: &str, value: &str) -> bool {
         || matches!((cell.parse::<f64>(), value.parse::<f64>()), (Ok(a), Ok(b)) if (a - b).abs() < f64::EPSILON)
 }
 
+/// Whether drops of their own count how many bounces lie before the height beside them: what only
+/// numbers drops goes up by ones, and starts again at one.
+fn after(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Result<bool, TableError> {
+    let Some((count, true)) = columns.number() else { return Ok(false) };
+    let numbers: Option<Vec<usize>> = rows.rows.iter().map(|row| row.bounce.filter(|n| *n > 0)).collect();
+    let Some(numbers) = numbers else { return Ok(false) };
+    let goes_on = |pair: &[usize]| pair[1] == 1 || pair[1] == pair[0] || pair[1] == pair[0] + 1;
+    let listed = numbers.first() == Some(&1) && numbers.windows(2).all(goes_on);
+    let released = columns.values().any(|(_, c, v)| v.at == At::Release && c.heading.has(Atom::Release));
+    let mut heights = columns.values().filter(|(_, _, v)| v.what == What::Height && v.at == At::Row);
+    let Some((height, column, _)) = heights.next().filter(|_| !listed && released) else { return Ok(false) };
+    if column.heading.has(Atom::After) {
+        return Ok(true);
+    }
+    let (count, name) = (shown(&columns.columns[count].heading.text), shown(&column.heading.text));
+    let message = format!("'{count}' counts no rows: was '{name}' reached after so many bounces?");
+    let help = format!("call it 'height after n bounces (cm)' if it was; leave '{count}' out by --header if not");
+    Err(region.header_error(height, message).question().help(help))
+}
+
 /// A row that tells where the floor is gives every scale of heights its zero, and its direction.
 fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &ReadOptions) -> Result<(), TableError> {
     let touched = rows.floor.or_else(|| touched(region, columns, rows).filter(|_| options.zero.is_none()));
-    let Some((row, column)) = touched else { return Ok(()) };
-    let number = |row: usize| region.view.number(row, column);
-    let (Some(zero), Some(first)) = (number(row), rows.rows.iter().find_map(|r| number(r.at))) else {
-        return Err(region.view.error(row, column, "the floor is no number").help("write what the scale reads there"));
+    let stated = region.zero.as_ref().filter(|_| options.zero.is_none());
+    let first = |column: usize| rows.rows.iter().find_map(|row| region.view.number(row.at, column));
+    let (text, down) = match (touched, stated) {
+        (Some((row, column)), _) => {
+            let (Some(zero), Some(first)) = (region.view.number(row, column), first(column)) else {
+                let error = region.view.error(row, column, "the floor is no number");
+                return Err(error.help("write what the scale reads there"));
+            };
+            let down = options.down.unwrap_or(zero > first);
+            for c in columns.columns.iter_mut().filter(|c| c.holds(What::Height)) {
+                c.zero = options.zero.unwrap_or(zero);
+                c.sign = if down { -1.0 } else { 1.0 };
+            }
+            (region.cell(row, column).to_owned(), down)
+        }
+        (None, Some(zero)) => {
+            let heights: Vec<(usize, f64)> = columns
+                .values()
+                .filter(|(_, _, v)| v.what == What::Height && !matches!(v.role, Role::Error | Role::Lost))
+                .filter_map(|(n, c, _)| Some((n, zero.on(c.unit)?)))
+                .collect();
+            let Some(&(column, at)) = heights.first() else { return Ok(()) };
+            let down = options.down.unwrap_or(first(column).is_some_and(|first| at > first));
+            for (n, at) in heights {
+                (columns.columns[n].zero, columns.columns[n].sign) = (at, if down { -1.0 } else { 1.0 });
+            }
+            (zero.text.clone(), down)
+        }
+        (None, None) => return Ok(()),
     };
-    let down = options.down.unwrap_or(zero > first);
-    for c in columns.columns.iter_mut().filter(|c| c.holds(What::Height)) {
-        c.zero = options.zero.unwrap_or(zero);
-        c.sign = if down { -1.0 } else { 1.0 };
-    }
-    columns.notes.push(Note::Floor { reading: region.cell(row, column).to_owned(), down });
+    columns.notes.push(Note::Floor { reading: text, down });
     Ok(())
 }
 
@@ -185,8 +231,9 @@ fn unscaled(
         return Ok(());
     }
     let pixels = |unit: Option<Unit>| unit.is_some_and(|u| u.scale == Scale::Pixels);
-    let place =
-        columns.values().find(|(_, c, v)| pixels(c.unit) && v.position && c.zero == 0.0 && options.zero.is_none());
+    let place = columns.values().find(|(_, c, v)| {
+        pixels(c.unit) && v.position && c.zero == 0.0 && options.zero.is_none() && region.zero.is_none()
+    });
     if let Some((index, column, _)) = place {
         let name = shown(&column.heading.text);
         return Err(region

@@ -334,7 +334,8 @@ impl Builder<'_> {
                     .help("correct the cell"));
             }
         }
-        self.apex(trial, 1, (height, sigma), line);
+        let bounce = row.bounce.filter(|_| self.after).unwrap_or(1);
+        self.apex(trial, bounce, (height, sigma), line);
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use crate::read::aside::Why;
 use crate::read::grid::shown;
 use crate::read::heading::{Role, What};
 use crate::read::region::Region;
+use crate::read::sequence::LEVEL;
 use crate::read::units::Unit;
 use crate::read::vocabulary::Atom;
 use crate::statistics::RATES;
@@ -42,6 +43,10 @@ impl Columns {
             self.leave(index, Why::Other);
             return Ok(());
         }
+        if fps.or(any).is_none() && self.counted_tops(region) {
+            self.leave(index, Why::NoRate);
+            return Ok(());
+        }
         let name = shown(&self.columns[index].heading.text);
         let rate = fps.or(any).ok_or_else(|| {
             let (what, help) = if self.columns[index].heading.has(Atom::Sample) {
@@ -59,5 +64,17 @@ impl Columns {
         self.columns[index].kind = Kind::Value(plain(if between { What::Interval } else { What::Time }));
         self.columns[index].unit = Some(Unit::frame(rate));
         Ok(())
+    }
+
+    /// Whether heights that bounces are counted beside fall from row to row: those of tops, which
+    /// tell the COR without a clock.
+    fn counted_tops(&self, region: &Region<'_>) -> bool {
+        let falls = |n: usize| {
+            let heights: Vec<f64> = region.numbers(n).collect();
+            heights.len() > 1 && heights.windows(2).all(|pair| pair[1] < LEVEL * pair[0])
+        };
+        let mut read = self.values().filter(|(_, _, v)| v.role != Role::Error).peekable();
+        let counted = self.number().is_some_and(|(_, sure)| sure) && read.peek().is_some();
+        counted && read.all(|(n, _, v)| v.what == What::Height && falls(n))
     }
 }

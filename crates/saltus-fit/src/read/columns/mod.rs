@@ -10,12 +10,15 @@ mod shares;
 pub(super) use shares::level;
 use shares::of_hundredths;
 
+use std::collections::HashSet;
+
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::dated;
 use super::clause;
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
+use super::named::event;
 use super::region::Region;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
@@ -136,7 +139,7 @@ impl Columns {
         found.drops(region);
         found.statistics(region, released)?;
         found.paired(region)?;
-        found.namesakes(region);
+        found.namesakes(region, released);
         found.repeats(region, released);
         Ok(found)
     }
@@ -239,7 +242,16 @@ impl Columns {
         let (read, wordy): (Vec<usize>, Vec<usize>) = self.values().map(|(n, _, _)| n).partition(|n| numbers(*n));
         for index in wordy.into_iter().filter(|n| !read.is_empty() && words(*n)) {
             let heading = &self.columns[index].heading;
-            if heading.has(Atom::Group) || heading.has(Atom::Label) {
+            // So does a place that words name, `Ort`, of several rows each.
+            let places = || {
+                let cells: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, index)).collect();
+                let apart: HashSet<&str> = cells.iter().copied().collect();
+                apart.len() > 1
+                    && 2 * apart.len() <= cells.len()
+                    && !cells.iter().any(|c| c.is_empty() || event(c).is_some())
+            };
+            let place = heading.has(Atom::Position) && heading.unit.is_none() && places();
+            if heading.has(Atom::Group) || heading.has(Atom::Label) || place {
                 self.columns[index].kind = Kind::Setting;
             } else {
                 let dated = self.columns[index].holds(What::Time);
@@ -369,6 +381,24 @@ impl Columns {
                     .question()
                     .help("keep one of the two, or give names by --header"));
             }
+        }
+        let name = |n: usize| {
+            let heading = &self.columns[n].heading;
+            (heading.trial(), heading.value().map(|value| value.group.clone()))
+        };
+        let shares: Vec<usize> = self.all(&Kind::Share).collect();
+        if let Some(&second) = shares
+            .iter()
+            .enumerate()
+            .find(|(n, share)| shares[..*n].iter().any(|other| name(*other) == name(**share)))
+            .map(|(_, share)| share)
+        {
+            let message =
+                format!("'{}' is of the same drops as a column before it", shown(&self.columns[second].heading.text));
+            return Err(region
+                .header_error(second, message)
+                .question()
+                .help("name trials by numbers, or balls by their names (--header); '-' leaves a column aside"));
         }
         let mut seen: Vec<(usize, Value)> = Vec::new();
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();

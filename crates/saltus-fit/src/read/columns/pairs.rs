@@ -277,7 +277,8 @@ impl Columns {
             return;
         }
         let measured = |n: usize| {
-            self.one(&Kind::Frame).is_some() || self.values().any(|(other, c, _)| other != n && c.unit.is_some())
+            let beside = |c: &Column| c.unit.is_some() || region.units != (None, None);
+            self.one(&Kind::Frame).is_some() || self.values().any(|(other, c, _)| other != n && beside(c))
         };
         let found = self.values().find(|(n, c, v)| {
             // A time is none, in whatever unit it counts.

@@ -106,9 +106,9 @@ impl Columns {
     }
 }
 
-/// Whether heights side by side are nearly as high as one another, and well below the release:
-/// repeats, and not bounces.
-pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], mean: bool) -> bool {
+/// Whether heights side by side are nearly as high as one another, and well below the release, or
+/// `below` where it stands in no column: repeats, and not bounces.
+pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], below: bool) -> bool {
     let ratios = |pairs: &[(usize, usize)]| {
         let all = region.rows.iter().flat_map(|&row| {
             pairs.iter().filter_map(move |&(a, b)| Some(region.view.number(row, b)? / region.view.number(row, a)?))
@@ -116,7 +116,7 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
         median(&mut all.collect::<Vec<f64>>())
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
-    let below = drop.map_or(mean, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
+    let below = drop.map_or(below, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
     below && ratios(&later).is_some_and(|later| later > LEVEL)
 }
 

@@ -96,9 +96,11 @@ pub(in crate::read) fn bulleted(text: &str) -> Option<String> {
     let mut found = false;
     for n in 0..lines.len() {
         let items: Vec<String> = lines[n + 1..].iter().map_while(|line| item(line)).collect();
-        if items.len() > 1 && lines[n].trim_end().ends_with(':') && item(&lines[n]).is_none() {
+        // Behind the name a remark may stand.
+        let name = lines[n].split(" #").next().unwrap_or_default().trim_end();
+        if items.len() > 1 && name.ends_with(':') && item(name).is_none() {
             found = true;
-            lines[n] = format!("{} {}", lines[n].trim_end(), items.join(", "));
+            lines[n] = format!("{name} {}", items.join(", "));
             lines[n + 1..=n + items.len()].iter_mut().for_each(String::clear);
         }
     }

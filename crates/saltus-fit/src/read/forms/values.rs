@@ -1,7 +1,8 @@
 //! Values in a line, parted by commas or blanks, or in the brackets of a program.
 
+use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
-use super::super::units::Unit;
+use super::super::units::{Dimension, Unit};
 
 /// A name in a line by itself stands before at least so many numbers.
 pub(super) const LIST: usize = 3;
@@ -28,6 +29,14 @@ pub(super) fn listed_values(list: &str) -> Vec<String> {
     let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | ' '));
     let shared = values.len() > 1 && Unit::parse(unit).is_some() && values[..values.len() - 1].iter().all(|v| plain(v));
     values.iter().map(|v| if shared && plain(v) { format!("{v} {unit}") } else { (*v).to_owned() }).collect()
+}
+
+/// The length that a text is and nothing else, m.
+pub(super) fn length(text: &str) -> Option<f64> {
+    match cell::read(text, false) {
+        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
+        _ => None,
+    }
 }
 
 /// The numbers of a line that holds several, which blanks or commas part, and nothing else.

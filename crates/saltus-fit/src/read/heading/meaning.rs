@@ -157,7 +157,7 @@ impl Heading {
             (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {
                 At::Release
             }
-            (None, What::Speed) if has(After) || has(Rebound) => At::After,
+            (None, What::Speed) if has(After) || has(Rebound) && !has(Before) => At::After,
             (None, What::Speed) if has(Before) || has(Impact) => At::Before,
             _ => At::Row,
         };

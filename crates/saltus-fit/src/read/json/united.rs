@@ -70,6 +70,17 @@ fn inner(name: String, node: Node) -> (String, Node) {
             let unit = own.find(" (").map_or("", |at| &own[at..]);
             (format!("{name}{unit}"), node)
         }
+        // A number of a unit that is not one of bounces.
+        Node::Record(members) if members.len() == 2 && members.iter().any(|(own, _)| names_unit(own)) => {
+            let of = |unit: bool| members.iter().find(|(own, _)| names_unit(own) == unit);
+            let valued = |own: &str| Phrase::Value.all().iter().any(|value| own.starts_with(value));
+            match (of(false), of(true)) {
+                (Some((own, Node::Cell(value))), Some((_, Node::Cell(unit)))) if valued(own) => {
+                    (name, Node::Cell(format!("{value} {unit}")))
+                }
+                _ => (name, Node::Record(members)),
+            }
+        }
         node => (name, node),
     }
 }

@@ -150,7 +150,7 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     let named = (0..width).take_while(|&c| !view.cell(row, c).is_empty() && !view.is_number(row, c)).count();
     let count = (named..width).take_while(|&c| view.cell(row, c).parse() == Ok(c + 1 - named)).count();
     let rest = (named + count..width).all(|c| !view.is_number(row, c));
-    if named == 0 || count < 2 || !rest || row + 1 >= end || !view.is_number(row + 1, 0) {
+    if named == 0 || count < 2 || !rest || row + 1 >= end || !view.is_number(row + 1, named) {
         return None;
     }
     let first = Heading::parse(view.cell(row, 0));

@@ -24,6 +24,7 @@ impl fmt::Display for Why {
             Self::Computed => "computed from the times by the program that wrote it",
             Self::Still => "it hardly moves (choose with --column)",
             Self::Void => "marked as one that does not count",
+            Self::NoRate => "frames of unknown rate, and heights that need no clock (--fps)",
             Self::Unresolved => "at the time of the event before it, as is what follows",
             Self::NotHeard => "a time of 0 is one that was not heard",
             Self::Echo => "an echo of a contact, or its ringing",

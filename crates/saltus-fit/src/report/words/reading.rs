@@ -9,6 +9,10 @@ pub(super) fn words(doubt: &Doubt) -> String {
             "line {line} says '{text}', a length that no reading takes in: if the scale does not begin at the floor, state what it reads there \
              (--zero); if the ball was dropped from there, --drop; else take the line out"
         ),
+        Doubt::End { text, line } => format!(
+            "line {line} says '{text}': heights of a bounce are those of the lowest point of the ball. State its diameter beside that, and the \
+             release in a column; or what the scale reads with the ball at rest on the floor (--zero)"
+        ),
         Doubt::Unsaid { column } => format!(
             "nothing in the table says that something bounces, and '{column}' may be of anything: say so in a heading or in a line above it \
              ('Ball dropped on wood'), or give the names by --header"

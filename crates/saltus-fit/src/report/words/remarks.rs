@@ -57,6 +57,8 @@ impl Display for Note {
             Self::RisingTimes { column } => {
                 write!(f, "the times of '{column}' rise from row to row: taken as those of a running clock")
             }
+            Self::Thousands { cell } => write!(f, "the mark in '{cell}' parts thousands, by the numbers beside it"),
+            Self::Start { name } => write!(f, "'{name}' stands before the first bounce: taken for the release"),
             Self::Losses { column } => {
                 write!(f, "'{column}' adds up from bounce to bounce: heights are what it leaves of the release")
             }
