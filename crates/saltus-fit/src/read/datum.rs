@@ -165,7 +165,8 @@ fn at(word: &Word) -> bool {
     Phrase::At.is(&folded(&word.text))
 }
 
-/// How large a ball is, `diameter 24 cm`, `radius: 12 cm`: as it is written, the diameter, its unit.
+/// How large a ball is, `diameter 24 cm`, `radius: 12 cm`: as it is written, the diameter, its
+/// unit.
 fn diameter(clause: &str) -> Option<(String, f64, Unit)> {
     let (before, number, unit, after) = measured(clause)?;
     let unit = unit.filter(|unit| unit.dimension == Dimension::Length)?;

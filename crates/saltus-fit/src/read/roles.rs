@@ -218,8 +218,8 @@ impl Columns {
         self.notes.push(Note::Repeats { columns: names });
     }
 
-    /// Columns of one name, nearly as high as one another, beside a height of release or below one that
-    /// is stated: trials.
+    /// Columns of one name, nearly as high as one another, beside a height of release or below one
+    /// that is stated: trials.
     pub(super) fn namesakes(&mut self, region: &Region<'_>, released: bool) {
         let row =
             |v: &Value| v.what == What::Height && v.at == At::Row && v.role == Role::Reading && v.trial.is_empty();

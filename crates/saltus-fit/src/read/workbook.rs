@@ -1,5 +1,5 @@
-//! Files of several tables: workbooks (`.xlsx`, `.xls`, `.ods`) and zip archives of CSV, each as text, one
-//! line a row.
+//! Files of several tables: workbooks (`.xlsx`, `.xls`, `.ods`) and zip archives of CSV, each as
+//! text, one line a row.
 //!
 //! A few kilobytes of a hostile archive can stand for gigabytes. Every entry of an archive is
 //! therefore measured before it is trusted, cells are read one by one, and what they add up to is

@@ -150,10 +150,13 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     let named = (0..width).take_while(|&c| !view.cell(row, c).is_empty() && !view.is_number(row, c)).count();
     let count = (named..width).take_while(|&c| view.cell(row, c).parse() == Ok(c + 1 - named)).count();
     let rest = (named + count..width).all(|c| !view.is_number(row, c));
-    if named == 0 || count < 2 || !rest || row + 1 >= end || !view.is_number(row + 1, named) {
+    if named == 0 || count < 2 || !rest || row + 1 >= end {
         return None;
     }
     let first = Heading::parse(view.cell(row, 0));
+    // Below the name of what was dropped stand names, but none of a quantity.
+    let called = matches!(first.meaning, Meaning::Setting) && Heading::parse(view.cell(row + 1, 0)).value().is_none();
+    let begins = view.is_number(row + 1, if called { named } else { 0 });
     let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
     let names: Vec<String> = (0..width)
         .map(|c| match view.cell(row, c) {
@@ -162,7 +165,7 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
         })
         .collect();
     let score = score(&names);
-    first.understood().then_some(Header { names, at: row, below: row + 1, score })
+    (begins && first.understood()).then_some(Header { names, at: row, below: row + 1, score })
 }
 
 /// Whether numbers fall from column to column in every row that has any, each to less than `LEVEL`
