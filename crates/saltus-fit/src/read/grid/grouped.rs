@@ -71,6 +71,9 @@ impl Grid<'_> {
 
     /// A number that shows what the mark parts; `None` if nothing does, or it is a decimal one.
     fn parted_by(&self, mark: char) -> Option<String> {
+        if !self.cells.contains(mark) {
+            return None;
+        }
         let mut columns: Vec<Column> = Vec::new();
         for row in 0..self.rows() {
             for at in 0..self.width(row) {
