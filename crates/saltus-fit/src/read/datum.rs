@@ -148,7 +148,9 @@ fn mark(clause: &str) -> Option<Zero> {
     let length = unit.is_none_or(|unit| unit.dimension == Dimension::Length);
     // A bare number is a place on an axis.
     let named = unit.is_some() || before.trim_end().ends_with('=');
-    let whole = words[..floor].iter().all(silent) && words[floor + 1..].iter().all(place) && behind.iter().all(place);
+    let whole = words[..floor].iter().all(silent)
+        && words[floor + 1..].iter().all(place)
+        && behind.iter().all(|word| place(word) || matches!(word.kind, Kind::Unknown));
     let text = format!("{number} {}", &clause[before.len() + number.len()..clause.len() - after.len()].trim());
     let zero = Zero {
         text: text.trim().to_owned(),
