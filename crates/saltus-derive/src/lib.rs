@@ -183,7 +183,7 @@ fn parts(fields: &Fields) -> (Vec<Member>, Vec<syn::Type>) {
     (fields.iter().enumerate().map(member).collect(), fields.iter().map(|field| field.ty.clone()).collect())
 }
 
-/// The unit of a field, as it is said before it or asked of the field.
+/// The unit of a field, as its attribute states it or the field's type has it.
 fn unit((field, (member, ty)): (&Field, (&Member, &syn::Type))) -> Result<TokenStream, Error> {
     let mut said = field.attrs.iter().filter(|attribute| attribute.path().is_ident("unit"));
     let Some(attribute) = said.next() else {

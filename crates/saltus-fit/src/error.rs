@@ -221,7 +221,7 @@ pub enum FitError {
     Solver {
         /// What was being fitted.
         what: String,
-        /// What the solver said.
+        /// The message of the solver.
         reason: String,
     },
     /// Who asked for the fit ended it: see [`Fit::run_with`](crate::Fit::run_with).

@@ -20,7 +20,7 @@ const BOUNCES: [usize; 7] = [1, 2, 3, 4, 6, 8, 10];
 /// A reading is planned where what it reads is so many standard errors large: a rebound lower, or a
 /// flight shorter, is hardly made out.
 const MADE_OUT: f64 = 5.0;
-/// A contact time is told from the next where they are this far apart, s: an echo, or the ringing
+/// Two contacts are distinguished where they are this far apart, s: an echo, or the ringing
 /// of a floor, lasts so long.
 const RINGS: f64 = 0.05;
 /// A next measurement is one of so many drops, which show their own spread.
@@ -121,7 +121,7 @@ impl Fit {
     /// The cheapest next measurement for a report that is in doubt, or whose interval is longer
     /// than `want`: five drops by the simplest way that halves the interval, or else the one that
     /// brings the shortest. Where an explanation fits whose fault is in one kind of reading, the
-    /// other kind is measured. `None` for what is trusted, or cannot be told.
+    /// other kind is measured. `None` for what is trusted, or where that is open.
     ///
     /// ```
     /// use saltus_fit::{Fit, Table};

@@ -22,7 +22,7 @@ pub(crate) struct Wanted {
 
 impl Fits<'_> {
     /// Whether drops differ for another cause than the height they fall from: then no model of the
-    /// speed can be told from that cause.
+    /// speed can be distinguished from that cause.
     fn drops_differ(&self, cor: f64) -> bool {
         let of = |spread: Option<f64>, separate: &[(f64, f64)]| {
             let settings = differ(self.table.trials(), separate, cor).is_some_and(|d| d.p < REJECT);

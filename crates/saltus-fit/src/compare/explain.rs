@@ -117,7 +117,7 @@ pub struct Hypothesis {
     pub degrees_of_freedom: usize,
     /// The probability of a chi-square as large by chance.
     pub p: Option<f64>,
-    /// The same fit if the readings are worth less than was said.
+    /// The same fit if the readings are worth less than was stated.
     pub generous: Option<Generous>,
     /// What to measure to find out.
     pub settle: String,

@@ -19,7 +19,7 @@ use crate::solve::robust;
 use crate::solve::successive::{Fitted, fit};
 use crate::statistics::{CLEAR, SPARE, TELLING, TREND, WEAK, chi_square_p};
 
-/// Speeds must differ by this factor before a dependence on speed can be told from one COR, and
+/// Speeds must differ by this factor before a dependence on speed shows beside one COR, and
 /// heights before a wrong zero shows.
 const SPEEDS: f64 = 2.0;
 /// The same for drag, which has a law of its own.
@@ -263,7 +263,7 @@ fn needs(wanted: CorModel, base: &Flight, (slowest, fastest, count): (f64, f64, 
     }
 }
 
-/// A model that was tried: what is said of it, and its fit.
+/// A model that was tried: what it is in words, and its fit.
 type Tried = (ModelChoice, Flight, Fitted);
 
 /// Fits a model from the fit of one COR, over the speeds of the impacts that one tells of; `None`

@@ -264,7 +264,7 @@ pub enum Widening {
     },
     /// Readings that are means, which hide how far the COR scatters from drop to drop.
     Averages {
-        /// Of how many readings each is the mean, as far as that is said.
+        /// Of how many readings each is the mean, as far as that is stated.
         drops: f64,
         /// By how much the COR may be off.
         share: f64,

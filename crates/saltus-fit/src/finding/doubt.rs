@@ -21,7 +21,7 @@ pub enum Doubt {
         /// Its number.
         line: u64,
     },
-    /// Heights are said to be of another point of the ball than its lowest, and by how much they
+    /// Heights are stated to be of another point of the ball than its lowest, and by how much they
     /// are too high is not stated.
     End {
         /// What says so.

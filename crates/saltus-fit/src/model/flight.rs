@@ -98,7 +98,7 @@ struct Places {
     lasting: Option<usize>,
 }
 
-/// The least drag, in 1/m: less cannot be told from none.
+/// The least drag, in 1/m: less does not differ from none.
 const LEAST_DRAG: f64 = 1e-7;
 
 impl Flight {

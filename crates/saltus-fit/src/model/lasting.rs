@@ -5,7 +5,7 @@
 //! without weight e − κ (1 − e²) w/(1 + w) is left, where w is G times the time of the contact over
 //! v: κ is about 0.1 for a spring with a damper, 0.4 where the force is less by a factor on the way
 //! up. How a ball is made is not known, and a film hardly shows it: so s is 0.1 ± 0.1 and κ 0.15 ±
-//! 0.2 before anything is seen, each as one row more.
+//! 0.2 before any reading, each as one row more.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ pub(crate) struct Lasting {
 
 /// How many unknowns contacts have that take time,
 pub(crate) const UNKNOWNS: usize = 3;
-/// and what is taken for those after the first, with standard errors, before anything is seen.
+/// and what is taken for those after the first, with standard errors, before any reading.
 pub(crate) const BEFORE: [(f64, f64); 2] = [(0.1, 0.1), (0.15, 0.2)];
 
 /// The range of T, in units of time in which G is one and so is the range of heights.

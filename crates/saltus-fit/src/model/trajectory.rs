@@ -56,7 +56,7 @@ pub(crate) struct Trajectory<'a> {
     pub(crate) high: f64,
 }
 
-/// The least k times the range of heights: below it drag cannot be told from none.
+/// The least k times the range of heights: below it drag does not differ from none.
 pub(crate) const LEAST_DRAG: f64 = 1e-7;
 
 /// An impact as the model has it: time of arrival, its speed, COR, each with derivatives by all

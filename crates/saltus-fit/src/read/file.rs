@@ -15,11 +15,12 @@ use super::json;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
+use super::sheet::{Content, Part};
 use super::text::{self, text};
 use super::title::{self, Stated};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Word, split};
-use super::workbook::{self, Content, Part};
+use super::workbook;
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
 use crate::finding::{Doubt, Note};
@@ -190,7 +191,7 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
             name.clone_into(label);
         }
     }
-    // Tracks of one film are told apart by what moves.
+    // Tracks of one film are named by what moves.
     if regions.iter().all(|region| !region.chosen) {
         told_apart(parts);
     }

@@ -5,7 +5,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::limits::MANY;
-use super::workbook::{Content, Part};
+use super::sheet::{Content, Part};
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to

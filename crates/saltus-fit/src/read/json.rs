@@ -10,7 +10,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::heading::{Heading, Meaning};
 use super::limits::{self, CELLS, MANY};
-use super::workbook::{Content, Part};
+use super::sheet::{Content, Part};
 
 /// A value, its members in the order in which they stand.
 enum Node {

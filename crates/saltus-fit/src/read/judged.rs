@@ -99,7 +99,7 @@ fn judged(region: &Region<'_>, index: usize, column: &Column) -> Vec<usize> {
     let leaves_out = |answer: Answer| match answer {
         Answer::No => !column.heading.has(Atom::Void),
         Answer::Yes => column.heading.has(Atom::Void),
-        // Marks of those that count leave the others out; else what is said is a reason.
+        // Marks of those that count leave the others out; else their text is a reason.
         Answer::Empty => !column.heading.has(Atom::Void) && any(Answer::Yes) && !any(Answer::No) && !any(Answer::Other),
         Answer::Other => column.heading.has(Atom::Void),
     };

@@ -16,8 +16,8 @@ pub(super) const fn bytes() -> usize {
 #[cfg(test)]
 mod tests {
     use super::super::foreign;
+    use super::super::sheet::Content;
     use super::super::words::{Kind, split};
-    use super::super::workbook::Content;
 
     /// A row of three hundred cells is read to its end, and of three thousand only the beginning;
     /// a bounce is counted as far.

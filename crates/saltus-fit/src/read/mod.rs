@@ -33,6 +33,7 @@ mod said;
 mod samples;
 mod scales;
 mod sequence;
+mod sheet;
 mod stray;
 mod text;
 mod title;
@@ -320,7 +321,7 @@ impl Table {
         Ok(file::table(name, bytes, options)?.checked())
     }
 
-    /// Once all trials are together: what must not be counted is taken out, what was read is said.
+    /// Once all trials are together: what must not be counted is taken out, what was read is noted.
     fn checked(mut self) -> Self {
         self.trials.iter_mut().for_each(|trial| trial.readings.shrink_to_fit());
         self.notes.insert(0, Note::Size { rows: self.rows, trials: self.trials.len() }.into());

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::foreign::entity;
 use super::limits;
-use super::workbook::{Content, Part, Rows, too_much};
+use super::sheet::{Content, Part, Rows, too_much};
 
 /// The value of an attribute, and its name without what it is prefixed with.
 fn attribute(tag: &BytesStart<'_>, name: &str) -> Option<String> {

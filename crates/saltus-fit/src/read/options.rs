@@ -1,4 +1,4 @@
-//! What a reader is told beside the file.
+//! What is stated beside the file.
 
 use std::ops::Range;
 

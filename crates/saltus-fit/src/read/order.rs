@@ -1,4 +1,4 @@
-//! The order of readings: trials told apart by restarting numbers, clocks that ascend, intervals
+//! The order of readings: trials parted where numbers restart, clocks that ascend, intervals
 //! summed to times.
 
 use super::region::Region;

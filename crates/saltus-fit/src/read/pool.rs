@@ -116,7 +116,7 @@ pub(super) fn join(name: &str, parts: Vec<(String, Table)>) -> Result<Table, Tab
             ..trial
         }));
     }
-    // What is said of every part alike is said once.
+    // A remark on every part alike is made once.
     pooled.notes.extend(notes.into_iter().map(|(mut note, of)| {
         if let (Some(first), Some(last)) = (of.first(), of.last()) {
             note.parts.insert(0, Parts { first: first.clone(), last: last.clone(), count: of.len() });

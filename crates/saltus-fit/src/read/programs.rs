@@ -253,7 +253,7 @@ fn vernier(view: View<'_>) -> Result<Recognised<'_>, TableError> {
 const VERNIER: &str =
     "its lines are: Vernier Format 2, source, name, column names, short names, units, a blank line, rows";
 
-/// Data sets of the same name are told apart by number.
+/// Data sets of the same name are numbered.
 fn distinct(regions: &mut [Region<'_>]) {
     let names: HashSet<&str> = regions.iter().map(|region| region.label.as_str()).collect();
     if names.len() < regions.len() {

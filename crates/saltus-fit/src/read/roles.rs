@@ -171,7 +171,7 @@ impl Columns {
         let before = values.iter().rev().filter(|(n, _)| *n < index).find(fits);
         let named = values.iter().filter(|(_, v)| error.at != At::Row && v.at == error.at).find(fits);
         let percent = |n: usize| self.columns[n].unit.is_some_and(|unit| unit.scale == Scale::Percent);
-        // Hundredths are of what somebody expected, or of nothing that is said.
+        // Hundredths are of what somebody expected, or of nothing that is stated.
         let found = named.or(before).or(values.iter().find(fits)).filter(|(of, _)| !percent(index) || percent(*of));
         match found {
             Some((of, _)) => self.columns[index].kind = Kind::Error(*of),

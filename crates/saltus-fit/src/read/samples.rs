@@ -113,7 +113,7 @@ fn accelerations(readings: &[Reading], stride: usize) -> Vec<f64> {
     points.windows(2 * stride + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
 }
 
-/// Recordings one below the other, told apart by a clock that starts again.
+/// Recordings one below the other, parted where a clock starts again.
 fn recordings(trial: Trial, notes: &mut Vec<Remark<Note>>) -> Vec<Trial> {
     let restarts = |pair: &[Reading]| pair[1].time < pair[0].time;
     let starts: Vec<usize> =

@@ -167,7 +167,7 @@ pub(super) fn lettered(words: &mut [Word]) {
     let measured = |w: &Word| w.is(Atom::Height) || w.is(Atom::Rebound) || w.is(Atom::Interval);
     for n in 1..words.len().saturating_sub(1) {
         let counted = matches!(words[n + 1].kind, Kind::Number(_));
-        // `height V1`, `height T2`: of a trial, since what is measured is said.
+        // `height V1`, `height T2`: of a trial, since what is measured is stated.
         if counted && matches!(words[n].text.as_str(), "V" | "v" | "T") && words[..n].iter().any(measured) {
             words[n].kind = Kind::Known(&[Atom::Trial]);
         }

@@ -1,5 +1,5 @@
 //! Several balls or surfaces in one table: the report of each, how far their CORs are apart, and
-//! what is said of all.
+//! what holds of all.
 
 use std::fmt::{self, Formatter};
 

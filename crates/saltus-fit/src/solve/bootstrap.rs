@@ -16,7 +16,7 @@ use crate::evidence::Evidence;
 use crate::model::Heights;
 use crate::statistics::REPLICATED;
 
-/// Is told how many rounds are done, and says whether to go on.
+/// Gets how many rounds are done, and answers whether to go on.
 pub(crate) type Progress<'a> = &'a mut dyn FnMut(usize) -> ControlFlow<()>;
 
 /// What repeated draws of trials give.

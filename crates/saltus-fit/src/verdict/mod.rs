@@ -21,7 +21,7 @@ pub(crate) use judgement::Judgement;
 pub use judgement::{Cor, Verdict};
 pub(crate) use unseen::{Stated, air_shows, in_a_vacuum};
 
-/// What was said of the table when it was read, and what was done to put its readings in order.
+/// The remarks on the table as it was read, and what was done to put its readings in order.
 fn begun(fits: &Fits<'_>) -> Judgement {
     let table = fits.table;
     let notes = table.notes.iter().map(|note| FindingKind::ReadNote { note: note.clone() });

@@ -24,7 +24,7 @@ use crate::statistics::{CLEAR, NORMAL, REPLICATED, student};
 const USUAL_BALL: f64 = 0.067;
 
 /// Lengths that nobody checked are wrong by this part at most: a ball that moves 20 cm before its
-/// rule is seen from 2 m a tenth too high.
+/// rule reads a tenth too high from 2 m away.
 const SCALE: f64 = 0.1;
 
 /// The COR without the air is found when it moves by less than this, a thousandth of the best error

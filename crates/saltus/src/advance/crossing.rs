@@ -22,7 +22,7 @@ use super::near::Near;
 use super::shared::{Shared, Step};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
-    /// The earliest crossing within a range of a dense output; an observer is told how guards were
+    /// The earliest crossing within a range of a dense output; an observer gets how guards were
     /// searched. A guard that is no number beyond it does not matter. Long, since what one edge
     /// shows bounds what is looked for of the next.
     pub(super) fn first_crossing(

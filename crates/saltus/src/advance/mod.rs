@@ -57,7 +57,7 @@ pub(crate) enum ArcEnd<A: Automaton> {
 }
 
 impl<A: Automaton> ArcEnd<A> {
-    /// At `state`, after a piece to whose end this was found and of which the observer was told.
+    /// At `state`, after a piece to whose end this was found and which the observer has had.
     #[inline]
     fn after(found: Option<A::Edge>, told: ControlFlow<()>, time: Time, state: A::State) -> Self {
         match found {
@@ -354,7 +354,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero
-    /// but for that at its start: it is to be seen without, so that the rise or fall from there
+    /// but for that at its start: it is left out, so that the rise or fall from there
     /// decides, and not the rounding.
     #[inline]
     fn level(&self, edge: A::Edge) -> f64 {

@@ -13,7 +13,7 @@ use super::enter::weight;
 use super::shared::Step;
 use super::{Advance, Spent, Wall};
 
-/// Of how many values a guard's scatter is seen: among so few, a typical one and a large one.
+/// Of how many values a guard's scatter is taken: among so few, a typical one and a large one.
 /// Held by `scales::a_guard_of_its_own_arithmetic_is_entered`.
 const SAMPLES: usize = 9;
 
@@ -106,8 +106,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         resolution(t).max(f64::EPSILON * self.memory.last_duration)
     }
 
-    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| ticks, seen over
-    /// some of them.
+    /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| ticks, measured
+    /// over some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         self.memory.stats.guards += 1;
         let ahead = t + FAR * self.tick(t);

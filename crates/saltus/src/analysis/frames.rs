@@ -24,7 +24,7 @@ const MOST_AT_ONCE: usize = 16;
 /// A frame is one step of the classical Runge–Kutta method of order 4 (W. Kutta, Z. Math. Phys. 46,
 /// 435 (1901)), so what is off is not the flow. Guards are looked at where frames end, and nowhere
 /// else: an edge whose guard has turned negative is taken then, at a state that is already outside
-/// the mode's domain. No crossing is located, one that comes and goes within a frame is not seen,
+/// the mode's domain. No crossing is located, one that comes and goes within a frame is missed,
 /// accumulating jumps are not recognised, and the error falls with the first power of the time of a
 /// frame, not with the fourth. `rate` in frames per second; the last frame is cut at the end of the
 /// span.

@@ -4,7 +4,7 @@
 use super::Automaton;
 use crate::error::{Error, ErrorKind, Place};
 
-/// The flow is not finite at (t, x); `which` coordinates, if that is all that can be said.
+/// The flow is not finite at (t, x); `which` coordinates, if only they are at fault.
 #[cold]
 pub(crate) fn flow_undefined<A: Automaton>(
     automaton: &A,

@@ -20,7 +20,7 @@ pub(super) struct Departure {
     rest: Bernstein,
     length: f64,
     /// The m of the power tᵐ as which the guard falls from the root, on the shortest stretch on
-    /// which it is seen to.
+    /// which its samples fall.
     order: Option<f64>,
 }
 

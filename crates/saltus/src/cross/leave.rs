@@ -21,7 +21,7 @@ impl Search<'_> {
             self.rise = Some(margin);
             return Ok(false);
         }
-        // Of a smooth guard the margin would have shrunk with the stretch; of one that is seen
+        // Of a smooth guard the margin would have shrunk with the stretch; of one that is walked
         // number by number its steps have an order.
         let stays = |then: f64| ROUGHLY * then < margin && margin < SURELY * then;
         Ok(self.rise.is_some_and(stays)
@@ -31,7 +31,7 @@ impl Search<'_> {
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =
-    /// `order` where that was seen.
+    /// `order` where that is found.
     ///
     /// If the root is spent and m is odd, this is the fall that was spent; with m even it only
     /// touched zero there, and falls again. Where rounding hides which it was, what longer

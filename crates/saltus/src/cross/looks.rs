@@ -61,8 +61,8 @@ impl Search<'_> {
             let (first, second) = (lengths().next().unwrap_or(0), lengths().nth(1).unwrap_or(0));
             let (half, at_half) = samples[LOOKS / 2];
             let slow = samples[0].1 == self.base && first > second;
-            // Among ups and downs that is not seen, nor where values are rounded this way and that
-            // (of time, the steps are of one length always); but a longer stretch may know.
+            // Ups and downs hide that, and so do values that are rounded this way and that (of
+            // time, the steps are of one length always); a longer stretch may show it.
             let whole = || lengths().take(steps - 1);
             let of_value = whole().max() > whole().min().map(|least| 3 * least);
             let far = self.departure.filter(|it| it.touches() && it.is_far(b));

@@ -40,7 +40,7 @@ pub(super) struct Search<'a> {
     /// after it are rounding and no plateau.
     pub(super) falls_smoothly: bool,
     /// How far a guard that is zero at an open start may have been off on the shortest stretch on
-    /// which it was seen to rise from there.
+    /// which its samples rise from there.
     pub(super) rise: Option<f64>,
     pub(super) evaluations: u32,
     /// The largest magnitude of the guard met so far.

@@ -111,7 +111,7 @@ impl Search<'_> {
         }
         if a == 0.0 && self.spent {
             // Rounding may leave the guard negative at the spent root and after it: begin where it
-            // is seen to have risen.
+            // has risen.
             a = 0.5 * b;
             loop {
                 let value = self.value(a)?;

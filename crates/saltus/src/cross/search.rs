@@ -302,7 +302,7 @@ impl Search<'_> {
         Ok(false)
     }
 
-    /// Whether the slope at the start, seen as a `change` over `0..=b`, is the same over shorter
+    /// Whether the slope at the start, a `change` over `0..=b`, is the same over shorter
     /// times, and so not rounding.
     fn falls_from_start(&mut self, b: f64, change: f64) -> Result<bool, Undefined> {
         for part in [0.5, 0.25] {

@@ -54,7 +54,7 @@ pub fn run(system: &System) -> Answer {
             return answer;
         }
         let (t, y) = answer.end;
-        // Which one it was is not said: the one nearest to zero.
+        // The solver does not name it: the one nearest to zero.
         let value = |&i: &usize| (system.guards[i])(t, &y).abs();
         let guard = (0..system.guards.len()).min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(0);
         answer.events.push((guard, t));

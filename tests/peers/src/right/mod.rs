@@ -32,7 +32,7 @@ pub enum Jumps {
     None(bool),
     /// Where guard `i` falls the state becomes reset(i, state, lift). The lift is for solvers that
     /// need a hair's distance from the guard just met: 1e-12 for the others, 0 for saltus. `rest`
-    /// is what lies beyond infinitely many jumps, for solvers that can be told.
+    /// is what lies beyond infinitely many jumps, for solvers that take it.
     Reset { reset: Reset, rest: Option<State> },
 }
 

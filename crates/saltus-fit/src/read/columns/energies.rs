@@ -134,7 +134,7 @@ impl Columns {
     pub(in crate::read) fn of_tops(&self) -> bool {
         let row = |what: What| self.values().find(move |(_, _, v)| v.what == what && v.at == At::Row);
         let (Some((_, time, _)), Some((_, height, _))) = (row(What::Time), row(What::Height)) else { return false };
-        // `time (s), peak height (m)`: of which time nothing else is said.
+        // `time (s), peak height (m)`: the time of which is not stated otherwise.
         let both = height.heading.of_tops() && (time.heading.has(Atom::Max) || time.heading.only());
         let counted = self.number().is_some_and(|(n, _)| {
             let heading = &self.columns[n].heading;

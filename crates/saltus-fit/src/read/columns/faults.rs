@@ -67,7 +67,7 @@ impl Columns {
     }
 
     /// Columns of which a word is not understood, where none that is understood holds what they do,
-    /// are read and doubted; several are told apart by those words.
+    /// are read and doubted; several are distinguished by those words.
     pub(super) fn lacking(&mut self, region: &Region<'_>, released: bool) {
         if region.given || region.chosen {
             return;

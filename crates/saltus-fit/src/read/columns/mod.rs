@@ -403,8 +403,8 @@ impl Columns {
         let mut seen: Vec<(usize, Value)> = Vec::new();
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
         for (index, value) in values {
-            // A place on a scale and a height above the floor are not told apart by the name of a
-            // ball that only one of them bears.
+            // The name of a ball that only one of them bears does not part a place on a scale
+            // from a height above the floor.
             let named = |v: &Value| !(v.trial.is_empty() && v.group.is_empty());
             let apart = |v: &Value| named(v) == named(&value) || v.position == value.position;
             let same = |n: usize, v: &Value| {

@@ -11,8 +11,8 @@ use super::super::vocabulary::{Atom, folded};
 use super::super::words::{Word, split};
 use super::{Part, length, parts};
 
-/// A drop: the line that its rebound stands in, both heights as they are written, and what is said
-/// of other lengths behind them.
+/// A drop: the line that its rebound stands in, both heights as they are written, and what
+/// stands of other lengths behind them.
 struct Drop {
     line: usize,
     heights: [String; 2],
@@ -29,7 +29,7 @@ enum Role {
 
 /// The text with a row for each drop, two or more, and its other lines as remarks; `None` where a
 /// sentence says of a height neither that the ball fell from it nor that it rose to it, but speaks
-/// of that, or of what was not measured, and where balls are told apart.
+/// of that, or of what was not measured, and where several balls are named.
 pub(super) fn table(text: &str) -> Option<String> {
     let bare = |line: &str| line.contains(|c: char| c.is_ascii_digit()) && !line.contains(char::is_alphabetic);
     if text.contains(['\t', '|', '=']) || text.lines().any(bare) {

@@ -113,7 +113,7 @@ pub(super) fn tagged(text: &str) -> Option<Node> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::workbook::Content;
+    use super::super::super::sheet::Content;
     use super::super::parts;
 
     fn cells(text: &str) -> Option<String> {

@@ -121,7 +121,7 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
     }
     let ended = if contacts < minima.len() { minima[contacts] } else { times.len() };
     let mut end = end(&smooth, starts[contacts], ended, floor, least);
-    // The last flight may be cut short; if hardly any of it is seen, the series ends at its
+    // The last flight may be cut short; if hardly any of it is recorded, the series ends at its
     // contact.
     if end < starts[contacts] + FEWEST {
         end = starts.pop().unwrap_or(end);

@@ -30,7 +30,7 @@ pub struct Track {
     /// where it stands still.
     pub drift: Option<Measured>,
     /// The time that the ball stays on the floor at the speed of about the first impact, in
-    /// seconds; none where that is too short to be seen.
+    /// seconds; none where that is too short to show.
     pub contact: Option<Measured>,
     /// The height of the ball in contact with the floor, on the table's scale; where that drifts,
     /// at the first impact.

@@ -1,4 +1,4 @@
-//! One recording: scaled, cut, fitted by every model, and told in its own units again.
+//! One recording: scaled, cut, fitted by every model, and given in its own units again.
 
 mod air;
 mod described;
@@ -71,7 +71,7 @@ struct Found {
     cor: Measured,
 }
 
-/// A recording with contacts that take no time, and with such that do, where that can be told.
+/// A recording with contacts that take no time, and with such that do, where that shows.
 #[derive(Clone, Debug)]
 pub(crate) struct Recording {
     instant: Candidates,
@@ -99,12 +99,12 @@ impl Recording {
         Ok(Self { instant, lasting })
     }
 
-    /// By how much the BIC of contacts that take time is better; `None` where that cannot be told.
+    /// By how much the BIC of contacts that take time is better; `None` where that does not show.
     pub(crate) fn gain(&self) -> Option<f64> {
         self.lasting.as_ref().map(|lasting| lasting.1)
     }
 
-    /// All models with contacts that take time if `lasting` (and that can be told), or such that
+    /// All models with contacts that take time if `lasting` (and that shows), or such that
     /// take none.
     pub(crate) fn under(&self, lasting: bool) -> &Candidates {
         self.lasting.as_ref().filter(|_| lasting).map_or(&self.instant, |lasting| &lasting.0)
