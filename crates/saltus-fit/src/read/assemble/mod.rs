@@ -161,8 +161,9 @@ fn after(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Result<bool, Ta
     let released = columns.values().any(|(_, c, v)| v.at == At::Release && c.heading.has(Atom::Release));
     let mut heights = columns.values().filter(|(_, _, v)| v.what == What::Height && v.at == At::Row);
     let Some((height, column, _)) = heights.next().filter(|_| !listed && released) else { return Ok(false) };
-    if column.heading.has(Atom::After) {
-        return Ok(true);
+    // A rebound is the first, however often the ball bounced.
+    if column.heading.has(Atom::After) || column.heading.has(Atom::Rebound) {
+        return Ok(column.heading.has(Atom::After));
     }
     let (count, name) = (shown(&columns.columns[count].heading.text), shown(&column.heading.text));
     let message = format!("'{count}' counts no rows: was '{name}' reached after so many bounces?");
