@@ -155,7 +155,9 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     }
     let first = Heading::parse(view.cell(row, 0));
     // Below the name of what was dropped stand names, but none of a quantity.
-    let called = matches!(first.meaning, Meaning::Setting) && Heading::parse(view.cell(row + 1, 0)).value().is_none();
+    let below = view.cell(row + 1, 0);
+    let called = named == 1 && matches!(first.meaning, Meaning::Setting) && !below.is_empty();
+    let called = called && Heading::parse(below).value().is_none();
     let begins = view.is_number(row + 1, if called { named } else { 0 });
     let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
     let names: Vec<String> = (0..width)
