@@ -382,24 +382,7 @@ impl Columns {
                     .help("keep one of the two, or give names by --header"));
             }
         }
-        let name = |n: usize| {
-            let heading = &self.columns[n].heading;
-            (heading.trial(), heading.value().map(|value| value.group.clone()))
-        };
-        let shares: Vec<usize> = self.all(&Kind::Share).collect();
-        if let Some(&second) = shares
-            .iter()
-            .enumerate()
-            .find(|(n, share)| shares[..*n].iter().any(|other| name(*other) == name(**share)))
-            .map(|(_, share)| share)
-        {
-            let message =
-                format!("'{}' is of the same drops as a column before it", shown(&self.columns[second].heading.text));
-            return Err(region
-                .header_error(second, message)
-                .question()
-                .help("name trials by numbers, or balls by their names (--header); '-' leaves a column aside"));
-        }
+        self.unique_shares(region)?;
         let mut seen: Vec<(usize, Value)> = Vec::new();
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
         for (index, value) in values {

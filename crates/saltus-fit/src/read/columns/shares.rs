@@ -2,7 +2,9 @@
 //! release.
 
 use super::{Columns, Kind, plain};
+use crate::error::TableError;
 use crate::finding::Note;
+use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Of, Role, Value, What};
@@ -11,6 +13,9 @@ use crate::read::sequence::LEVEL;
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
 use crate::statistics::median;
+
+/// Parts of the same heights differ by no more, each rounded to a whole hundredth.
+const ROUNDED: f64 = 0.01;
 
 /// Whether numbers are parts of the first height, by how they fall from the whole: each is about as
 /// large a part of the one before as the first is of the whole, where parts of the height before
@@ -103,6 +108,45 @@ impl Columns {
         let percent = |unit: Option<Unit>| unit.is_some_and(|unit| unit.scale == Scale::Percent);
         let cell = |row: &usize| matches!(region.view.read(*row, index), Cell::Number(m) if percent(m.unit));
         percent(self.columns[index].heading.unit) || region.rows.iter().any(cell)
+    }
+
+    /// Two columns of parts of the same drops are a question, unless they say the same: what was
+    /// kept beside what was lost.
+    pub(super) fn unique_shares(&mut self, region: &Region<'_>) -> Result<(), TableError> {
+        let name = |n: usize| {
+            let heading = &self.columns[n].heading;
+            (heading.trial(), heading.value().map(|value| value.group.clone()))
+        };
+        let shares: Vec<usize> = self.all(&Kind::Share).collect();
+        let pairs =
+            shares.iter().enumerate().flat_map(|(n, &second)| shares[..n].iter().map(move |&first| (first, second)));
+        let pairs: Vec<(usize, usize)> = pairs.filter(|&(first, second)| name(first) == name(second)).collect();
+        for (first, second) in pairs {
+            if !self.same_parts(region, first, second) {
+                let message = format!(
+                    "'{}' is of the same drops as a column before it",
+                    shown(&self.columns[second].heading.text)
+                );
+                return Err(region
+                    .header_error(second, message)
+                    .question()
+                    .help("name trials by numbers, or balls by their names (--header); '-' leaves a column aside"));
+            }
+            let lost = [first, second].into_iter().find(|&n| self.columns[n].heading.has(Atom::Lost));
+            self.leave(lost.unwrap_or(second), Why::Elsewhere);
+        }
+        Ok(())
+    }
+
+    /// Whether two columns hold the same part of a height in every row.
+    fn same_parts(&self, region: &Region<'_>, first: usize, second: usize) -> bool {
+        let whole = |n: usize| if self.is_percent(region, n) { 100.0 } else { 1.0 };
+        let part = |row: usize, n: usize| {
+            let part = region.view.number(row, n)? / whole(n);
+            Some(if self.columns[n].heading.has(Atom::Lost) { 1.0 - part } else { part })
+        };
+        let same = |row: usize| Some((part(row, first)? - part(row, second)?).abs() <= ROUNDED);
+        region.rows.iter().all(|&row| same(row).unwrap_or(true))
     }
 }
 

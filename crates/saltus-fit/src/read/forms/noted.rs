@@ -20,8 +20,9 @@ pub(super) fn noted(text: &str) -> Option<String> {
     let drops = || lines.iter().filter_map(|(_, drop)| drop.as_ref());
     let led = |line: &str| arrows().any(|arrow| line.contains(arrow));
     let other = |(line, drop): &(&str, Option<Drop<'_>>)| drop.is_none() && (led(line) || !silent(line));
-    // Lines without names, and of one height each, are patterns.
-    let named = drops().all(|drop| !drop.name.is_empty());
+    // Lines without names, and of one height each, are patterns; what has a colon within is a
+    // message with its time and who wrote it.
+    let named = drops().all(|drop| !drop.name.is_empty() && !drop.name.contains(':'));
     if drops().count() < 2 || !named || lines.iter().any(other) {
         return None;
     }
@@ -88,6 +89,7 @@ mod tests {
             "100 → 64\n80 → 51\n",
             "tennis: 100 → high\ngolf: 100 → 74\n",
             "tennis: 100 → 57\n",
+            "[12:03] Anna: drop 1: 100 cm → 60 cm\n[12:04] Anna: drop 2: 100 cm → 59 cm\n",
             "tennis: 100 → 57\ngolf: 100 → 74\nthe floor is 3 cm thick\n",
         ] {
             assert_eq!(noted(text), None, "{text}");
