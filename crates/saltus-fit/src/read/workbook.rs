@@ -12,7 +12,7 @@ use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError}
 use zip::ZipArchive;
 
 use super::limits::{self, MANY};
-use super::sheet::{Content, Part, Rows, too_much};
+use super::sheet::{Content, Part, Rows};
 use super::{old_workbook, open_workbook};
 use crate::error::TableError;
 
