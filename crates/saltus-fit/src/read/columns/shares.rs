@@ -12,10 +12,8 @@ use crate::read::region::Region;
 use crate::read::sequence::LEVEL;
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
+use crate::read::written::{rounds_to, step};
 use crate::statistics::median;
-
-/// Parts of the same heights differ by no more, each rounded to a whole hundredth.
-const ROUNDED: f64 = 0.01;
 
 /// Whether numbers are parts of the first height, by how they fall from the whole: each is about as
 /// large a part of the one before as the first is of the whole, where parts of the height before
@@ -113,40 +111,42 @@ impl Columns {
     /// Two columns of parts of the same drops are a question, unless they say the same: what was
     /// kept beside what was lost.
     pub(super) fn unique_shares(&mut self, region: &Region<'_>) -> Result<(), TableError> {
-        let name = |n: usize| {
-            let heading = &self.columns[n].heading;
+        let name = |columns: &Columns, n: usize| {
+            let heading = &columns.columns[n].heading;
             (heading.trial(), heading.value().map(|value| value.group.clone()))
         };
-        let shares: Vec<usize> = self.all(&Kind::Share).collect();
-        let pairs =
-            shares.iter().enumerate().flat_map(|(n, &second)| shares[..n].iter().map(move |&first| (first, second)));
-        let pairs: Vec<(usize, usize)> = pairs.filter(|&(first, second)| name(first) == name(second)).collect();
-        for (first, second) in pairs {
+        let mut kept: Vec<usize> = Vec::new();
+        for second in self.all(&Kind::Share).collect::<Vec<usize>>() {
+            let Some(place) = kept.iter().position(|&first| name(self, first) == name(self, second)) else {
+                kept.push(second);
+                continue;
+            };
+            let first = kept[place];
             if !self.same_parts(region, first, second) {
-                let message = format!(
-                    "'{}' is of the same drops as a column before it",
-                    shown(&self.columns[second].heading.text)
-                );
-                return Err(region
-                    .header_error(second, message)
-                    .question()
-                    .help("name trials by numbers, or balls by their names (--header); '-' leaves a column aside"));
+                let of = shown(&self.columns[second].heading.text);
+                let message = format!("'{of}' is of the same drops as a column before it");
+                let help = "name trials by numbers, or balls by their names (--header); '-' leaves a column aside";
+                return Err(region.header_error(second, message).question().help(help));
             }
-            let lost = [first, second].into_iter().find(|&n| self.columns[n].heading.has(Atom::Lost));
-            self.leave(lost.unwrap_or(second), Why::Elsewhere);
+            let lost = self.columns[first].heading.has(Atom::Lost);
+            kept[place] = if lost { second } else { first };
+            self.leave(if lost { first } else { second }, Why::Elsewhere);
         }
         Ok(())
     }
 
-    /// Whether two columns hold the same part of a height in every row.
+    /// Whether two columns hold the same part of a height in each row that has both, and there is
+    /// one: each is off by half of what they are rounded to.
     fn same_parts(&self, region: &Region<'_>, first: usize, second: usize) -> bool {
-        let whole = |n: usize| if self.is_percent(region, n) { 100.0 } else { 1.0 };
         let part = |row: usize, n: usize| {
-            let part = region.view.number(row, n)? / whole(n);
+            let whole = if self.is_percent(region, n) { 100.0 } else { 1.0 };
+            let part = region.view.number(row, n)? / whole;
             Some(if self.columns[n].heading.has(Atom::Lost) { 1.0 - part } else { part })
         };
-        let same = |row: usize| Some((part(row, first)? - part(row, second)?).abs() <= ROUNDED);
-        region.rows.iter().all(|&row| same(row).unwrap_or(true))
+        let pairs = region.rows.iter().filter_map(|&row| Some((part(row, first)?, part(row, second)?)));
+        let (a, b): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        let off = step(a.iter().copied()) + step(b.iter().copied());
+        !a.is_empty() && a.iter().zip(&b).all(|(a, b)| rounds_to(*a, *b, off))
     }
 }
 

@@ -3,10 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
 use super::super::phrases::Phrase;
-use super::super::units::Dimension;
 use super::super::vocabulary::{Atom, folded};
 use super::super::words::{Word, split};
 use super::{Part, length, parts};
@@ -65,7 +63,7 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
             let at = from;
             from += sentence.len();
             let (found, behind) = parts(sentence);
-            let lengths: Vec<&Part<'_>> = found.iter().filter(|part| is_length(part)).collect();
+            let lengths: Vec<&Part<'_>> = found.iter().filter(|part| length(part.number).is_some()).collect();
             let mut rose = false;
             for (n, part) in lengths.iter().enumerate() {
                 let after = lengths.get(n + 1).map_or(behind, |next| next.words);
@@ -122,10 +120,6 @@ fn paragraphs(text: &str) -> Vec<(usize, String)> {
         }
     }
     found
-}
-
-fn is_length(part: &Part<'_>) -> bool {
-    matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension == Dimension::Length && !u.unscaled()))
 }
 
 /// What a length is by the words before it and behind it; `None` where they say that it was not
